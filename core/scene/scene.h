@@ -1,0 +1,162 @@
+// What the artist asks for, as a plain value: the first link of Scene → Plan → Sea → Frame → evaluate.
+//
+// Each struct mirrors a table of the shot file, each member the key of the same name; the defaults here *are* the
+// shot file's defaults. Nothing in a Scene depends on a file: a measured spectrum is in it as data, already parsed.
+// validate() (scene/validate.h) says whether the values make sense together.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pelagic {
+
+enum class SpectrumKind { PiersonMoskowitz, Jonswap, Tma, Elfouhaily, Omega2, Phillips, File };
+enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
+enum class WaveModel { Fft, Trochoid };
+enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
+enum class WaterType { Ocean, Coastal, Turbid };
+enum class QualityLevel { Draft, Preview, Final, Reference };
+enum class MeshFormat { Usda, Usdc, None };
+enum class MeshAttribute { Normal, Velocity, SlopeVariance, Whitecaps };
+enum class MapKind { Displacement, Normal, SlopeVariance, Whitecaps };
+enum class MeshScheme { None, CatmullClark };
+enum class VolumeKind { Spray, LevelSet };
+
+// [shot]
+struct Shot {
+    std::string name = "sea";  // letters, digits, _ and -
+    int first_frame = 1;       // both included; frame f shows t = (f − 1)/fps
+    int last_frame = 48;
+    double fps = 24.0;       // > 0
+    std::uint64_t seed = 1;  // 0 … 2^63 − 1
+    double loop_s = 0.0;     // > 0: repeats exactly after this long, a whole number of frames; 0: no loop
+
+    double time_s(int frame) const { return (frame - 1) / fps; }
+};
+
+// A swell from a far storm: a second, narrow spectrum.
+struct Swell {
+    double height_m = 0.0;       // 4 √m0, ≥ 0
+    double period_s = 10.0;      // peak period, > 0
+    double direction_deg = 0.0;  // travelling towards, counter-clockwise from +x
+};
+
+// One hour of a directional buoy, in Pelagic's convention (not the buoy's): already turned to "towards,
+// counter-clockwise from +x". c1, c2: the first and second Fourier coefficients ∫D e^{iθ} dθ and ∫D e^{2iθ} dθ.
+struct MeasuredSpectrum {
+    struct Bin {
+        double frequency_hz;
+        double density_m2_per_hz;  // ≥ 0
+        double c1_re, c1_im;
+        double c2_re, c2_im;
+        bool has_direction;  // false: r1, α1, … were missing; only the density counts
+    };
+    std::vector<Bin> bins;  // by rising frequency, at least two
+    std::string station;    // for messages and the record, e.g. "41010"
+    std::string time;       // e.g. "2019-02-06T00:40:00Z"
+};
+
+// [sea]
+struct SeaState {
+    double wind_speed_mps = 10.0;     // 10 m above the sea, 0 … 80
+    double wind_direction_deg = 0.0;  // blowing towards, counter-clockwise from +x
+    double fetch_m = 300e3;           // > 0
+    double depth_m = std::numeric_limits<double>::infinity();  // > 0
+    SpectrumKind spectrum = SpectrumKind::Jonswap;
+    SpreadingKind spreading = SpreadingKind::Hasselmann;
+    std::vector<Swell> swell;
+    std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File
+};
+
+struct CascadeSize {
+    double size_m = 400.0;  // period, > 0
+    int resolution = 512;   // even, 16 … 8192
+};
+
+// [waves]
+struct Waves {
+    WaveModel model = WaveModel::Fft;
+    double choppiness = 1.0;            // λ ≥ 0
+    std::vector<CascadeSize> cascades;  // largest first; empty: "auto"
+};
+
+// [surface]
+struct Surface {
+    SurfaceKind kind = SurfaceKind::Patch;
+    double size_m = 200.0;  // > 0
+    int resolution = 256;   // quads a side, 1 … 8192; (N+1)² vertices
+};
+
+struct CameraKey {
+    int frame = 1;
+    glm::dvec3 position_m{0.0};
+    glm::dvec3 look_at_m{0.0};
+};
+
+// [camera]
+struct Camera {
+    glm::dvec3 position_m{0.0, -60.0, 4.0};
+    glm::dvec3 look_at_m{0.0, 0.0, 0.0};  // up is z; looking along z, +y
+    std::vector<CameraKey> keys;          // by rising frame, linear between, constant outside
+    double fov_deg = 50.0;                // horizontal, 1 … 179
+    glm::ivec2 resolution{1280, 720};     // 1 … 65536 each
+};
+
+// [light]
+struct Light {
+    double sun_elevation_deg = 20.0;  // −90 … 90
+    double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
+    std::string sky = "daylight";
+    double turbidity = 3.0;
+};
+
+// [water]
+struct Water {
+    WaterType type = WaterType::Ocean;
+    double chlorophyll_mg_m3 = 0.1;
+};
+
+// [effects]
+struct Effects {
+    bool whitecaps = true;
+    bool spray = false;
+    double spray_gain = 1.0;
+};
+
+// [quality]
+struct Quality {
+    QualityLevel level = QualityLevel::Final;
+};
+
+// [output]
+struct Output {
+    MeshFormat mesh = MeshFormat::Usda;
+    std::vector<MeshAttribute> attributes{MeshAttribute::Normal, MeshAttribute::Velocity,
+                                          MeshAttribute::SlopeVariance, MeshAttribute::Whitecaps};
+    std::vector<MapKind> maps;
+    int map_resolution = 512;  // 1 … 8192 pixels a side
+    bool cascade_tiles = false;
+    MeshScheme mesh_scheme = MeshScheme::None;
+    std::vector<VolumeKind> volumes;
+    double voxel_m = 0.5;  // > 0
+};
+
+struct Scene {
+    Shot shot;
+    SeaState sea;
+    Waves waves;
+    Surface surface;
+    Camera camera;
+    Light light;
+    Water water;
+    Effects effects;
+    Quality quality;
+    Output output;
+};
+
+}  // namespace pelagic

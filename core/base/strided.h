@@ -1,5 +1,5 @@
-// A view of n values somewhere in the caller's memory, a fixed number of bytes apart: how results reach buffers that
-// others own (numpy arrays, Blender's vertices, interleaved GPU uploads) without a copy.
+// A view of n values somewhere in the caller's memory, a fixed number of bytes apart: how results reach
+// buffers that others own (numpy arrays, Blender's vertices, interleaved GPU uploads) without a copy.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,8 @@ struct Strided {
 
     T& operator[](std::size_t i) const {
         using Byte = std::conditional_t<std::is_const_v<T>, const char, char>;
-        return *reinterpret_cast<T*>(reinterpret_cast<Byte*>(data) + static_cast<std::ptrdiff_t>(i) * stride_bytes);
+        return *reinterpret_cast<T*>(reinterpret_cast<Byte*>(data) +
+                                     static_cast<std::ptrdiff_t>(i) * stride_bytes);
     }
     explicit operator bool() const { return data != nullptr; }
 };

@@ -1,0 +1,145 @@
+// The plan as a page for people.
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "core/base/constants.h"
+#include "core/plan/mode_lattice.h"
+#include "core/plan/plan.h"
+#include "core/plan/tables.h"
+#include "core/scene/names.h"
+#include "core/spectrum/directional_spectrum.h"
+#include "core/spectrum/viscous_cutoff.h"
+
+namespace pelagic {
+namespace {
+
+// printf into a string: the columns of the page are easier to read so than through stream manipulators.
+template <class... Args>
+std::string format(const char* pattern, Args... args) {
+    const int length = std::snprintf(nullptr, 0, pattern, args...);
+    std::string text(static_cast<std::size_t>(length), '\0');
+    std::snprintf(text.data(), text.size() + 1, pattern, args...);
+    return text;
+}
+
+std::string bytes_text(std::size_t bytes) {
+    const double b = static_cast<double>(bytes);
+    if (bytes < 1024 * 1024) return format("%.1f KiB", b / 1024.0);
+    if (b < 1024.0 * 1024.0 * 1024.0) return format("%.1f MiB", b / (1024.0 * 1024.0));
+    return format("%.2f GiB", b / (1024.0 * 1024.0 * 1024.0));
+}
+
+const char* field_name(Field field) {
+    static constexpr const char* kNames[kFieldCount] = {"height",     "Dx",         "Dy",        "slope x",
+                                                        "slope y",    "Dxx",        "Dyy",       "Dxy",
+                                                        "velocity x", "velocity y", "velocity z"};
+    return kNames[index(field)];
+}
+
+std::string field_list(FieldSet set) {
+    std::string text;
+    for (std::size_t f = 0; f < kFieldCount; ++f)
+        if (set[f]) text += (text.empty() ? "" : ", ") + std::string(field_name(static_cast<Field>(f)));
+    return text.empty() ? "no field" : text;
+}
+
+std::string footprint_text(const std::vector<double>& footprints_m) {
+    if (footprints_m.size() == 1 && footprints_m.front() == 0.0) return "nothing filtered";
+    std::string text = format("waves from %.4g m up", FootprintFilter{}.n_min * footprints_m.front());
+    if (footprints_m.size() > 1) text += format(" … %.4g m", FootprintFilter{}.n_min * footprints_m.back());
+    return text;
+}
+
+// The horizontal displacement's fields are zero without choppiness: asked for, but never computed.
+FieldSet computed(const Plan& plan, ProductSet wanted) {
+    return fields_of(wanted) & ~(plan.choppiness > 0.0 ? FieldSet() : horizontal_fields());
+}
+
+}  // namespace
+
+std::string explain(const Scene& scene, const Plan& plan) {
+    const DirectionalSpectrum spectrum(scene.sea);
+    std::string page = "Sea\n";
+    page += format("  wind %g m/s towards %g°, spectrum %s, Hs %.3g m", scene.sea.wind_speed_mps,
+                   scene.sea.wind_direction_deg, std::string(word_of(scene.sea.spectrum)).c_str(),
+                   4.0 * std::sqrt(spectrum.m0()));
+    if (!spectrum.empty()) page += format(", peak wavelength %.4g m", kTwoPi / spectrum.peak_wavenumber());
+    page += format("\n  capillary-gravity dispersion, viscous cutoff at %g rad/m\n", kViscousWavenumber);
+
+    page += "\nOutputs\n";
+    for (const PlannedQuery& planned : plan.queries) {
+        page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m) + "\n";
+        for (const ProductRow& row : kProductTable)
+            if (planned.query.products[index(row.product)])
+                page += format("    %-18s ← %s (%s)\n", row.name,
+                               field_list(computed(plan, products(row.product))).c_str(), row.why);
+    }
+    if (plan.queries.empty()) page += "  none: no mesh and no maps are asked for\n";
+    if (scene.output.mesh != MeshFormat::None) {
+        for (const AttributeRow& row : kAttributeTable) {
+            bool asked = false;
+            for (const MeshAttribute attribute : scene.output.attributes) asked |= attribute == row.attribute;
+            if (!asked)
+                page += format("    %-18s   not computed: not in output.attributes\n",
+                               std::string(word_of(row.attribute)).c_str());
+        }
+    }
+
+    page += "\nEffects\n";
+    for (const Reason& reason : plan.closure) page += "  " + reason.what + ": " + reason.why + "\n";
+    if (scene.effects.whitecaps) {
+        bool used = false;
+        for (const PlannedQuery& planned : plan.queries)
+            used |= planned.query.products[index(Product::Coverage)];
+        page += used ? format("  whitecaps: coverage from %d moments of the Jacobian\n",
+                              plan.knobs.third_moment ? 3 : 2)
+                     : std::string("  whitecaps: on, but no output asks for them: nothing is computed\n");
+    }
+
+    page += "\nCascades and their transforms\n";
+    std::size_t cascade_number = 0;
+    for (const CascadePlan& cascade : plan.cascades) {
+        page += format("  %zu  %.6g m, resolution %d, waves of ", cascade_number++, cascade.size_m,
+                       cascade.resolution);
+        page +=
+            cascade.k_lower > 0.0 ? format("%.4g m", kTwoPi / cascade.k_lower) : std::string("any length");
+        page += std::isfinite(cascade.k_upper)
+                    ? format(" down to %.4g m", kTwoPi / cascade.k_upper)
+                    : format(" down to %.4g m", 2.0 * cascade.size_m / cascade.resolution);
+        page += "\n";
+        if (cascade.grids.empty()) {
+            page += "     nothing runs: " + cascade.why_empty + "\n";
+            continue;
+        }
+        page += format("     %zu modes, %s\n", half_plane_modes(cascade.mode_radius),
+                       bytes_text(half_plane_modes(cascade.mode_radius) *
+                                  sea_bytes_per_mode(plan.knobs.double_precision))
+                           .c_str());
+        for (const Grid& grid : cascade.grids) {
+            const auto n = static_cast<std::size_t>(grid.resolution);
+            const std::size_t bytes = grid.transforms.size() * n * n * (plan.knobs.double_precision ? 16 : 8);
+            page += format("     %d × %d, %zu complex transforms, %s, read %s:", grid.resolution,
+                           grid.resolution, grid.transforms.size(), bytes_text(bytes).c_str(),
+                           grid.sampling == Sampling::Nodes
+                               ? "at its nodes"
+                               : (plan.knobs.spline_taps == 6 ? "by quintic spline" : "by cubic spline"));
+            for (const auto& [first, second] : grid.transforms)
+                page += std::string(" (") + field_name(*first) +
+                        (second ? std::string(" + ") + field_name(*second) : "") + ")";
+            page += "\n";
+        }
+    }
+    page += format("\nEach frame: %d transforms. Held: %s for the sea, %s for a frame.\n",
+                   plan.transforms_per_frame(), bytes_text(plan.sea_bytes()).c_str(),
+                   bytes_text(plan.frame_bytes()).c_str());
+    page += format("Quality %s: %s precision, %d-tap splines, %.3g × oversampled.\n",
+                   std::string(word_of(scene.quality.level)).c_str(),
+                   plan.knobs.double_precision ? "double" : "single", plan.knobs.spline_taps,
+                   plan.knobs.oversampling);
+    page += "Fingerprint " + plan.fingerprint_text() + "\n";
+    return page;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,334 @@
+#include "core/plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+
+#include "core/base/constants.h"
+#include "core/plan/mode_lattice.h"
+#include "core/plan/tables.h"
+#include "core/scene/canonical.h"
+#include "core/scene/cascade_bands.h"
+#include "core/spectrum/directional_spectrum.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kHalfDiagonal = 0.7072;  // of a mode's cell, in modes: √½, rounded up
+
+Knobs knobs_of(QualityLevel level) {
+    // Errors and times of each row: tests/bench, "sampling".
+    switch (level) {
+        case QualityLevel::Draft:
+            return {.spline_taps = 4, .oversampling = 1.25, .third_moment = false};
+        case QualityLevel::Preview:
+            return {.spline_taps = 4, .oversampling = 1.5};
+        case QualityLevel::Final:
+            return {.spline_taps = 4, .oversampling = 2.0};
+        case QualityLevel::Reference:
+            return {.spline_taps = 6, .oversampling = 2.0, .third_moment = true, .double_precision = true};
+    }
+    throw std::invalid_argument("quality level out of range");
+}
+
+// The smallest even number ≥ n without a prime factor above 7: FFTW has fast code for those.
+int transform_size(int n) {
+    for (int size = std::max(n + n % 2, 2);; size += 2) {
+        int rest = size;
+        for (int prime : {2, 3, 5, 7})
+            while (rest % prime == 0) rest /= prime;
+        if (rest == 1) return size;
+    }
+}
+
+// The nodes of an L-periodic grid that the lattice's points fall on: its resolution, or nothing.
+std::optional<int> node_resolution(const Lattice& lattice, double size_m) {
+    const auto whole = [](double x) {
+        return std::abs(x - std::round(x)) < 1e-9 * std::max(1.0, std::abs(x));
+    };
+    const double n = size_m / lattice.spacing_m;
+    if (n < 2.0 || n > 32768.0 || !whole(n) || !whole(lattice.first_m / lattice.spacing_m)) return {};
+    return static_cast<int>(std::round(n));
+}
+
+bool has_energy(const DirectionalSpectrum& spectrum, double k_lower, double k_upper) {
+    const double from = std::max(k_lower, 1e-6);
+    for (int i = 0; i <= 256; ++i)
+        if (spectrum.omnidirectional(from * std::pow(k_upper / from, i / 256.0)) > 0.0) return true;
+    return false;
+}
+
+int level_index(Plan& plan, const Level& level) {
+    const auto same = [&](const Level& other) {
+        const bool lattices = level.lattice.has_value() == other.lattice.has_value() &&
+                              (!level.lattice || (level.lattice->first_m == other.lattice->first_m &&
+                                                  level.lattice->spacing_m == other.lattice->spacing_m));
+        return level.footprint_m == other.footprint_m && lattices && level.only_cascade == other.only_cascade;
+    };
+    const auto found = std::find_if(plan.levels.begin(), plan.levels.end(), same);
+    if (found != plan.levels.end()) return static_cast<int>(found - plan.levels.begin());
+    plan.levels.push_back(level);
+    return static_cast<int>(plan.levels.size()) - 1;
+}
+
+// Fields that a grid of this cascade and level must hold for all queries together.
+FieldSet fields_at(const Plan& plan, int level, FieldSet dropped) {
+    FieldSet wanted;
+    for (const PlannedQuery& planned : plan.queries) {
+        const auto uses = [&](const std::vector<int>& levels) {
+            return std::find(levels.begin(), levels.end(), level) != levels.end();
+        };
+        const FieldSet needed = fields_of(planned.query.products) & ~dropped;
+        if (uses(planned.cell_levels)) wanted |= needed & cell_fields();
+        if (uses(planned.pixel_levels)) wanted |= needed & ~cell_fields();
+    }
+    return wanted;
+}
+
+void add_grids(Plan& plan, int cascade_index, FieldSet dropped) {
+    CascadePlan& cascade = plan.cascades[cascade_index];
+    const double step = 2.0 * kPi / cascade.size_m;  // distance between modes [rad/m]
+    const int last_mode = cascade.resolution / 2 - 1;
+    for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
+        const Level& at = plan.levels[level];
+        if (at.only_cascade && *at.only_cascade != cascade_index) continue;
+        const FieldSet wanted = fields_at(plan, level, dropped);
+        const double cutoff = std::min(plan.filter.cutoff(at.footprint_m), cascade.k_upper);
+        // Every mode whose cell, half a diagonal round it, reaches the edge of the band.
+        const int radius =
+            static_cast<int>(std::min<double>(last_mode, std::floor(cutoff / step + kHalfDiagonal)));
+        if (wanted.none() || cutoff <= cascade.k_lower || radius < 1) continue;
+
+        Grid grid;
+        grid.level = level;
+        grid.fields = wanted;
+        grid.resolution =
+            transform_size(static_cast<int>(std::ceil(plan.knobs.oversampling * (2.0 * radius + 1.0))));
+        if (const auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
+            nodes && *nodes >= 2 * radius + 1 && (at.only_cascade || *nodes <= 2 * grid.resolution)) {
+            // Up to four times the samples of the spline's grid are cheaper than the spline, and without its
+            // error.
+            grid.resolution = *nodes;
+            grid.sampling = Sampling::Nodes;
+        }
+        for (std::size_t f = 0; f < kFieldCount; ++f) {
+            if (!wanted[f]) continue;
+            if (grid.transforms.empty() || grid.transforms.back()[1])
+                grid.transforms.push_back({static_cast<Field>(f), std::nullopt});
+            else
+                grid.transforms.back()[1] = static_cast<Field>(f);
+        }
+        cascade.mode_radius = std::max(cascade.mode_radius, radius);
+        cascade.grid_of_level[level] = static_cast<int>(cascade.grids.size());
+        cascade.grids.push_back(std::move(grid));
+    }
+    if (cascade.grids.empty() && cascade.why_empty.empty())
+        cascade.why_empty = "all its waves are too short for the footprints asked for: kept as variance";
+}
+
+std::uint64_t fnv1a(std::string_view text) {  // Fowler, Noll, Vo: 64-bit FNV-1a
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    return hash;
+}
+
+}  // namespace
+
+FieldSet cell_fields() {
+    return fields(Field::Height, Field::Dx, Field::Dy, Field::VelocityX, Field::VelocityY, Field::VelocityZ);
+}
+
+FieldSet fields_of(ProductSet wanted) {
+    FieldSet needed;
+    for (const ProductRow& row : kProductTable)
+        if (wanted[index(row.product)]) needed |= row.needs();
+    return needed;
+}
+
+std::vector<CascadeSize> resolve_cascades(const Scene& scene, double finest_footprint_m) {
+    if (!scene.waves.cascades.empty()) {
+        auto cascades = scene.waves.cascades;
+        std::sort(cascades.begin(), cascades.end(),
+                  [](const auto& a, const auto& b) { return a.size_m > b.size_m; });
+        return cascades;
+    }
+    // Ten of the longest peak waves fit into the first tile (their m0 then varies by some 7 % from seed to
+    // seed); each further one is smaller by the golden ratio cubed, about as far from a common period as
+    // numbers go.
+    constexpr double kPeakWaves = 10.0;
+    constexpr double kRatio = 4.23606797749979;
+    constexpr int kCascades = 4, kLargestResolution = 2048, kUnfilteredResolution = 512;
+    const double peak = DirectionalSpectrum(scene.sea).longest_peak_wavenumber();
+    std::vector<CascadeSize> cascades(kCascades);
+    std::vector<double> sizes;
+    for (int i = 0; i < kCascades; ++i) sizes.push_back(kPeakWaves * 2.0 * kPi / peak / std::pow(kRatio, i));
+    const auto edges = lower_edges(sizes);
+    for (int i = 0; i < kCascades; ++i) {
+        cascades[i].size_m = sizes[i];
+        int resolution = kUnfilteredResolution;
+        if (i + 1 < kCascades) {
+            resolution = sufficient_resolution(sizes[i], edges[i + 1]);
+        } else if (finest_footprint_m > 0.0) {
+            // The finest cascade goes as far as somebody looks. Modes don't depend on it: more only adds
+            // detail.
+            const double modes = FootprintFilter{}.cutoff(finest_footprint_m) * sizes[i] / (2.0 * kPi);
+            resolution =
+                static_cast<int>(std::clamp(2.0 * (std::ceil(modes) + 1.0), 16.0, 1.0 * kLargestResolution));
+        }
+        cascades[i].resolution = transform_size(resolution);
+    }
+    return cascades;
+}
+
+namespace {
+
+// A map's levels hide more and more: the footprints of its mip pyramid, halved sizes rounded down as OpenEXR
+// does.
+std::vector<double> mip_footprints(double size_m, int n) {
+    std::vector<double> footprints_m;
+    for (; n >= 1; n /= 2) footprints_m.push_back(size_m / n);
+    return footprints_m;
+}
+
+// The queries of one square of texels for each map asked for.
+void add_map_queries(std::vector<Query>& queries, const Scene& scene, double size_m, int n,
+                     std::optional<int> cascade) {
+    for (const MapKind map : scene.output.maps)
+        for (const MapRow& row : kMapTable) {
+            if (row.map != map) continue;
+            Query query;
+            query.name =
+                (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) + row.name;
+            query.products = row.needs();
+            query.map = map;
+            query.lattice = Lattice{-0.5 * size_m, size_m / n};
+            query.only_cascade = cascade;
+            query.pixel_m =
+                map == MapKind::SlopeVariance ? mip_footprints(size_m, n) : std::vector{size_m / n};
+            // A tile's nodes carry each of its modes: there is nothing to filter out.
+            if (cascade) query.pixel_m.front() = 0.0;
+            query.cell_m = {query.pixel_m.front()};
+            queries.push_back(std::move(query));
+        }
+}
+
+}  // namespace
+
+std::vector<Query> bake_queries(const Scene& scene) {
+    const Output& output = scene.output;
+    const Surface& surface = scene.surface;
+    const double spacing_m = surface.size_m / surface.resolution;
+    double finest_m = std::numeric_limits<double>::infinity();
+    std::vector<Query> queries;
+    if (output.mesh != MeshFormat::None) {
+        Query mesh;
+        mesh.name = "mesh";
+        mesh.products = products(Product::Position);
+        for (const MeshAttribute attribute : output.attributes)
+            for (const AttributeRow& row : kAttributeTable)
+                if (row.attribute == attribute && (!row.of_whitecaps || scene.effects.whitecaps))
+                    mesh.products.set(index(row.product));
+        mesh.cell_m = mesh.pixel_m = {spacing_m};
+        mesh.lattice = Lattice{-0.5 * surface.size_m, spacing_m};
+        queries.push_back(std::move(mesh));
+        finest_m = spacing_m;
+    }
+    if (!output.maps.empty()) finest_m = std::min(finest_m, surface.size_m / output.map_resolution);
+    add_map_queries(queries, scene, surface.size_m, output.map_resolution, std::nullopt);
+    if (output.cascade_tiles) {
+        const auto cascades = resolve_cascades(scene, finest_m);
+        for (int i = 0; i < static_cast<int>(cascades.size()); ++i)
+            add_map_queries(queries, scene, cascades[i].size_m, cascades[i].resolution, i);
+    }
+    return queries;
+}
+
+Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
+    Plan plan;
+    plan.knobs = knobs_of(scene.quality.level);
+    plan.choppiness = scene.waves.choppiness;
+    plan.fingerprint = fnv1a(canonical(scene) + "\npelagic " PELAGIC_VERSION);
+
+    double finest_m = std::numeric_limits<double>::infinity();
+    for (const Query& query : queries) {
+        const auto rising = [](const std::vector<double>& footprints) {
+            return !footprints.empty() && footprints.front() >= 0.0 && std::isfinite(footprints.back()) &&
+                   std::is_sorted(footprints.begin(), footprints.end(), std::less_equal<>());
+        };
+        if (!rising(query.cell_m) || !rising(query.pixel_m))
+            throw std::invalid_argument(
+                "query \"" + query.name +
+                "\": footprints must be at least one, finite, from 0 up and strictly rising");
+        PlannedQuery planned{query, {}, {}};
+        for (double footprint_m : query.cell_m)
+            planned.cell_levels.push_back(
+                level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
+        for (double footprint_m : query.pixel_m)
+            planned.pixel_levels.push_back(
+                level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
+        if (!query.only_cascade) finest_m = std::min({finest_m, query.cell_m.front(), query.pixel_m.front()});
+        plan.queries.push_back(std::move(planned));
+    }
+
+    const FieldSet dropped = scene.waves.choppiness > 0.0 ? FieldSet() : horizontal_fields();
+    if (dropped.any()) plan.closure.push_back({"no horizontal displacement", "waves.choppiness is 0"});
+    if (!scene.effects.whitecaps) plan.closure.push_back({"no whitecaps", "effects.whitecaps is false"});
+    const auto sizes = resolve_cascades(scene, std::isfinite(finest_m) ? finest_m : 0.0);
+    std::vector<double> sizes_m;
+    for (const CascadeSize& cascade : sizes) sizes_m.push_back(cascade.size_m);
+    const auto edges = lower_edges(sizes_m);
+    const DirectionalSpectrum spectrum(scene.sea);
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+        CascadePlan cascade;
+        cascade.size_m = sizes[i].size_m;
+        cascade.resolution = sizes[i].resolution;
+        cascade.k_lower = edges[i];
+        cascade.k_upper = i + 1 < sizes.size() ? edges[i + 1] : std::numeric_limits<double>::infinity();
+        cascade.grid_of_level.assign(plan.levels.size(), -1);
+        plan.cascades.push_back(std::move(cascade));
+        const double last = std::min(plan.cascades[i].k_upper, kPi * sizes[i].resolution / sizes[i].size_m);
+        if (has_energy(spectrum, edges[i], last))
+            add_grids(plan, static_cast<int>(i), dropped);
+        else
+            plan.cascades[i].why_empty = "the spectrum has no energy in its band";
+    }
+    return plan;
+}
+
+int Plan::transforms_per_frame() const {
+    std::size_t count = 0;
+    for (const CascadePlan& cascade : cascades)
+        for (const Grid& grid : cascade.grids) count += grid.transforms.size();
+    return static_cast<int>(count);
+}
+
+std::size_t Plan::sea_bytes() const {
+    std::size_t bytes = 0;
+    for (const CascadePlan& cascade : cascades)
+        bytes += half_plane_modes(cascade.mode_radius) * sea_bytes_per_mode(knobs.double_precision);
+    return bytes;
+}
+
+std::size_t Plan::frame_bytes() const {
+    const std::size_t complex_bytes = knobs.double_precision ? 16 : 8;
+    std::size_t bytes = 0;
+    for (const CascadePlan& cascade : cascades) {
+        if (!cascade.grids.empty()) bytes += 2 * half_plane_modes(cascade.mode_radius) * complex_bytes;
+        for (const Grid& grid : cascade.grids)
+            bytes += grid.transforms.size() * complex_bytes * grid.resolution *
+                     static_cast<std::size_t>(grid.resolution);
+    }
+    return bytes;
+}
+
+std::string Plan::fingerprint_text() const {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fingerprint));
+    return text;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,126 @@
+// The plan: what a scene's outputs need, as pure data, before a byte is allocated.
+//
+// A closure over small tables (plan.cpp): outputs → products → fields → inverse transforms. Nothing else in
+// the code decides whether an effect is computed: Sea, Frame and evaluate() read the plan and do what stands
+// there. It knows no FFTW and allocates no buffers, so that explain() answers at once for an 8192² sea.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/plan/fields.h"
+#include "core/plan/filter.h"
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// Points that lie at first_m + i·spacing_m in x and in y, seen from the world's origin.
+struct Lattice {
+    double first_m = 0.0;
+    double spacing_m = 1.0;
+};
+
+// A batch of points that somebody will hand to evaluate(): what is wanted there, and how fine.
+struct Query {
+    std::string name;     // for explain(): "mesh", "map normal", …
+    ProductSet products;  // evaluate() writes these and no others
+    // Footprints [m], rising: one for points that all have the same, several as a ladder between which each
+    // point's own footprint is blended. 0: nothing is filtered. `cell_m` filters positions and velocities,
+    // `pixel_m` everything that comes from derivatives.
+    std::vector<double> cell_m{0.0};
+    std::vector<double> pixel_m{0.0};
+    std::optional<Lattice>
+        lattice;  // where the points are known to lie on one: sampling may be free of error
+    std::optional<int> only_cascade;  // a cascade's own tile: the others count as unresolved
+    std::optional<MapKind> map;       // what a bake makes of the answers; a mesh where there is none
+};
+
+// How a point finds its value in a grid of samples.
+enum class Sampling {
+    Nodes,   // the points are the grid's nodes: a plain read, exact
+    Spline,  // B-spline whose coefficients come straight from the spectrum (core/waves/spline.h)
+};
+
+// One cascade seen through one footprint: an N × N periodic grid and the transforms that fill it.
+struct Grid {
+    int level = 0;
+    int resolution = 0;  // N
+    Sampling sampling = Sampling::Spline;
+    FieldSet fields;
+    // Two real fields ride in one complex transform; the last may travel alone.
+    std::vector<std::array<std::optional<Field>, 2>> transforms;
+};
+
+struct CascadePlan {
+    double size_m = 0.0;
+    int resolution = 0;
+    // The band [rad/m]: lower ≤ |k| < upper, from the sizes alone. The finest cascade's upper edge is
+    // infinite: it ends with its last mode, mode_radius.
+    double k_lower = 0.0, k_upper = 0.0;
+    int mode_radius = 0;             // modes with mx² + my² ≤ mode_radius² are generated
+    std::vector<Grid> grids;         // only those through which something passes
+    std::vector<int> grid_of_level;  // index into grids, −1: nothing of this cascade passes
+    std::string why_empty;           // set when there are no grids
+};
+
+// A footprint that some query uses; queries with the same footprint and sampling share it.
+struct Level {
+    double footprint_m = 0.0;
+    std::optional<Lattice> lattice;
+    std::optional<int> only_cascade;
+};
+
+// Quality, resolved into knobs. Each has a measured error and a measured time: tests/bench.
+struct Knobs {
+    int spline_taps = 4;        // 4: cubic B-spline, 6: quintic
+    double oversampling = 2.0;  // grid nodes per Nyquist sample of the shortest wave, where a spline reads it
+    bool third_moment = true;   // coverage from three moments of J, or from two (Dupuy and Bruneton)
+    bool double_precision = false;
+};
+
+struct PlannedQuery {
+    Query query;
+    std::vector<int> cell_levels, pixel_levels;  // into Plan::levels, parallel to the footprints
+};
+
+// A line of the closure, for people: what runs, and because of what.
+struct Reason {
+    std::string what, why;
+};
+
+struct Plan {
+    Knobs knobs;
+    FootprintFilter filter;
+    double choppiness = 1.0;
+    std::vector<PlannedQuery> queries;
+    std::vector<Level> levels;
+    std::vector<CascadePlan> cascades;
+    std::vector<Reason> closure;
+    std::uint64_t fingerprint = 0;  // of everything that decides what the files hold, except which frames
+
+    int transforms_per_frame() const;
+    std::size_t sea_bytes() const;         // held once, shared
+    std::size_t frame_bytes() const;       // held by each Frame
+    std::string fingerprint_text() const;  // 16 hexadecimal digits
+};
+
+// What baking this scene asks of the sea: the mesh and the maps, in the order of the shot file, tiles last.
+std::vector<Query> bake_queries(const Scene&);
+
+// The scene must be valid (core/scene/validate.h). Throws std::invalid_argument when a query is malformed.
+Plan make_plan(const Scene&, const std::vector<Query>&);
+inline Plan make_plan(const Scene& scene) {
+    return make_plan(scene, bake_queries(scene));
+}
+
+// The cascades in force, largest first: the scene's own, or "auto" resolved for the finest footprint asked
+// for.
+std::vector<CascadeSize> resolve_cascades(const Scene&, double finest_footprint_m);
+
+// A page of text: each output, product, field, transform with its size, bytes held, and why.
+std::string explain(const Scene&, const Plan&);
+
+}  // namespace pelagic

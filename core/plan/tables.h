@@ -1,0 +1,67 @@
+// The plan's tables: what each output, product and effect needs. They decide, and nothing else does.
+#pragma once
+
+#include <array>
+
+#include "core/plan/fields.h"
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+struct ProductRow {
+    Product product;
+    const char* name;
+    FieldSet (*needs)();
+    const char* why;
+};
+
+inline const std::array<ProductRow, kProductCount> kProductTable{{
+    {Product::Position, "position", [] { return fields(Field::Height, Field::Dx, Field::Dy); },
+     "the displaced point"},
+    {Product::Displacement, "displacement", [] { return fields(Field::Height, Field::Dx, Field::Dy); },
+     "the displaced point less the point at rest"},
+    {Product::Normal, "normal",
+     [] { return fields(Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy, Field::Dxy); },
+     "the cross product of the displaced tangents"},
+    {Product::Velocity, "velocity",
+     [] { return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ); },
+     "the sums' time derivative"},
+    {Product::SlopeVariance, "slope variance", [] { return FieldSet(); },
+     "a remainder of the spectrum: no transform"},
+    {Product::JacobianMoments, "Jacobian moments", [] { return fields(Field::Dxx, Field::Dyy, Field::Dxy); },
+     "J and the variance that the footprint hides"},
+    {Product::Coverage, "whitecap coverage", [] { return fields(Field::Dxx, Field::Dyy, Field::Dxy); },
+     "where J falls below the threshold of breaking"},
+}};
+
+struct AttributeRow {
+    MeshAttribute attribute;
+    Product product;
+    bool of_whitecaps;  // dropped where the effect is off
+};
+
+inline constexpr std::array<AttributeRow, 4> kAttributeTable{{
+    {MeshAttribute::Normal, Product::Normal, false},
+    {MeshAttribute::Velocity, Product::Velocity, false},
+    {MeshAttribute::SlopeVariance, Product::SlopeVariance, false},
+    {MeshAttribute::Whitecaps, Product::Coverage, true},
+}};
+
+struct MapRow {
+    MapKind map;
+    const char* name;
+    ProductSet (*needs)();
+};
+
+inline const std::array<MapRow, 4> kMapTable{{
+    {MapKind::Displacement, "displacement", [] { return products(Product::Displacement); }},
+    {MapKind::Normal, "normal", [] { return products(Product::Normal); }},
+    {MapKind::SlopeVariance, "slope-variance", [] { return products(Product::SlopeVariance); }},
+    {MapKind::Whitecaps, "whitecaps", [] { return products(Product::JacobianMoments, Product::Coverage); }},
+}};
+
+// The fields that a point's cell filters (positions and velocities); its pixel filters the others.
+FieldSet cell_fields();
+FieldSet fields_of(ProductSet);
+
+}  // namespace pelagic

@@ -1,0 +1,61 @@
+// The ranges that validate() accepts and that the shot file's help names: stated once.
+//
+// Where the shot file's description only says "> 0", the bounds here are what keeps the arithmetic finite
+// with digits to spare; each is far outside what a shot wants.
+#pragma once
+
+#include <string>
+
+#include "core/scene/cascade_bands.h"
+
+namespace pelagic {
+
+// Both ends included.
+struct Range {
+    double low;
+    double high;
+
+    constexpr bool holds(double value) const { return value >= low && value <= high; }  // never a NaN
+};
+
+// "0 … 80"
+std::string text_of(Range range);
+
+namespace limits {
+
+inline constexpr int kNameLength = 200;  // file systems stop at 255 bytes, and a bake's suffixes need some
+
+inline constexpr Range kFrame{-1e8, 1e8};  // a time (frame − 1)/fps that a double still holds to 1e-5 s
+inline constexpr Range kFps{1e-3, 1e4};    // a frame a quarter of an hour … high-speed camera
+inline constexpr Range kLoop_s{0.0, 1e7};  // four months
+inline constexpr double kLoopTolerance_frames =
+    1e-4;  // a loop written with seven digits: 4 µs at 24 frames a second
+
+inline constexpr Range kWindSpeed_mps{0.0, 80.0};
+inline constexpr Range kAngle_deg{-1e6, 1e6};  // any number of turns that leaves ten digits of the angle
+inline constexpr Range kFetch_m{1.0, 1e8};
+inline constexpr Range kDepth_m{0.01, 1e6};  // or infinite
+inline constexpr int kSwells = 64;           // each is a spectrum of its own in every integral
+inline constexpr Range kSwellHeight_m{0.0, 50.0};
+inline constexpr Range kSwellPeriod_s{0.1, 100.0};  // 1.6 cm … 16 km long in deep water
+inline constexpr Range kMeasuredFrequency_hz{1e-4, 100.0};
+
+inline constexpr Range kChoppiness{0.0, 10.0};  // waves fold over near 1 … 2
+inline constexpr int kCascades = 16;
+inline constexpr Range kCascadeSize_m{0.01, 1e6};
+inline constexpr Range kCascadeResolution{kMinCascadeResolution, kMaxCascadeResolution};
+
+inline constexpr Range kSurfaceSize_m{0.01, 1e6};
+inline constexpr Range kSurfaceResolution{1, 8192};
+
+inline constexpr Range kCameraCoordinate_m{-1e9, 1e9};  // beyond any orbit we draw
+inline constexpr double kOnTarget_m = 1e-6;  // nearer than this, rounding decides where a camera looks
+inline constexpr Range kFov_deg{1.0, 179.0};
+inline constexpr Range kImageResolution{1, 65536};
+
+inline constexpr Range kSunElevation_deg{-90.0, 90.0};
+inline constexpr Range kMapResolution{1, 8192};
+
+}  // namespace limits
+
+}  // namespace pelagic

@@ -1,0 +1,49 @@
+// How values are written in messages and in the canonical text. See text.h.
+#include "core/scene/text.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace pelagic {
+
+std::string number_text(double value) {
+    // std::to_chars may print the sign and payload of a NaN; nobody wants to read them.
+    if (std::isnan(value)) return "nan";
+    // Within these bounds people write numbers without an exponent, and 17 digits still fit on a line.
+    constexpr double kLeastFixed = 1e-4;
+    constexpr double kMostFixed = 1e7;
+    const double magnitude = std::abs(value);
+    const bool is_fixed = value == 0.0 || (magnitude >= kLeastFixed && magnitude < kMostFixed);
+    std::array<char, 32> buffer{};  // the longest shortest double has 24 characters
+    const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                      is_fixed ? std::chars_format::fixed : std::chars_format::scientific);
+    std::string text(buffer.data(), result.ptr);
+    // "1e+08" is 1e8: no plus, no leading zero.
+    if (const std::size_t e = text.find('e'); e != std::string::npos) {
+        const std::size_t first = text[e + 1] == '-' ? e + 2 : e + 1;
+        text.erase(first, text.find_first_of("123456789", first) - first);
+    }
+    return text;
+}
+
+std::string quoted_text(std::string_view text) {
+    constexpr std::string_view kHexDigits = "0123456789abcdef";
+    std::string out = "\"";
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            out += '\\';
+            out += c;
+        } else if (byte < 0x20 || byte == 0x7f) {
+            out += "\\x";
+            out += kHexDigits[byte >> 4];
+            out += kHexDigits[byte & 15];
+        } else {
+            out += c;
+        }
+    }
+    return out + '"';
+}
+
+}  // namespace pelagic

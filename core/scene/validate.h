@@ -1,0 +1,36 @@
+// Whether the values of a Scene make sense, each alone and together. Knows no file: who read the values from
+// one adds the place (plugin/shot).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// One refused value, as the parts of one sentence.
+struct Problem {
+    std::string key;       // the shot file's path of it: "waves.cascades[1].resolution", counting from 0
+    std::string value;     // as the shot file would write it
+    std::string problem;   // what is wrong: "is outside the range"
+    std::string accepted;  // what would be right: "0 … 80"
+};
+
+// "sea.wind_speed_mps = -3: is outside the range; accepted: 0 … 80"
+std::string text_of(const Problem& problem);
+
+// Every problem of the scene, in the order of the shot file's tables; empty: the scene can be planned.
+//
+// Ranges are those of scene/limits.h: a NaN is never accepted, infinity only as a depth. Values whose feature
+// is not built yet are refused, each with what to use meanwhile. Cascades must come largest first and leave
+// no wavenumber out between two of them (scene/cascade_bands.h).
+//
+// Whitecaps that are off: the attribute "whitecaps" is then simply not written, because the attributes'
+// default contains it and whoever turns the effect off wants no coverage. A *map* of them is never a default:
+// asking for one while the effect is off is a contradiction, and refused.
+//
+// A camera on its own target looks nowhere: refused, for each key and for the straight way between two keys.
+std::vector<Problem> validate(const Scene& scene);
+
+}  // namespace pelagic

@@ -1,0 +1,90 @@
+// Shapes over direction: the densities D(θ), ∫ D dθ = 1, that the spreading laws choose from at each
+// wavenumber.
+//
+// Each shape knows three things, all in θ measured from its own direction:
+//   density(θ)      D [1/rad], for any θ;
+//   cumulative(θ)   ∫₀^θ D, with cumulative(θ + 2π) = cumulative(θ) + 1, so that any arc is a difference;
+//   harmonic(n)     ∫ D e^{inθ} dθ, n ≥ 0.
+#pragma once
+
+#include <complex>
+
+namespace pelagic {
+
+// N cos²ˢ(θ/2), N = Γ(s + 1) / (2 √π Γ(s + ½))  (Longuet-Higgins, Cartwright & Smith 1963). s ≥ 0; 0 is
+// isotropic.
+class CosinePower {
+  public:
+    explicit CosinePower(double s);
+    double density(double theta) const;
+    double cumulative(double theta) const;
+    std::complex<double> harmonic(int n) const;
+
+  private:
+    double s_;
+    double norm_;
+};
+
+// β sech²(βθ) / (2 tanh(βπ))  (Donelan, Hamilton & Hui 1985; the tanh makes it a density on the circle). β >
+// 0.
+class SechSquared {
+  public:
+    explicit SechSquared(double beta);
+    double density(double theta) const;
+    double cumulative(double theta) const;
+    std::complex<double> harmonic(int n) const;
+
+  private:
+    double beta_;
+    double norm_;  // 1 / (2 tanh(βπ))
+};
+
+// (2/π) cos²θ within ±90°, 0 outside  (Pierson, Neumann & James 1955).
+class CosineSquared {
+  public:
+    double density(double theta) const;
+    double cumulative(double theta) const;
+    std::complex<double> harmonic(int n) const;
+};
+
+// (1/2π) (1 + Δ cos 2θ) (1 + m(θ)), m = (3 cos θ − cos³ θ)/2, |Δ| ≤ 1.
+//
+// The first bracket is Elfouhaily et al. 1997, Eq. 49. It describes a frozen surface, which cannot tell a
+// wave from its opposite, and would send half of the energy against the wind. m is odd under θ → θ + π, so
+// that the sum of both senses, the integral and every slope variance stay the paper's, while the waves travel
+// downwind.
+class SecondHarmonic {
+  public:
+    explicit SecondHarmonic(double delta) : delta_(delta) {}
+    double density(double theta) const;
+    double cumulative(double theta) const;
+    std::complex<double> harmonic(int n) const;
+
+  private:
+    double delta_;
+};
+
+// The maximum-entropy density with the two given Fourier coefficients (Lygre & Krogstad 1986):
+//   D = σ² / (2π |1 − φ1 e^{−iθ} − φ2 e^{−2iθ}|²),  φ1 = (c1 − c2 c1*)/(1 − |c1|²),  φ2 = c2 − c1 φ1,
+//   σ² = 1 − φ1 c1* − φ2 c2*.
+// A density with these coefficients exists only where |c2 − c1²| ≤ 1 − |c1|². Measured ones miss that by
+// noise, and on the edge D is a pair of needles: they are moved to the nearest of |c1| ≤ kMaxFirst, |c2 −
+// c1²| ≤ kMaxSecond (1 − |c1|²).
+class MaximumEntropy {
+  public:
+    static constexpr double kMaxFirst =
+        0.995;  // r1 comes in steps of 0.01: a printed 1.00 may have been 0.995
+    static constexpr double kMaxSecond = 0.95;  // keeps the needles some degrees wide
+
+    MaximumEntropy(std::complex<double> c1, std::complex<double> c2);
+    double density(double theta) const;
+    double cumulative(double theta) const;
+    std::complex<double> harmonic(int n) const;
+
+  private:
+    std::complex<double> phi1_, phi2_;
+    double variance_;  // σ²
+    std::complex<double> c1_;
+};
+
+}  // namespace pelagic

@@ -1,0 +1,84 @@
+#include "core/spectrum/directional_spectrum.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace pelagic {
+
+namespace {
+
+// Below this wind [m/s] there is no wind sea: Pierson–Moskowitz' Hs would be 2e-8 m.
+constexpr double kCalmWind = 1e-3;
+
+// A system with less than this share of m0 says nothing about the sea's longest waves.
+constexpr double kNotableShare = 0.02;
+
+}  // namespace
+
+DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea) : dispersion_{sea.depth_m} {
+    if (sea.spectrum == SpectrumKind::File) {
+        systems_.push_back(WaveSystem::measured(sea, dispersion_));
+    } else if (sea.wind_speed_mps >= kCalmWind) {
+        systems_.push_back(WaveSystem::wind_sea(sea, dispersion_));
+    }
+    for (const Swell& swell : sea.swell) {
+        if (swell.height_m > 0.0) systems_.push_back(WaveSystem::swell(swell, dispersion_));
+    }
+    std::erase_if(systems_, [](const WaveSystem& system) { return !(system.m0() > 0.0); });
+
+    for (const WaveSystem& system : systems_) {
+        m0_ += system.m0();
+        panels_.insert(panels_.end(), system.panels().begin(), system.panels().end());
+        kinks_.insert(kinks_.end(), system.kinks().begin(), system.kinks().end());
+    }
+    for (auto* list : {&kinks_, &panels_}) {
+        std::sort(list->begin(), list->end());
+        list->erase(std::unique(list->begin(), list->end()), list->end());
+    }
+}
+
+double DirectionalSpectrum::omnidirectional(double k) const {
+    if (!(k > 0.0)) return 0.0;
+    const WavePoint point = wave_point(dispersion_, k);
+    double sum = 0.0;
+    for (const WaveSystem& system : systems_) sum += system.energy(point);
+    return sum;
+}
+
+double DirectionalSpectrum::polar(double k, double theta) const {
+    if (!(k > 0.0)) return 0.0;
+    const WavePoint point = wave_point(dispersion_, k);
+    double sum = 0.0;
+    for (const WaveSystem& system : systems_) {
+        const double energy = system.energy(point);
+        if (energy > 0.0) sum += energy * system.density(point, theta);
+    }
+    return sum;
+}
+
+double DirectionalSpectrum::arc(double k, double theta0, double theta1) const {
+    if (!(k > 0.0)) return 0.0;
+    const WavePoint point = wave_point(dispersion_, k);
+    double sum = 0.0;
+    for (const WaveSystem& system : systems_) {
+        const double energy = system.energy(point);
+        if (energy > 0.0) sum += energy * system.share(point, theta0, theta1);
+    }
+    return sum;
+}
+
+double DirectionalSpectrum::peak_wavenumber() const {
+    const auto most = std::max_element(systems_.begin(), systems_.end(),
+                                       [](const auto& a, const auto& b) { return a.m0() < b.m0(); });
+    return most == systems_.end() ? kCalmPeakWavenumber : most->peak_wavenumber();
+}
+
+double DirectionalSpectrum::longest_peak_wavenumber() const {
+    double longest = std::numeric_limits<double>::infinity();
+    for (const WaveSystem& system : systems_) {
+        if (system.m0() >= kNotableShare * m0_) longest = std::min(longest, system.peak_wavenumber());
+    }
+    return systems_.empty() ? kCalmPeakWavenumber : longest;
+}
+
+}  // namespace pelagic

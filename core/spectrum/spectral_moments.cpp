@@ -1,0 +1,70 @@
+#include "core/spectrum/spectral_moments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/spectrum/gauss.h"
+
+namespace pelagic {
+
+double SpectralMoments::significant_height_m() const {
+    return 4.0 * std::sqrt(m0);
+}
+
+double SpectralMoments::energy_period_s() const {
+    return m0 > 0.0 ? 2.0 * kPi * m_minus1 / m0 : 0.0;
+}
+
+SpectralMoments moments(const DirectionalSpectrum& spectrum, double k_lo, double k_hi) {
+    SpectralMoments out;
+    const auto panels = spectrum.panels();
+    if (panels.empty()) return out;
+    const double lo = std::max(k_lo, panels.front()), hi = std::min(k_hi, panels.back());
+    if (!(hi > lo)) return out;
+
+    std::vector<double> edges{lo};
+    std::copy_if(panels.begin(), panels.end(), std::back_inserter(edges),
+                 [&](double k) { return k > lo && k < hi; });
+    edges.push_back(hi);
+
+    std::complex<double> first{};
+    const auto& rule = GaussLegendre<8>::rule();
+    for (std::size_t panel = 1; panel < edges.size(); ++panel) {
+        const double half = 0.5 * (edges[panel] - edges[panel - 1]);
+        const double middle = 0.5 * (edges[panel] + edges[panel - 1]);
+        for (std::size_t node = 0; node < rule.node.size(); ++node) {
+            const double k = middle + half * rule.node[node];
+            const WavePoint point = wave_point(spectrum.dispersion(), k);
+            const double ratio = spectrum.dispersion().horizontal_ratio(k);
+            for (const WaveSystem& system : spectrum.systems()) {
+                const double energy = half * rule.weight[node] * system.energy(point);
+                if (!(energy > 0.0)) continue;
+                const std::complex<double> c2 = system.harmonic(point, 2), c4 = system.harmonic(point, 4);
+                out.m0 += energy;
+                out.m_minus1 += energy / point.omega;
+                first += energy * system.harmonic(point, 1);
+
+                // cos²θ = (1 + cos 2θ)/2, …
+                const double slope = k * k * energy;
+                out.xx += 0.5 * slope * (1.0 + c2.real());
+                out.xy += 0.5 * slope * c2.imag();
+                out.yy += 0.5 * slope * (1.0 - c2.real());
+
+                // cos⁴θ = (3 + 4 cos 2θ + cos 4θ)/8, cos³θ sin θ = (2 sin 2θ + sin 4θ)/8, …
+                const double eighth = 0.125 * slope * ratio * ratio;
+                out.xxxx += eighth * (3.0 + 4.0 * c2.real() + c4.real());
+                out.xxxy += eighth * (2.0 * c2.imag() + c4.imag());
+                out.xxyy += eighth * (1.0 - c4.real());
+                out.xyyy += eighth * (2.0 * c2.imag() - c4.imag());
+                out.yyyy += eighth * (3.0 - 4.0 * c2.real() + c4.real());
+            }
+        }
+    }
+    out.mean_direction = std::arg(first);
+    return out;
+}
+
+}  // namespace pelagic

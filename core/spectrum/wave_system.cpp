@@ -1,0 +1,212 @@
+#include "core/spectrum/wave_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/base/constants.h"
+#include "core/spectrum/gauss.h"
+#include "core/spectrum/viscous_cutoff.h"
+
+namespace pelagic {
+
+namespace {
+
+constexpr double kRadiansPerDegree = kPi / 180.0;
+
+template <class Law>
+concept InWavenumber = requires(const Law& law) {
+    law.density_k(1.0);
+};
+
+template <class Law>
+concept SpreadsInWavenumber = requires(const Law& law) {
+    law.at_wavenumber(1.0);
+};
+
+// Calls use(shape) with the spreading's shape at this wavenumber.
+template <class Use>
+auto with_shape(const SpreadingLaw& law, const WavePoint& point, Use&& use) {
+    return std::visit(
+        [&]<class Law>(const Law& spreading) {
+            if constexpr (SpreadsInWavenumber<Law>) {
+                return use(spreading.at_wavenumber(point.k));
+            } else {
+                return use(spreading.at(point.omega));
+            }
+        },
+        law);
+}
+
+EnergyLaw wind_energy(const SeaState& sea) {
+    switch (sea.spectrum) {
+        case SpectrumKind::PiersonMoskowitz:
+            return PiersonMoskowitz(sea.wind_speed_mps);
+        case SpectrumKind::Jonswap:
+            return Jonswap(sea.wind_speed_mps, sea.fetch_m);
+        case SpectrumKind::Tma:
+            return Tma(Jonswap(sea.wind_speed_mps, sea.fetch_m), sea.depth_m);
+        case SpectrumKind::Elfouhaily:
+            return Elfouhaily(sea.wind_speed_mps, sea.fetch_m);
+        case SpectrumKind::Omega2:
+            return Omega2(sea.wind_speed_mps);
+        case SpectrumKind::Phillips:
+            return Phillips(sea.wind_speed_mps);
+        case SpectrumKind::File:
+            break;
+    }
+    throw std::invalid_argument("a measured spectrum is not a wind's: use WaveSystem::measured");
+}
+
+SpreadingLaw wind_spreading(const SeaState& sea, double peak_wavenumber, const Dispersion& dispersion) {
+    const double peak_omega = dispersion.omega(peak_wavenumber);
+    switch (sea.spreading) {
+        case SpreadingKind::DonelanBanner:
+            return DonelanBannerSpreading{peak_omega};
+        case SpreadingKind::Cosine:
+            return CosineSpreading{};
+        case SpreadingKind::Elfouhaily:
+            return ElfouhailySpreading(sea.wind_speed_mps, elfouhaily::phase_speed(peak_wavenumber));
+        case SpreadingKind::Hasselmann:
+            break;
+    }
+    // Measured in deep water, and used with its wave age there: with the crawling waves of a puddle's depth
+    // U/cp would be so large that the sea were isotropic.
+    const double deep_peak_speed = peak_omega / Dispersion{}.wavenumber(peak_omega);
+    return HasselmannSpreading(peak_omega, sea.wind_speed_mps / deep_peak_speed);
+}
+
+}  // namespace
+
+double peak_wavenumber(const EnergyLaw& law, const Dispersion& dispersion) {
+    return std::visit(
+        [&]<class Law>(const Law& energy) {
+            if constexpr (InWavenumber<Law>) {
+                return energy.peak_wavenumber();
+            } else {
+                return dispersion.wavenumber(energy.peak_omega());
+            }
+        },
+        law);
+}
+
+WaveSystem WaveSystem::wind_sea(const SeaState& sea, const Dispersion& dispersion) {
+    EnergyLaw energy = wind_energy(sea);
+    SpreadingLaw spreading = wind_spreading(sea, pelagic::peak_wavenumber(energy, dispersion), dispersion);
+    return {std::move(energy), std::move(spreading), sea.wind_direction_deg * kRadiansPerDegree, dispersion};
+}
+
+WaveSystem WaveSystem::swell(const Swell& swell, const Dispersion& dispersion) {
+    const SwellEnergy energy(swell);
+    return {energy, SwellSpreading{energy.omega_p}, swell.direction_deg * kRadiansPerDegree, dispersion};
+}
+
+WaveSystem WaveSystem::measured(const SeaState& sea, const Dispersion& dispersion) {
+    if (!sea.measured) {
+        throw std::invalid_argument(
+            "spectrum = \"file\" without a measured spectrum: give spectrum_file and spectrum_time");
+    }
+    return {MeasuredEnergy(*sea.measured),
+            MeasuredSpreading(*sea.measured, sea.wind_direction_deg * kRadiansPerDegree), 0.0, dispersion};
+}
+
+WaveSystem::WaveSystem(EnergyLaw energy, SpreadingLaw spreading, double direction,
+                       const Dispersion& dispersion)
+    : energy_(std::move(energy)), spreading_(std::move(spreading)), direction_(direction) {
+    peak_wavenumber_ = pelagic::peak_wavenumber(energy_, dispersion);
+    find_panels(dispersion);
+    const auto& rule = GaussLegendre<8>::rule();
+    for (std::size_t i = 1; i < panels_.size(); ++i) {
+        m0_ += rule.integrate(panels_[i - 1], panels_[i],
+                              [&](double k) { return this->energy(wave_point(dispersion, k)); });
+    }
+}
+
+double WaveSystem::energy(const WavePoint& point) const {
+    const bool counted = !panels_.empty() && point.k >= panels_.front() && point.k <= panels_.back();
+    return counted ? law_energy(point) : 0.0;
+}
+
+double WaveSystem::law_energy(const WavePoint& point) const {
+    const double undamped = std::visit(
+        [&]<class Law>(const Law& law) {
+            if constexpr (InWavenumber<Law>) {
+                return law.density_k(point.k);
+            } else {
+                return law.density(point.omega) * point.domega_dk;
+            }
+        },
+        energy_);
+    return undamped * viscous_cutoff(point.k);
+}
+
+double WaveSystem::density(const WavePoint& point, double theta) const {
+    return with_shape(spreading_, point,
+                      [&](const auto& shape) { return shape.density(theta - direction_); });
+}
+
+double WaveSystem::share(const WavePoint& point, double theta0, double theta1) const {
+    return with_shape(spreading_, point, [&](const auto& shape) {
+        return shape.cumulative(theta1 - direction_) - shape.cumulative(theta0 - direction_);
+    });
+}
+
+std::complex<double> WaveSystem::harmonic(const WavePoint& point, int n) const {
+    const auto own = with_shape(spreading_, point, [&](const auto& shape) { return shape.harmonic(n); });
+    return own * std::polar(1.0, n * direction_);
+}
+
+void WaveSystem::find_panels(const Dispersion& dispersion) {
+    // Log-spaced, narrower than the width of the narrowest peak (a swell's 0.14 in k), from far below the
+    // peak to where the viscous cutoff has left 1e-16.
+    constexpr double kRatio = 1.12;
+    constexpr double kDecadesBelow = 1e-5;
+    constexpr double kEnd = 6.0 * kViscousWavenumber;
+    constexpr double kNegligible = 1e-15;  // of the largest k S_k: 300 panels of it are below 1e-12 of m0
+
+    std::vector<double> grid;
+    for (double k = peak_wavenumber_ * kDecadesBelow; k < kEnd * kRatio; k *= kRatio) grid.push_back(k);
+    std::vector<double> content(grid.size());
+    double largest = 0.0;
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+        content[i] = grid[i] * law_energy(wave_point(dispersion, grid[i]));
+        largest = std::max(largest, content[i]);
+    }
+    if (!(largest > 0.0) || !std::isfinite(largest)) return;
+
+    const auto counts = [&](double value) { return value > kNegligible * largest; };
+    const auto first = std::find_if(content.begin(), content.end(), counts) - content.begin();
+    const auto last = content.rend() - std::find_if(content.rbegin(), content.rend(), counts) - 1;
+    const double lo = grid[std::max<std::ptrdiff_t>(first - 1, 0)];
+    const double hi = grid[std::min<std::ptrdiff_t>(last + 1, std::ssize(grid) - 1)];
+
+    // Where the laws are not smooth.
+    std::vector<double> kinks;
+    const auto kink_at = [&](double omega) { kinks.push_back(dispersion.wavenumber(omega)); };
+    if (std::holds_alternative<Jonswap>(energy_) || std::holds_alternative<Omega2>(energy_)) {
+        kinks.push_back(peak_wavenumber_);
+    } else if (const auto* tma = std::get_if<Tma>(&energy_)) {
+        kinks.push_back(peak_wavenumber_);
+        kink_at(1.0 / tma->sqrt_depth_over_g);
+        kink_at(2.0 / tma->sqrt_depth_over_g);
+    } else if (const auto* buoy = std::get_if<MeasuredEnergy>(&energy_)) {
+        for (double omega : buoy->edge_omegas()) kink_at(omega);
+    }
+    if (const auto* hasselmann = std::get_if<HasselmannSpreading>(&spreading_)) {
+        kink_at(hasselmann->meeting_omega());
+    } else if (const auto* donelan = std::get_if<DonelanBannerSpreading>(&spreading_)) {
+        for (double x : {0.56, 0.95, 1.6}) kink_at(x * donelan->omega_p);
+    }
+
+    const auto inside = [&](double k) { return k > lo && k < hi; };
+    std::copy_if(kinks.begin(), kinks.end(), std::back_inserter(kinks_), inside);
+    std::copy_if(grid.begin(), grid.end(), std::back_inserter(panels_), inside);
+    panels_.insert(panels_.end(), kinks_.begin(), kinks_.end());
+    panels_.insert(panels_.end(), {lo, hi});
+    for (auto* list : {&kinks_, &panels_}) {
+        std::sort(list->begin(), list->end());
+        list->erase(std::unique(list->begin(), list->end()), list->end());
+    }
+}
+
+}  // namespace pelagic

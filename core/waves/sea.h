@@ -1,0 +1,67 @@
+// The sea, built once: amplitudes, frequencies and what the spectrum holds. Immutable, shared by threads and
+// frames.
+#pragma once
+
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "core/plan/plan.h"
+#include "core/spectrum/spectral_moments.h"
+
+namespace pelagic {
+
+// The FFT component: the modes of one cascade (core/plan/mode_lattice.h gives their order), of its own band
+// only.
+//   h(k,t) = forward · e^{−iωt} + backward · e^{iωt},  forward = h0(k), backward = conj(h0(−k))
+template <class T>
+struct Cascade {
+    double size_m = 0.0;
+    int radius = 0;
+    std::vector<std::complex<T>> forward, backward;  // [m]
+    std::vector<T> chop;               // choppiness · coth(kd) / k [m]; empty where nobody asks
+    std::vector<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
+};
+
+// What the spectrum holds, in expectation: sums and integrals of Ψ, not of one realisation.
+struct QueryStatistics {
+    // Resolved by pixel level i alone, weights squared, and by levels i and i + 1 together (for blends).
+    std::vector<SpectralMoments> resolved, resolved_next;
+};
+
+// What the waves of one moment hold: sums over modes of |h(k,t)|² and nothing of a mesh.
+struct Realisation {
+    double m0 = 0.0;                 // Σ|h|² [m²]
+    double m_minus1 = 0.0;           // Σ|h|²/ω [m² s/rad]
+    double mss = 0.0;                // Σk²|h|²
+    double east = 0.0, north = 0.0;  // Σ|h0|² k/|k|: the direction in which the energy travels
+};
+
+template <class T>
+class Sea {
+  public:
+    // The scene must be valid and the plan made from it. Seconds for the largest; progress is not reported.
+    Sea(const Scene&, const Plan&);
+
+    const Plan& plan() const { return plan_; }
+    std::span<const Cascade<T>> cascades() const { return cascades_; }
+    double loop_s() const { return loop_s_; }
+    // The whole spectrum, capillary tail included; Jacobian moments times choppiness².
+    const SpectralMoments& total() const { return total_; }
+    const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
+    // J below this is foam (core/waves/whitecaps.h).
+    double whitecap_threshold() const { return whitecap_threshold_; }
+    // Σ over this cascade's modes of E|h|² [m²]: its band's m0.
+    double expected_m0(int cascade) const { return expected_m0_.at(cascade); }
+
+  private:
+    Plan plan_;
+    double loop_s_;
+    SpectralMoments total_;
+    double whitecap_threshold_;
+    std::vector<Cascade<T>> cascades_;
+    std::vector<QueryStatistics> statistics_;
+    std::vector<double> expected_m0_;
+};
+
+}  // namespace pelagic

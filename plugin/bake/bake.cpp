@@ -1,0 +1,117 @@
+#include "plugin/bake/bake.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/scene/validate.h"
+#include "plugin/bake/record.h"
+#include "plugin/bake/sequence.h"
+#include "plugin/files/files.h"
+
+namespace pelagic {
+namespace {
+
+struct Cancelled {};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void refuse_invalid(const Scene& scene, const std::vector<int>& frames) {
+    std::string problems;
+    for (const Problem& problem : validate(scene))
+        problems += (problems.empty() ? "" : "\n") + text_of(problem);
+    if (!problems.empty()) throw std::invalid_argument(problems);
+    if (scene.output.mesh == MeshFormat::None && scene.output.maps.empty())
+        throw std::invalid_argument(
+            "output.mesh = \"none\" and output.maps = []: there is nothing to bake; "
+            "accepted: a mesh, or at least one map");
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        if (frames[i] < scene.shot.first_frame || frames[i] > scene.shot.last_frame ||
+            (i > 0 && frames[i] <= frames[i - 1]))
+            throw std::invalid_argument("frame " + std::to_string(frames[i]) +
+                                        ": frames must rise and lie within the shot's range");
+}
+
+// The folders that the plan's files lie in, checked before hours are spent.
+void prepare_folders(const std::filesystem::path& out, const Scene& scene) {
+    std::vector<std::filesystem::path> folders{out};
+    if (scene.output.mesh != MeshFormat::None) folders.push_back(out / "mesh");
+    if (!scene.output.maps.empty()) folders.push_back(out / "maps");
+    if (!scene.output.maps.empty() && scene.output.cascade_tiles) folders.push_back(out / "tiles");
+    for (const auto& folder : folders) {
+        files::ensure_folder(folder);
+        files::remove_stale_temporaries(folder);
+    }
+}
+
+}  // namespace
+
+BakeReport bake(const Scene& scene, const BakeOptions& options) {
+    refuse_invalid(scene, options.frames);
+    std::vector<int> frames = options.frames;
+    for (int frame = scene.shot.first_frame; options.frames.empty() && frame <= scene.shot.last_frame;
+         ++frame)
+        frames.push_back(frame);
+
+    BakeProgress progress;
+    progress.total = static_cast<int>(frames.size());
+    const auto report_progress = [&](BakeStage stage) {
+        progress.stage = stage;
+        if (options.progress) options.progress(progress);
+    };
+    const auto stop_if_cancelled = [&] {
+        if (options.cancel && options.cancel->load(std::memory_order_relaxed)) throw Cancelled();
+    };
+
+    report_progress(BakeStage::Planning);
+    const Plan plan = make_plan(scene);
+    const std::string fingerprint = plan.fingerprint_text();
+    prepare_folders(options.out, scene);
+
+    BakeReport report;
+    report.total = progress.total;
+    report.record = options.out / (scene.shot.name + ".json");
+    Record record = Record::load(report.record);
+    std::vector<int> missing;
+    for (const int frame : frames)
+        if (!record.is_whole(frame, fingerprint, options.out)) missing.push_back(frame);
+    progress.kept = report.kept = static_cast<int>(frames.size() - missing.size());
+    for (const auto& [frame, entry] : record.frames())
+        if (entry.fingerprint != fingerprint && frame >= scene.shot.first_frame &&
+            frame <= scene.shot.last_frame && !std::binary_search(frames.begin(), frames.end(), frame))
+            report.stale.push_back(frame);
+
+    report_progress(BakeStage::Building);
+    const auto start = std::chrono::steady_clock::now();
+    const auto write = [&](const std::string& path, const std::string& bytes) {
+        stop_if_cancelled();
+        files::write_atomically(options.out / path, bytes);
+    };
+    try {
+        stop_if_cancelled();
+        const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan);
+        record.describe(scene, plan, sequence->total(), sequence->whitecap_threshold());
+        sequence->produce_static(write);
+        if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");
+        const auto save_record = [&] { files::write_atomically(report.record, record.text()); };
+        save_record();
+        const auto first_frame = std::chrono::steady_clock::now();
+        for (const int frame : missing) {
+            stop_if_cancelled();
+            record.set(frame, sequence->produce(frame, write));
+            save_record();
+            progress.frame = frame;
+            progress.done = ++report.done;
+            progress.seconds = seconds_since(first_frame);
+            report.executed_transforms = sequence->executed_transforms();
+            report_progress(BakeStage::Frames);
+        }
+    } catch (const Cancelled&) {
+        report.cancelled = true;
+    }
+    report.seconds = seconds_since(start);
+    return report;
+}
+
+}  // namespace pelagic

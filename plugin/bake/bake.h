@@ -1,0 +1,60 @@
+// Runs a bake: plan, sea, and then frame after frame into files that are whole or not there.
+//
+//   DIR/NAME.usda, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
+//
+// Frames that a former run left whole, with the same fingerprint, are kept; everything else that is asked for
+// is done again. Memory does not grow with the number of frames.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+enum class BakeStage { Planning, Building, Frames };
+
+struct BakeProgress {
+    BakeStage stage = BakeStage::Planning;
+    int frame = 0;         // the one just finished
+    int done = 0;          // frames computed by this run
+    int kept = 0;          // frames that were whole already
+    int total = 0;         // frames asked for: done + kept + what is left
+    double seconds = 0.0;  // since the first frame was begun
+};
+
+struct BakeOptions {
+    std::filesystem::path out;  // DIR, made where it is missing
+    std::vector<int> frames;    // rising, within the shot's range; empty: the whole shot
+    std::function<void(const BakeProgress&)> progress;  // called from the baking thread; may be empty
+    // Set from elsewhere (a signal handler, another thread): the bake stops as soon as the file at hand is
+    // whole.
+    const std::atomic<bool>* cancel = nullptr;
+};
+
+struct BakeReport {
+    std::filesystem::path root, record;  // DIR/NAME.usda (empty without a mesh), DIR/NAME.json
+    int done = 0, kept = 0, total = 0;
+    bool cancelled = false;
+    double seconds = 0.0;
+    long executed_transforms = 0;
+    // Frames of this shot's range that lie in DIR but belong to another version of it: not asked for, not
+    // touched.
+    std::vector<int> stale;
+};
+
+// Throws files::FileError where a file can't be written (what was finished is kept and recorded),
+// std::invalid_argument for frames outside the shot's range or a scene that validate() refuses or that asks
+// for nothing.
+BakeReport bake(const Scene& scene, const BakeOptions& options);
+
+// "--frames": "1-48", "7", "1-48x5" (every fifth), with negative numbers as in "-3--1": any part of the
+// shot's range. Throws std::invalid_argument saying what is accepted.
+std::vector<int> parse_frames(const std::string& text, const Shot& shot);
+
+}  // namespace pelagic

@@ -1,0 +1,42 @@
+// Maps and tiles: the sea over a square of texels, as OpenEXR files.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "core/waves/whitecaps.h"
+#include "plugin/exr/exr.h"
+
+namespace pelagic {
+
+// One level of a mip pyramid over a square, n × n texels at the corners of the texels of its own level, y
+// rising.
+template <class Value>
+struct MipLevel {
+    int n = 0;
+    std::vector<Value> texels;
+};
+
+// How coarser texels are made of finer ones: the texel at i·L/n of the coarse level sums the fine ones round
+// it under a tent as wide as its own spacing to either side, which keeps corners on corners. Past the edge
+// the map goes on where it is periodic; where it isn't, the tent ends there.
+struct TentWeights {
+    struct Tap {
+        int texel;
+        double weight;
+    };
+    std::vector<std::vector<Tap>> taps;  // by coarse texel; each sums to 1
+};
+TentWeights tent_weights(int fine, int coarse, bool periodic);
+
+// The levels below a whitecap map, from the moments of J: mean, variance and third cumulant under the tent by
+// the law of total cumulance, never from coverage.
+std::vector<MipLevel<JacobianMoments<float>>> moment_mips(MipLevel<JacobianMoments<float>> full,
+                                                          bool periodic);
+
+// The levels below a map of unit normals: the mean normal, unit again. What its shortening hides is in the
+// slope-variance map's levels.
+std::vector<MipLevel<glm::vec3>> normal_mips(MipLevel<glm::vec3> full, bool periodic);
+
+}  // namespace pelagic

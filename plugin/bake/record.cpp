@@ -1,0 +1,160 @@
+#include "plugin/bake/record.h"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "core/base/constants.h"
+#include "core/plan/mode_lattice.h"
+#include "core/scene/canonical.h"
+#include "core/scene/names.h"
+#include "core/spectrum/cox_munk.h"
+#include "core/spectrum/viscous_cutoff.h"
+#include "core/waves/whitecaps.h"
+#include "plugin/files/files.h"
+
+namespace pelagic {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// JSON has no infinity (deep water, no threshold): null says "none".
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json settings(const Scene& scene) {
+    Json lines = Json::object();
+    std::istringstream text(canonical(scene));
+    for (std::string line; std::getline(text, line);) {
+        const std::size_t equals = line.find(" = ");
+        if (equals != std::string::npos) lines[line.substr(0, equals)] = line.substr(equals + 3);
+    }
+    return lines;
+}
+
+Json to_json(const FrameRecord& frame) {
+    Json json;
+    json["fingerprint"] = frame.fingerprint;
+    json["time_s"] = frame.time_s;
+    if (frame.waves) {
+        json["hs_m"] = frame.waves->significant_height_m;
+        json["tm_minus1_0_s"] = frame.waves->energy_period_s;
+        json["mean_direction_deg"] = frame.waves->mean_direction_deg;
+        json["mss_resolved"] = frame.waves->mss;
+    }
+    json["mss_residual"] = frame.mss_residual;
+    if (frame.mesh_significant_height_m) json["mesh_hs_m"] = *frame.mesh_significant_height_m;
+    if (frame.coverage) json["whitecap_coverage"] = *frame.coverage;
+    json["files"] = Json::object();
+    for (const auto& [path, size] : frame.files) json["files"][path] = size;
+    return json;
+}
+
+FrameRecord from_json(const Json& json) {
+    FrameRecord frame;
+    frame.fingerprint = json.at("fingerprint").get<std::string>();
+    frame.time_s = json.at("time_s").get<double>();
+    if (json.contains("hs_m"))
+        frame.waves =
+            WaveRecord{json.at("hs_m").get<double>(), json.at("tm_minus1_0_s").get<double>(),
+                       json.at("mean_direction_deg").get<double>(), json.at("mss_resolved").get<double>()};
+    frame.mss_residual = json.at("mss_residual").get<double>();
+    if (json.contains("mesh_hs_m")) frame.mesh_significant_height_m = json.at("mesh_hs_m").get<double>();
+    if (json.contains("whitecap_coverage")) frame.coverage = json.at("whitecap_coverage").get<double>();
+    for (const auto& [path, size] : json.at("files").items()) frame.files[path] = size.get<std::uintmax_t>();
+    return frame;
+}
+
+}  // namespace
+
+std::string instruction_set() {
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) return "avx2";
+    if (__builtin_cpu_supports("avx")) return "avx";
+    return "sse2";
+#else
+    return "baseline";
+#endif
+}
+
+Record Record::load(const std::filesystem::path& file) {
+    Record record;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return record;
+    try {
+        const Json json = Json::parse(stream);
+        for (const auto& [frame, entry] : json.at("frames").items())
+            record.frames_[std::stoi(frame)] = from_json(entry);
+    } catch (const std::exception&) {
+        record.frames_.clear();
+    }
+    return record;
+}
+
+void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoments& total,
+                      double whitecap_threshold) {
+    Json& shot = shot_;
+    shot = Json::object();
+    shot["pelagic"] = PELAGIC_VERSION;
+    shot["name"] = scene.shot.name;
+    shot["fingerprint"] = plan.fingerprint_text();
+    shot["instruction_set"] = instruction_set();
+    shot["precision"] = plan.knobs.double_precision ? "double" : "single";
+    shot["frame_range"] = {scene.shot.first_frame, scene.shot.last_frame};
+    shot["fps"] = scene.shot.fps;
+    shot["settings"] = settings(scene);
+
+    Json& spectrum = shot["spectrum"];
+    spectrum["kind"] = word_of(scene.sea.spectrum);
+    spectrum["hs_m"] = total.significant_height_m();
+    spectrum["tm_minus1_0_s"] = total.energy_period_s();
+    spectrum["mean_direction_deg"] = total.mean_direction * 180.0 / kPi;
+    spectrum["mss"] = total.mss();
+    spectrum["slope_variance_xx_yy_xy"] = {total.xx, total.yy, total.xy};
+    spectrum["dispersion"] = "gravity and capillarity, finite depth";
+    spectrum["viscous_cutoff_rad_per_m"] = kViscousWavenumber;
+    spectrum["depth_m"] = number(scene.sea.depth_m);
+    if (scene.sea.measured) {
+        spectrum["station"] = scene.sea.measured->station;
+        spectrum["measured_at"] = scene.sea.measured->time;
+    }
+
+    const auto observed = CoxMunk::at_wind(scene.sea.wind_speed_mps);
+    shot["observed"] = {
+        {"cox_munk_1954_mss", observed.total},
+        {"cox_munk_1954_mss_upwind", observed.up},
+        {"cox_munk_1954_mss_crosswind", observed.cross},
+        {"monahan_omuircheartaigh_1980_coverage", observed_coverage(scene.sea.wind_speed_mps)}};
+    shot["whitecap_threshold"] = number(whitecap_threshold);
+
+    Json& planned = shot["plan"];
+    planned["transforms_per_frame"] = plan.transforms_per_frame();
+    planned["sea_bytes"] = plan.sea_bytes();
+    planned["frame_bytes"] = plan.frame_bytes();
+    planned["cascades"] = Json::array();
+    for (const CascadePlan& cascade : plan.cascades)
+        planned["cascades"].push_back({{"size_m", cascade.size_m},
+                                       {"resolution", cascade.resolution},
+                                       {"k_lower_rad_per_m", cascade.k_lower},
+                                       {"k_upper_rad_per_m", number(cascade.k_upper)},
+                                       {"modes", half_plane_modes(cascade.mode_radius)}});
+}
+
+bool Record::is_whole(int frame, const std::string& fingerprint, const std::filesystem::path& folder) const {
+    const auto found = frames_.find(frame);
+    if (found == frames_.end() || found->second.fingerprint != fingerprint) return false;
+    for (const auto& [path, size] : found->second.files)
+        if (files::file_size(folder / path) != size) return false;
+    return true;
+}
+
+std::string Record::text() const {
+    Json json = shot_;
+    json["frames"] = Json::object();
+    for (const auto& [number_of_frame, frame] : frames_)
+        json["frames"][std::to_string(number_of_frame)] = to_json(frame);
+    return json.dump(2) + "\n";
+}
+
+}  // namespace pelagic

@@ -1,0 +1,62 @@
+// The record of a bake, DIR/NAME.json: what was asked, what the spectrum and the literature say, and for each
+// frame that is whole its files and what the sea did.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "core/plan/plan.h"
+#include "core/scene/scene.h"
+#include "core/spectrum/spectral_moments.h"
+
+namespace pelagic {
+
+// Of the waves of one moment, over their whole period: sums over the modes that the outputs show.
+struct WaveRecord {
+    double significant_height_m = 0.0, energy_period_s = 0.0, mean_direction_deg = 0.0, mss = 0.0;
+};
+
+// Of one frame. What nobody paid for is absent.
+struct FrameRecord {
+    std::string fingerprint;
+    std::map<std::string, std::uintmax_t> files;  // path below DIR, with /; size in bytes
+    double time_s = 0.0;
+    std::optional<WaveRecord> waves;
+    double mss_residual = 0.0;                        // the spectrum's, of what the first output hides
+    std::optional<double> mesh_significant_height_m;  // 4 × the standard deviation of the mesh's heights
+    std::optional<double> coverage;                   // mean over the mesh, or over the map without one
+};
+
+class Record {
+  public:
+    // What stands in DIR already, or an empty record where there is none. One that can't be read as ours
+    // counts as none: its frames are baked again.
+    static Record load(const std::filesystem::path& file);
+
+    // The part that belongs to the shot and not to a frame.
+    void describe(const Scene& scene, const Plan& plan, const SpectralMoments& total,
+                  double whitecap_threshold);
+
+    const std::map<int, FrameRecord>& frames() const { return frames_; }
+    void set(int frame, FrameRecord record) { frames_[frame] = std::move(record); }
+    void forget(int frame) { frames_.erase(frame); }
+
+    // Every file of the frame is there with its recorded size and the frame is of this fingerprint.
+    bool is_whole(int frame, const std::string& fingerprint, const std::filesystem::path& folder) const;
+
+    std::string text() const;
+
+  private:
+    nlohmann::ordered_json shot_;
+    std::map<int, FrameRecord> frames_;
+};
+
+// The widest vector instructions that the running CPU offers to FFTW: "avx2", "avx", "sse2" or "baseline".
+// Frames of two kinds of machine agree to 1e-5 of Hs; on one kind they are the same bits.
+std::string instruction_set();
+
+}  // namespace pelagic

@@ -1,0 +1,432 @@
+#include "plugin/bake/sequence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <type_traits>
+
+#include "core/base/constants.h"
+#include "core/evaluate/evaluate.h"
+#include "core/plan/tables.h"
+#include "core/scene/names.h"
+#include "core/surface/patch.h"
+#include "plugin/bake/maps.h"
+#include "plugin/exr/exr.h"
+#include "plugin/usd/layers.h"
+#include "plugin/usd/text.h"
+
+namespace pelagic {
+namespace {
+
+// What one query gives, in single precision, which is what files hold. Empty where the query doesn't ask.
+struct Arrays {
+    std::vector<glm::vec3> position, displacement, normal, velocity, slope_variance, jacobian;
+    std::vector<float> coverage;
+};
+
+template <class T>
+struct Square {  // points at rest over a square
+    PatchLattice lattice;
+    std::vector<glm::vec<2, T>> points;
+};
+
+// A map or a tile: the query that feeds it, where it lies and what it is called.
+template <class T>
+struct MapJob {
+    int query = 0;
+    MapKind kind = MapKind::Displacement;
+    std::string stem;  // "maps/displacement" or "tiles/displacement.0"
+    int n = 1;
+    double size_m = 1.0;
+    bool periodic = false;
+    std::shared_ptr<const Square<T>> square;
+};
+
+bool asks(const Query& query, Product product) {
+    return query.products[index(product)];
+}
+
+// UsdPreviewSurface's roughness: α² = 2σ² with σ² = mss/2 along each axis, roughness = √α.
+double preview_roughness(double mss) {
+    return std::min(std::sqrt(std::sqrt(std::max(mss, 0.0))), 1.0);
+}
+
+double mean_of(const std::vector<float>& values) {
+    double sum = 0.0;
+    for (const float value : values) sum += static_cast<double>(value);
+    return sum / static_cast<double>(values.size());
+}
+
+double significant_height_of(const std::vector<glm::vec3>& points) {
+    double mean = 0.0, squares = 0.0;
+    for (const glm::vec3& p : points) mean += static_cast<double>(p.z);
+    mean /= static_cast<double>(points.size());
+    for (const glm::vec3& p : points)
+        squares += (static_cast<double>(p.z) - mean) * (static_cast<double>(p.z) - mean);
+    return 4.0 * std::sqrt(squares / static_cast<double>(points.size()));
+}
+
+template <class T>
+Square<T> square_of(int per_side, double size_m, int intervals) {
+    const PatchLattice lattice{
+        .per_side = per_side, .spacing_m = size_m / intervals, .first_m = -0.5 * size_m};
+    return {lattice, rest_points<T>(lattice)};
+}
+
+// Evaluates a query into single-precision arrays that are kept from frame to frame.
+template <class T>
+class QueryRunner {
+  public:
+    void run(const Frame<T>& frame, int query_index, const std::vector<glm::vec<2, T>>& points, Arrays& out) {
+        const Query& query = frame.sea().plan().queries.at(query_index).query;
+        Results<T> results;
+        results.position = target(query, Product::Position, points.size(), out.position, position_);
+        results.displacement =
+            target(query, Product::Displacement, points.size(), out.displacement, displacement_);
+        results.normal = target(query, Product::Normal, points.size(), out.normal, normal_);
+        results.velocity = target(query, Product::Velocity, points.size(), out.velocity, velocity_);
+        results.slope_variance =
+            target(query, Product::SlopeVariance, points.size(), out.slope_variance, variance_);
+        results.jacobian = target(query, Product::JacobianMoments, points.size(), out.jacobian, jacobian_);
+        results.coverage = target(query, Product::Coverage, points.size(), out.coverage, coverage_);
+        evaluate(frame, query_index, Points<T>{.count = points.size(), .rest_m = {points.data()}}, results);
+        narrow(position_, out.position);
+        narrow(displacement_, out.displacement);
+        narrow(normal_, out.normal);
+        narrow(velocity_, out.velocity);
+        narrow(variance_, out.slope_variance);
+        narrow(jacobian_, out.jacobian);
+        narrow(coverage_, out.coverage);
+    }
+
+  private:
+    // In single precision straight into the array; in double into an array of our own, to be narrowed.
+    template <class Out, class Wide>
+    Strided<Wide> target(const Query& query, Product product, std::size_t count, std::vector<Out>& out,
+                         std::vector<Wide>& wide) {
+        const std::size_t size = asks(query, product) ? count : 0;
+        out.resize(size);
+        wide.resize(std::is_same_v<Out, Wide> ? 0 : size);
+        if (size == 0) return {};
+        if constexpr (std::is_same_v<Out, Wide>)
+            return {out.data()};
+        else
+            return {wide.data()};
+    }
+    template <class Wide, class Out>
+    static void narrow(const std::vector<Wide>& wide, std::vector<Out>& out) {
+        std::transform(wide.begin(), wide.end(), out.begin(), [](const Wide& value) { return Out(value); });
+    }
+
+    std::vector<glm::vec<3, T>> position_, displacement_, normal_, velocity_, variance_, jacobian_;
+    std::vector<T> coverage_;
+};
+
+template <class T>
+class SequenceOf final : public Sequence {
+  public:
+    SequenceOf(const Scene& scene, const Plan& plan)
+        : scene_(scene), sea_(std::make_shared<const Sea<T>>(scene, plan)), frame_(sea_) {
+        for (int q = 0; q < static_cast<int>(plan.queries.size()); ++q) {
+            const Query& query = plan.queries[q].query;
+            if (query.map) {
+                maps_.push_back(map_job(q));
+            } else {
+                mesh_query_ = q;
+                mesh_square_ = square_of<T>(scene.surface.resolution + 1, scene.surface.size_m,
+                                            scene.surface.resolution);
+            }
+        }
+    }
+
+    FrameRecord produce(int frame, const FileSink& sink) override {
+        FrameRecord record;
+        record.fingerprint = sea_->plan().fingerprint_text();
+        record.time_s = scene_.shot.time_s(frame);
+        frame_.set(record.time_s);
+        describe_waves(record);
+        const auto hand_over = [&](const std::string& path, const std::string& bytes) {
+            sink(path, bytes);
+            record.files[path] = bytes.size();
+        };
+        if (mesh_query_ >= 0) {
+            runner_.run(frame_, mesh_query_, mesh_square_.points, arrays_);
+            record.mesh_significant_height_m = significant_height_of(arrays_.position);
+            if (!arrays_.coverage.empty()) record.coverage = mean_of(arrays_.coverage);
+            hand_over(usd::frame_file(scene_.shot.name, frame, kMeshExtension),
+                      usd::frame_text({.frame = frame,
+                                       .fps = scene_.shot.fps,
+                                       .points = arrays_.position,
+                                       .normals = arrays_.normal,
+                                       .velocities = arrays_.velocity,
+                                       .slope_variance = arrays_.slope_variance,
+                                       .whitecap_coverage = arrays_.coverage}));
+        }
+        for (const MapJob<T>& job : maps_) {
+            runner_.run(frame_, job.query, job.square->points, arrays_);
+            if (!arrays_.coverage.empty() && !record.coverage) record.coverage = mean_of(arrays_.coverage);
+            hand_over(job.stem + "." + frame_number(frame) + ".exr", encode(job, frame));
+        }
+        return record;
+    }
+
+    void produce_static(const FileSink& sink) override {
+        if (mesh_query_ < 0) return;
+        const Shot& shot = scene_.shot;
+        const Query& query = sea_->plan().queries[mesh_query_].query;
+        const usd::AttributeSet attributes{.normals = asks(query, Product::Normal),
+                                           .velocities = asks(query, Product::Velocity),
+                                           .slope_variance = asks(query, Product::SlopeVariance),
+                                           .whitecap_coverage = asks(query, Product::Coverage)};
+        const usd::GridFaces faces = usd::grid_faces(scene_.surface.resolution);
+        sink(usd::topology_file(shot.name, kMeshExtension),
+             usd::topology_text({.fps = shot.fps,
+                                 .face_vertex_counts = faces.counts,
+                                 .face_vertex_indices = faces.indices,
+                                 .st = faces.st,
+                                 .attributes = attributes}));
+        sink(usd::manifest_file(shot.name), usd::manifest_text({.fps = shot.fps, .attributes = attributes}));
+        sink(usd::root_file(shot.name), usd::root_text(stage(attributes)));
+    }
+
+    const SpectralMoments& total() const override { return sea_->total(); }
+    double whitecap_threshold() const override { return sea_->whitecap_threshold(); }
+    long executed_transforms() const override { return frame_.executed_transforms(); }
+
+  private:
+    static constexpr const char* kMeshExtension = "usda";
+
+    double hidden_mss(int query) const {
+        return std::max(sea_->total().mss() - sea_->statistics(query).resolved.front().mss(), 0.0);
+    }
+
+    MapJob<T> map_job(int q) {
+        const Plan& plan = sea_->plan();
+        const Query& query = plan.queries[q].query;
+        MapJob<T> job{.query = q, .kind = *query.map, .stem = {}, .square = {}};
+        if (query.only_cascade) {
+            job.n = plan.cascades[*query.only_cascade].resolution;
+            job.size_m = plan.cascades[*query.only_cascade].size_m;
+            job.periodic = true;
+        } else {
+            job.n = scene_.output.map_resolution;
+            job.size_m = scene_.surface.size_m;
+            job.periodic = patch_is_periodic();
+        }
+        const std::string name(word_of(job.kind));
+        job.stem =
+            query.only_cascade ? "tiles/" + name + "." + std::to_string(*query.only_cascade) : "maps/" + name;
+        for (const MapJob<T>& other : maps_)
+            if (other.n == job.n && other.size_m == job.size_m) job.square = other.square;
+        if (!job.square)
+            job.square = std::make_shared<const Square<T>>(square_of<T>(job.n, job.size_m, job.n));
+        return job;
+    }
+
+    // Only if the patch is a common period of every cascade that shows in it.
+    bool patch_is_periodic() const {
+        for (const CascadePlan& cascade : sea_->plan().cascades) {
+            const double periods = scene_.surface.size_m / cascade.size_m;
+            const bool whole = std::round(periods) >= 1.0 && std::abs(periods - std::round(periods)) < 1e-9;
+            if (!cascade.grids.empty() && !whole) return false;
+        }
+        return true;
+    }
+
+    void describe_waves(FrameRecord& record) const {
+        record.mss_residual = hidden_mss(0);
+        const bool calm = !(sea_->total().m0 > 0.0);
+        if (sea_->plan().transforms_per_frame() == 0 && !calm) return;  // no wave was computed
+        const Realisation sum = frame_.realisation(0);
+        WaveRecord waves;
+        waves.significant_height_m = 4.0 * std::sqrt(sum.m0);
+        if (sum.m0 > 0.0) {
+            waves.energy_period_s = kTwoPi * sum.m_minus1 / sum.m0;
+            waves.mean_direction_deg = std::atan2(sum.north, sum.east) * 180.0 / kPi;
+        }
+        waves.mss = sum.mss;
+        record.waves = waves;
+    }
+
+    usd::Stage stage(const usd::AttributeSet& attributes) const {
+        const Shot& shot = scene_.shot;
+        const SeaState& sea = scene_.sea;
+        const Camera& camera = scene_.camera;
+        usd::Stage stage;
+        stage.name = shot.name;
+        stage.first_frame = shot.first_frame;
+        stage.last_frame = shot.last_frame;
+        stage.fps = shot.fps;
+        stage.attributes = attributes;
+        stage.frame_extension = stage.topology_extension = kMeshExtension;
+        stage.material.roughness = preview_roughness(hidden_mss(mesh_query_));
+        stage.camera = usd::Camera{.keys = {}, .fov_deg = camera.fov_deg, .resolution = camera.resolution};
+        for (const CameraKey& key : camera.keys)
+            stage.camera->keys.push_back({key.frame, key.position_m, key.look_at_m});
+        if (camera.keys.empty())
+            stage.camera->keys.push_back({shot.first_frame, camera.position_m, camera.look_at_m});
+        stage.sun = usd::Sun{.elevation_deg = scene_.light.sun_elevation_deg,
+                             .azimuth_deg = scene_.light.sun_azimuth_deg};
+        stage.sky = usd::Sky{};
+        stage.custom_data = {
+            {"version", std::string(PELAGIC_VERSION)},
+            {"fingerprint", sea_->plan().fingerprint_text()},
+            {"seed", static_cast<std::int64_t>(shot.seed)},
+            {"spectrum", std::string(word_of(sea.spectrum))},
+            {"spreading", std::string(word_of(sea.spreading))},
+            {"wind_speed_mps", sea.wind_speed_mps},
+            {"wind_direction_deg", sea.wind_direction_deg},
+            {"fetch_m", sea.fetch_m},
+            {"depth_m", sea.depth_m},
+            {"choppiness", scene_.waves.choppiness},
+            {"significant_height_m", sea_->total().significant_height_m()},
+            {"loop_s", shot.loop_s},
+        };
+        return stage;
+    }
+
+    // Values per texel and channel, one level after another, as OpenEXR wants them.
+    struct Level {
+        int n;
+        std::vector<glm::vec3> texels;
+    };
+
+    std::string encode(const MapJob<T>& job, int frame) {
+        switch (job.kind) {
+            case MapKind::Displacement: {
+                exr::Header header = header_of(job, frame, "displacement", "m", arrays_.displacement);
+                return exr::encode_scanline(
+                    header, image({job.n, arrays_.displacement}, {"R", "G", "B"}, exr::PixelType::Float));
+            }
+            case MapKind::Normal: {
+                const exr::Header header = header_of(job, frame, "unit normal", "1", arrays_.normal);
+                std::vector<Level> levels;
+                for (auto& level : normal_mips({job.n, arrays_.normal}, job.periodic))
+                    levels.push_back({level.n, std::move(level.texels)});
+                return encode_levels(header, levels, {"R", "G", "B"}, exr::PixelType::Half);
+            }
+            case MapKind::SlopeVariance: {
+                const exr::Header header =
+                    header_of(job, frame, "slope variance of the waves that a texel hides", "1",
+                              arrays_.slope_variance);
+                return encode_levels(header, slope_variance_levels(job), {"xx", "yy", "xy"},
+                                     exr::PixelType::Float);
+            }
+            case MapKind::Whitecaps: {
+                MipLevel<JacobianMoments<float>> full{job.n, {}};
+                for (const glm::vec3& j : arrays_.jacobian) full.texels.push_back({j.x, j.y, j.z});
+                std::vector<Level> levels;
+                const bool third = sea_->plan().knobs.third_moment;
+                const auto threshold = static_cast<float>(sea_->whitecap_threshold());
+                for (const auto& level : moment_mips(std::move(full), job.periodic)) {
+                    levels.push_back({level.n, {}});
+                    for (const JacobianMoments<float>& j : level.texels)
+                        levels.back().texels.emplace_back(coverage(j, threshold, third), j.mean, j.variance);
+                }
+                const exr::Header header =
+                    header_of(job, frame, "whitecap coverage, mean and variance of the Jacobian", "1",
+                              levels[0].texels);
+                return encode_levels(header, levels, {"coverage", "mean", "variance"}, exr::PixelType::Float);
+            }
+        }
+        throw std::logic_error("a map of no kind");
+    }
+
+    // Each level hides what its own texels are too coarse for: the query's ladder, asked at one point of each
+    // level.
+    std::vector<Level> slope_variance_levels(const MapJob<T>& job) {
+        const std::vector<double>& footprints_m = sea_->plan().queries[job.query].query.pixel_m;
+        std::vector<Level> levels;
+        for (std::size_t i = 0; i < footprints_m.size(); ++i) {
+            const glm::vec<2, T> rest(0);
+            const T footprint = static_cast<T>(footprints_m[i]);
+            glm::vec<3, T> hidden(0);
+            Points<T> point{.count = 1, .rest_m = {&rest}};
+            point.pixel_m = {&footprint};
+            Results<T> result;
+            result.slope_variance = {&hidden};
+            evaluate(frame_, job.query, point, result);
+            const int n = exr::mip_level_size(job.n, job.n, static_cast<int>(i)).first;
+            levels.push_back({n, std::vector<glm::vec3>(static_cast<std::size_t>(n) * n, glm::vec3(hidden))});
+        }
+        return levels;
+    }
+
+    static exr::Image image(const Level& level, const std::array<const char*, 3>& names,
+                            exr::PixelType type) {
+        exr::Image image{.width = level.n, .height = level.n, .channels = {}};
+        for (int c = 0; c < 3; ++c)
+            image.channels.push_back({.name = names[c],
+                                      .data = &level.texels.data()->x + c,
+                                      .pixel_stride_bytes = sizeof(glm::vec3),
+                                      .type = type});
+        return image;
+    }
+
+    static std::string encode_levels(const exr::Header& header, const std::vector<Level>& levels,
+                                     const std::array<const char*, 3>& names, exr::PixelType type) {
+        std::vector<exr::Image> images;
+        for (const Level& level : levels) images.push_back(image(level, names, type));
+        return exr::encode_mipmapped(header, images);
+    }
+
+    exr::Header header_of(const MapJob<T>& job, int frame, const char* content, const char* unit,
+                          const std::vector<glm::vec3>& texels) const {
+        std::array<float, 3> low{texels[0].x, texels[0].y, texels[0].z}, high = low;
+        for (const glm::vec3& t : texels)
+            for (int c = 0; c < 3; ++c) {
+                low[c] = std::min(low[c], t[c]);
+                high[c] = std::max(high[c], t[c]);
+            }
+        const SeaState& sea = scene_.sea;
+        exr::Header header;
+        header.periodic = job.periodic;
+        header.attributes = {
+            {"content", std::string(content)},
+            {"unit", std::string(unit)},
+            {"space", std::string("object: metres, z up, right-handed")},
+            {"axisOrder", std::string("xyz")},
+            {"sampling", std::string("pixel corners: column i is x = -L/2 + i L/N, the bottom row is "
+                                     "y = -L/2, rows upwards are +y")},
+            {"size", job.size_m},
+            {"min", low},
+            {"max", high},
+            {"time", scene_.shot.time_s(frame)},
+            {"fps", scene_.shot.fps},
+            {"frame", frame},
+            {"seed", std::to_string(scene_.shot.seed)},
+            {"windSpeed", sea.wind_speed_mps},
+            {"windDirection", sea.wind_direction_deg},
+            {"spectrum", std::string(word_of(sea.spectrum))},
+            {"fingerprint", sea_->plan().fingerprint_text()},
+            {"software", std::string("pelagic " PELAGIC_VERSION)}};
+        if (job.periodic) header.attributes.push_back({"period", job.size_m});
+        return header;
+    }
+
+    Scene scene_;
+    std::shared_ptr<const Sea<T>> sea_;
+    Frame<T> frame_;
+    QueryRunner<T> runner_;
+    Arrays arrays_;
+    int mesh_query_ = -1;
+    Square<T> mesh_square_;
+    std::vector<MapJob<T>> maps_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sequence> make_sequence(const Scene& scene, const Plan& plan) {
+    if (plan.knobs.double_precision) return std::make_unique<SequenceOf<double>>(scene, plan);
+    return std::make_unique<SequenceOf<float>>(scene, plan);
+}
+
+std::string frame_number(int frame) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%04d", frame);
+    return text;
+}
+
+}  // namespace pelagic

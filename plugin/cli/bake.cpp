@@ -1,0 +1,138 @@
+// pelagic bake SHOT.toml
+#include "plugin/bake/bake.h"
+
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <charconv>
+#include <iostream>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "core/plan/plan.h"
+#include "plugin/cli/exit_status.h"
+#include "plugin/cli/help.h"
+#include "plugin/cli/progress.h"
+#include "plugin/cli/stop.h"
+#include "plugin/cli/text.h"
+#include "plugin/cli/verb.h"
+#include "plugin/shot/shot.h"
+
+namespace pelagic::cli {
+namespace {
+
+constexpr int kMostThreads = 256;  // beyond, a frame's work is too small to be shared
+
+struct Arguments {
+    std::string shot;
+    std::string out;
+    std::string frames;
+    std::string threads;  // empty: all cores of the process's affinity mask
+};
+
+// Empty where it is a number of threads, else what is wrong with it.
+std::string refuse_threads(const std::string& text) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc() && end == text.data() + text.size() && number >= 1 && number <= kMostThreads)
+        return {};
+    return text + " is not a number of threads; accepted: 1 … " + std::to_string(kMostThreads) +
+           ", or no --threads for all cores";
+}
+
+int thread_count(const Arguments& arguments) {
+    return arguments.threads.empty() ? tbb::info::default_concurrency() : std::stoi(arguments.threads);
+}
+
+void print_done(const BakeReport& report, const std::string& out) {
+    if (!report.root.empty()) std::cout << "stage:  " << report.root.string() << '\n';
+    std::cout << "record: " << report.record.string() << '\n';
+    std::cout << count_text(report.done, "frame", "frames") << " baked";
+    if (report.kept > 0) std::cout << ", " << report.kept << " kept as they were";
+    if (report.done > 0) std::cout << ", in " << duration_text(report.seconds);
+    std::cout << std::endl;
+    if (!report.stale.empty()) {
+        std::cerr
+            << "pelagic: in " << out << " the frames " << frames_text(report.stale)
+            << " are of another version of this shot, and were not asked for; bake them again with --frames, "
+               "or without it for the whole shot\n";
+    }
+}
+
+int stopped(const BakeReport& report, const std::string& out, int signal) {
+    std::cerr << "pelagic: stopped; " << report.done + report.kept << " of the "
+              << count_text(report.total, "frame", "frames") << " asked for are whole in " << out
+              << "; run the same command again to continue\n";
+    return kSignal + signal;
+}
+
+int run(const Arguments& arguments) {
+    const Scene scene = load_shot(arguments.shot);
+    BakeOptions options;
+    if (!arguments.frames.empty()) {
+        try {
+            options.frames = parse_frames(arguments.frames, scene.shot);
+        } catch (const std::invalid_argument& error) {
+            std::cerr << "pelagic: " << error.what() << "\nSee: pelagic bake --help\n";
+            return kWrongUsage;
+        }
+    }
+    options.out = arguments.out.empty() ? scene.shot.name : arguments.out;
+
+    StopSignals stop;
+    Progress progress;
+    options.cancel = &stop.cancelled();
+    options.progress = [&](const BakeProgress& now) {
+        if (now.stage == BakeStage::Frames) stop.files_begin();
+        progress.show(now);
+    };
+
+    // The first bounds the threads of the process, the second asks for that many, also beyond the cores.
+    const int threads = thread_count(arguments);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
+    tbb::task_arena arena(threads);
+    BakeReport report;
+    try {
+        report = arena.execute([&] { return bake(scene, options); });
+    } catch (const std::bad_alloc&) {
+        progress.clear();
+        const Plan plan = make_plan(scene);
+        std::cerr << "pelagic: out of memory; the sea alone holds " << bytes_text(plan.sea_bytes())
+                  << " and a frame of it " << bytes_text(plan.frame_bytes())
+                  << " (see: pelagic explain): lower the resolution or ask for less; files already written "
+                     "are whole\n";
+        return kRefused;
+    } catch (const std::invalid_argument& error) {
+        // Of the shot as a whole: it asks for nothing. Values have been looked at with their lines by
+        // load_shot().
+        progress.clear();
+        std::cerr << arguments.shot << ": " << error.what() << '\n';
+        return kRefused;
+    }
+    progress.clear();
+    const std::string out = options.out.string();
+    if (report.cancelled) return stopped(report, out, stop.number());
+    print_done(report, out);
+    return kDone;
+}
+
+}  // namespace
+
+Verb add_bake(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("bake", help::kBake);
+    command->group(help::kVerbs);
+    command->footer(help::kBakeFooter);
+    auto arguments = std::make_shared<Arguments>();
+    command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
+    command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
+    command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
+    command->add_option("--threads", arguments->threads, help::kThreads)
+        ->type_name("N")
+        ->check(CLI::Validator(refuse_threads, ""));
+    return {command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace pelagic::cli

@@ -1,0 +1,36 @@
+// Every help text of the command line, in one place. The keys of a shot file are described where they are
+// parsed (plugin/shot), and printed by "pelagic keys".
+#pragma once
+
+#include <string>
+
+namespace pelagic::cli::help {
+
+extern const char* const kProgram;
+extern const char* const kProgramFooter;
+extern const char* const kVersion;
+extern const char* const kVerbs;
+
+extern const char* const kBake;
+extern const char* const kBakeFooter;
+extern const char* const kOut;
+extern const char* const kFrames;
+extern const char* const kThreads;
+
+extern const char* const kExplain;
+extern const char* const kExplainFooter;
+
+extern const char* const kValidate;
+extern const char* const kValidateFooter;
+
+extern const char* const kKeys;
+extern const char* const kKeysFooter;
+
+extern const char* const kShot;
+extern const char* const kShots;
+extern const char* const kHelp;
+
+// The program's version, and what it was built with.
+std::string version_text();
+
+}  // namespace pelagic::cli::help

@@ -1,0 +1,9 @@
+// The command line as a whole: parses it, runs the verb, and turns whatever goes wrong into a message.
+#pragma once
+
+namespace pelagic::cli {
+
+// The exit status (exit_status.h). Throws nothing.
+int run_program(int argc, const char* const* argv) noexcept;
+
+}  // namespace pelagic::cli

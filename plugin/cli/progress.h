@@ -1,0 +1,40 @@
+// What a running bake shows on stderr: on a terminal one line that is written over and over, elsewhere plain
+// lines that come seldom enough for a log.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "plugin/bake/bake.h"
+
+namespace pelagic::cli {
+
+class Progress {
+  public:
+    Progress();
+    ~Progress() { clear(); }
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    void show(const BakeProgress& progress);
+    void clear();  // takes the line away, so that a message can follow
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    void write_over(const std::string& line);
+
+    bool terminal_;
+    bool line_is_there_ = false;
+    bool building_said_ = false;
+    bool frame_said_ = false;
+    Clock::time_point last_;
+};
+
+// One line for a terminal of so many columns: "[######----] frame 12  13/48  3.4 frames/s  10 s left".
+std::string progress_bar(const BakeProgress& progress, int columns);
+
+// "frame 12: 13 of 48, 3.4 frames/s, 10 s left"
+std::string progress_line(const BakeProgress& progress);
+
+}  // namespace pelagic::cli

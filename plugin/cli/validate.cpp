@@ -1,0 +1,64 @@
+// pelagic validate SHOT.toml …
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "core/plan/plan.h"
+#include "core/scene/names.h"
+#include "core/scene/text.h"
+#include "plugin/cli/exit_status.h"
+#include "plugin/cli/help.h"
+#include "plugin/cli/text.h"
+#include "plugin/cli/verb.h"
+#include "plugin/shot/shot.h"
+
+namespace pelagic::cli {
+namespace {
+
+// "48 frames at 24 frames/s, 256 × 256 quads over 200 m, jonswap at 10 m/s: 12 transforms a frame, 34 MB"
+std::string summary(const Scene& scene, const Plan& plan) {
+    const Shot& shot = scene.shot;
+    std::string text = count_text(long{shot.last_frame} - shot.first_frame + 1, "frame", "frames") + " at " +
+                       number_text(shot.fps) + " frames/s";
+    if (scene.output.mesh != MeshFormat::None) {
+        const std::string quads = std::to_string(scene.surface.resolution);
+        text += ", " + quads + " × " + quads + " quads over " + number_text(scene.surface.size_m) + " m";
+    }
+    if (!scene.output.maps.empty())
+        text += ", " + count_text(static_cast<long>(scene.output.maps.size()), "map", "maps");
+    text += ", ";
+    if (scene.sea.measured) {
+        text += "buoy " + scene.sea.measured->station + " of " + scene.sea.measured->time;
+    } else {
+        text += std::string(word_of(scene.sea.spectrum)) + " at " + number_text(scene.sea.wind_speed_mps) +
+                " m/s";
+    }
+    return text + ": " + count_text(plan.transforms_per_frame(), "transform", "transforms") + " a frame, " +
+           bytes_text(plan.sea_bytes() + plan.frame_bytes());
+}
+
+}  // namespace
+
+Verb add_validate(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("validate", help::kValidate);
+    command->group(help::kVerbs);
+    command->footer(help::kValidateFooter);
+    auto files = std::make_shared<std::vector<std::string>>();
+    command->add_option("SHOT.toml", *files, help::kShots)->required()->type_name("");
+    return {command, [files] {
+                int status = kDone;
+                for (const std::string& file : *files) {
+                    try {
+                        const Scene scene = load_shot(file);
+                        const Plan plan = make_plan(scene);
+                        std::cout << file << ": fine\n    " << summary(scene, plan) << std::endl;
+                    } catch (const ShotError& error) {
+                        std::cerr << error.what() << std::endl;
+                        status = kRefused;
+                    }
+                }
+                return status;
+            }};
+}
+
+}  // namespace pelagic::cli

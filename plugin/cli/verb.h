@@ -1,0 +1,22 @@
+// A verb of the command line, one file each. add_…() tells CLI11 its arguments; run() does the work after
+// parsing, prints results on stdout and messages on stderr, and returns the exit status. What run() throws is
+// reported by run_program().
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace pelagic::cli {
+
+struct Verb {
+    CLI::App* command = nullptr;  // owned by the program's App
+    std::function<int()> run;
+};
+
+// The program's App must outlive the verbs.
+Verb add_bake(CLI::App& program);
+Verb add_explain(CLI::App& program);
+Verb add_validate(CLI::App& program);
+Verb add_keys(CLI::App& program);
+
+}  // namespace pelagic::cli

@@ -1,0 +1,277 @@
+// Atomic writes by the classic order: hidden file, fsync, rename, fsync of the folder (POSIX rename()
+// replaces a name atomically; without the first fsync a power cut may leave the new name with an empty file).
+//
+// Who is still writing is told by flock(): a writer holds a lock on its hidden file, and the kernel drops the
+// lock with the process, however it dies. A process number alone would not do: numbers are used again, and in
+// containers every bake may have the same one.
+#include "plugin/files/files.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <ctime>
+#include <utility>
+
+namespace pelagic::files {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kTemporaryPrefix = ".pelagic-";
+// Locks may not be seen across machines (NFS with local locks), so another machine's hidden file must also be
+// older than any single write can take [s].
+constexpr std::int64_t kForeignAge_s = 24 * 3600;
+// One write() takes at most this much [bytes]: Linux stops just below 2^31.
+constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
+// A name is taken only where two processes share a number (containers); they don't stay in step for long.
+constexpr int kNameAttempts = 1000;
+
+// The reason in words, and what to do about it.
+struct Advice {
+    std::string reason;
+    std::string remedy;
+};
+
+Advice advice(int error) {
+    switch (error) {
+        case ENOSPC:
+            return {"no space left on the device", "free some room or choose another --out"};
+        case EDQUOT:
+            return {"your disk quota is used up", "free some room or choose another --out"};
+        case EFBIG:
+            return {"the file is larger than the file system or the process's limit (ulimit -f) allows",
+                    "raise the limit or choose another --out"};
+        case EACCES:
+        case EPERM:
+            return {"permission denied", "make the folder writable for you or choose another --out"};
+        case EROFS:
+            return {"the file system is read-only", "mount it for writing or choose another --out"};
+        case EISDIR:
+            return {"a folder of that name is in the way", "move it away or choose another --out"};
+        case ENOENT:
+            return {"its folder does not exist (any more)", "make the folder or choose another --out"};
+        case ENOTDIR:
+        case EEXIST:
+            return {"a part of the path is a file, not a folder",
+                    "move that file away or choose another --out"};
+        case ELOOP:
+            return {"the path runs through links that lead in a circle",
+                    "mend the links or choose another --out"};
+        case ENAMETOOLONG:
+            return {"the path is too long for the file system", "choose a shorter name or --out"};
+        case EIO:
+            return {"the device reports an input/output error", "check the disk or choose another --out"};
+        case EMFILE:
+        case ENFILE:
+            return {"too many files are open", "close some programs or raise the limit (ulimit -n)"};
+        case ESTALE:
+            return {"the network folder is gone", "mount it again or choose another --out"};
+        default:
+            return {std::generic_category().message(error), "mend that or choose another --out"};
+    }
+}
+
+[[noreturn]] void fail_to_write(const fs::path& target, int error) {
+    const Advice a = advice(error);
+    throw FileError("cannot write '" + target.string() + "': " + a.reason + ": " + a.remedy +
+                        "; files already written are whole, run again to continue",
+                    target, std::error_code(error, std::generic_category()));
+}
+
+[[noreturn]] void fail_to_make_folder(const fs::path& folder, int error) {
+    const Advice a = advice(error);
+    throw FileError("cannot use the folder '" + folder.string() + "': " + a.reason + ": " + a.remedy, folder,
+                    std::error_code(error, std::generic_category()));
+}
+
+fs::path folder_of(const fs::path& target) {
+    return target.has_parent_path() ? target.parent_path() : fs::path(".");
+}
+
+// Ends the hidden file's name: the machine it was written on, '/' replaced because it can't be in a name.
+std::string host_suffix() {
+    std::array<char, 256> host{};
+    if (gethostname(host.data(), host.size() - 1) != 0) return "@";
+    std::string suffix = std::string("@") + host.data();
+    std::replace(suffix.begin(), suffix.end(), '/', '_');
+    return suffix;
+}
+
+// An open file descriptor.
+class Descriptor {
+  public:
+    explicit Descriptor(int number) : number_(number) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() {
+        if (number_ >= 0) ::close(number_);
+    }
+
+    int number() const { return number_; }
+    explicit operator bool() const { return number_ >= 0; }
+
+    // Closes and returns the error, 0 when all is well: some network file systems report a full disk only
+    // here. An interrupted close() has closed on Linux, and all was flushed before.
+    int close() {
+        const int number = std::exchange(number_, -1);
+        return ::close(number) == 0 || errno == EINTR ? 0 : errno;
+    }
+
+  private:
+    int number_;
+};
+
+// Whether this process now has the file to itself. A file system without locks counts as `without_locks`.
+bool take_lock(int descriptor, bool without_locks) {
+    while (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+        if (errno == EINTR) continue;
+        return errno != EWOULDBLOCK && without_locks;
+    }
+    return true;
+}
+
+// A new hidden file in the target's folder, locked; deleted with this object unless it was renamed before.
+class Temporary {
+  public:
+    explicit Temporary(const fs::path& target)
+        : target_(target), file_(create()), lock_(fcntl(file_.number(), F_DUPFD_CLOEXEC, 0)) {
+        if (!lock_) {
+            const int error = errno;
+            unlink(path_.c_str());
+            fail_to_write(target_, error);
+        }
+    }
+    Temporary(const Temporary&) = delete;
+    Temporary& operator=(const Temporary&) = delete;
+    ~Temporary() {
+        if (!renamed_) unlink(path_.c_str());
+    }
+
+    void write(std::span<const std::byte> bytes) {
+        while (!bytes.empty()) {
+            const ssize_t written =
+                ::write(file_.number(), bytes.data(), std::min(bytes.size(), kLargestWrite));
+            if (written < 0) {
+                if (errno == EINTR) continue;
+                fail_to_write(target_, errno);
+            }
+            bytes = bytes.subspan(static_cast<std::size_t>(written));
+        }
+        while (fsync(file_.number()) != 0) {
+            if (errno != EINTR) fail_to_write(target_, errno);
+        }
+    }
+
+    // Closed before the rename, because a full network disk may be reported only by close(); the lock lives
+    // on in `lock_` until the name is the target's, so that nobody takes the file for a leftover.
+    void rename_to_target() {
+        if (const int error = file_.close(); error != 0) fail_to_write(target_, error);
+        if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
+        renamed_ = true;
+    }
+
+  private:
+    int create() {
+        static std::atomic<unsigned> counter{0};
+        for (int attempt = 0; attempt < kNameAttempts; ++attempt) {
+            path_ = folder_of(target_) / (std::string(kTemporaryPrefix) + std::to_string(getpid()) + "-" +
+                                          std::to_string(counter++) + host_suffix());
+            const int number = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+            if (number < 0) {
+                if (errno == EEXIST || errno == EINTR) continue;
+                fail_to_write(target_, errno);
+            }
+            // Somebody who clears leftovers may have been quicker with the lock, and may have deleted the
+            // file.
+            struct stat status {};
+            if (take_lock(number, true) && fstat(number, &status) == 0 && status.st_nlink > 0) return number;
+            ::close(number);
+            unlink(path_.c_str());
+        }
+        fail_to_write(target_, EEXIST);
+    }
+
+    const fs::path& target_;
+    fs::path path_;
+    bool renamed_ = false;
+    Descriptor file_;  // after path_, which create() fills
+    Descriptor lock_;  // the same open file, and so the same lock
+};
+
+void flush_folder(const fs::path& target) {
+    const Descriptor folder(open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    // A folder may be writable but not readable: then its flush is left to the system.
+    if (!folder) {
+        if (errno == EACCES) return;
+        fail_to_write(target, errno);
+    }
+    while (fsync(folder.number()) != 0) {
+        if (errno == EINTR) continue;
+        if (errno == EINVAL || errno == ENOTSUP) return;  // file systems that have no flush for folders
+        fail_to_write(target, errno);
+    }
+}
+
+// Deletes the hidden file at `path` if the process that wrote it is gone; whether it did.
+bool remove_if_stale(const fs::path& path, const std::string& own_host) {
+    const Descriptor file(open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    struct stat status {};
+    if (!file || fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
+    const std::int64_t age_s = std::time(nullptr) - status.st_mtime;
+    const bool old = age_s > kForeignAge_s;
+    if (!old && !path.filename().string().ends_with(own_host)) return false;
+    // Deleted while the lock is held: a writer that has only just made the file sees one or the other.
+    return take_lock(file.number(), old) && unlink(path.c_str()) == 0;
+}
+
+}  // namespace
+
+FileError::FileError(const std::string& message, std::filesystem::path path, std::error_code code)
+    : std::runtime_error(message), path_(std::move(path)), code_(code) {}
+
+void write_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes) {
+    Temporary temporary(target);
+    temporary.write(bytes);
+    temporary.rename_to_target();
+    flush_folder(target);
+}
+
+void write_atomically(const std::filesystem::path& target, std::string_view bytes) {
+    write_atomically(target, std::as_bytes(std::span(bytes)));
+}
+
+std::size_t remove_stale_temporaries(const std::filesystem::path& folder) {
+    const std::string own_host = host_suffix();
+    std::size_t removed = 0;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        if (!entry->path().filename().string().starts_with(kTemporaryPrefix)) continue;
+        if (remove_if_stale(entry->path(), own_host)) ++removed;
+    }
+    return removed;
+}
+
+void ensure_folder(const std::filesystem::path& asked) {
+    const fs::path folder = asked.empty() ? fs::path(".") : asked;
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) fail_to_make_folder(folder, error.value());
+    // Asked of the system rather than of the mode bits: it knows root, access lists and read-only file
+    // systems.
+    if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
+}
+
+std::optional<std::uintmax_t> file_size(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) return std::nullopt;
+    return size;
+}
+
+}  // namespace pelagic::files

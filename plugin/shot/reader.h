@@ -1,0 +1,74 @@
+// What the reading of one shot file gathers: where each key stands, and every problem found so far.
+#pragma once
+
+#include <toml++/toml.h>
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/scene/validate.h"
+
+namespace pelagic {
+
+// A node as the shot file would write it, on one line and of a length that fits into a message.
+std::string text_of(const toml::node& node);
+
+// "a string", "an integer", …
+std::string type_of(const toml::node& node);
+
+class Reader {
+  public:
+    explicit Reader(std::string file) : file_(std::move(file)) {}
+
+    // A spectrum's file and hour, as asked for: they are parsed with [sea] and loaded when all of it is read.
+    std::optional<std::string> spectrum_file;
+    std::optional<std::chrono::sys_seconds> spectrum_time;
+
+    // The value of this key stands here.
+    void remember(const std::string& key, const toml::source_position& place) { places_[key] = place; }
+
+    // The scene's "waves.cascades[0]" is the file's "waves.cascades[2]": lists that a file may give in any
+    // order.
+    void rename(const std::string& scene_key, const std::string& file_key) { names_[scene_key] = file_key; }
+
+    bool knows(const std::string& key) const { return places_.contains(key); }
+    bool has_failed(const std::string& key) const { return failed_.contains(key); }
+
+    // The key has no usable value and the reason is reported: validate() need not complain about the default
+    // instead.
+    void mark_failed(const std::string& key) { failed_.insert(key); }
+
+    // A problem of the text itself, at the place where it stands.
+    void refuse(const toml::source_position& place, const Problem& problem);
+
+    // A problem of a key's value, wherever the key stands: at its table, or the file's start, where it is a
+    // default.
+    void refuse(const Problem& problem);
+
+    // A problem that validate() found; left out where a problem of the same key is known already, and for
+    // defaults as long as the file has problems of its own.
+    void refuse_value(Problem problem);
+
+    std::size_t problem_count() const { return lines_.size(); }
+
+    // All problems, a line each, in the order of the file.
+    std::string report() const;
+
+  private:
+    struct Line {
+        toml::source_position place;
+        std::string text;
+    };
+
+    std::string file_;
+    std::map<std::string, toml::source_position> places_;
+    std::map<std::string, std::string> names_;
+    std::set<std::string> failed_;
+    std::vector<Line> lines_;
+};
+
+}  // namespace pelagic

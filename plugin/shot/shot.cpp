@@ -1,0 +1,90 @@
+// Shot files: TOML in, a validated Scene out. See shot.h.
+#include "plugin/shot/shot.h"
+
+#include <toml++/toml.h>
+
+#include "core/scene/names.h"
+#include "core/scene/text.h"
+#include "core/scene/validate.h"
+#include "plugin/shot/keys.h"
+#include "plugin/shot/ndbc.h"
+#include "plugin/shot/reader.h"
+#include "plugin/shot/text_file.h"
+
+namespace pelagic {
+
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // 100 000 camera keys are 10 MiB
+
+// A measured spectrum is data of the scene: its file is read here, and the scene forgets where it came from.
+void load_measured(Reader& reader, const std::filesystem::path& folder, SeaState& sea) {
+    const bool spectrum_is_known = !reader.has_failed("sea.spectrum");
+    if (sea.spectrum != SpectrumKind::File) {
+        for (const char* key : {"sea.spectrum_file", "sea.spectrum_time"}) {
+            if (!spectrum_is_known || !reader.knows(key) || reader.has_failed(key)) continue;
+            const bool is_file = key == std::string_view("sea.spectrum_file");
+            reader.refuse({key,
+                           is_file ? quoted_text(*reader.spectrum_file) : time_text(*reader.spectrum_time),
+                           "is given, but spectrum is " + quoted_text(word_of(sea.spectrum)),
+                           "this key together with spectrum = \"file\""});
+        }
+        return;
+    }
+    // From here on, whatever keeps the spectrum from being there is reported here.
+    std::string missing;
+    for (const auto& [key, is_given] : {std::pair{"spectrum_file", reader.spectrum_file.has_value()},
+                                        std::pair{"spectrum_time", reader.spectrum_time.has_value()}}) {
+        if (is_given || reader.has_failed(std::string("sea.") + key)) continue;
+        missing += std::string(missing.empty() ? "" : " and ") + key;
+    }
+    if (!missing.empty()) {
+        reader.refuse({"sea.spectrum", "\"file\"", "comes without " + missing,
+                       "\"file\" together with spectrum_file and spectrum_time"});
+    }
+    if (!reader.spectrum_file || !reader.spectrum_time) return reader.mark_failed("sea.spectrum");
+    try {
+        sea.measured = load_ndbc(folder / *reader.spectrum_file, *reader.spectrum_time);
+    } catch (const NdbcError& error) {
+        const NdbcError::Parts& parts = error.parts();
+        reader.refuse(
+            {parts.about_time ? "sea.spectrum_time" : "sea.spectrum_file",
+             parts.about_time ? time_text(*reader.spectrum_time) : quoted_text(*reader.spectrum_file),
+             parts.problem, parts.accepted});
+        reader.mark_failed("sea.spectrum");
+    }
+}
+
+}  // namespace
+
+Scene parse_shot(std::string_view text, const std::filesystem::path& file) {
+    toml::table root;
+    try {
+        root = toml::parse(text);
+    } catch (const toml::parse_error& error) {
+        const toml::source_position place = error.source().begin;
+        throw ShotError(file.string() + ':' + std::to_string(place.line) + ':' +
+                        std::to_string(place.column) + ": " + std::string(error.description()) +
+                        "; accepted: TOML 1.0 in UTF-8");
+    }
+    Reader reader(file.string());
+    Scene scene;
+    read_scene(reader, root, scene);
+    load_measured(reader, file.parent_path(), scene.sea);
+    for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
+    if (reader.problem_count() > 0) throw ShotError(reader.report());
+    return scene;
+}
+
+Scene load_shot(const std::filesystem::path& file) {
+    std::string text;
+    try {
+        text = read_text_file(file, kMostBytes);
+    } catch (const TextFileError& error) {
+        throw ShotError(file.string() + ": the shot file " + error.what() +
+                        "; accepted: a TOML file of at most 16 MiB");
+    }
+    return parse_shot(text, file);
+}
+
+}  // namespace pelagic

@@ -1,0 +1,35 @@
+// Shot files: TOML in, a validated Scene out. The keys, their defaults and what they accept are described
+// once, in keys.cpp; the ranges are core's (core/scene/limits.h).
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// A shot file that is refused. what() has one line for each problem, in the order of the file:
+//   FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: WHAT IS
+// (FILE alone before the colon where the file itself can't be read). Lines count from 1, columns from 1 in
+// characters.
+class ShotError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+// The scene that a shot file describes, a measured spectrum that it names included; it has passed validate().
+// All problems of the file are collected into one ShotError; of errors in the TOML itself the first.
+Scene load_shot(const std::filesystem::path& file);
+
+// The same for a text that is already in memory: `file` is its name in messages, and the folder that it names
+// paths from.
+Scene parse_shot(std::string_view text, const std::filesystem::path& file);
+
+// Help: every table and key, with its default, unit, what it accepts and what it does; the words that the
+// parser uses.
+std::string describe_keys();
+
+}  // namespace pelagic

@@ -1,0 +1,174 @@
+// Names, declarations and checks that every way of writing the layers shares. See layers.h.
+#include "plugin/usd/layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+
+namespace pelagic::usd {
+
+namespace {
+
+static_assert(sizeof(glm::vec3) == 3 * sizeof(float) && sizeof(glm::vec2) == 2 * sizeof(float),
+              "arrays of vectors are handed on as arrays of floats");
+
+constexpr VaryingAttribute kPoints{"points", "point3f", 3, false};
+constexpr VaryingAttribute kExtent{"extent", "float3", 3, false};
+constexpr VaryingAttribute kNormals{"normals", "normal3f", 3, true};
+constexpr VaryingAttribute kVelocities{"velocities", "vector3f", 3, false};
+constexpr VaryingAttribute kSlopeVariance{"primvars:slopeVariance", "float3", 3, true};
+constexpr VaryingAttribute kWhitecapCoverage{"primvars:whitecapCoverage", "float", 1, true};
+
+std::span<const float> floats(std::span<const glm::vec3> vectors) {
+    return {vectors.empty() ? nullptr : &vectors[0].x, 3 * vectors.size()};
+}
+
+std::span<const float> floats(std::span<const glm::vec2> vectors) {
+    return {vectors.empty() ? nullptr : &vectors[0].x, 2 * vectors.size()};
+}
+
+void check_finite(std::string_view name, std::span<const float> values, int components) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (!std::isfinite(values[i])) {
+            throw std::invalid_argument(
+                "USD: " + std::string(name) + "[" + std::to_string(i / static_cast<std::size_t>(components)) +
+                "] is " + std::to_string(values[i]) + ", and only finite values can be written");
+        }
+    }
+}
+
+bool is_name_character(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+}  // namespace
+
+std::string prim_name(std::string_view shot_name) {
+    if (shot_name.empty() || !std::all_of(shot_name.begin(), shot_name.end(), is_name_character)) {
+        throw std::invalid_argument("USD: the shot's name \"" + std::string(shot_name) +
+                                    "\" must be letters, digits, _ and -, one at least");
+    }
+    std::string name(shot_name);
+    std::replace(name.begin(), name.end(), '-', '_');
+    if (name[0] >= '0' && name[0] <= '9') name.insert(name.begin(), '_');
+    return name;
+}
+
+std::string root_file(std::string_view shot_name) {
+    return std::string(shot_name) + ".usda";
+}
+
+std::string topology_file(std::string_view shot_name, std::string_view extension) {
+    return "mesh/" + std::string(shot_name) + ".topology." + std::string(extension);
+}
+
+std::string manifest_file(std::string_view shot_name) {
+    return "mesh/" + std::string(shot_name) + ".manifest.usda";
+}
+
+std::string frame_file(std::string_view shot_name, int frame, std::string_view extension) {
+    char number[16];  // an int takes 11 characters
+    std::snprintf(number, sizeof number, "%04d", frame);
+    return "mesh/" + std::string(shot_name) + "." + number + "." + std::string(extension);
+}
+
+std::string frame_file_template(std::string_view shot_name, std::string_view extension) {
+    return "mesh/" + std::string(shot_name) + ".####." + std::string(extension);
+}
+
+Extent extent_of(std::span<const glm::vec3> points) {
+    if (points.empty()) return {glm::vec3(0.0f), glm::vec3(0.0f)};
+    Extent extent{points[0], points[0]};
+    for (const glm::vec3& p : points) {
+        for (int i = 0; i < 3; ++i) {
+            extent[0][i] = std::min(extent[0][i], p[i]);
+            extent[1][i] = std::max(extent[1][i], p[i]);
+        }
+    }
+    return extent;
+}
+
+std::vector<VaryingAttribute> varying_attributes(const AttributeSet& attributes) {
+    std::vector<VaryingAttribute> result{kPoints, kExtent};
+    if (attributes.normals) result.push_back(kNormals);
+    if (attributes.velocities) result.push_back(kVelocities);
+    if (attributes.slope_variance) result.push_back(kSlopeVariance);
+    if (attributes.whitecap_coverage) result.push_back(kWhitecapCoverage);
+    return result;
+}
+
+std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent& extent) {
+    std::vector<VaryingValues> result;
+    for (const VaryingAttribute& attribute : varying_attributes(sample.attributes())) {
+        std::span<const float> values;
+        if (attribute.name == kPoints.name) values = floats(sample.points);
+        if (attribute.name == kExtent.name) values = floats(std::span<const glm::vec3>(extent));
+        if (attribute.name == kNormals.name) values = floats(sample.normals);
+        if (attribute.name == kVelocities.name) values = floats(sample.velocities);
+        if (attribute.name == kSlopeVariance.name) values = floats(sample.slope_variance);
+        if (attribute.name == kWhitecapCoverage.name) values = sample.whitecap_coverage;
+        const std::size_t count = values.size() / static_cast<std::size_t>(attribute.components);
+        if (attribute.name != kExtent.name && count != sample.points.size()) {
+            throw std::invalid_argument(
+                "USD: " + std::string(attribute.name) + " has " + std::to_string(count) + " values for " +
+                std::to_string(sample.points.size()) + " points; it must have as many, or none");
+        }
+        check_finite(attribute.name, values, attribute.components);
+        result.push_back({attribute, values});
+    }
+    return result;
+}
+
+void check(const Topology& topology) {
+    std::size_t corners = 0;
+    for (const std::int32_t count : topology.face_vertex_counts) {
+        if (count < 3)
+            throw std::invalid_argument("USD: faceVertexCounts: a face needs at least three vertices");
+        corners += static_cast<std::size_t>(count);
+    }
+    if (corners != topology.face_vertex_indices.size()) {
+        throw std::invalid_argument("USD: faceVertexIndices has " +
+                                    std::to_string(topology.face_vertex_indices.size()) +
+                                    " entries, and faceVertexCounts asks for " + std::to_string(corners));
+    }
+    const std::size_t vertices =
+        topology.st.empty() ? std::numeric_limits<std::size_t>::max() : topology.st.size();
+    for (const std::int32_t index : topology.face_vertex_indices) {
+        if (index < 0 || static_cast<std::size_t>(index) >= vertices) {
+            throw std::invalid_argument("USD: faceVertexIndices: " + std::to_string(index) +
+                                        " is not the index of a vertex that has primvars:st");
+        }
+    }
+    check_finite("primvars:st", floats(topology.st), 2);
+}
+
+GridFaces grid_faces(int quads_per_side) {
+    constexpr int kMaxQuads = 23169;  // 4 n² ≤ 2^31 − 1
+    if (quads_per_side < 1 || quads_per_side > kMaxQuads) {
+        throw std::invalid_argument("USD: a grid has 1 … " + std::to_string(kMaxQuads) +
+                                    " quads a side, not " + std::to_string(quads_per_side));
+    }
+    const auto n = static_cast<std::size_t>(quads_per_side);
+    const std::int32_t row = quads_per_side + 1;
+    GridFaces grid;
+    grid.counts.assign(n * n, 4);
+    grid.indices.reserve(4 * n * n);
+    for (std::int32_t j = 0; j < quads_per_side; ++j) {
+        for (std::int32_t i = 0; i < quads_per_side; ++i) {
+            const std::int32_t corner = j * row + i;
+            grid.indices.insert(grid.indices.end(), {corner, corner + 1, corner + 1 + row, corner + row});
+        }
+    }
+    grid.st.reserve((n + 1) * (n + 1));
+    for (std::int32_t j = 0; j < row; ++j) {
+        for (std::int32_t i = 0; i < row; ++i) {
+            grid.st.emplace_back(static_cast<float>(static_cast<double>(i) / quads_per_side),
+                                 static_cast<float>(static_cast<double>(j) / quads_per_side));
+        }
+    }
+    return grid;
+}
+
+}  // namespace pelagic::usd

@@ -1,0 +1,159 @@
+// The layers about the mesh as text. See text.h; the root is in root_text.cpp.
+#include "plugin/usd/text.h"
+
+#include <charconv>
+
+#include "plugin/usd/page.h"
+
+namespace pelagic::usd {
+
+namespace {
+
+// The arrays: text in one buffer, handed on when it is nearly full.
+class ArrayWriter {
+  public:
+    explicit ArrayWriter(const Sink& sink) : sink_(sink) { buffer_.resize(kBufferBytes); }
+
+    void text(std::string_view part) {
+        if (part.size() > kBufferBytes - used_) flush();
+        if (part.size() > kBufferBytes) {
+            sink_(part);
+            return;
+        }
+        part.copy(buffer_.data() + used_, part.size());
+        used_ += part.size();
+    }
+
+    // [a, b] for one component, [(a, b), (c, d)] for more.
+    template <class T>
+    void array(std::span<const T> values, int components) {
+        const auto step = static_cast<std::size_t>(components);
+        text("[");
+        for (std::size_t i = 0; i < values.size(); i += step) {
+            // Room for one element: its numbers, the commas and the brackets.
+            if (kBufferBytes - used_ < (step + 1) * (kLongestNumber + 4)) flush();
+            if (i > 0) put(", ");
+            if (step > 1) put("(");
+            for (std::size_t c = 0; c < step; ++c) {
+                if (c > 0) put(", ");
+                char* const begin = buffer_.data() + used_;
+                const auto [end, error] = std::to_chars(begin, begin + kLongestNumber, values[i + c]);
+                static_cast<void>(error);  // cannot be: the buffer holds the longest
+                used_ += static_cast<std::size_t>(end - begin);
+            }
+            if (step > 1) put(")");
+        }
+        text("]");
+    }
+
+    void flush() {
+        if (used_ > 0) sink_(std::string_view(buffer_.data(), used_));
+        used_ = 0;
+    }
+
+  private:
+    static constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+
+    void put(std::string_view part) {
+        part.copy(buffer_.data() + used_, part.size());
+        used_ += part.size();
+    }
+
+    const Sink& sink_;
+    std::string buffer_;
+    std::size_t used_ = 0;
+};
+
+std::string with_interpolation(const VaryingAttribute& attribute, SubdivisionScheme scheme) {
+    if (!attribute.interpolates) return "";
+    // On a cage, vertex primvars would be smoothed by the subdivision, and overshoot; varying ones are
+    // bilinear.
+    return scheme == SubdivisionScheme::None ? " (interpolation = \"vertex\")"
+                                             : " (interpolation = \"varying\")";
+}
+
+template <class Write>
+std::string gathered(const Write& write) {
+    std::string text;
+    write([&text](std::string_view part) { text += part; });
+    return text;
+}
+
+}  // namespace
+
+std::string manifest_text(const Manifest& manifest) {
+    Page page;
+    write_timeless_head(page, manifest.fps);
+    page.prim("over", kMeshName);
+    for (const VaryingAttribute& attribute : varying_attributes(manifest.attributes)) {
+        page.line({attribute.type, "[] ", attribute.name});
+    }
+    page.close("}");
+    return page.text();
+}
+
+void write_topology_text(const Topology& topology, const Sink& sink) {
+    check(topology);
+    const bool cage = topology.scheme == SubdivisionScheme::CatmullClark;
+    Page page;
+    write_timeless_head(page, topology.fps);
+    page.prim("def Mesh", kMeshName);
+    page.line({"uniform bool doubleSided = 1"});
+    if (cage) page.line({"token interpolateBoundary = \"none\""});
+    page.line({"uniform token orientation = \"rightHanded\""});
+    page.line({"uniform token subdivisionScheme = \"", cage ? "catmullClark" : "none", "\""});
+    // Declared here, with the metadata that clips ignore, and without a value, which would hide the clips'
+    // ones.
+    for (const VaryingAttribute& attribute : varying_attributes(topology.attributes)) {
+        page.line({attribute.type, "[] ", attribute.name, with_interpolation(attribute, topology.scheme)});
+    }
+
+    ArrayWriter writer(sink);
+    writer.text(page.text());
+    if (!topology.st.empty()) {
+        writer.text("    texCoord2f[] primvars:st = ");
+        writer.array(std::span<const float>(&topology.st[0].x, 2 * topology.st.size()), 2);
+        writer.text(cage ? " (interpolation = \"varying\")\n" : " (interpolation = \"vertex\")\n");
+    }
+    writer.text("    int[] faceVertexCounts = ");
+    writer.array(topology.face_vertex_counts, 1);
+    writer.text("\n    int[] faceVertexIndices = ");
+    writer.array(topology.face_vertex_indices, 1);
+    writer.text("\n}\n");
+    writer.flush();
+}
+
+std::string topology_text(const Topology& topology) {
+    return gathered([&](const Sink& sink) { write_topology_text(topology, sink); });
+}
+
+void write_frame_text(const MeshSample& sample, const Sink& sink) {
+    const Extent extent = extent_of(sample.points);
+    const std::vector<VaryingValues> all = varying_values(sample, extent);
+    Page page;
+    page.open({"("});
+    write_head(page, {.default_prim = kMeshName,
+                      .fps = sample.fps,
+                      .first_frame = sample.frame,
+                      .last_frame = sample.frame});
+    page.close(")");
+    page.prim("over", kMeshName);
+
+    ArrayWriter writer(sink);
+    writer.text(page.text());
+    for (const VaryingValues& varying : all) {
+        writer.text("    " + std::string(varying.attribute.type) + "[] " +
+                    std::string(varying.attribute.name) + ".timeSamples = {\n        " +
+                    number(sample.frame) + ": ");
+        writer.array(varying.values, varying.attribute.components);
+        writer.text(",\n    }\n");
+    }
+    writer.text("}\n");
+    writer.flush();
+}
+
+std::string frame_text(const MeshSample& sample) {
+    return gathered([&](const Sink& sink) { write_frame_text(sample, sink); });
+}
+
+}  // namespace pelagic::usd

@@ -1,0 +1,27 @@
+// The layers of layers.h as USD text (OpenUSD's usda 1.0). Floats are printed with the fewest digits that
+// read back as the same float. Nothing here touches a file: the caller puts the text where it belongs.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "plugin/usd/layers.h"
+
+namespace pelagic::usd {
+
+// Takes the text of a layer, piece after piece, about a megabyte each. What it throws passes through.
+using Sink = std::function<void(std::string_view)>;
+
+// All throw std::invalid_argument, naming what is wrong, before the sink is called for the first time.
+
+std::string root_text(const Stage& stage);
+std::string manifest_text(const Manifest& manifest);
+
+void write_topology_text(const Topology& topology, const Sink& sink);
+std::string topology_text(const Topology& topology);
+
+void write_frame_text(const MeshSample& sample, const Sink& sink);
+std::string frame_text(const MeshSample& sample);
+
+}  // namespace pelagic::usd

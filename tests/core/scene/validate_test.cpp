@@ -1,0 +1,349 @@
+// Which scenes are refused, and in which words.
+#include "core/scene/validate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/scene/limits.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+Scene changed(const std::function<void(Scene&)>& change) {
+    Scene scene;
+    change(scene);
+    return scene;
+}
+
+std::string all_text(const std::vector<Problem>& problems) {
+    std::string out;
+    for (const Problem& problem : problems) out += text_of(problem) + '\n';
+    return out;
+}
+
+void expect_good(const std::function<void(Scene&)>& change) {
+    const std::vector<Problem> problems = validate(changed(change));
+    EXPECT_TRUE(problems.empty()) << all_text(problems);
+}
+
+// Refused for this key and value alone, with these words among what is accepted.
+struct Refusal {
+    std::string key, value, accepted;
+};
+
+void expect_refused(const std::function<void(Scene&)>& change, const Refusal& refusal) {
+    const std::vector<Problem> problems = validate(changed(change));
+    ASSERT_EQ(problems.size(), 1u) << refusal.key << '\n' << all_text(problems);
+    EXPECT_EQ(problems[0].key, refusal.key);
+    EXPECT_EQ(problems[0].value, refusal.value) << refusal.key;
+    EXPECT_NE(problems[0].accepted.find(refusal.accepted), std::string::npos) << text_of(problems[0]);
+    EXPECT_FALSE(problems[0].problem.empty());
+}
+
+TEST(Validate, TheDefaultsAreGood) {
+    expect_good([](Scene&) {});
+}
+
+TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
+    struct Case {
+        std::string key;
+        Range range;
+        std::function<void(Scene&, double)> set;
+    };
+    const std::vector<Case> cases{
+        {"shot.fps", limits::kFps, [](Scene& s, double v) { s.shot.fps = v; }},
+        {"sea.wind_speed_mps", limits::kWindSpeed_mps, [](Scene& s, double v) { s.sea.wind_speed_mps = v; }},
+        {"sea.wind_direction_deg", limits::kAngle_deg,
+         [](Scene& s, double v) { s.sea.wind_direction_deg = v; }},
+        {"sea.fetch_m", limits::kFetch_m, [](Scene& s, double v) { s.sea.fetch_m = v; }},
+        {"sea.swell[0].height_m", limits::kSwellHeight_m,
+         [](Scene& s, double v) {
+             s.sea.swell = {{v, 10.0, 0.0}};
+         }},
+        {"sea.swell[0].period_s", limits::kSwellPeriod_s,
+         [](Scene& s, double v) {
+             s.sea.swell = {{1.0, v, 0.0}};
+         }},
+        {"sea.swell[0].direction_deg", limits::kAngle_deg,
+         [](Scene& s, double v) {
+             s.sea.swell = {{1.0, 10.0, v}};
+         }},
+        {"waves.choppiness", limits::kChoppiness, [](Scene& s, double v) { s.waves.choppiness = v; }},
+        {"waves.cascades[0].size_m", limits::kCascadeSize_m,
+         [](Scene& s, double v) {
+             s.waves.cascades = {{v, 64}};
+         }},
+        {"surface.size_m", limits::kSurfaceSize_m, [](Scene& s, double v) { s.surface.size_m = v; }},
+        {"camera.fov_deg", limits::kFov_deg, [](Scene& s, double v) { s.camera.fov_deg = v; }},
+        {"light.sun_elevation_deg", limits::kSunElevation_deg,
+         [](Scene& s, double v) { s.light.sun_elevation_deg = v; }},
+        {"light.sun_azimuth_deg", limits::kAngle_deg,
+         [](Scene& s, double v) { s.light.sun_azimuth_deg = v; }},
+    };
+    for (const Case& c : cases) {
+        for (const double good : {c.range.low, c.range.high}) {
+            expect_good([&](Scene& s) { c.set(s, good); });
+        }
+        for (const double bad : {std::nextafter(c.range.low, -kInfinity),
+                                 std::nextafter(c.range.high, kInfinity), -kInfinity, kInfinity}) {
+            const std::vector<Problem> problems = validate(changed([&](Scene& s) { c.set(s, bad); }));
+            ASSERT_EQ(problems.size(), 1u) << c.key << ' ' << bad;
+            EXPECT_EQ(problems[0].key, c.key);
+            EXPECT_EQ(problems[0].accepted, text_of(c.range));
+        }
+        expect_refused([&](Scene& s) { c.set(s, kNan); }, {c.key, "nan", text_of(c.range)});
+    }
+}
+
+// The hard cases that have to work.
+TEST(Validate, HardCasesAreGood) {
+    expect_good([](Scene& s) { s.sea.wind_speed_mps = 0.0; });
+    expect_good([](Scene& s) { s.sea.wind_speed_mps = 80.0; });
+    expect_good([](Scene& s) { s.sea.fetch_m = 1.0; });
+    expect_good([](Scene& s) { s.sea.fetch_m = 1e7; });
+    expect_good([](Scene& s) { s.sea.depth_m = 0.01; });
+    expect_good([](Scene& s) { s.sea.depth_m = kInfinity; });
+    expect_good([](Scene& s) { s.surface.resolution = 1; });
+    expect_good([](Scene& s) { s.surface.resolution = 8192; });
+    expect_good([](Scene& s) { s.camera.position_m = {1e6, 0.0, 1e5}; });
+    expect_good([](Scene& s) { s.camera.position_m = {0.0, 0.0, 1e5}; });  // straight down
+    expect_good([](Scene& s) { s.shot.first_frame = s.shot.last_frame = -100; });
+    expect_good([](Scene& s) { s.light.sun_elevation_deg = -90.0; });
+}
+
+TEST(Validate, Depth) {
+    expect_refused([](Scene& s) { s.sea.depth_m = 0.0; }, {"sea.depth_m", "0", "or inf"});
+    expect_refused([](Scene& s) { s.sea.depth_m = -kInfinity; }, {"sea.depth_m", "-inf", "or inf"});
+    expect_refused([](Scene& s) { s.sea.depth_m = kNan; }, {"sea.depth_m", "nan", "or inf"});
+}
+
+TEST(Validate, Name) {
+    for (const char* good : {"sea", "-", "_9", "Sturm-Nr_7"}) {
+        expect_good([&](Scene& s) { s.shot.name = good; });
+    }
+    expect_good([](Scene& s) { s.shot.name = std::string(200, 'a'); });
+    for (const char* bad : {"", "a/b", "..", "a b", "\xc3\xa9", "a\n", "#"}) {
+        const std::vector<Problem> problems = validate(changed([&](Scene& s) { s.shot.name = bad; }));
+        ASSERT_EQ(problems.size(), 1u) << bad;
+        EXPECT_EQ(problems[0].key, "shot.name");
+        EXPECT_NE(problems[0].accepted.find("letters, digits, _ and -"), std::string::npos);
+    }
+    const std::string too_long(201, 'a');
+    expect_refused([&](Scene& s) { s.shot.name = too_long; }, {"shot.name", '"' + too_long + '"', "200"});
+}
+
+TEST(Validate, FramesSeedAndLoop) {
+    expect_refused([](Scene& s) { s.shot.first_frame = 49; }, {"shot.frames", "[49, 48]", "first ≤ last"});
+    expect_refused([](Scene& s) { s.shot.last_frame = std::numeric_limits<int>::max(); },
+                   {"shot.frames", "[1, 2147483647]", "1e8"});
+    expect_good([](Scene& s) { s.shot.seed = ~std::uint64_t{0} >> 1; });
+    expect_refused([](Scene& s) { s.shot.seed = ~std::uint64_t{0}; },
+                   {"shot.seed", "18446744073709551615", "9223372036854775807"});
+
+    expect_good([](Scene& s) { s.shot.loop_s = 10.0; });
+    expect_good([](Scene& s) { s.shot.loop_s = 1.0 / 24.0; });
+    // 100 frames of film transferred to video, written with seven digits: 4.6e-6 of a frame short.
+    expect_good([](Scene& s) {
+        s.shot.fps = 24000.0 / 1001.0;
+        s.shot.loop_s = 4.170833;
+    });
+    expect_refused([](Scene& s) { s.shot.loop_s = 1.01; }, {"shot.loop_s", "1.01", "nearest: 1"});
+    // Less than a frame isn't no frames: the nearest loop is one frame long.
+    expect_refused([](Scene& s) { s.shot.loop_s = 1e-6; }, {"shot.loop_s", "1e-6", "nearest: 0.0416"});
+    expect_refused([](Scene& s) { s.shot.loop_s = -1.0; }, {"shot.loop_s", "-1", "0 … 1e7"});
+    expect_refused([](Scene& s) { s.shot.loop_s = kNan; }, {"shot.loop_s", "nan", "0 … 1e7"});
+}
+
+MeasuredSpectrum measured() {
+    return {{{0.1, 1.0, 0.5, 0.5, 0.2, 0.2, true}, {0.2, 2.0, 0.0, 0.0, 0.0, 0.0, false}}, "41010", "a time"};
+}
+
+TEST(Validate, AMeasuredSpectrumIsThereExactlyWithFile) {
+    const auto with = [](const std::function<void(MeasuredSpectrum&)>& change) {
+        return [change](Scene& s) {
+            s.sea.spectrum = SpectrumKind::File;
+            s.sea.measured = measured();
+            change(*s.sea.measured);
+        };
+    };
+    expect_good(with([](MeasuredSpectrum&) {}));
+    expect_refused([](Scene& s) { s.sea.spectrum = SpectrumKind::File; },
+                   {"sea.spectrum", "\"file\"", "spectrum_file and spectrum_time"});
+    expect_refused([](Scene& s) { s.sea.measured = measured(); },
+                   {"sea.spectrum", "\"jonswap\"", "\"file\""});
+
+    const std::string key = "sea.spectrum_file";
+    const std::string value = "\"41010 at a time\"";
+    expect_refused(with([](MeasuredSpectrum& m) { m.bins.pop_back(); }), {key, value, "at least two"});
+    expect_refused(with([](MeasuredSpectrum& m) { m.bins[1].frequency_hz = 0.1; }), {key, value, "rising"});
+    expect_refused(with([](MeasuredSpectrum& m) { m.bins[0].frequency_hz = 0.0; }),
+                   {key, value, "0.0001 … 100 Hz"});
+    expect_refused(with([](MeasuredSpectrum& m) { m.bins[0].density_m2_per_hz = -1.0; }),
+                   {key, value, "≥ 0"});
+    expect_refused(with([](MeasuredSpectrum& m) { m.bins[0].density_m2_per_hz = kInfinity; }),
+                   {key, value, "≥ 0"});
+    expect_refused(with([](MeasuredSpectrum& m) { m.bins[0].c1_re = 1.0; }), {key, value, "r1 and r2"});
+    expect_refused(with([](MeasuredSpectrum& m) { m.bins[0].c2_im = kNan; }), {key, value, "r1 and r2"});
+    expect_good(
+        with([](MeasuredSpectrum& m) { m.bins[1].c2_im = kNan; }));  // without a direction, not looked at
+}
+
+TEST(Validate, CascadesReachEachOther) {
+    expect_good([](Scene& s) { s.waves.cascades = {{400.0, 16}}; });
+    expect_good([](Scene& s) { s.waves.cascades = {{400.0, 512}, {50.0, 512}, {5.0, 8192}}; });
+    // 400/50 × 8 modes = 64; N/2 − ½ ≥ 64 first at 130.
+    expect_good([](Scene& s) { s.waves.cascades = {{400.0, 130}, {50.0, 16}}; });
+    expect_refused(
+        [](Scene& s) {
+            s.waves.cascades = {{400.0, 128}, {50.0, 16}};
+        },
+        {"waves.cascades[0].resolution", "128", "at least 130"});
+    // 1e5 × 8 modes: out of reach.
+    expect_refused(
+        [](Scene& s) {
+            s.waves.cascades = {{1e4, 8192}, {0.1, 16}};
+        },
+        {"waves.cascades[0].resolution", "8192", "put a cascade between, of about 31.62 m"});
+    expect_refused([](Scene& s) { s.waves.cascades = std::vector<CascadeSize>(17); },
+                   {"waves.cascades", "17 cascades", "at most 16"});
+    expect_refused(
+        [](Scene& s) {
+            s.waves.cascades = {{50.0, 512}, {50.0, 512}};
+        },
+        {"waves.cascades[1].size_m", "50", "differ"});
+    expect_refused(
+        [](Scene& s) {
+            s.waves.cascades = {{50.0, 512}, {400.0, 512}};
+        },
+        {"waves.cascades[1].size_m", "400", "largest first"});
+}
+
+TEST(Validate, Resolutions) {
+    for (const int bad : {0, -16, 14, 17, 8194, 1000000000}) {
+        expect_refused(
+            [&](Scene& s) {
+                s.waves.cascades = {{400.0, bad}};
+            },
+            {"waves.cascades[0].resolution", std::to_string(bad), "16 … 8192"});
+    }
+    for (const int bad : {0, -1, 8193, 1000000000}) {
+        expect_refused([&](Scene& s) { s.surface.resolution = bad; },
+                       {"surface.resolution", std::to_string(bad), "1 … 8192"});
+        expect_refused([&](Scene& s) { s.output.map_resolution = bad; },
+                       {"output.map_resolution", std::to_string(bad), "1 … 8192"});
+    }
+    expect_refused(
+        [](Scene& s) {
+            s.camera.resolution = {0, 720};
+        },
+        {"camera.resolution", "[0, 720]", "1 … 65536"});
+    expect_refused(
+        [](Scene& s) {
+            s.camera.resolution = {1280, 65537};
+        },
+        {"camera.resolution", "[1280, 65537]", "1 … 65536"});
+}
+
+TEST(Validate, ACameraLooksSomewhere) {
+    expect_refused([](Scene& s) { s.camera.look_at_m = s.camera.position_m; },
+                   {"camera.look_at_m", "[0, -60, 4]", "away from the camera"});
+    expect_refused([](Scene& s) { s.camera.look_at_m = s.camera.position_m + glm::dvec3(0.0, 0.0, 1e-7); },
+                   {"camera.look_at_m", "[0, -60, 4.0000001]", "away from the camera"});
+    expect_refused([](Scene& s) { s.camera.position_m.y = kNan; },
+                   {"camera.position_m", "[0, nan, 4]", "1e9"});
+    expect_refused([](Scene& s) { s.camera.look_at_m.z = kInfinity; },
+                   {"camera.look_at_m", "[0, 0, inf]", "1e9"});
+
+    const glm::dvec3 here(0.0, -60.0, 4.0), there(0.0, 0.0, 0.0);
+    // With keys, the camera's own points are not used.
+    expect_good([&](Scene& s) {
+        s.camera.look_at_m = s.camera.position_m;
+        s.camera.keys = {{1, here, there}, {5, here + 1.0, there}};
+    });
+    expect_refused(
+        [&](Scene& s) {
+            s.camera.keys = {{1, here, there}, {2, here, here}};
+        },
+        {"camera.keys[1].look_at_m", "[0, -60, 4]", "away from the camera"});
+    for (const int frame : {5, 3}) {
+        expect_refused(
+            [&](Scene& s) {
+                s.camera.keys = {{5, here, there}, {frame, here, there}};
+            },
+            {"camera.keys[1].frame", std::to_string(frame), "rising"});
+    }
+    // They change places: half way they meet.
+    expect_refused(
+        [&](Scene& s) {
+            s.camera.keys = {{1, here, there}, {9, there, here}};
+        },
+        {"camera.keys[1].look_at_m", "[0, -60, 4]", "add a key between"});
+}
+
+TEST(Validate, ListsHaveEachWordOnce) {
+    expect_refused([](Scene& s) { s.output.attributes.push_back(MeshAttribute::Normal); },
+                   {"output.attributes[4]", "\"normal\"", "once"});
+    expect_refused(
+        [](Scene& s) {
+            s.output.maps = {MapKind::Normal, MapKind::Displacement, MapKind::Normal};
+        },
+        {"output.maps[2]", "\"normal\"", "once"});
+}
+
+TEST(Validate, WhitecapsThatAreOff) {
+    expect_good(
+        [](Scene& s) { s.effects.whitecaps = false; });  // although the attributes' default names them
+    expect_good([](Scene& s) { s.output.maps = {MapKind::Whitecaps}; });
+    expect_refused(
+        [](Scene& s) {
+            s.effects.whitecaps = false;
+            s.output.maps = {MapKind::Normal, MapKind::Whitecaps};
+        },
+        {"output.maps[1]", "\"whitecaps\"", "effects.whitecaps = true"});
+}
+
+TEST(Validate, WhatIsNotBuiltYetIsRefused) {
+    expect_refused([](Scene& s) { s.waves.model = WaveModel::Trochoid; },
+                   {"waves.model", "\"trochoid\"", "\"fft\""});
+    for (const auto& [kind, word] :
+         {std::pair{SurfaceKind::ProjectedGrid, "\"projected-grid\""},
+          std::pair{SurfaceKind::NearFar, "\"near-far\""}, std::pair{SurfaceKind::Cage, "\"cage\""},
+          std::pair{SurfaceKind::Planet, "\"planet\""}}) {
+        expect_refused([&, k = kind](Scene& s) { s.surface.kind = k; }, {"surface.kind", word, "\"patch\""});
+    }
+    expect_refused([](Scene& s) { s.output.mesh = MeshFormat::Usdc; },
+                   {"output.mesh", "\"usdc\"", "\"usda\""});
+    expect_refused([](Scene& s) { s.output.mesh_scheme = MeshScheme::CatmullClark; },
+                   {"output.mesh_scheme", "\"catmullClark\"", "\"none\""});
+    expect_refused([](Scene& s) { s.output.volumes = {VolumeKind::LevelSet}; },
+                   {"output.volumes[0]", "\"level-set\"", "[]"});
+    expect_refused([](Scene& s) { s.output.voxel_m = 0.25; }, {"output.voxel_m", "0.25", "0.5"});
+    expect_refused([](Scene& s) { s.effects.spray = true; }, {"effects.spray", "true", "false"});
+    expect_refused([](Scene& s) { s.effects.spray_gain = 2.0; }, {"effects.spray_gain", "2", "1"});
+    expect_refused([](Scene& s) { s.light.sky = "sky.exr"; }, {"light.sky", "\"sky.exr\"", "\"daylight\""});
+    expect_refused([](Scene& s) { s.light.turbidity = 5.0; }, {"light.turbidity", "5", "3"});
+    expect_refused([](Scene& s) { s.light.turbidity = kNan; }, {"light.turbidity", "nan", "3"});
+    expect_refused([](Scene& s) { s.water.type = WaterType::Coastal; },
+                   {"water.type", "\"coastal\"", "\"ocean\""});
+    expect_refused([](Scene& s) { s.water.chlorophyll_mg_m3 = 1.0; },
+                   {"water.chlorophyll_mg_m3", "1", "0.1"});
+}
+
+TEST(Validate, AllProblemsAreFound) {
+    const std::vector<Problem> problems = validate(changed([](Scene& s) {
+        s.shot.name = "";
+        s.sea.wind_speed_mps = -1.0;
+        s.output.voxel_m = kNan;
+    }));
+    EXPECT_EQ(problems.size(), 3u) << all_text(problems);
+    EXPECT_EQ(text_of(problems[1]), "sea.wind_speed_mps = -1: is outside the range; accepted: 0 … 80");
+}
+
+}  // namespace
+}  // namespace pelagic

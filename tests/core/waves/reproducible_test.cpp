@@ -1,0 +1,157 @@
+// The same scene gives the same bits, whatever the threads, whichever frame comes first; and no transform runs that
+// the plan didn't promise.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cstring>
+
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+template <class V>
+bool same_bits(const std::vector<V>& a, const std::vector<V>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(V)) == 0;
+}
+void expect_same_bits(const Samples<float>& a, const Samples<float>& b, const char* what) {
+    ASSERT_FALSE(a.position.empty());
+    EXPECT_TRUE(same_bits(a.position, b.position)) << what;
+    EXPECT_TRUE(same_bits(a.displacement, b.displacement)) << what;
+    EXPECT_TRUE(same_bits(a.normal, b.normal)) << what;
+    EXPECT_TRUE(same_bits(a.velocity, b.velocity)) << what;
+    EXPECT_TRUE(same_bits(a.slope_variance, b.slope_variance)) << what;
+    EXPECT_TRUE(same_bits(a.jacobian, b.jacobian)) << what;
+    EXPECT_TRUE(same_bits(a.coverage, b.coverage)) << what;
+}
+
+Scene windy() {
+    Scene scene;
+    scene.sea.wind_speed_mps = 14.0;
+    scene.sea.swell = {{.height_m = 1.0, .period_s = 11.0, .direction_deg = 80.0}};
+    return scene;
+}
+Query everything() {
+    ProductSet all;
+    all.set();
+    return filtered(all, 0.8);
+}
+
+TEST(Threads, ChangeNoBit) {
+    const auto points = random_points<float>(300.0, 5000);
+    const auto run = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return sample(frame_of<float>(windy(), {everything()}, 0.25), 0, points);  // Sea, Frame and query alike
+    };
+    const auto alone = run(1);
+    for (std::size_t threads : {2, 7}) expect_same_bits(alone, run(threads), "threads");
+}
+
+TEST(Frames, DependOnTheirTimeAlone) {
+    const auto sea = std::make_shared<const Sea<float>>(windy(), make_plan(windy(), {everything()}));
+    const auto points = random_points<float>(300.0, 2000);
+    Frame<float> alone(sea), run(sea), backwards(sea);
+    alone.set(6 / 24.0);
+    const auto seventh = sample(alone, 0, points);
+    for (int f = 1; f <= 7; ++f) {
+        run.set((f - 1) / 24.0);
+        backwards.set((13 - f) / 24.0);  // frames 13 … 7, and another frame's buffers beside this one's
+    }
+    expect_same_bits(seventh, sample(run, 0, points), "after frames 1 to 6");
+    expect_same_bits(seventh, sample(backwards, 0, points), "after frames 13 to 8");
+    alone.set(100.0);
+    expect_same_bits(seventh, sample(run, 0, points), "while another frame moved on");
+}
+
+TEST(Seeds, GiveOtherSeas) {
+    Scene scene = windy();
+    const auto points = random_points<float>(300.0, 200);
+    const auto one = sample(frame_of<float>(scene, {everything()}), 0, points);
+    scene.shot.seed = 2;
+    const auto two = sample(frame_of<float>(scene, {everything()}), 0, points);
+    EXPECT_FALSE(same_bits(one.position, two.position));
+    EXPECT_TRUE(same_bits(one.slope_variance, two.slope_variance));  // an expectation: no seed in it
+}
+
+// What a shot runs, counted by hand for one cascade: the mesh alone is one grid, and two real fields share a transform.
+//   position: η, Dx, Dy;  normal: both slopes and Dxx, Dyy, Dxy;  velocity: three;  coverage: Dxx, Dyy, Dxy.
+struct Count {
+    const char* name;
+    std::vector<MeshAttribute> attributes;
+    bool whitecaps;
+    double choppiness;
+    std::vector<MapKind> maps;  // as fine as the mesh: the same grid
+    int fields;
+};
+
+class TransformCount : public testing::TestWithParam<Count> {};
+
+TEST_P(TransformCount, IsTheMinimumAndIsWhatRuns) {
+    const Count& c = GetParam();
+    Scene scene;
+    scene.waves.choppiness = c.choppiness;
+    scene.waves.cascades = {{200.0, 64}};
+    scene.effects.whitecaps = c.whitecaps;
+    scene.surface.resolution = 64;
+    scene.output.attributes = c.attributes;
+    scene.output.maps = c.maps;
+    scene.output.map_resolution = 64;
+    const Plan plan = make_plan(scene);
+    EXPECT_EQ(plan.transforms_per_frame(), (c.fields + 1) / 2);
+    Frame<float> frame(std::make_shared<const Sea<float>>(scene, plan));
+    EXPECT_EQ(frame.executed_transforms(), 0);
+    for (int i = 1; i <= 3; ++i) {
+        frame.set(0.5 * i);
+        EXPECT_EQ(frame.executed_transforms(), i * plan.transforms_per_frame());
+    }
+}
+
+constexpr auto kNormal = MeshAttribute::Normal;
+constexpr auto kVelocity = MeshAttribute::Velocity;
+constexpr auto kVariance = MeshAttribute::SlopeVariance;
+constexpr auto kWhitecaps = MeshAttribute::Whitecaps;
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, TransformCount,
+    testing::Values(Count{"Everything", {kNormal, kVelocity, kVariance, kWhitecaps}, true, 1.0, {}, 11},
+                    Count{"WhitecapsOff", {kNormal, kVelocity, kVariance, kWhitecaps}, false, 1.0, {}, 11},
+                    Count{"PositionsAlone", {}, true, 1.0, {}, 3},
+                    Count{"WhitecapsAlone", {kWhitecaps}, true, 1.0, {}, 6},
+                    Count{"WhitecapsAloneOff", {kWhitecaps}, false, 1.0, {}, 3},
+                    Count{"VelocityAlone", {kVelocity}, true, 1.0, {}, 6},
+                    Count{"VarianceAlone", {kVariance}, true, 1.0, {}, 3},
+                    Count{"NormalAlone", {kNormal}, true, 1.0, {}, 8},
+                    Count{"CalmPositions", {}, true, 0.0, {}, 1},
+                    Count{"CalmNormals", {kNormal}, true, 0.0, {}, 3},
+                    Count{"CalmVelocity", {kVelocity}, true, 0.0, {}, 2},
+                    Count{"CalmWhitecaps", {kWhitecaps}, true, 0.0, {}, 1},
+                    Count{"CalmEverything", {kNormal, kVelocity, kVariance, kWhitecaps}, true, 0.0, {}, 4},
+                    Count{"NormalMap", {}, true, 1.0, {MapKind::Normal}, 8},
+                    Count{"DisplacementMap", {}, true, 1.0, {MapKind::Displacement}, 3},
+                    Count{"WhitecapsMap", {}, true, 1.0, {MapKind::Whitecaps}, 6},
+                    Count{"SlopeVarianceMap", {}, true, 1.0, {MapKind::SlopeVariance}, 3}),
+    [](const auto& instance) { return std::string(instance.param.name); });
+
+// Larger shots, where the minimum isn't counted by hand: what runs is what was promised.
+TEST(ExecutedTransforms, AreThePlansOwnForWholeShots) {
+    for (bool tiles : {false, true})
+        for (bool whitecaps : {false, true})
+            for (int map_resolution : {32, 96}) {
+                Scene scene;
+                scene.effects.whitecaps = whitecaps;
+                scene.surface.resolution = 48;
+                scene.output.cascade_tiles = tiles;
+                scene.output.map_resolution = map_resolution;
+                scene.output.maps = {MapKind::Displacement, MapKind::Normal};
+                const Plan plan = make_plan(scene);
+                EXPECT_GT(plan.transforms_per_frame(), 0);
+                Frame<float> frame(std::make_shared<const Sea<float>>(scene, plan));
+                for (double t : {0.0, 1.0, 1.0}) frame.set(t);
+                EXPECT_EQ(frame.executed_transforms(), 3l * plan.transforms_per_frame());
+            }
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,93 @@
+// Doubling every resolution adds detail and moves nothing.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+Scene scene_with(int factor) {
+    Scene scene;
+    scene.sea.swell = {{.height_m = 1.0, .period_s = 9.0, .direction_deg = 60.0}};
+    scene.waves.cascades = {{300.0, 64 * factor}, {80.0, 64 * factor}, {20.0, 64 * factor}};
+    return scene;
+}
+
+TEST(DoubledResolution, KeepsEveryAmplitudeToTheBit) {
+    const auto query = unfiltered(products(Product::Displacement));
+    const auto coarse = frame_of<float>(scene_with(1), {query}), fine = frame_of<float>(scene_with(2), {query});
+    for (int c = 0; c < 3; ++c) {
+        const auto few = modes_of(coarse.sea(), c, 0.0), many = modes_of(fine.sea(), c, 0.0);
+        std::map<std::pair<int, int>, std::size_t> index_of;
+        for (std::size_t i = 0; i < many.size(); ++i) index_of[{many[i].mx, many[i].my}] = i;
+        const auto &a = coarse.sea().cascades()[c], &b = fine.sea().cascades()[c];
+        ASSERT_FALSE(few.empty());
+        for (std::size_t i = 0; i < few.size(); ++i) {
+            const std::size_t j = index_of.at({few[i].mx, few[i].my});
+            ASSERT_EQ(a.forward[i], b.forward[j]) << c << ' ' << few[i].mx << ' ' << few[i].my;
+            ASSERT_EQ(a.backward[i], b.backward[j]);
+            ASSERT_EQ(a.cycles_per_s[i], b.cycles_per_s[j]);
+        }
+    }
+    EXPECT_GT(fine.sea().cascades()[2].radius, coarse.sea().cascades()[2].radius);  // detail was added
+}
+
+// The difference of the two surfaces of one tile, projected on the modes of the coarse one.
+TEST(DoubledResolution, ChangesNothingBelowTheOldBandLimit) {
+    constexpr int kNodes = 128;
+    for (int c = 0; c < 3; ++c) {
+        const double size_m = scene_with(1).waves.cascades[c].size_m;
+        const auto query = tile(products(Product::Displacement), c, size_m, kNodes);
+        const auto coarse = frame_of<float>(scene_with(1), {query}, 1.5), fine = frame_of<float>(scene_with(2), {query}, 1.5);
+        const auto a = field_at_nodes(coarse, c, Field::Height), b = field_at_nodes(fine, c, Field::Height);
+        const int radius = coarse.sea().cascades()[c].radius;
+        // Row by row, then column by column: coefficient (mx, my) of b − a.
+        std::vector<std::complex<double>> rows(static_cast<std::size_t>(kNodes) * (2 * radius + 1));
+        for (int y = 0; y < kNodes; ++y)
+            for (int mx = -radius; mx <= radius; ++mx)
+                for (int x = 0; x < kNodes; ++x) {
+                    const std::size_t i = static_cast<std::size_t>(y) * kNodes + x;
+                    rows[static_cast<std::size_t>(y) * (2 * radius + 1) + mx + radius] +=
+                        (b[i] - a[i]) * std::polar(1.0, -2.0 * kPi * mx * x / kNodes);
+                }
+        double projected = 0.0, whole = 0.0;
+        for (std::size_t i = 0; i < a.size(); ++i) whole += (b[i] - a[i]) * (b[i] - a[i]) / (1.0 * kNodes * kNodes);
+        for (int my = -radius; my <= radius; ++my)
+            for (int mx = -radius; mx <= radius; ++mx) {
+                if (mx * mx + my * my > radius * radius) continue;
+                std::complex<double> sum = 0.0;
+                for (int y = 0; y < kNodes; ++y)
+                    sum += rows[static_cast<std::size_t>(y) * (2 * radius + 1) + mx + radius] *
+                           std::polar(1.0, -2.0 * kPi * my * y / kNodes);
+                projected += std::norm(sum / (1.0 * kNodes * kNodes));
+            }
+        const double hs = 4.0 * std::sqrt(coarse.realisation(0).m0);
+        EXPECT_LT(std::sqrt(projected), 1e-6 * hs) << "cascade " << c;  // rounding; 1e-4 is what is asked for
+        if (c == 2) {
+            EXPECT_GT(whole, 100.0 * projected);
+        }
+    }
+}
+
+// Through a footprint that both can show, the whole query: all cascades, all products, between nodes too.
+TEST(DoubledResolution, ChangesNothingThatAFootprintOfTheOldLimitShows) {
+    // The finest tile of 20 m has 31 modes: wavelengths down to 0.645 m, two samples of 0.3226 m. The rim of whole
+    // cells reaches half a diagonal less far.
+    const auto query = filtered(products(Product::Displacement, Product::Normal), 0.33);
+    const auto coarse = frame_of<float>(scene_with(1), {query}, 1.5), fine = frame_of<float>(scene_with(2), {query}, 1.5);
+    const auto points = random_points<float>(200.0, 2000);
+    const auto a = sample(coarse, 0, points), b = sample(fine, 0, points);
+    const double hs = 4.0 * std::sqrt(coarse.realisation(0).m0);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            ASSERT_NEAR(a.displacement[i][axis], b.displacement[i][axis], 1e-4 * hs);
+            ASSERT_NEAR(a.normal[i][axis], b.normal[i][axis], 1e-3);
+        }
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,182 @@
+// What the tests of waves and of the query share: a sea in a few lines, its answers as arrays, its fields node by node,
+// and sums over its modes in double that know nothing of transforms or splines.
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/evaluate/evaluate.h"
+#include "core/plan/mode_lattice.h"
+#include "core/plan/plan.h"
+#include "core/surface/patch.h"
+#include "core/waves/frame.h"
+
+namespace pelagic::test {
+
+template <class T>
+Frame<T> frame_of(const Scene& scene, const Plan& plan, double t_s = 0.0) {
+    Frame<T> frame(std::make_shared<const Sea<T>>(scene, plan));
+    frame.set(t_s);
+    return frame;
+}
+template <class T>
+Frame<T> frame_of(const Scene& scene, const std::vector<Query>& queries, double t_s = 0.0) {
+    return frame_of<T>(scene, make_plan(scene, queries), t_s);
+}
+
+inline Query unfiltered(ProductSet wanted) {
+    Query query;
+    query.name = "points";
+    query.products = wanted;
+    return query;  // footprints of 0
+}
+inline Query filtered(ProductSet wanted, double footprint_m) {
+    Query query = unfiltered(wanted);
+    query.cell_m = query.pixel_m = {footprint_m};
+    return query;
+}
+// The nodes of one cascade's own tile, n a side.
+inline Query tile(ProductSet wanted, int cascade, double size_m, int n) {
+    Query query = unfiltered(wanted);
+    query.name = "tile";
+    query.lattice = Lattice{0.0, size_m / n};
+    query.only_cascade = cascade;
+    return query;
+}
+
+template <class T>
+std::vector<glm::vec<2, T>> tile_points(double size_m, int n) {
+    return rest_points<T>({.per_side = n, .spacing_m = size_m / n, .first_m = 0.0});
+}
+// Anywhere in a square of this size round the origin.
+template <class T>
+std::vector<glm::vec<2, T>> random_points(double size_m, int count, unsigned seed = 1) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<double> inside(-0.5 * size_m, 0.5 * size_m);
+    std::vector<glm::vec<2, T>> points;
+    for (int i = 0; i < count; ++i) {
+        const double x = inside(generator), y = inside(generator);
+        points.emplace_back(x, y);
+    }
+    return points;
+}
+
+// Everything that the query holds, at each point.
+template <class T>
+struct Samples {
+    std::vector<glm::vec<3, T>> position, displacement, normal, velocity, slope_variance, jacobian;
+    std::vector<T> coverage;
+};
+
+template <class T>
+struct Where {
+    glm::dvec2 origin_m{0.0};
+    std::vector<T> cell_m, pixel_m;  // empty: the query's first
+};
+
+template <class T>
+Samples<T> sample(const Frame<T>& frame, int query, const std::vector<glm::vec<2, T>>& rest, const Where<T>& where = {}) {
+    Samples<T> samples;
+    Results<T> results;
+    const ProductSet held = frame.sea().plan().queries.at(query).query.products;
+    const auto want = [&](Product product, auto& values, auto& view) {
+        if (!held[index(product)]) return;
+        values.resize(rest.size());
+        view = {values.data()};
+    };
+    want(Product::Position, samples.position, results.position);
+    want(Product::Displacement, samples.displacement, results.displacement);
+    want(Product::Normal, samples.normal, results.normal);
+    want(Product::Velocity, samples.velocity, results.velocity);
+    want(Product::SlopeVariance, samples.slope_variance, results.slope_variance);
+    want(Product::JacobianMoments, samples.jacobian, results.jacobian);
+    want(Product::Coverage, samples.coverage, results.coverage);
+    Points<T> points{.origin_m = where.origin_m, .count = rest.size(), .rest_m = {rest.data()}, .cell_m = {}, .pixel_m = {}};
+    if (!where.cell_m.empty()) points.cell_m = {where.cell_m.data()};
+    if (!where.pixel_m.empty()) points.pixel_m = {where.pixel_m.data()};
+    evaluate(frame, query, points, results);
+    return samples;
+}
+
+// One field at the nodes of a grid that is read there, x fastest.
+template <class T>
+std::vector<double> field_at_nodes(const Frame<T>& frame, int cascade, Field field) {
+    const Grid& grid = frame.sea().plan().cascades.at(cascade).grids.at(0);
+    if (grid.sampling != Sampling::Nodes) throw std::logic_error("the grid is not read at its nodes");
+    for (std::size_t t = 0; t < grid.transforms.size(); ++t)
+        for (int part = 0; part < 2; ++part)
+            if (grid.transforms[t][part] == field) {
+                const auto* values = frame.samples(cascade, 0, static_cast<int>(t));
+                std::vector<double> result(static_cast<std::size_t>(grid.resolution) * grid.resolution);
+                for (std::size_t i = 0; i < result.size(); ++i)
+                    result[i] = part == 0 ? values[i].real() : values[i].imag();
+                return result;
+            }
+    throw std::logic_error("the grid doesn't hold the field");
+}
+
+// A mode of the half plane at time t, from the sea's amplitudes alone; phases in long double.
+struct Mode {
+    int mx, my;
+    double k, omega;
+    std::complex<double> height;  // h(k,t); the mirror image is its conjugate
+};
+
+template <class T>
+std::vector<Mode> modes_of(const Sea<T>& sea, int cascade, double t_s) {
+    const Cascade<T>& waves = sea.cascades()[cascade];
+    std::vector<Mode> modes;
+    std::size_t at = 0;
+    for (int my = 0; waves.radius > 0 && my <= waves.radius; ++my)
+        for (int i = 0; i < row_length(waves.radius, my); ++i, ++at) {
+            const int mx = row_first(waves.radius, my) + i;
+            const long double cycles = static_cast<long double>(waves.cycles_per_s[at]) * t_s;
+            const double phase = static_cast<double>(2.0L * std::numbers::pi_v<long double> * (cycles - std::floor(cycles)));
+            const std::complex<double> turn = std::polar(1.0, phase);
+            modes.push_back({mx, my, 2.0 * kPi / waves.size_m * std::hypot(mx, my), 2.0 * kPi * waves.cycles_per_s[at],
+                             std::complex<double>(waves.forward[at]) * std::conj(turn) +
+                                 std::complex<double>(waves.backward[at]) * turn});
+        }
+    return modes;
+}
+
+// η at one point: the plain sum over every mode of one cascade, weighted as a footprint does.
+inline double direct_height(const std::vector<Mode>& modes, double size_m, glm::dvec2 x, double footprint_m = 0.0) {
+    double sum = 0.0;
+    for (const Mode& mode : modes) {
+        const double phase = 2.0 * kPi * (mode.mx * x.x + mode.my * x.y) / size_m;
+        sum += 2.0 * FootprintFilter{}.weight(mode.k, footprint_m) *
+               (mode.height.real() * std::cos(phase) - mode.height.imag() * std::sin(phase));
+    }
+    return sum;
+}
+
+template <class Values, class Of>
+double mean_of(const Values& values, Of&& of) {
+    double sum = 0.0;
+    for (const auto& value : values) sum += static_cast<double>(of(value));
+    return sum / static_cast<double>(values.size());
+}
+
+struct Estimate {
+    double mean = 0.0, standard_error = 0.0;
+};
+inline Estimate estimate(const std::vector<double>& values) {
+    const double n = static_cast<double>(values.size());
+    const double mean = mean_of(values, [](double v) { return v; });
+    const double variance = mean_of(values, [&](double v) { return (v - mean) * (v - mean); }) * n / (n - 1.0);
+    return {mean, std::sqrt(variance / n)};
+}
+
+}  // namespace pelagic::test

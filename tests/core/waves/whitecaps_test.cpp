@@ -1,0 +1,187 @@
+// Coverage from moments of the Jacobian: the functions of whitecaps.h alone.
+#include "core/waves/whitecaps.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+#include <vector>
+
+#include "core/spectrum/directional_spectrum.h"
+
+namespace pelagic {
+namespace {
+
+using whitecaps_detail::from_normal;
+using whitecaps_detail::normal_quantile;
+using whitecaps_detail::to_normal;
+
+TEST(NormalQuantile, InvertsTheNormalDistribution) {
+    // Tables: Φ(1.959963984540054) = 0.975, Φ(−3.090232306167813) = 0.001.
+    EXPECT_NEAR(normal_quantile(0.5), 0.0, 1e-14);
+    EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-10);
+    EXPECT_NEAR(normal_quantile(0.001), -3.090232306167813, 1e-10);
+    for (double p : {1e-9, 1e-6, 0.01, 0.3, 0.77, 0.99})
+        EXPECT_NEAR(0.5 * std::erfc(-normal_quantile(p) / std::sqrt(2.0)) / p, 1.0, 1e-9) << p;
+}
+
+TEST(WilsonHilferty, IsInvertibleRisingAndTheIdentityWithoutSkewness) {
+    for (double skewness : {-1.5, -0.24, -1e-3, 0.0, 1e-3, 0.24, 1.5}) {
+        double before = -1e300;
+        for (double y = -3.0; y <= 3.0; y += 0.25) {
+            const double z = from_normal(y, skewness);
+            EXPECT_NEAR(to_normal(z, skewness), y, 1e-9);
+            EXPECT_GT(z, before);
+            before = z;
+            EXPECT_NEAR(to_normal(y, 0.0), y, 0.0);
+        }
+    }
+    // Across the switch to the identity, (z² − 1) skewness/6: 1e-4 × 8/6 at three deviations.
+    EXPECT_NEAR(to_normal(3.0, 1.01e-4), to_normal(3.0, 0.99e-4), 2e-4);
+    // A Pearson III variable is a shifted gamma: skewness 2 is the exponential, P(x − 1 < z) = 1 − e^(−(z + 1)).
+    // Wilson and Hilferty are good to 0.01 there.
+    for (double z : {-0.5, 0.0, 1.0, 2.0})
+        EXPECT_NEAR(0.5 * std::erfc(-to_normal(z, 2.0) / std::sqrt(2.0)), 1.0 - std::exp(-(z + 1.0)), 0.01);
+}
+
+TEST(Coverage, IsAShareThatRisesWithTheThresholdAndTheStepWithoutVariance) {
+    for (bool third : {false, true})
+        for (float mean : {-3.0f, 0.0f, 0.4f, 1.0f, 5.0f})
+            for (float variance : {0.0f, 1e-38f, 1e-6f, 0.05f, 1.0f, 1e6f})
+                for (float skewness : {-5.0f, -0.3f, 0.0f, 0.3f, 5.0f}) {
+                    const float third_moment = skewness * variance * std::sqrt(variance);
+                    float before = 0.0f;
+                    for (float threshold = -4.0f; threshold <= 6.0f; threshold += 0.05f) {
+                        const float w = coverage<float>({mean, variance, third_moment}, threshold, third);
+                        ASSERT_TRUE(w >= 0.0f && w <= 1.0f);
+                        ASSERT_GE(w, before - 1e-6f);
+                        before = w;
+                        if (variance == 0.0f) {
+                            ASSERT_EQ(w, mean < threshold ? 1.0f : 0.0f);
+                        }
+                    }
+                }
+    const float never = -std::numeric_limits<float>::infinity();
+    EXPECT_EQ(coverage<float>({1.0f, 0.05f, 0.001f}, never, true), 0.0f);
+    EXPECT_EQ(coverage<float>({1.0f, 0.0f, 0.0f}, never, true), 0.0f);
+}
+
+// Two moments are Dupuy and Bruneton's erf to the letter.
+TEST(Coverage, OfTwoMomentsIsThePapers) {
+    for (double epsilon : {0.2, 0.6, 1.0, 1.3})
+        EXPECT_NEAR(coverage<double>({0.95, 0.04, 0.002}, epsilon, false),
+                    0.5 * (1.0 + std::erf((epsilon - 0.95) / (std::sqrt(2.0) * 0.2))), 1e-15);
+}
+
+// The strain's covariance of a real sea, and a few shown derivatives: J's cumulants against as many draws of the
+// three Gaussians. 20 batches give the draws' own error; five of those.
+TEST(JacobianMoments, AreThoseOfAGaussianRemainder) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 18.0;
+    scene.sea.wind_direction_deg = 20.0;  // so that xxxy and xyyy aren't 0
+    const SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.3, 1e4);
+    const HiddenStrain<double> v{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy};
+    // Cholesky factor of the covariance of (sxx, syy, sxy).
+    const double a = std::sqrt(v.xxxx), b = v.xxyy / a, c = v.xxxy / a;
+    const double d = std::sqrt(v.yyyy - b * b), e = (v.xyyy - b * c) / d, f = std::sqrt(v.xxyy - c * c - e * e);
+    ASSERT_GT(std::abs(v.xxxy), 1e-3 * v.xxxx);
+
+    std::mt19937_64 generator(3);
+    std::normal_distribution<double> normal;
+    double two_moments_off = 0.0, three_moments_off = 0.0;
+    for (const std::array<double, 3>& shown : {std::array{0.0, 0.0, 0.0}, {-0.25, 0.1, 0.12}, {0.2, -0.3, -0.05}}) {
+        const auto [dxx, dyy, dxy] = shown;
+        constexpr int kBatches = 20, kDraws = 50000;
+        const JacobianMoments<double> theory = jacobian_moments(dxx, dyy, dxy, v);
+        const double sigma = std::sqrt(theory.variance);
+        std::array<std::array<double, kBatches>, 3> batches;
+        const double threshold = theory.mean - 2.2 * sigma;
+        double foam = 0.0;
+        for (int batch = 0; batch < kBatches; ++batch) {
+            std::array<double, 3> sums{};
+            for (int i = 0; i < kDraws; ++i) {
+                const double x = normal(generator), y = normal(generator), z = normal(generator);
+                const double sxx = a * x, syy = b * x + d * y, sxy = c * x + e * y + f * z;
+                const double j = (1.0 + dxx + sxx) * (1.0 + dyy + syy) - (dxy + sxy) * (dxy + sxy);
+                const double difference = j - theory.mean;
+                sums[0] += difference;
+                sums[1] += difference * difference;
+                sums[2] += difference * difference * difference;
+                if (j < threshold) foam += 1.0 / (kBatches * kDraws);
+            }
+            for (int n = 0; n < 3; ++n) batches[n][batch] = sums[n] / kDraws;
+        }
+        const std::array<double, 3> expected{0.0, theory.variance, theory.third};
+        for (int n = 0; n < 3; ++n) {
+            double mean = 0.0, variance = 0.0;
+            for (double value : batches[n]) mean += value / kBatches;
+            for (double value : batches[n]) variance += (value - mean) * (value - mean) / (kBatches - 1);
+            EXPECT_NEAR(mean, expected[n], 5.0 * std::sqrt(variance / kBatches)) << "cumulant " << n + 1;
+            // The test sees something: the error is small against the cumulant itself, or its scale.
+            EXPECT_LT(5.0 * std::sqrt(variance / kBatches), 0.2 * std::max(std::abs(expected[n]), std::pow(sigma, n + 1)));
+        }
+        two_moments_off += std::abs(std::log(coverage(theory, threshold, false) / foam));
+        three_moments_off += std::abs(std::log(coverage(theory, threshold, true) / foam));
+        EXPECT_NEAR(coverage(theory, threshold, true) / foam, 1.0, 0.1);
+    }
+    EXPECT_LT(three_moments_off, 0.5 * two_moments_off);
+}
+
+TEST(JacobianMoments, AreExactWhereNothingIsHidden) {
+    const auto j = jacobian_moments(0.3f, -0.2f, 0.1f, HiddenStrain<float>{});
+    EXPECT_FLOAT_EQ(j.mean, 1.3f * 0.8f - 0.01f);
+    EXPECT_EQ(j.variance, 0.0f);
+    EXPECT_EQ(j.third, 0.0f);
+}
+
+// A mip level: parts' moments and the spread of their means. Against the definition, about the whole's mean.
+TEST(MomentSum, IsTheMixtureOfItsParts) {
+    std::mt19937 generator(5);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    for (double scale : {1.0, 1e-3}) {  // rough, and a calm sea where squares of the mean would cancel
+        std::vector<JacobianMoments<float>> parts;
+        for (int i = 0; i < 16; ++i) {
+            const auto draw = [&] { return uniform(generator) * scale; };
+            const double mean = 1.0 + draw() - 0.5 * scale, sigma = draw();
+            parts.push_back({static_cast<float>(mean), static_cast<float>(sigma * sigma),
+                             static_cast<float>(0.3 * sigma * sigma * sigma)});
+        }
+        MomentSum<float> sum;
+        double mean = 0.0, variance = 0.0, third = 0.0;
+        for (const auto& part : parts) {
+            sum.add(part);
+            mean += static_cast<double>(part.mean) / 16.0;
+        }
+        for (const auto& part : parts) {
+            const double d = part.mean - mean;
+            variance += (part.variance + d * d) / 16.0;
+            third += (part.third + 3.0 * d * part.variance + d * d * d) / 16.0;
+        }
+        const auto whole = sum.moments();
+        // Rounding of single precision relative to the parts' spread, some 1e-7 of it per operation, and of the mean.
+        EXPECT_NEAR(whole.mean, mean, 2e-7);
+        EXPECT_NEAR(whole.variance / variance, 1.0, 1e-4);
+        EXPECT_NEAR(whole.third / std::pow(variance, 1.5), third / std::pow(variance, 1.5), 1e-4 / std::sqrt(scale));
+    }
+    EXPECT_EQ(MomentSum<float>().moments().variance, 0.0f);
+    MomentSum<float> constant;
+    for (int i = 0; i < 4; ++i) constant.add({0.7f, 0.0f, 0.0f});
+    EXPECT_EQ(constant.moments().variance, 0.0f);
+    EXPECT_EQ(constant.moments().mean, 0.7f);
+}
+
+TEST(CalibratedThreshold, GivesTheObservedCoverageOfTheWholeSea) {
+    for (double wind : {6.0, 10.0, 14.0, 20.0}) {
+        Scene scene;
+        scene.sea.wind_speed_mps = wind;
+        const SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
+        const auto j = jacobian_moments(0.0, 0.0, 0.0, HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
+        const double w = coverage(j, calibrated_threshold(m, wind), true);
+        EXPECT_NEAR(w / (2.95e-6 * std::pow(wind, 3.52)), 1.0, 1e-6);
+    }
+    EXPECT_EQ(calibrated_threshold({}, 0.0), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(calibrated_threshold({}, 10.0), -std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,137 @@
+// A second run: it keeps the frames that are whole and of this very shot, does all others again, and always
+// ends at the same bytes.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/plugin/cli/program.h"
+#include "tests/plugin/cli/small_shot.h"
+
+namespace pelagic::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BakeResume : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        write_shot({.frames = 8});
+        ASSERT_EQ(bake().status, 0);
+    }
+    const fs::path& folder() const { return folder_.path(); }
+    void write_shot(const SmallShot& shot) const { write_file(folder() / "shot.toml", text_of(shot)); }
+    Ended bake(std::vector<std::string> more = {}, const std::string& out = "out") const {
+        std::vector<std::string> arguments{"bake", "shot.toml", "--out", out};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run({.arguments = arguments, .folder = folder()});
+    }
+    // The same as a bake of this shot into an empty folder.
+    void expect_as_new() const {
+        fs::remove_all(folder() / "new");
+        ASSERT_EQ(bake({}, "new").status, 0);
+        EXPECT_EQ(differences(folder() / "out", folder() / "new"), "");
+    }
+
+  private:
+    TempFolder folder_;
+};
+
+TEST_F(BakeResume, WholeFramesAreKept) {
+    const fs::path frame = folder() / "out/mesh/small.0005.usda";
+    const auto before = fs::last_write_time(frame);
+    const Ended ended = bake();
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_NE(ended.out.find("0 frames baked, 8 kept as they were"), std::string::npos) << ended.out;
+    EXPECT_EQ(fs::last_write_time(frame), before);
+    expect_as_new();
+}
+
+TEST_F(BakeResume, AMissingOrTruncatedFileIsMadeAgain) {
+    fs::remove(folder() / "out/mesh/small.0002.usda");
+    fs::remove(folder() / "out/maps/whitecaps.0004.exr");
+    fs::resize_file(folder() / "out/maps/displacement.0006.exr", 200);
+    fs::resize_file(folder() / "out/mesh/small.0007.usda", 0);
+    const Ended ended = bake();
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_NE(ended.out.find("4 frames baked, 4 kept as they were"), std::string::npos) << ended.out;
+    expect_as_new();
+}
+
+TEST_F(BakeResume, AMissingOrTruncatedStageIsMadeAgain) {
+    fs::remove(folder() / "out/small.usda");
+    fs::resize_file(folder() / "out/mesh/small.topology.usda", 10);
+    fs::remove(folder() / "out/mesh/small.manifest.usda");
+    EXPECT_EQ(bake().status, 0);
+    expect_as_new();
+}
+
+TEST_F(BakeResume, ALostOrTornRecordMeansThatEverythingIsMadeAgain) {
+    for (const bool lost : {true, false}) {
+        if (lost) fs::remove(folder() / "out/small.json");
+        if (!lost) fs::resize_file(folder() / "out/small.json", 300);
+        const Ended ended = bake();
+        EXPECT_EQ(ended.status, 0);
+        EXPECT_NE(ended.out.find("8 frames baked"), std::string::npos) << ended.out;
+        expect_as_new();
+    }
+}
+
+TEST_F(BakeResume, AChangedShotIsMadeAgain) {
+    write_shot({.frames = 8, .seed = 2});
+    const Ended ended = bake();
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_NE(ended.out.find("8 frames baked"), std::string::npos) << ended.out;
+    expect_as_new();
+}
+
+TEST_F(BakeResume, AnAddedMapIsMadeForEveryFrame) {
+    std::string text = text_of({.frames = 8});
+    text.replace(text.find("\"whitecaps\"]"), 12, "\"whitecaps\", \"normal\"]");
+    write_file(folder() / "shot.toml", text);
+    EXPECT_EQ(bake().status, 0);
+    EXPECT_TRUE(fs::exists(folder() / "out/maps/normal.0008.exr"));
+    expect_as_new();
+}
+
+TEST_F(BakeResume, AShotThatGrowsKeepsWhatItHas) {
+    write_shot({.frames = 10});
+    const Ended ended = bake();
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_NE(ended.out.find("2 frames baked, 8 kept as they were"), std::string::npos) << ended.out;
+    expect_as_new();
+}
+
+TEST_F(BakeResume, FramesOfAnotherVersionThatWereNotAskedForAreNamed) {
+    write_shot({.frames = 8, .seed = 2});
+    const Ended ended = bake({"--frames", "3-4"});
+    EXPECT_EQ(ended.status, 0) << "all that was asked for is there";
+    EXPECT_NE(ended.err.find("the frames 1-2, 5-8 are of another version of this shot"), std::string::npos)
+        << ended.err;
+    EXPECT_NE(ended.err.find("--frames"), std::string::npos) << "what to do: " << ended.err;
+    EXPECT_EQ(bake().err.find("another version"), std::string::npos);
+    expect_as_new();
+}
+
+// Frame by frame, whatever the order, the number of threads and what else the run does: what lets a farm
+// split a shot.
+TEST_F(BakeResume, OneFrameAloneOnOneThreadIsTheSameBitsAsInARunOnTwo) {
+    ASSERT_EQ(bake({"--frames", "1-8", "--threads", "2"}, "run").status, 0);
+    ASSERT_EQ(bake({"--frames", "7", "--threads", "1"}, "alone").status, 0);
+    for (const char* file : {"mesh/small.0007.usda", "maps/displacement.0007.exr", "maps/whitecaps.0007.exr",
+                             "small.usda", "mesh/small.topology.usda", "mesh/small.manifest.usda"}) {
+        ASSERT_TRUE(fs::exists(folder() / "alone" / file)) << file;
+        EXPECT_EQ(read_file(folder() / "alone" / file), read_file(folder() / "run" / file)) << file;
+    }
+}
+
+TEST_F(BakeResume, PartsThatAreBakedOneAfterAnotherMakeTheWhole) {
+    ASSERT_EQ(bake({"--frames", "5-8"}, "parts").status, 0);
+    ASSERT_EQ(bake({"--frames", "1-8x3"}, "parts").status, 0);
+    ASSERT_EQ(bake({"--frames", "1-4"}, "parts").status, 0);
+    EXPECT_EQ(differences(folder() / "out", folder() / "parts"), "");
+    const Ended all = bake({}, "parts");
+    EXPECT_NE(all.out.find("0 frames baked, 8 kept as they were"), std::string::npos) << all.out;
+}
+
+}  // namespace
+}  // namespace pelagic::test

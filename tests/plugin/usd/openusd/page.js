@@ -1,0 +1,205 @@
+// The part of read-stage.mjs that runs in the page, where OpenUSD lives: loads the layers, draws the stage at each
+// time, and posts every array that OpenUSD hands over to the server, as raw bytes.
+//
+// Hydra hands over points, normals and the primvars of vectors. Primvars of plain floats, extent and the prims that
+// this renderer does not draw are read from a second, slim stage: a layer over the root that blocks all that came
+// through Hydra, flattened to text by OpenUSD.
+
+async function postArray(header, array) {
+    const query = new URLSearchParams(header);
+    const answer = await fetch(`/array?${query}`, { method: 'POST', body: array });
+    if (!answer.ok) throw new Error(`the server refused an array: ${answer.status}`);
+}
+
+// What a mesh has received so far, and what of it is new since it was last asked.
+class MeshRecord {
+    constructor() {
+        this.fresh = new Map();
+        this.primvars = {};
+        this.material = null;
+    }
+    updatePoints(points) {
+        this.fresh.set('points', points.slice());
+    }
+    updateIndices(indices) {
+        this.fresh.set('indices', indices.slice());
+    }
+    // Smooth normals that Hydra computes where it is asked to; the authored ones come as a primvar.
+    updateNormals() {}
+    updatePrimvar(name, data, dimension, interpolation) {
+        this.primvars[name] = { dimension, interpolation };
+        this.fresh.set(name, data.slice());
+    }
+    setMaterial(path) {
+        this.material = path;
+    }
+    setTransform() {}
+}
+
+class Delegate {
+    constructor() {
+        this.meshes = new Map();
+        this.materials = {};
+    }
+    createRPrim(type, path) {
+        const record = new MeshRecord();
+        if (type === 'mesh') this.meshes.set(path, record);
+        return record;
+    }
+    createBPrim() {
+        return {};
+    }
+    createSPrim(type, path) {
+        return {
+            updateNode: (network, node, parameters) => {
+                const material = (this.materials[path] ??= {});
+                material[node] = parameters;
+            },
+            updateFinished: () => {},
+        };
+    }
+    CommitResources() {}
+}
+
+// A layer over the root in which the given attributes of each mesh have no value. It has the root's own time codes a
+// second: where they differ, a sublayer's times are scaled.
+function slimLayer(rootFile, timeCodesPerSecond, blocked) {
+    let text = `#usda 1.0\n(\n    timeCodesPerSecond = ${timeCodesPerSecond}\n` +
+        `    subLayers = [@./${rootFile}@]\n)\n`;
+    for (const [path, attributes] of blocked) {
+        const names = path.split('/').filter((name) => name !== '');
+        for (const name of names) text += `over "${name}" {\n`;
+        for (const { type, name } of attributes) text += `${type} ${name} = None\n`;
+        text += '}\n'.repeat(names.length);
+    }
+    return text;
+}
+
+// How an attribute is declared, by OpenUSD's name for its value. Where several declarations have one value, by name.
+function declaredType(name, valueType) {
+    const special = {
+        points: 'point3f[]', normals: 'normal3f[]', velocities: 'vector3f[]', accelerations: 'vector3f[]',
+        'primvars:st': 'texCoord2f[]', 'primvars:displayColor': 'color3f[]',
+    };
+    const general = {
+        'VtArray<int>': 'int[]', 'VtArray<float>': 'float[]', 'VtArray<GfVec2f>': 'float2[]',
+        'VtArray<GfVec3f>': 'float3[]', 'VtArray<GfVec4f>': 'float4[]',
+    };
+    return special[name] ?? general[valueType];
+}
+
+function numbersOf(text) {
+    const numbers = text.replace(/[()[\]\s]/g, '').split(',').filter((word) => word !== '');
+    return Float32Array.from(numbers, Number);
+}
+
+// What the flattened text says of prims and of float arrays: prims by path with their types, samples by prim,
+// attribute and time. OpenUSD indents by four spaces a level.
+function parseFlattened(text) {
+    const prims = {};
+    const samples = [];
+    const path = [];
+    let attribute = null;
+    for (const line of text.split('\n')) {
+        const prim = /^( *)(?:def|over|class) (?:(\w+) )?"(\w+)"/.exec(line);
+        if (prim) {
+            path.length = prim[1].length / 4;
+            path.push(prim[3]);
+            prims[`/${path.join('/')}`] = prim[2] ?? '';
+            continue;
+        }
+        const opening = /^ *float\d?\[\] ([\w:]+)\.timeSamples = \{$/.exec(line);
+        if (opening) {
+            attribute = opening[1];
+            continue;
+        }
+        if (attribute === null) continue;
+        if (/^ *\}$/.test(line)) {
+            attribute = null;
+            continue;
+        }
+        const sample = /^ *([-+.\deE]+): (\[.*\]),$/.exec(line);
+        if (sample) {
+            samples.push({ prim: `/${path.join('/')}`, attribute, time: Number(sample[1]), text: sample[2] });
+        }
+    }
+    return { prims, samples };
+}
+
+// Called by read-stage.mjs. Resolves to what is not an array.
+async function readStage({ rootFile, layers, frames }) { // eslint-disable-line no-unused-vars
+    const folder = '/stage';
+    const usd = await getUsdModule(undefined, '/openusd');
+    usd.FS.mkdirTree(folder);
+    for (const layer of layers) {
+        const answer = await fetch(`/layer?${new URLSearchParams({ file: layer })}`);
+        if (!answer.ok) throw new Error(`the server does not give ${layer}: ${answer.status}`);
+        const slash = layer.lastIndexOf('/');
+        const parent = slash < 0 ? folder : `${folder}/${layer.slice(0, slash)}`;
+        usd.FS.mkdirTree(parent);
+        usd.FS.createDataFile(parent, layer.slice(slash + 1), new Uint8Array(await answer.arrayBuffer()), true,
+            true, true);
+    }
+
+    const delegate = new Delegate();
+    const started = performance.now();
+    const driver = new usd.HdWebSyncDriver(delegate, `${folder}/${rootFile}`);
+    const openMs = performance.now() - started;
+    for (const frame of frames) {
+        driver.SetTime(frame);
+        driver.Draw();
+        for (const [prim, record] of delegate.meshes) {
+            for (const [name, array] of record.fresh) {
+                const type = array instanceof Int32Array ? 'int32' : 'float32';
+                await postArray({ frame, prim, name, type }, array);
+            }
+            record.fresh.clear();
+        }
+    }
+
+    const stage = driver.GetStage();
+    const blocked = new Map();
+    const wanted = new Map();
+    for (const [path, record] of delegate.meshes) {
+        const prim = stage.GetPrimAtPath(path);
+        const attributes = [];
+        const names = new Set();
+        for (const name of prim.GetPropertyNames()) {
+            const short = name.replace(/^primvars:/, '');
+            const handedOver = short in record.primvars || /^faceVertex(Counts|Indices)$/.test(name);
+            const type = declaredType(name, handedOver ? prim.GetAttribute(name).GetTypeName() : '');
+            if (handedOver && type) attributes.push({ type, name });
+            if (!handedOver && (name === 'extent' || name.startsWith('primvars:'))) names.add(name);
+        }
+        blocked.set(path, attributes);
+        wanted.set(path, names);
+    }
+    // In the root's own folder, so that relative paths stay what they are.
+    const slim = rootFile.replace(/[^/]*$/, 'read-stage-slim.usda');
+    const slimFolder = `${folder}/${slim}`.replace(/\/[^/]*$/, '');
+    usd.FS.createDataFile(slimFolder, 'read-stage-slim.usda',
+        new TextEncoder().encode(
+            slimLayer(rootFile.replace(/^.*\//, ''), stage.GetTimeCodesPerSecond(), blocked)), true, true, true);
+    const flattened = usd.UsdStage.Open(`${folder}/${slim}`).ExportToString();
+    const { prims, samples } = parseFlattened(flattened);
+    for (const { prim, attribute, time, text } of samples) {
+        if (!wanted.get(prim)?.has(attribute) || !frames.includes(time)) continue;
+        const name = attribute.replace(/^primvars:/, '');
+        await postArray({ frame: time, prim, name, type: 'float32' }, numbersOf(text));
+    }
+
+    return {
+        openMs,
+        rootLayer: stage.GetRootLayer().ExportToString(),
+        flattened,
+        prims,
+        stage: {
+            startTimeCode: stage.GetStartTimeCode(),
+            endTimeCode: stage.GetEndTimeCode(),
+            timeCodesPerSecond: stage.GetTimeCodesPerSecond(),
+        },
+        materials: delegate.materials,
+        meshes: Object.fromEntries([...delegate.meshes].map(([path, record]) =>
+            [path, { material: record.material, primvars: record.primvars }])),
+    };
+}

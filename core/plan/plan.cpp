@@ -18,19 +18,17 @@
 namespace pelagic {
 namespace {
 
-constexpr double kHalfDiagonal = 0.7072;  // of a mode's cell, in modes: √½, rounded up
-
 Knobs knobs_of(QualityLevel level) {
     // Errors and times of each row: tests/bench, "sampling".
     switch (level) {
         case QualityLevel::Draft:
             return {.spline_taps = 4, .oversampling = 1.25, .third_moment = false};
         case QualityLevel::Preview:
-            return {.spline_taps = 4, .oversampling = 1.5};
-        case QualityLevel::Final:
             return {.spline_taps = 4, .oversampling = 2.0};
+        case QualityLevel::Final:
+            return {.spline_taps = 6, .oversampling = 2.0};
         case QualityLevel::Reference:
-            return {.spline_taps = 6, .oversampling = 2.0, .third_moment = true, .double_precision = true};
+            return {.spline_taps = 6, .oversampling = 4.0, .third_moment = true, .double_precision = true};
     }
     throw std::invalid_argument("quality level out of range");
 }
@@ -91,16 +89,13 @@ FieldSet fields_at(const Plan& plan, int level, FieldSet dropped) {
 
 void add_grids(Plan& plan, int cascade_index, FieldSet dropped) {
     CascadePlan& cascade = plan.cascades[cascade_index];
-    const double step = 2.0 * kPi / cascade.size_m;  // distance between modes [rad/m]
     const int last_mode = cascade.resolution / 2 - 1;
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
         if (at.only_cascade && *at.only_cascade != cascade_index) continue;
         const FieldSet wanted = fields_at(plan, level, dropped);
         const double cutoff = std::min(plan.filter.cutoff(at.footprint_m), cascade.k_upper);
-        // Every mode whose cell, half a diagonal round it, reaches the edge of the band.
-        const int radius =
-            static_cast<int>(std::min<double>(last_mode, std::floor(cutoff / step + kHalfDiagonal)));
+        const int radius = std::min(last_mode, modes_within(cascade.size_m, cutoff));
         if (wanted.none() || cutoff <= cascade.k_lower || radius < 1) continue;
 
         Grid grid;
@@ -150,12 +145,7 @@ FieldSet fields_of(ProductSet wanted) {
 }
 
 std::vector<CascadeSize> resolve_cascades(const Scene& scene, double finest_footprint_m) {
-    if (!scene.waves.cascades.empty()) {
-        auto cascades = scene.waves.cascades;
-        std::sort(cascades.begin(), cascades.end(),
-                  [](const auto& a, const auto& b) { return a.size_m > b.size_m; });
-        return cascades;
-    }
+    if (!scene.waves.cascades.empty()) return scene.waves.cascades;
     // Ten of the longest peak waves fit into the first tile (their m0 then varies by some 7 % from seed to
     // seed); each further one is smaller by the golden ratio cubed, about as far from a common period as
     // numbers go.
@@ -165,7 +155,7 @@ std::vector<CascadeSize> resolve_cascades(const Scene& scene, double finest_foot
     const double peak = DirectionalSpectrum(scene.sea).longest_peak_wavenumber();
     std::vector<CascadeSize> cascades(kCascades);
     std::vector<double> sizes;
-    for (int i = 0; i < kCascades; ++i) sizes.push_back(kPeakWaves * 2.0 * kPi / peak / std::pow(kRatio, i));
+    for (int i = 0; i < kCascades; ++i) sizes.push_back(kPeakWaves * kTwoPi / peak / std::pow(kRatio, i));
     const auto edges = lower_edges(sizes);
     for (int i = 0; i < kCascades; ++i) {
         cascades[i].size_m = sizes[i];
@@ -175,7 +165,7 @@ std::vector<CascadeSize> resolve_cascades(const Scene& scene, double finest_foot
         } else if (finest_footprint_m > 0.0) {
             // The finest cascade goes as far as somebody looks. Modes don't depend on it: more only adds
             // detail.
-            const double modes = FootprintFilter{}.cutoff(finest_footprint_m) * sizes[i] / (2.0 * kPi);
+            const double modes = FootprintFilter{}.cutoff(finest_footprint_m) * sizes[i] / (kTwoPi);
             resolution =
                 static_cast<int>(std::clamp(2.0 * (std::ceil(modes) + 1.0), 16.0, 1.0 * kLargestResolution));
         }

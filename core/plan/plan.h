@@ -75,7 +75,7 @@ struct Level {
 
 // Quality, resolved into knobs. Each has a measured error and a measured time: tests/bench.
 struct Knobs {
-    int spline_taps = 4;        // 4: cubic B-spline, 6: quintic
+    int spline_taps = 6;        // 4: cubic B-spline, 6: quintic
     double oversampling = 2.0;  // grid nodes per Nyquist sample of the shortest wave, where a spline reads it
     bool third_moment = true;   // coverage from three moments of J, or from two (Dupuy and Bruneton)
     bool double_precision = false;

@@ -17,14 +17,17 @@ std::vector<double> lower_edges(std::span<const double> sizes_m) {
     return edges;
 }
 
-int sufficient_resolution(double size_m, double next_lower_edge) {
-    const double modes = next_lower_edge * size_m / (2.0 * std::numbers::pi);
-    // Where the bound is met exactly, rounding in the edge must not ask for two samples more.
+int modes_within(double size_m, double edge) {
+    const double modes = edge * size_m / (2.0 * std::numbers::pi) + std::sqrt(0.5);
+    // Where the bound is met exactly, rounding in the edge must not ask for a mode more.
     constexpr double kRounding = 1e-12;
-    const double half = std::ceil((modes + 0.5) * (1.0 - kRounding));
-    constexpr double kLargestHalf = std::numeric_limits<int>::max() / 2;
-    if (!(half < kLargestHalf)) return std::numeric_limits<int>::max() - 1;
-    return std::max(kMinCascadeResolution, 2 * static_cast<int>(half));
+    const double whole = std::ceil(modes * (1.0 - kRounding));
+    constexpr double kLargest = std::numeric_limits<int>::max() / 4;
+    return static_cast<int>(std::min(whole, kLargest));
+}
+
+int sufficient_resolution(double size_m, double next_lower_edge) {
+    return std::max(kMinCascadeResolution, 2 * (modes_within(size_m, next_lower_edge) + 1));
 }
 
 }  // namespace pelagic

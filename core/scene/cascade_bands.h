@@ -24,9 +24,13 @@ inline constexpr int kMaxCascadeResolution = 8192;
 // kBandModes / L for the others.
 std::vector<double> lower_edges(std::span<const double> sizes_m);
 
-// The smallest even resolution ≥ 16 of a tile of this size [m] whose grid holds every wave below the next
-// cascade's lower edge [rad/m]: (N/2 − ½) 2π/L ≥ edge, because the Nyquist row is empty and a mode's cell
-// reaches half a step beyond it. May be larger than any grid we allow.
+// The radius, in modes of a tile of this size [m], of the disc that holds every mode whose cell reaches below
+// the edge [rad/m]: a cell's corner is √½ of a step from its mode. At most INT_MAX / 4.
+int modes_within(double size_m, double edge);
+
+// The smallest even resolution ≥ 16 of a tile of this size [m] whose grid holds that disc for the next
+// cascade's lower edge [rad/m]: N/2 − 1 modes, because the Nyquist row is empty. May be larger than any grid
+// we allow.
 int sufficient_resolution(double size_m, double next_lower_edge);
 
 }  // namespace pelagic

@@ -1,10 +1,11 @@
 // What the artist asks for, as a plain value: the first link of Scene → Plan → Sea → Frame → evaluate.
 //
-// Each struct mirrors a table of the shot file, each member the key of the same name; the defaults here *are* the
-// shot file's defaults. Nothing in a Scene depends on a file: a measured spectrum is in it as data, already parsed.
-// validate() (scene/validate.h) says whether the values make sense together.
+// Each struct mirrors a table of the shot file, each member the key of the same name; the defaults here *are*
+// the shot file's defaults. Nothing in a Scene depends on a file: a measured spectrum is in it as data,
+// already parsed. validate() (scene/validate.h) says whether the values make sense together.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -37,6 +38,8 @@ struct Shot {
     double loop_s = 0.0;     // > 0: repeats exactly after this long, a whole number of frames; 0: no loop
 
     double time_s(int frame) const { return (frame - 1) / fps; }
+    // loop_s as the whole number of frames that it is to within rounding; 0: no loop.
+    double exact_loop_s() const { return std::round(loop_s * fps) / fps; }
 };
 
 // A swell from a far storm: a second, narrow spectrum.
@@ -47,7 +50,8 @@ struct Swell {
 };
 
 // One hour of a directional buoy, in Pelagic's convention (not the buoy's): already turned to "towards,
-// counter-clockwise from +x". c1, c2: the first and second Fourier coefficients ∫D e^{iθ} dθ and ∫D e^{2iθ} dθ.
+// counter-clockwise from +x". c1, c2: the first and second Fourier coefficients ∫D e^{iθ} dθ and ∫D e^{2iθ}
+// dθ.
 struct MeasuredSpectrum {
     struct Bin {
         double frequency_hz;
@@ -63,9 +67,9 @@ struct MeasuredSpectrum {
 
 // [sea]
 struct SeaState {
-    double wind_speed_mps = 10.0;     // 10 m above the sea, 0 … 80
-    double wind_direction_deg = 0.0;  // blowing towards, counter-clockwise from +x
-    double fetch_m = 300e3;           // > 0
+    double wind_speed_mps = 10.0;                              // 10 m above the sea, 0 … 80
+    double wind_direction_deg = 0.0;                           // blowing towards, counter-clockwise from +x
+    double fetch_m = 300e3;                                    // > 0
     double depth_m = std::numeric_limits<double>::infinity();  // > 0
     SpectrumKind spectrum = SpectrumKind::Jonswap;
     SpreadingKind spreading = SpreadingKind::Hasselmann;

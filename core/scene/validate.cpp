@@ -259,10 +259,10 @@ double distance_to_origin(const glm::dvec3& a, const glm::dvec3& b) {
 constexpr const char* kOffTarget = "a target at least 1e-6 m away from the camera's position";
 
 void check_camera(Checker& check, const Camera& camera) {
-    const bool points_are_good = check_point(check, "camera.position_m", camera.position_m) &
-                                 check_point(check, "camera.look_at_m", camera.look_at_m);
+    const bool position_is_good = check_point(check, "camera.position_m", camera.position_m);
+    const bool target_is_good = check_point(check, "camera.look_at_m", camera.look_at_m);
     // With keys, the two points above are not used.
-    if (points_are_good && camera.keys.empty() &&
+    if (position_is_good && target_is_good && camera.keys.empty() &&
         glm::distance(camera.position_m, camera.look_at_m) < limits::kOnTarget_m) {
         check.refuse({"camera.look_at_m", vector_text(camera.look_at_m),
                       "is where the camera itself is, so that it looks nowhere", kOffTarget});
@@ -272,8 +272,8 @@ void check_camera(Checker& check, const Camera& camera) {
         const CameraKey& here = camera.keys[i];
         const std::string key = indexed("camera.keys", i);
         check.in_range(key + ".frame", here.frame, limits::kFrame);
-        bool good = check_point(check, key + ".position_m", here.position_m) &
-                    check_point(check, key + ".look_at_m", here.look_at_m);
+        bool good = check_point(check, key + ".position_m", here.position_m);
+        good = check_point(check, key + ".look_at_m", here.look_at_m) && good;
         if (good && glm::distance(here.position_m, here.look_at_m) < limits::kOnTarget_m) {
             check.refuse({key + ".look_at_m", vector_text(here.look_at_m),
                           "is where the camera itself is, so that it looks nowhere", kOffTarget});

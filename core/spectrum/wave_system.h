@@ -48,10 +48,7 @@ class WaveSystem {
     std::complex<double> harmonic(const WavePoint& point, int n) const;
 
     double peak_wavenumber() const { return peak_wavenumber_; }  // of the frequency spectrum's peak [rad/m]
-    double direction() const { return direction_; }              // towards [rad]; 0 for a measured sea
     double m0() const { return m0_; }                            // [m²]
-    const EnergyLaw& energy_law() const { return energy_; }
-    const SpreadingLaw& spreading_law() const { return spreading_; }
 
     // Rising wavenumbers: the range that holds all but 1e-12 of m0 cut into panels (see
     // DirectionalSpectrum::panels).

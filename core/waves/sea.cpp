@@ -65,7 +65,7 @@ double cycles_per_s(double omega, double loop_s) {
 }  // namespace
 
 template <class T>
-Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.shot.loop_s) {
+Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.shot.exact_loop_s()) {
     const DirectionalSpectrum spectrum(scene.sea);
     const double choppiness = scene.waves.choppiness;
     total_ = moments(spectrum, 0.0, std::numeric_limits<double>::infinity());

@@ -61,6 +61,21 @@ void print_done(const BakeReport& report, const std::string& out) {
     }
 }
 
+// What was planned, so that people see what is large.
+std::string out_of_memory(const Scene& scene) {
+    const Plan plan = make_plan(scene);
+    const long vertices_a_side = long{scene.surface.resolution} + 1;
+    const long vertices = scene.output.mesh == MeshFormat::None ? 0 : vertices_a_side * vertices_a_side;
+    const long texels =
+        scene.output.maps.empty() ? 0 : long{scene.output.map_resolution} * scene.output.map_resolution;
+    return "pelagic: out of memory; planned: " + bytes_text(plan.sea_bytes()) + " for the sea, " +
+           bytes_text(plan.frame_bytes()) + " for a frame of it, and the values at " +
+           count_text(vertices, "vertex", "vertices") + " and " + count_text(texels, "texel", "texels") +
+           " with their files; lower surface.resolution, output.map_resolution or the cascades' resolutions, "
+           "or ask "
+           "for fewer attributes; files already written are whole\n";
+}
+
 int stopped(const BakeReport& report, const std::string& out, int signal) {
     std::cerr << "pelagic: stopped; " << report.done + report.kept << " of the "
               << count_text(report.total, "frame", "frames") << " asked for are whole in " << out
@@ -99,11 +114,7 @@ int run(const Arguments& arguments) {
         report = arena.execute([&] { return bake(scene, options); });
     } catch (const std::bad_alloc&) {
         progress.clear();
-        const Plan plan = make_plan(scene);
-        std::cerr << "pelagic: out of memory; the sea alone holds " << bytes_text(plan.sea_bytes())
-                  << " and a frame of it " << bytes_text(plan.frame_bytes())
-                  << " (see: pelagic explain): lower the resolution or ask for less; files already written "
-                     "are whole\n";
+        std::cerr << out_of_memory(scene);
         return kRefused;
     } catch (const std::invalid_argument& error) {
         // Of the shot as a whole: it asks for nothing. Values have been looked at with their lines by

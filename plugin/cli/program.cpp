@@ -74,8 +74,10 @@ int report(const CLI::ParseError& error, CLI::App& program, const std::vector<Ve
     CLI::App& command = parsed == verbs.end() ? program : *parsed->command;
     const std::string name = parsed == verbs.end() ? "pelagic" : "pelagic " + command.get_name();
     const std::vector<std::string> extras = program.remaining(true);
-    const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty();
-    return usage_error(is_extra ? refuse_extras(extras, command) : error.what(), name);
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+        (parsed == verbs.end() && !extras.empty()))
+        return usage_error(refuse_extras(extras, command), name);
+    return usage_error(parsed == verbs.end() ? "a verb is missing" : error.what(), name);
 }
 
 // Lists each verb with the first line of its description.

@@ -26,10 +26,10 @@ std::string duration_text(double seconds) {
 }
 
 std::string bytes_text(std::size_t bytes) {
-    static constexpr std::array<const char*, 6> kUnits{"bytes", "kB", "MB", "GB", "TB", "PB"};
+    static constexpr std::array<const char*, 6> kUnits{"bytes", "KiB", "MiB", "GiB", "TiB", "PiB"};
     double value = static_cast<double>(bytes);
     std::size_t unit = 0;
-    for (; value >= 999.5 && unit + 1 < kUnits.size(); ++unit) value /= 1000.0;
+    for (; value >= 1023.5 && unit + 1 < kUnits.size(); ++unit) value /= 1024.0;
     std::array<char, 64> text{};
     std::snprintf(text.data(), text.size(), "%.*f %s", unit > 0 && value < 9.95 ? 1 : 0, value, kUnits[unit]);
     return text.data();

@@ -15,7 +15,7 @@
 namespace pelagic::cli {
 namespace {
 
-// "48 frames at 24 frames/s, 256 × 256 quads over 200 m, jonswap at 10 m/s: 12 transforms a frame, 34 MB"
+// "48 frames at 24 frames/s, 256 × 256 quads over 200 m, jonswap at 10 m/s: 12 transforms a frame, 34 MiB"
 std::string summary(const Scene& scene, const Plan& plan) {
     const Shot& shot = scene.shot;
     std::string text = count_text(long{shot.last_frame} - shot.first_frame + 1, "frame", "frames") + " at " +

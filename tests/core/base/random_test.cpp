@@ -51,9 +51,9 @@ TEST(NormalPair, HasTheMomentsOfTwoIndependentNormals) {
 
 TEST(NormalPair, ChangesWithEveryWordOfCounterAndKey) {
     const auto reference = normal_pair({1, 2, 3, 4}, 5);
-    for (const auto& other : {normal_pair({0, 2, 3, 4}, 5), normal_pair({1, 0, 3, 4}, 5), normal_pair({1, 2, 0, 4}, 5),
-                              normal_pair({1, 2, 3, 0}, 5), normal_pair({1, 2, 3, 4}, 6),
-                              normal_pair({1, 2, 3, 4}, 5 + (1ull << 32))})
+    for (const auto& other : {normal_pair({0, 2, 3, 4}, 5), normal_pair({1, 0, 3, 4}, 5),
+                              normal_pair({1, 2, 0, 4}, 5), normal_pair({1, 2, 3, 0}, 5),
+                              normal_pair({1, 2, 3, 4}, 6), normal_pair({1, 2, 3, 4}, 5 + (1ull << 32))})
         EXPECT_NE(reference, other);
     EXPECT_EQ(reference, normal_pair({1, 2, 3, 4}, 5));
 }

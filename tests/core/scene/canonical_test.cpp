@@ -44,6 +44,13 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.sea.measured.reset(); },
         [](Scene& s) { s.sea.measured->station = "41011"; },
         [](Scene& s) { s.sea.measured->time = "2019-02-06T01:40:00Z"; },
+        // Two texts on one line: where one ends and the other begins matters.
+        [](Scene& s) {
+            s.sea.measured = MeasuredSpectrum{{}, "a b", "c"};
+        },
+        [](Scene& s) {
+            s.sea.measured = MeasuredSpectrum{{}, "a", "b c"};
+        },
         [](Scene& s) { s.sea.measured->bins.clear(); },
         [](Scene& s) { s.sea.measured->bins[0].frequency_hz = 0.2; },
         [](Scene& s) { s.sea.measured->bins[0].density_m2_per_hz = 2.0; },

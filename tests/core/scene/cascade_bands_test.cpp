@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -22,13 +23,14 @@ TEST(CascadeBands, BeginAtEightPeriodsOfTheTile) {
     EXPECT_TRUE(lower_edges({}).empty());
 }
 
-// By hand: tiles of ratio 4 put the edge at 32 modes of the larger one; mode 32's cell begins at 31.5 and
-// must be on the grid, whose last usable mode is N/2 − 1 with a cell up to N/2 − ½: N ≥ 65, so 66.
+// By hand: tiles of ratio 4 put the edge at 32 modes of the larger one. A mode at 32.7 on the diagonal still
+// reaches it with the corner of its cell, so the disc has radius 33, and the last usable mode is N/2 − 1: N
+// = 68.
 TEST(CascadeBands, SufficientResolutionByHand) {
-    EXPECT_EQ(sufficient_resolution(400.0, kTwoPi * 32.0 / 400.0), 66);
-    // The bound met exactly: an edge at 31.5 modes needs N/2 = 32 and no more, whatever the rounding.
+    EXPECT_EQ(sufficient_resolution(400.0, kTwoPi * 32.0 / 400.0), 68);
+    // The bound met exactly: a disc of 32 modes and no more, whatever the rounding.
     for (const double size_m : {400.0, 0.3, 7.7, 123456.7}) {
-        EXPECT_EQ(sufficient_resolution(size_m, kTwoPi * 31.5 / size_m), 64) << size_m;
+        EXPECT_EQ(sufficient_resolution(size_m, kTwoPi * (32.0 - std::sqrt(0.5)) / size_m), 66) << size_m;
     }
     EXPECT_EQ(sufficient_resolution(400.0, 0.0), 16);
     // Larger than an int holds: no overflow, and larger than any grid.
@@ -42,7 +44,9 @@ TEST(CascadeBands, SufficientResolutionIsTheSmallest) {
         const double size_m = std::uniform_real_distribution<double>(1.0, 1000.0)(random);
         const double edge = kTwoPi / size_m * std::uniform_real_distribution<double>(0.1, 3000.0)(random);
         const int n = sufficient_resolution(size_m, edge);
-        const auto reach = [&](int resolution) { return (resolution / 2 - 0.5) * kTwoPi / size_m; };
+        const auto reach = [&](int resolution) {
+            return (resolution / 2 - 1 - std::sqrt(0.5)) * kTwoPi / size_m;
+        };
         EXPECT_EQ(n % 2, 0);
         EXPECT_GE(reach(n),
                   edge * (1.0 - 1e-11));  // the slack that sufficient_resolution allows for rounding, × 10

@@ -197,13 +197,13 @@ TEST(Validate, AMeasuredSpectrumIsThereExactlyWithFile) {
 TEST(Validate, CascadesReachEachOther) {
     expect_good([](Scene& s) { s.waves.cascades = {{400.0, 16}}; });
     expect_good([](Scene& s) { s.waves.cascades = {{400.0, 512}, {50.0, 512}, {5.0, 8192}}; });
-    // 400/50 × 8 modes = 64; N/2 − ½ ≥ 64 first at 130.
-    expect_good([](Scene& s) { s.waves.cascades = {{400.0, 130}, {50.0, 16}}; });
+    // 400/50 × 8 modes = 64, and corners of cells to 64.7; N/2 − 1 ≥ 65 first at 132.
+    expect_good([](Scene& s) { s.waves.cascades = {{400.0, 132}, {50.0, 16}}; });
     expect_refused(
         [](Scene& s) {
             s.waves.cascades = {{400.0, 128}, {50.0, 16}};
         },
-        {"waves.cascades[0].resolution", "128", "at least 130"});
+        {"waves.cascades[0].resolution", "128", "at least 132"});
     // 1e5 × 8 modes: out of reach.
     expect_refused(
         [](Scene& s) {

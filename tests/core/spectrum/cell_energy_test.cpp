@@ -123,6 +123,18 @@ TEST(CellEnergy, PartsOfACellAddUpToIt) {
     }
 }
 
+TEST(CellEnergy, AJumpFarOutIsNotSmoothedOver) {
+    // ω⁻² begins at kc: a band that begins there too takes nothing away.
+    SeaState state;
+    state.spectrum = SpectrumKind::Omega2;
+    const DirectionalSpectrum sea(state);
+    const double kc = sea.peak_wavenumber(), side = kc / 60;
+    const Cell cell{kc - 0.3 * side, kc + 0.7 * side, -0.5 * side, 0.5 * side};
+    Cell above = cell;
+    above.k_lo = kc;
+    EXPECT_NEAR(cell_energy(sea, cell) / cell_energy(sea, above), 1.0, 1e-6);
+}
+
 TEST(CellEnergy, AQuarterPlaneHoldsItsQuarter) {
     // Isotropic only for the eye: wind along the diagonal makes the first and the opposite quarters mirror
     // images.

@@ -1,6 +1,7 @@
 // Energy: the amplitudes hold the spectrum, and a height map holds the amplitudes.
 #include <gtest/gtest.h>
 
+#include "core/scene/cascade_bands.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/spectral_moments.h"
 #include "tests/core/waves/samples.h"
@@ -40,21 +41,28 @@ Scene scene_of(const Case& c) {
     scene.sea.depth_m = c.depth_m;
     if (c.swell) scene.sea.swell = {{.height_m = 1.5, .period_s = 11.0, .direction_deg = 80.0}};
     if (c.spectrum == SpectrumKind::File) scene.sea.measured = made_up_hour();
-    scene.waves.cascades = {{500.0, 92}, {90.0, 92}, {16.0, 96}};
+    // Just enough samples to reach the next band: where an edge could lose cells.
+    const std::vector<double> sizes_m{500.0, 90.0, 16.0};
+    const auto edges = lower_edges(sizes_m);
+    scene.waves.cascades = {{sizes_m[0], sufficient_resolution(sizes_m[0], edges[1])},
+                            {sizes_m[1], sufficient_resolution(sizes_m[1], edges[2])},
+                            {sizes_m[2], 96}};
     return scene;
 }
 
-// ∬ Ψ over the wavevectors whose nearest mode of a tile of this size satisfies `held`, from k_from to k_to: a plain
-// midpoint rule in polar coordinates, which shares nothing with the cells' own quadrature.
+// ∬ Ψ over the wavevectors whose nearest mode of a tile of this size satisfies `held`, from k_from to k_to: a
+// plain midpoint rule in polar coordinates, which shares nothing with the cells' own quadrature.
 template <class Held>
-double energy_near_modes(const DirectionalSpectrum& spectrum, double size_m, double k_from, double k_to, Held&& held) {
+double energy_near_modes(const DirectionalSpectrum& spectrum, double size_m, double k_from, double k_to,
+                         Held&& held) {
     constexpr int kRadii = 300, kAngles = 1440;
     const double step = 2.0 * kPi / size_m, dk = (k_to - k_from) / kRadii, dtheta = 2.0 * kPi / kAngles;
     double sum = 0.0;
     for (int i = 0; i < kRadii; ++i)
         for (int j = 0; j < kAngles; ++j) {
             const double k = k_from + (i + 0.5) * dk, theta = (j + 0.5) * dtheta;
-            const long mx = std::lround(k * std::cos(theta) / step), my = std::lround(k * std::sin(theta) / step);
+            const long mx = std::lround(k * std::cos(theta) / step),
+                       my = std::lround(k * std::sin(theta) / step);
             if (held(mx, my)) sum += spectrum.polar(k, theta);
         }
     return sum * dk * dtheta;
@@ -62,8 +70,8 @@ double energy_near_modes(const DirectionalSpectrum& spectrum, double size_m, dou
 
 class Amplitudes : public testing::TestWithParam<Case> {};
 
-// ΣE|h|² per cascade = the band's m0, to 1e-3: what the issue of a wrong √2, a cell sampled instead of integrated or
-// a band's edge cut wrongly would break.
+// ΣE|h|² per cascade = the band's m0, to 1e-3: what the issue of a wrong √2, a cell sampled instead of
+// integrated or a band's edge cut wrongly would break.
 TEST_P(Amplitudes, HoldTheirBandOfTheSpectrum) {
     const Scene scene = scene_of(GetParam());
     const auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});
@@ -76,8 +84,10 @@ TEST_P(Amplitudes, HoldTheirBandOfTheSpectrum) {
         const double step = 2.0 * kPi / cascade.size_m;
         double upper = cascade.k_upper, expected = 0.0;
         if (c == 2) {
-            // It ends with its last mode: whole cells, whose rim is a staircase within ½ diagonal of the radius.
-            const double inner = (cascade.mode_radius - 0.7072) * step, outer = (cascade.mode_radius + 0.7072) * step;
+            // It ends with its last mode: whole cells, whose rim is a staircase within ½ diagonal of the
+            // radius.
+            const double inner = (cascade.mode_radius - 0.7072) * step,
+                         outer = (cascade.mode_radius + 0.7072) * step;
             upper = inner;
             expected = energy_near_modes(spectrum, cascade.size_m, inner, outer, [&](long mx, long my) {
                 return mx * mx + my * my <= static_cast<long>(cascade.mode_radius) * cascade.mode_radius;
@@ -126,8 +136,8 @@ TEST(AutomaticCascades, LoseNoEnergyBetweenBands) {
     }
 }
 
-// A height map over one tile has the variance of its own realisation, Σ|h|² (Parseval), to 1e-5: single precision's
-// rounding is 1e-7 a term.
+// A height map over one tile has the variance of its own realisation, Σ|h|² (Parseval), to 1e-5: single
+// precision's rounding is 1e-7 a term.
 TEST(HeightMap, HasTheVarianceOfItsRealisation) {
     Scene scene;
     scene.sea.swell = {{.height_m = 1.0, .period_s = 9.0, .direction_deg = 130.0}};
@@ -152,8 +162,8 @@ TEST(HeightMap, HasTheVarianceOfItsRealisation) {
     }
 }
 
-// Over 16 seeds the mean variance gives Hs within 5 %. The seed-to-seed deviation of m0 in a tile of nine peak waves
-// is 7 %, so the mean's is 1.8 %, Hs's 0.9 %: five of those. A √2 too many is 41 %.
+// Over 16 seeds the mean variance gives Hs within 5 %. The seed-to-seed deviation of m0 in a tile of nine
+// peak waves is 7 %, so the mean's is 1.8 %, Hs's 0.9 %: five of those. A √2 too many is 41 %.
 TEST(HeightMap, HasTheSignificantHeightOfTheSpectrum) {
     Scene scene;
     scene.sea.spectrum = SpectrumKind::PiersonMoskowitz;  // peak wavelength 88 m at 10 m/s

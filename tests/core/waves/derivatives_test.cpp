@@ -1,7 +1,8 @@
 // Every derivative field against finite differences of the displacement, in double precision.
 //
-// Central differences of eighth order pass a wave of phase step φ = kh (or ωΔt) with the relative error φ⁸/630 to
-// leading order, so that the root mean square of (difference − field) is at most (k_max h)⁸/630 times the field's own.
+// Central differences of eighth order pass a wave of phase step φ = kh (or ωΔt) with the relative error
+// φ⁸/630 to leading order, so that the root mean square of (difference − field) is at most (k_max h)⁸/630
+// times the field's own.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +18,9 @@ constexpr double kSize = 100.0;
 constexpr int kNodes = 512, kModes = 20;  // modes a side, resolution 42
 constexpr std::array<double, 4> kWeights{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
 
-double truncation(double phase_step) { return std::pow(phase_step, 8) / 630.0; }
+double truncation(double phase_step) {
+    return std::pow(phase_step, 8) / 630.0;
+}
 
 double rms(const std::vector<double>& values) {
     return std::sqrt(mean_of(values, [](double v) { return v * v; }));
@@ -60,8 +63,9 @@ class Derivatives : public testing::TestWithParam<double> {
         return scene;
     }
     static Query query() {
-        return tile(products(Product::Displacement, Product::Normal, Product::Velocity, Product::JacobianMoments), 0,
-                    kSize, kNodes);
+        return tile(
+            products(Product::Displacement, Product::Normal, Product::Velocity, Product::JacobianMoments), 0,
+            kSize, kNodes);
     }
     std::vector<double> field(Field f) const { return field_at_nodes(frame_, 0, f); }
     Frame<double> frame_;
@@ -82,9 +86,8 @@ TEST_P(Derivatives, InTimeAreTheVelocity) {
     constexpr double kStep_s = 0.05;
     const double k = 2.0 * kPi * kModes / kSize, omega_max = std::sqrt(9.81 * k + 7.3e-5 * k * k * k);
     const double t = frame_.time_s();
-    const std::pair<Field, Field> pairs[] = {{Field::VelocityX, Field::Dx},
-                                             {Field::VelocityY, Field::Dy},
-                                             {Field::VelocityZ, Field::Height}};
+    const std::pair<Field, Field> pairs[] = {
+        {Field::VelocityX, Field::Dx}, {Field::VelocityY, Field::Dy}, {Field::VelocityZ, Field::Height}};
     std::vector<std::vector<double>> velocity, difference(3, std::vector<double>(kNodes * kNodes));
     for (const auto& [rate, of] : pairs) velocity.push_back(field(rate));
     for (int i = -4; i <= 4; ++i) {
@@ -96,11 +99,12 @@ TEST_P(Derivatives, InTimeAreTheVelocity) {
             for (std::size_t n = 0; n < values.size(); ++n) difference[p][n] += weight * values[n];
         }
     }
-    for (int p = 0; p < 3; ++p) expect_same(velocity[p], difference[p], truncation(omega_max * kStep_s), "velocity");
+    for (int p = 0; p < 3; ++p)
+        expect_same(velocity[p], difference[p], truncation(omega_max * kStep_s), "velocity");
 }
 
-// Normals and J aren't linear in the fields: against the cross product of the differenced tangents. Errors of the
-// derivatives, all below 1, enter with factors of order 1: ten times the bound.
+// Normals and J aren't linear in the fields: against the cross product of the differenced tangents. Errors of
+// the derivatives, all below 1, enter with factors of order 1: ten times the bound.
 TEST_P(Derivatives, GiveNormalsAndJacobianOfTheDisplacedSurface) {
     const double tolerance = 10.0 * truncation(2.0 * kPi * kModes / kNodes);
     const auto samples = sample(frame_, 0, tile_points<double>(kSize, kNodes));
@@ -116,17 +120,20 @@ TEST_P(Derivatives, GiveNormalsAndJacobianOfTheDisplacedSurface) {
     }
     double least_j = 1.0;
     for (std::size_t i = 0; i < samples.normal.size(); ++i) {
-        const glm::dvec3 tx(1.0 + by_x[0][i], by_x[1][i], by_x[2][i]), ty(by_y[0][i], 1.0 + by_y[1][i], by_y[2][i]);
+        const glm::dvec3 tx(1.0 + by_x[0][i], by_x[1][i], by_x[2][i]),
+            ty(by_y[0][i], 1.0 + by_y[1][i], by_y[2][i]);
         const glm::dvec3 n(tx.y * ty.z - tx.z * ty.y, tx.z * ty.x - tx.x * ty.z, tx.x * ty.y - tx.y * ty.x);
         const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-        for (int axis = 0; axis < 3; ++axis) ASSERT_NEAR(samples.normal[i][axis], n[axis] / length, tolerance);
+        for (int axis = 0; axis < 3; ++axis)
+            ASSERT_NEAR(samples.normal[i][axis], n[axis] / length, tolerance);
         ASSERT_NEAR(samples.jacobian[i].x, n.z, tolerance);
         least_j = std::min(least_j, n.z);
     }
     EXPECT_LT(least_j, 0.8);  // the cross terms were there to be wrong
 }
 
-INSTANTIATE_TEST_SUITE_P(DeepAndShallow, Derivatives, testing::Values(std::numeric_limits<double>::infinity(), 3.0));
+INSTANTIATE_TEST_SUITE_P(DeepAndShallow, Derivatives,
+                         testing::Values(std::numeric_limits<double>::infinity(), 3.0));
 
 }  // namespace
 }  // namespace pelagic

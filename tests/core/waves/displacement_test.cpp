@@ -9,8 +9,9 @@ namespace {
 
 using namespace test;
 
-// ⟨ηJ⟩ = −λ Σ k E|h|²: J = 1 + ∇·D + DxxDyy − Dxy², and over one tile ⟨η ∇·D⟩ is −λ Σk|h|² by Parseval. The quadratic
-// part adds ⟨η (DxxDyy − Dxy²)⟩, an odd moment of Gaussian fields: 0 in the mean, λ² times a sampling error.
+// ⟨ηJ⟩ = −λ Σ k E|h|²: J = 1 + ∇·D + DxxDyy − Dxy², and over one tile ⟨η ∇·D⟩ is −λ Σk|h|² by Parseval. The
+// quadratic part adds ⟨η (DxxDyy − Dxy²)⟩, an odd moment of Gaussian fields: 0 in the mean, λ² times a
+// sampling error.
 TEST(HeightTimesJacobian, IsMinusChoppinessTimesSumOfWavenumberTimesEnergy) {
     for (double choppiness : {1.0, 0.02}) {
         std::vector<double> relative;
@@ -37,9 +38,9 @@ TEST(HeightTimesJacobian, IsMinusChoppinessTimesSumOfWavenumberTimesEnergy) {
     }
 }
 
-// One wave alone, through the public interface: a swell as long as its tile, seen through a footprint that hides
-// everything shorter than 0.72 of the tile. Left are the modes (±1, 0), which carry the swell, and (0, ±1), which
-// don't depend on x and have no Dx: along x there is one wave.
+// One wave alone, through the public interface: a swell as long as its tile, seen through a footprint that
+// hides everything shorter than 0.72 of the tile. Left are the modes (±1, 0), which carry the swell, and (0,
+// ±1), which don't depend on x and have no Dx: along x there is one wave.
 struct OneWave {
     double k;
     Frame<double> frame;
@@ -49,7 +50,8 @@ OneWave one_wave(double length_m, double depth_m, double choppiness) {
     Scene scene;
     scene.sea.wind_speed_mps = 0.0;
     scene.sea.depth_m = depth_m;
-    scene.sea.swell = {{.height_m = 8.0, .period_s = 2.0 * kPi / Dispersion{depth_m}.omega(k), .direction_deg = 0.0}};
+    scene.sea.swell = {
+        {.height_m = 8.0, .period_s = 2.0 * kPi / Dispersion{depth_m}.omega(k), .direction_deg = 0.0}};
     scene.waves.choppiness = choppiness;
     scene.waves.cascades = {{length_m, 16}};
     Query query = tile(products(Product::Displacement), 0, length_m, 512);
@@ -74,17 +76,19 @@ TEST(OneWaveAlone, IsTheTrochoid) {
         const double amplitude = std::abs(harmonic), phase = std::arg(harmonic);
         ASSERT_GT(amplitude, 0.1);
 
-        // η = a cos(kx + φ), Dx = −λ coth(kd) a sin(kx + φ): Lamb's orbits. The spectrum's scalars are double.
+        // η = a cos(kx + φ), Dx = −λ coth(kd) a sin(kx + φ): Lamb's orbits. The spectrum's scalars are
+        // double.
         const double a_x = c.choppiness * amplitude / std::tanh(std::min(wave.k * c.depth_m, 50.0));
         double above = 0.0;
         for (std::size_t i = 0; i < row.size(); ++i) {
-            EXPECT_NEAR(row[i].z, level + amplitude * std::cos(wave.k * points[i].x + phase), 1e-9 * amplitude);
+            EXPECT_NEAR(row[i].z, level + amplitude * std::cos(wave.k * points[i].x + phase),
+                        1e-9 * amplitude);
             EXPECT_NEAR(row[i].x, -a_x * std::sin(wave.k * points[i].x + phase), 1e-9 * a_x);
             const auto& next = row[(i + 1) % row.size()];
             if (row[i].z > level) above += kLength / 512.0 + next.x - row[i].x;
         }
-        // Sharp crests, broad troughs: above its mean level the wave is 2a short of half its length, and 2a long below
-        // it; to the width of two nodes' gaps.
+        // Sharp crests, broad troughs: above its mean level the wave is 2a short of half its length, and 2a
+        // long below it; to the width of two nodes' gaps.
         EXPECT_NEAR(above, 0.5 * kLength - 2.0 * a_x, 2.0 * kLength / 512.0);
         EXPECT_LT(above, 0.5 * kLength - a_x);
     }

@@ -1,5 +1,5 @@
-// The same scene gives the same bits, whatever the threads, whichever frame comes first; and no transform runs that
-// the plan didn't promise.
+// The same scene gives the same bits, whatever the threads, whichever frame comes first; and no transform
+// runs that the plan didn't promise.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -43,7 +43,8 @@ TEST(Threads, ChangeNoBit) {
     const auto points = random_points<float>(300.0, 5000);
     const auto run = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return sample(frame_of<float>(windy(), {everything()}, 0.25), 0, points);  // Sea, Frame and query alike
+        return sample(frame_of<float>(windy(), {everything()}, 0.25), 0,
+                      points);  // Sea, Frame and query alike
     };
     const auto alone = run(1);
     for (std::size_t threads : {2, 7}) expect_same_bits(alone, run(threads), "threads");
@@ -75,7 +76,8 @@ TEST(Seeds, GiveOtherSeas) {
     EXPECT_TRUE(same_bits(one.slope_variance, two.slope_variance));  // an expectation: no seed in it
 }
 
-// What a shot runs, counted by hand for one cascade: the mesh alone is one grid, and two real fields share a transform.
+// What a shot runs, counted by hand for one cascade: the mesh alone is one grid, and two real fields share a
+// transform.
 //   position: η, Dx, Dy;  normal: both slopes and Dxx, Dyy, Dxy;  velocity: three;  coverage: Dxx, Dyy, Dxy.
 struct Count {
     const char* name;

@@ -13,13 +13,14 @@ using namespace test;
 Scene scene_with(int factor) {
     Scene scene;
     scene.sea.swell = {{.height_m = 1.0, .period_s = 9.0, .direction_deg = 60.0}};
-    scene.waves.cascades = {{300.0, 64 * factor}, {80.0, 64 * factor}, {20.0, 64 * factor}};
+    scene.waves.cascades = {{300.0, 70 * factor}, {80.0, 70 * factor}, {20.0, 70 * factor}};
     return scene;
 }
 
 TEST(DoubledResolution, KeepsEveryAmplitudeToTheBit) {
     const auto query = unfiltered(products(Product::Displacement));
-    const auto coarse = frame_of<float>(scene_with(1), {query}), fine = frame_of<float>(scene_with(2), {query});
+    const auto coarse = frame_of<float>(scene_with(1), {query}),
+               fine = frame_of<float>(scene_with(2), {query});
     for (int c = 0; c < 3; ++c) {
         const auto few = modes_of(coarse.sea(), c, 0.0), many = modes_of(fine.sea(), c, 0.0);
         std::map<std::pair<int, int>, std::size_t> index_of;
@@ -38,11 +39,12 @@ TEST(DoubledResolution, KeepsEveryAmplitudeToTheBit) {
 
 // The difference of the two surfaces of one tile, projected on the modes of the coarse one.
 TEST(DoubledResolution, ChangesNothingBelowTheOldBandLimit) {
-    constexpr int kNodes = 128;
+    constexpr int kNodes = 144;
     for (int c = 0; c < 3; ++c) {
         const double size_m = scene_with(1).waves.cascades[c].size_m;
         const auto query = tile(products(Product::Displacement), c, size_m, kNodes);
-        const auto coarse = frame_of<float>(scene_with(1), {query}, 1.5), fine = frame_of<float>(scene_with(2), {query}, 1.5);
+        const auto coarse = frame_of<float>(scene_with(1), {query}, 1.5),
+                   fine = frame_of<float>(scene_with(2), {query}, 1.5);
         const auto a = field_at_nodes(coarse, c, Field::Height), b = field_at_nodes(fine, c, Field::Height);
         const int radius = coarse.sea().cascades()[c].radius;
         // Row by row, then column by column: coefficient (mx, my) of b − a.
@@ -55,7 +57,8 @@ TEST(DoubledResolution, ChangesNothingBelowTheOldBandLimit) {
                         (b[i] - a[i]) * std::polar(1.0, -2.0 * kPi * mx * x / kNodes);
                 }
         double projected = 0.0, whole = 0.0;
-        for (std::size_t i = 0; i < a.size(); ++i) whole += (b[i] - a[i]) * (b[i] - a[i]) / (1.0 * kNodes * kNodes);
+        for (std::size_t i = 0; i < a.size(); ++i)
+            whole += (b[i] - a[i]) * (b[i] - a[i]) / (1.0 * kNodes * kNodes);
         for (int my = -radius; my <= radius; ++my)
             for (int mx = -radius; mx <= radius; ++mx) {
                 if (mx * mx + my * my > radius * radius) continue;
@@ -75,10 +78,10 @@ TEST(DoubledResolution, ChangesNothingBelowTheOldBandLimit) {
 
 // Through a footprint that both can show, the whole query: all cascades, all products, between nodes too.
 TEST(DoubledResolution, ChangesNothingThatAFootprintOfTheOldLimitShows) {
-    // The finest tile of 20 m has 31 modes: wavelengths down to 0.645 m, two samples of 0.3226 m. The rim of whole
-    // cells reaches half a diagonal less far.
-    const auto query = filtered(products(Product::Displacement, Product::Normal), 0.33);
-    const auto coarse = frame_of<float>(scene_with(1), {query}, 1.5), fine = frame_of<float>(scene_with(2), {query}, 1.5);
+    // The finest tile of 20 m has 34 modes: wavelengths down to 0.588 m, two samples of 0.294 m.
+    const auto query = filtered(products(Product::Displacement, Product::Normal), 0.3);
+    const auto coarse = frame_of<float>(scene_with(1), {query}, 1.5),
+               fine = frame_of<float>(scene_with(2), {query}, 1.5);
     const auto points = random_points<float>(200.0, 2000);
     const auto a = sample(coarse, 0, points), b = sample(fine, 0, points);
     const double hs = 4.0 * std::sqrt(coarse.realisation(0).m0);

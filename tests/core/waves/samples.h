@@ -1,5 +1,5 @@
-// What the tests of waves and of the query share: a sea in a few lines, its answers as arrays, its fields node by node,
-// and sums over its modes in double that know nothing of transforms or splines.
+// What the tests of waves and of the query share: a sea in a few lines, its answers as arrays, its fields
+// node by node, and sums over its modes in double that know nothing of transforms or splines.
 #pragma once
 
 #include <cmath>
@@ -19,6 +19,7 @@
 #include "core/evaluate/evaluate.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/plan.h"
+#include "core/scene/validate.h"
 #include "core/surface/patch.h"
 #include "core/waves/frame.h"
 
@@ -26,6 +27,7 @@ namespace pelagic::test {
 
 template <class T>
 Frame<T> frame_of(const Scene& scene, const Plan& plan, double t_s = 0.0) {
+    for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
     Frame<T> frame(std::make_shared<const Sea<T>>(scene, plan));
     frame.set(t_s);
     return frame;
@@ -86,7 +88,8 @@ struct Where {
 };
 
 template <class T>
-Samples<T> sample(const Frame<T>& frame, int query, const std::vector<glm::vec<2, T>>& rest, const Where<T>& where = {}) {
+Samples<T> sample(const Frame<T>& frame, int query, const std::vector<glm::vec<2, T>>& rest,
+                  const Where<T>& where = {}) {
     Samples<T> samples;
     Results<T> results;
     const ProductSet held = frame.sea().plan().queries.at(query).query.products;
@@ -102,7 +105,11 @@ Samples<T> sample(const Frame<T>& frame, int query, const std::vector<glm::vec<2
     want(Product::SlopeVariance, samples.slope_variance, results.slope_variance);
     want(Product::JacobianMoments, samples.jacobian, results.jacobian);
     want(Product::Coverage, samples.coverage, results.coverage);
-    Points<T> points{.origin_m = where.origin_m, .count = rest.size(), .rest_m = {rest.data()}, .cell_m = {}, .pixel_m = {}};
+    Points<T> points{.origin_m = where.origin_m,
+                     .count = rest.size(),
+                     .rest_m = {rest.data()},
+                     .cell_m = {},
+                     .pixel_m = {}};
     if (!where.cell_m.empty()) points.cell_m = {where.cell_m.data()};
     if (!where.pixel_m.empty()) points.pixel_m = {where.pixel_m.data()};
     evaluate(frame, query, points, results);
@@ -142,9 +149,11 @@ std::vector<Mode> modes_of(const Sea<T>& sea, int cascade, double t_s) {
         for (int i = 0; i < row_length(waves.radius, my); ++i, ++at) {
             const int mx = row_first(waves.radius, my) + i;
             const long double cycles = static_cast<long double>(waves.cycles_per_s[at]) * t_s;
-            const double phase = static_cast<double>(2.0L * std::numbers::pi_v<long double> * (cycles - std::floor(cycles)));
+            const double phase =
+                static_cast<double>(2.0L * std::numbers::pi_v<long double> * (cycles - std::floor(cycles)));
             const std::complex<double> turn = std::polar(1.0, phase);
-            modes.push_back({mx, my, 2.0 * kPi / waves.size_m * std::hypot(mx, my), 2.0 * kPi * waves.cycles_per_s[at],
+            modes.push_back({mx, my, 2.0 * kPi / waves.size_m * std::hypot(mx, my),
+                             2.0 * kPi * waves.cycles_per_s[at],
                              std::complex<double>(waves.forward[at]) * std::conj(turn) +
                                  std::complex<double>(waves.backward[at]) * turn});
         }
@@ -152,7 +161,8 @@ std::vector<Mode> modes_of(const Sea<T>& sea, int cascade, double t_s) {
 }
 
 // η at one point: the plain sum over every mode of one cascade, weighted as a footprint does.
-inline double direct_height(const std::vector<Mode>& modes, double size_m, glm::dvec2 x, double footprint_m = 0.0) {
+inline double direct_height(const std::vector<Mode>& modes, double size_m, glm::dvec2 x,
+                            double footprint_m = 0.0) {
     double sum = 0.0;
     for (const Mode& mode : modes) {
         const double phase = 2.0 * kPi * (mode.mx * x.x + mode.my * x.y) / size_m;
@@ -175,7 +185,8 @@ struct Estimate {
 inline Estimate estimate(const std::vector<double>& values) {
     const double n = static_cast<double>(values.size());
     const double mean = mean_of(values, [](double v) { return v; });
-    const double variance = mean_of(values, [&](double v) { return (v - mean) * (v - mean); }) * n / (n - 1.0);
+    const double variance =
+        mean_of(values, [&](double v) { return (v - mean) * (v - mean); }) * n / (n - 1.0);
     return {mean, std::sqrt(variance / n)};
 }
 

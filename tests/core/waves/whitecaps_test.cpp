@@ -38,8 +38,8 @@ TEST(WilsonHilferty, IsInvertibleRisingAndTheIdentityWithoutSkewness) {
     }
     // Across the switch to the identity, (z² − 1) skewness/6: 1e-4 × 8/6 at three deviations.
     EXPECT_NEAR(to_normal(3.0, 1.01e-4), to_normal(3.0, 0.99e-4), 2e-4);
-    // A Pearson III variable is a shifted gamma: skewness 2 is the exponential, P(x − 1 < z) = 1 − e^(−(z + 1)).
-    // Wilson and Hilferty are good to 0.01 there.
+    // A Pearson III variable is a shifted gamma: skewness 2 is the exponential, P(x − 1 < z) = 1 − e^(−(z +
+    // 1)). Wilson and Hilferty are good to 0.01 there.
     for (double z : {-0.5, 0.0, 1.0, 2.0})
         EXPECT_NEAR(0.5 * std::erfc(-to_normal(z, 2.0) / std::sqrt(2.0)), 1.0 - std::exp(-(z + 1.0)), 0.01);
 }
@@ -73,8 +73,8 @@ TEST(Coverage, OfTwoMomentsIsThePapers) {
                     0.5 * (1.0 + std::erf((epsilon - 0.95) / (std::sqrt(2.0) * 0.2))), 1e-15);
 }
 
-// The strain's covariance of a real sea, and a few shown derivatives: J's cumulants against as many draws of the
-// three Gaussians. 20 batches give the draws' own error; five of those.
+// The strain's covariance of a real sea, and a few shown derivatives: J's cumulants against as many draws of
+// the three Gaussians. 20 batches give the draws' own error; five of those.
 TEST(JacobianMoments, AreThoseOfAGaussianRemainder) {
     Scene scene;
     scene.sea.wind_speed_mps = 18.0;
@@ -83,13 +83,15 @@ TEST(JacobianMoments, AreThoseOfAGaussianRemainder) {
     const HiddenStrain<double> v{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy};
     // Cholesky factor of the covariance of (sxx, syy, sxy).
     const double a = std::sqrt(v.xxxx), b = v.xxyy / a, c = v.xxxy / a;
-    const double d = std::sqrt(v.yyyy - b * b), e = (v.xyyy - b * c) / d, f = std::sqrt(v.xxyy - c * c - e * e);
+    const double d = std::sqrt(v.yyyy - b * b), e = (v.xyyy - b * c) / d,
+                 f = std::sqrt(v.xxyy - c * c - e * e);
     ASSERT_GT(std::abs(v.xxxy), 1e-3 * v.xxxx);
 
     std::mt19937_64 generator(3);
     std::normal_distribution<double> normal;
     double two_moments_off = 0.0, three_moments_off = 0.0;
-    for (const std::array<double, 3>& shown : {std::array{0.0, 0.0, 0.0}, {-0.25, 0.1, 0.12}, {0.2, -0.3, -0.05}}) {
+    for (const std::array<double, 3>& shown :
+         {std::array{0.0, 0.0, 0.0}, {-0.25, 0.1, 0.12}, {0.2, -0.3, -0.05}}) {
         const auto [dxx, dyy, dxy] = shown;
         constexpr int kBatches = 20, kDraws = 50000;
         const JacobianMoments<double> theory = jacobian_moments(dxx, dyy, dxy, v);
@@ -118,7 +120,8 @@ TEST(JacobianMoments, AreThoseOfAGaussianRemainder) {
             for (double value : batches[n]) variance += (value - mean) * (value - mean) / (kBatches - 1);
             EXPECT_NEAR(mean, expected[n], 5.0 * std::sqrt(variance / kBatches)) << "cumulant " << n + 1;
             // The test sees something: the error is small against the cumulant itself, or its scale.
-            EXPECT_LT(5.0 * std::sqrt(variance / kBatches), 0.2 * std::max(std::abs(expected[n]), std::pow(sigma, n + 1)));
+            EXPECT_LT(5.0 * std::sqrt(variance / kBatches),
+                      0.2 * std::max(std::abs(expected[n]), std::pow(sigma, n + 1)));
         }
         two_moments_off += std::abs(std::log(coverage(theory, threshold, false) / foam));
         three_moments_off += std::abs(std::log(coverage(theory, threshold, true) / foam));
@@ -158,10 +161,12 @@ TEST(MomentSum, IsTheMixtureOfItsParts) {
             third += (part.third + 3.0 * d * part.variance + d * d * d) / 16.0;
         }
         const auto whole = sum.moments();
-        // Rounding of single precision relative to the parts' spread, some 1e-7 of it per operation, and of the mean.
+        // Rounding of single precision relative to the parts' spread, some 1e-7 of it per operation, and of
+        // the mean.
         EXPECT_NEAR(whole.mean, mean, 2e-7);
         EXPECT_NEAR(whole.variance / variance, 1.0, 1e-4);
-        EXPECT_NEAR(whole.third / std::pow(variance, 1.5), third / std::pow(variance, 1.5), 1e-4 / std::sqrt(scale));
+        EXPECT_NEAR(whole.third / std::pow(variance, 1.5), third / std::pow(variance, 1.5),
+                    1e-4 / std::sqrt(scale));
     }
     EXPECT_EQ(MomentSum<float>().moments().variance, 0.0f);
     MomentSum<float> constant;
@@ -174,8 +179,10 @@ TEST(CalibratedThreshold, GivesTheObservedCoverageOfTheWholeSea) {
     for (double wind : {6.0, 10.0, 14.0, 20.0}) {
         Scene scene;
         scene.sea.wind_speed_mps = wind;
-        const SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
-        const auto j = jacobian_moments(0.0, 0.0, 0.0, HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
+        const SpectralMoments m =
+            moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
+        const auto j =
+            jacobian_moments(0.0, 0.0, 0.0, HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
         const double w = coverage(j, calibrated_threshold(m, wind), true);
         EXPECT_NEAR(w / (2.95e-6 * std::pow(wind, 3.52)), 1.0, 1e-6);
     }

@@ -85,9 +85,7 @@ TEST_F(BakeResume, AChangedShotIsMadeAgain) {
 }
 
 TEST_F(BakeResume, AnAddedMapIsMadeForEveryFrame) {
-    std::string text = text_of({.frames = 8});
-    text.replace(text.find("\"whitecaps\"]"), 12, "\"whitecaps\", \"normal\"]");
-    write_file(folder() / "shot.toml", text);
+    write_shot({.frames = 8, .maps = "\"displacement\", \"whitecaps\", \"normal\""});
     EXPECT_EQ(bake().status, 0);
     EXPECT_TRUE(fs::exists(folder() / "out/maps/normal.0008.exr"));
     expect_as_new();

@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"KeyNotBuiltYet", "[surface]\ncell_px = 8.0\n", "2:1",
                 "surface.cell_px = 8: is not built yet", "a file without this key"},
         Refused{"NoToml", "[output\nmesh = \"none\"\n", "1:8", "", "TOML"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& one) { return one.param.name; });
 
 TEST(RefusedShots, AllProblemsOfAFileAreSaidAtOnce) {
     const TempFolder folder;

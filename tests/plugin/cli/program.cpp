@@ -126,7 +126,8 @@ TempFolder::~TempFolder() {
     fs::remove_all(path_, ignored);
 }
 
-Running::Running(const Launch& launch) : start_(std::chrono::steady_clock::now()) {
+Running::Running(const Launch& launch)
+    : out_is_captured_(launch.stdout_to.empty()), start_(std::chrono::steady_clock::now()) {
     std::vector<std::string> words{launch.program.string()};
     words.insert(words.end(), launch.arguments.begin(), launch.arguments.end());
     std::vector<char*> arguments;
@@ -191,7 +192,7 @@ Ended Running::wait() {
     reap(true);
     ended.killed = WIFSIGNALED(wait_status_);
     ended.status = ended.killed ? 128 + WTERMSIG(wait_status_) : WEXITSTATUS(wait_status_);
-    ended.out = read_all(out_);
+    if (out_is_captured_) ended.out = read_all(out_);
     if (terminal_ < 0) ended.err = read_all(err_);
     ended.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     return ended;

@@ -29,7 +29,7 @@ struct Launch {
     std::vector<std::string> arguments{};
     std::filesystem::path folder = "/";  // the working folder
     std::filesystem::path program = PELAGIC_PROGRAM;
-    std::filesystem::path stdout_to{};     // empty: captured
+    std::filesystem::path stdout_to{};   // empty: captured
     bool terminal = false;               // stderr is a terminal of 80 columns
     bool ignore_interrupt = false;       // begins with SIGINT ignored, as background jobs of a script do
     std::size_t most_address_space = 0;  // bytes; 0: unlimited
@@ -58,6 +58,7 @@ class Running {
   private:
     void reap(bool block);
 
+    bool out_is_captured_;
     pid_t process_ = -1;
     bool ended_ = false;
     int wait_status_ = 0;

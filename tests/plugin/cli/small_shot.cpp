@@ -8,8 +8,8 @@ std::string text_of(const SmallShot& shot) {
            "]\nseed = " + std::to_string(shot.seed) +
            "\n[waves]\ncascades = [ { size_m = 60.0, resolution = 32 } ]\n"
            "[surface]\nsize_m = 40\nresolution = " +
-           std::to_string(shot.quads) +
-           "\n[output]\nmaps = [\"displacement\", \"whitecaps\"]\nmap_resolution = 8\n" + shot.more_output;
+           std::to_string(shot.quads) + "\n[output]\nmesh = \"" + (shot.mesh ? "usda" : "none") +
+           "\"\nmaps = [" + shot.maps + "]\nmap_resolution = 8\n";
 }
 
 }  // namespace pelagic::test

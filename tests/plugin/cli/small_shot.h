@@ -9,8 +9,9 @@ struct SmallShot {
     std::string name = "small";
     int frames = 4;
     int seed = 1;
-    int quads = 8;            // a side
-    std::string more_output{};  // further keys of [output]
+    int quads = 8;  // a side
+    bool mesh = true;
+    std::string maps = "\"displacement\", \"whitecaps\"";
 };
 std::string text_of(const SmallShot& shot);
 

@@ -298,7 +298,7 @@ TEST(Shot, ImpossibleValues) {
 TEST(Shot, CascadesWithAGap) {
     expect_refused(
         "[waves]\ncascades = [ { size_m = 50, resolution = 64 }, { size_m = 400, resolution = 128 } ]\n",
-        "2:77: waves.cascades[1].resolution = 128: leaves a gap", "at least 130");
+        "2:77: waves.cascades[1].resolution = 128: leaves a gap", "at least 132");
 }
 
 TEST(Shot, WhatIsNotBuiltYetIsRefused) {

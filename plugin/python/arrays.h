@@ -1,0 +1,36 @@
+// numpy arrays as the query's strided views: the caller's memory, read and written where it lies.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <string>
+
+#include "core/base/strided.h"
+
+namespace pelagic::python {
+
+// What an array is for, for messages: `name` as the caller wrote it, `count` the number of points.
+struct Asked {
+    std::string name;
+    pybind11::ssize_t count = 0;
+};
+
+// Views of float32 arrays; points may lie any multiple of 4 bytes apart, also backwards. The components of
+// one point must be adjacent. The array must outlive the view. pybind11::type_error for anything but a
+// float32 array, pybind11::value_error for a wrong shape, components that aren't adjacent, an address that no
+// float may have, and, of those that are written to, read-only arrays and points that overlap.
+Strided<glm::vec3> writable_vectors(const pybind11::handle& object, const Asked& asked);
+Strided<float> writable_numbers(const pybind11::handle& object, const Asked& asked);
+Strided<const float> readable_numbers(const pybind11::handle& object, const Asked& asked);
+
+// The same for (n, 2), whose n is what counts.
+struct RestPoints {
+    Strided<const glm::vec2> view;
+    pybind11::ssize_t count = 0;
+};
+RestPoints readable_points(const pybind11::handle& object, const std::string& name);
+
+}  // namespace pelagic::python

@@ -1,0 +1,17 @@
+// The Python module's parts: each adds its own names to the module.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "core/scene/scene.h"
+
+namespace pelagic::python {
+
+void add_scene(pybind11::module_& module);
+void add_sea(pybind11::module_& module);
+void add_patch(pybind11::module_& module);
+
+// ShotError with a line for each of validate()'s problems.
+void require_valid(const Scene& scene);
+
+}  // namespace pelagic::python

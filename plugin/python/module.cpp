@@ -1,0 +1,41 @@
+// The Python module `pelagic`: thin, because the work is core's. Arrays are numpy's, exceptions Python's, and
+// long work lets other Python threads run.
+#include "core/plan/plan.h"
+#include "plugin/python/bindings.h"
+#include "plugin/shot/shot.h"
+
+namespace {
+
+namespace py = pybind11;
+
+// As `pelagic explain` prints it.
+std::string explain_bake(const pelagic::Scene& scene) {
+    pelagic::python::require_valid(scene);
+    return pelagic::explain(scene, pelagic::make_plan(scene));
+}
+
+}  // namespace
+
+PYBIND11_MODULE(pelagic, module) {
+    module.doc() =
+        "An open sea: a moving surface, and what the surface hides below its own resolution.\n\n"
+        "    scene = pelagic.Scene.from_file(\"shot.toml\")\n"
+        "    rest, quads = pelagic.patch(scene.surface.size_m, scene.surface.resolution)\n"
+        "    frame = pelagic.Frame(pelagic.Sea(scene))\n"
+        "    frame.set(1.5)\n"
+        "    position = frame.evaluate(rest, outputs=(\"position\",))[\"position\"]\n\n"
+        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north.";
+    module.attr("__version__") = PELAGIC_VERSION;
+    py::register_exception<pelagic::ShotError>(module, "ShotError", PyExc_ValueError).doc() =
+        "A shot that is refused: a line for each problem, FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: "
+        "WHAT IS.\n"
+        "Without the place for a scene that is not read from a file.";
+
+    pelagic::python::add_scene(module);
+    pelagic::python::add_sea(module);
+    pelagic::python::add_patch(module);
+    module.def(
+        "explain", &explain_bake, py::arg("scene"),
+        "What baking this scene computes, and why: each output, product, field, transform with its size, "
+        "bytes held.");
+}

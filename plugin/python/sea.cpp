@@ -1,0 +1,361 @@
+// pelagic.Sea and pelagic.Frame: one query over one scene, in single precision, on numpy arrays.
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/evaluate/evaluate.h"
+#include "core/plan/plan.h"
+#include "core/scene/limits.h"
+#include "core/scene/names.h"
+#include "core/waves/frame.h"
+#include "core/waves/sea.h"
+#include "plugin/python/arrays.h"
+#include "plugin/python/bindings.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+
+// What evaluate() can write, under the names that Python knows it by.
+struct ProductName {
+    Product product;
+    const char* name;
+    py::ssize_t components;
+};
+constexpr std::array<ProductName, kProductCount> kProductNames{{
+    {Product::Position, "position", 3},
+    {Product::Displacement, "displacement", 3},
+    {Product::Normal, "normal", 3},
+    {Product::Velocity, "velocity", 3},
+    {Product::SlopeVariance, "slope_variance", 3},
+    {Product::JacobianMoments, "jacobian", 3},
+    {Product::Coverage, "coverage", 1},
+}};
+
+const ProductName& product_of(const std::string& name) {
+    std::vector<std::string> names;
+    std::string accepted;
+    for (const ProductName& row : kProductNames) {
+        if (name == row.name) return row;
+        names.emplace_back(row.name);
+        accepted += (accepted.empty() ? "" : " ") + names.back();
+    }
+    const std::string near = nearest(name, names);
+    throw py::value_error("\"" + name + "\" is no product" +
+                          (near.empty() ? "" : ", the nearest is \"" + near + "\"") +
+                          "; accepted: " + accepted);
+}
+
+// ---- Sea
+// -------------------------------------------------------------------------------------------------------------
+
+using Ladder = std::variant<double, std::vector<double>>;
+
+struct SeaRequest {
+    std::vector<std::string> products;
+    std::optional<Ladder> cell_m, pixel_m;
+    std::optional<std::array<double, 2>> lattice;
+};
+
+std::vector<double> rungs(const std::optional<Ladder>& ladder, const Surface& surface) {
+    if (!ladder) return {surface.size_m / surface.resolution};
+    if (const double* one = std::get_if<double>(&*ladder)) return {*one};
+    return std::get<std::vector<double>>(*ladder);
+}
+
+using SharedSea = std::shared_ptr<const Sea<float>>;
+
+// What Python holds: a Sea is immutable, and frames keep it alive.
+struct PythonSea {
+    SharedSea sea;
+    const Plan& plan() const { return sea->plan(); }
+};
+
+PythonSea build_sea(const Scene& scene, const SeaRequest& request) {
+    require_valid(scene);
+    Query query;
+    query.name = "python";
+    for (const std::string& name : request.products) query.products.set(index(product_of(name).product));
+    query.cell_m = rungs(request.cell_m, scene.surface);
+    query.pixel_m = rungs(request.pixel_m, scene.surface);
+    if (request.lattice) {
+        const auto [first_m, spacing_m] = *request.lattice;
+        if (!std::isfinite(first_m) || !(spacing_m > 0.0) || !std::isfinite(spacing_m))
+            throw py::value_error("lattice: accepted: (first_m, spacing_m), finite, spacing_m > 0");
+        query.lattice = Lattice{first_m, spacing_m};
+    }
+    const Scene kept = scene;  // other threads may change the caller's meanwhile
+    const py::gil_scoped_release others_may_run;
+    Plan plan = make_plan(kept, {query});
+    plan.knobs.double_precision = false;  // whatever the level: arrays are float32
+    return {std::make_shared<const Sea<float>>(kept, plan)};
+}
+
+// ---- Frame
+// -----------------------------------------------------------------------------------------------------------
+
+// A point further out is a mistake: the finest waves need their phase, and indices their range.
+constexpr Range kRest_m = limits::kCameraCoordinate_m;
+
+struct Arguments {
+    py::object cell_m, pixel_m;
+    std::array<py::object, kProductCount> arrays;  // in the order of kProductNames
+    std::optional<std::vector<std::string>> outputs;
+};
+
+struct Footprints {
+    float number = 0.0f;
+    Strided<const float> view{};
+};
+
+// None, a number for all points, or an array of each point's own.
+void read_footprints(Footprints& footprints, const py::object& object, const Asked& asked) {
+    if (object.is_none()) return;
+    py::ssize_t numbers = 1;
+    if (!py::isinstance<py::array>(object) && PyNumber_Check(object.ptr()) != 0) {
+        footprints.number = static_cast<float>(py::float_(object));
+        footprints.view = {&footprints.number, 0};
+    } else {
+        footprints.view = readable_numbers(object, asked);
+        numbers = asked.count;
+    }
+    for (py::ssize_t i = 0; i < numbers; ++i)
+        if (!(footprints.view[static_cast<std::size_t>(i)] >= 0.0f))
+            throw py::value_error(asked.name + ": accepted: numbers from 0 up");
+}
+
+class PythonFrame {
+  public:
+    explicit PythonFrame(const PythonSea& sea) : sea_(sea.sea), frame_(sea.sea) {}
+
+    void set(double t_s) {
+        const py::gil_scoped_release others_may_run;
+        const std::unique_lock writing(mutex_);
+        frame_.set(t_s);
+        is_set_ = true;
+    }
+
+    py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given) const {
+        const auto [rest_view, count] = readable_points(rest, "rest");
+        Points<float> points{.origin_m = {origin_m[0], origin_m[1]},
+                             .count = static_cast<std::size_t>(count),
+                             .rest_m = rest_view};
+        if (!std::isfinite(origin_m[0]) || !std::isfinite(origin_m[1]))
+            throw py::value_error("origin: accepted: (x, y), finite [m]");
+        Footprints cell, pixel;
+        read_footprints(cell, given.cell_m, {"cell_m", count});
+        read_footprints(pixel, given.pixel_m, {"pixel_m", count});
+        points.cell_m = cell.view;
+        points.pixel_m = pixel.view;
+
+        const auto arrays = with_fresh(given, count);
+        const auto vectors = [&, n = count](Product product) {
+            const py::object& array = arrays[index(product)];
+            return array.is_none() ? Strided<glm::vec3>{}
+                                   : writable_vectors(array, {kProductNames[index(product)].name, n});
+        };
+        Results<float> results;
+        results.position = vectors(Product::Position);
+        results.displacement = vectors(Product::Displacement);
+        results.normal = vectors(Product::Normal);
+        results.velocity = vectors(Product::Velocity);
+        results.slope_variance = vectors(Product::SlopeVariance);
+        results.jacobian = vectors(Product::JacobianMoments);
+        if (const py::object& array = arrays[index(Product::Coverage)]; !array.is_none())
+            results.coverage = writable_numbers(array, {"coverage", count});
+        run(points, results);
+
+        py::dict written;
+        for (const ProductName& row : kProductNames)
+            if (const py::object& array = arrays[index(row.product)]; !array.is_none())
+                written[row.name] = array;
+        return written;
+    }
+
+    PythonSea sea() const { return {sea_}; }
+    double time_s() const { return frame_.time_s(); }
+    long executed_transforms() const { return frame_.executed_transforms(); }
+
+  private:
+    // The caller's arrays, and new ones for the outputs that he names, or, if he does neither, for all
+    // products.
+    std::array<py::object, kProductCount> with_fresh(const Arguments& given, py::ssize_t count) const {
+        auto arrays = given.arrays;
+        ProductSet wanted;
+        bool none_given = true;
+        for (const py::object& array : arrays) none_given = none_given && array.is_none();
+        if (given.outputs)
+            for (const std::string& name : *given.outputs) wanted.set(index(product_of(name).product));
+        else if (none_given)
+            wanted = sea_->plan().queries.front().query.products;
+        const ProductSet& held = sea_->plan().queries.front().query.products;
+        for (const ProductName& row : kProductNames) {
+            const bool asked = wanted[index(row.product)] || !arrays[index(row.product)].is_none();
+            if (asked && !held[index(row.product)])
+                throw py::value_error(std::string(row.name) +
+                                      ": the sea was built without it; accepted: what its products name");
+        }
+        for (const ProductName& row : kProductNames) {
+            py::object& array = arrays[index(row.product)];
+            if (!wanted[index(row.product)] || !array.is_none()) continue;
+            array =
+                row.components == 1 ? py::array_t<float>(count) : py::array_t<float>({count, row.components});
+        }
+        return arrays;
+    }
+
+    void run(const Points<float>& points, const Results<float>& results) const {
+        const py::gil_scoped_release others_may_run;
+        for (std::size_t i = 0; i < points.count; ++i) {
+            const glm::vec2 rest = points.rest_m[i];
+            if (!kRest_m.holds(rest.x) || !kRest_m.holds(rest.y))
+                throw std::invalid_argument("rest: point " + std::to_string(i) +
+                                            " is no place on the sea; accepted: " + text_of(kRest_m) + " m");
+        }
+        const std::shared_lock reading(mutex_);
+        if (!is_set_) throw std::invalid_argument("the frame has no time yet: call set(t) first");
+        pelagic::evaluate(frame_, 0, points, results);
+    }
+
+    SharedSea sea_;
+    Frame<float> frame_;
+    bool is_set_ = false;
+    mutable std::shared_mutex mutex_;
+};
+
+constexpr const char* kSeaDoc =
+    "A sea, built once from a scene, for one kind of question: immutable, shared by threads and frames. "
+    "Single "
+    "precision.\n\n"
+    "scene: a valid Scene (ShotError otherwise); later changes to it don't matter here.\n"
+    "products: what evaluate() may be asked for, and so what each frame computes: position, displacement, "
+    "normal, "
+    "velocity, slope_variance, jacobian, coverage.\n"
+    "cell_m, pixel_m: footprints [m], of positions and velocities and of everything that comes from "
+    "derivatives: "
+    "waves too short for them are left out, and counted in slope_variance and coverage. A number for all "
+    "points, or "
+    "a rising ladder between whose rungs each point's own footprint is blended; 0 filters nothing. Default: "
+    "the "
+    "spacing of the scene's patch.\n"
+    "lattice: (first_m, spacing_m) where all points are known to lie at first + i·spacing in x and in y, "
+    "seen from "
+    "the world's origin: sampling may then be free of error. Only with points that do.";
+
+constexpr const char* kEvaluateDoc =
+    "The sea at points, into the caller's arrays: a dict of what was written.\n\n"
+    "rest: float32 (n, 2), the points at rest [m], relative to origin.\n"
+    "origin: (x, y) [m], in double precision: a sea a million metres away loses nothing.\n"
+    "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's ladder; default its "
+    "first.\n"
+    "position: (n, 3) [m], relative to origin, z up.\n"
+    "displacement: (n, 3) [m], position less rest.\n"
+    "normal: (n, 3), unit; its z is negative where the surface has folded over.\n"
+    "velocity: (n, 3) [m/s], of the water that rests at the point.\n"
+    "slope_variance: (n, 3), xx, yy, xy of the slopes that the pixel footprint hides.\n"
+    "jacobian: (n, 3), mean, variance and third cumulant of J in the pixel footprint.\n"
+    "coverage: (n,), whitecaps, 0 … 1.\n"
+    "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
+    "sea's "
+    "products.\n\n"
+    "Arrays are float32. Points may lie any multiple of 4 bytes apart, the components of one are adjacent; "
+    "nothing "
+    "between them is touched. Outputs must not overlap. Any thread may call; others run meanwhile.";
+
+// An output's array by its name, None where it isn't wanted.
+py::object none() {
+    return py::none();
+}
+
+void add_frame(py::module_& module) {
+    py::class_<PythonFrame>(
+        module, "Frame",
+        "The state of a sea at one time. Its buffers are made once and reused: who needs two "
+        "times at once makes two frames.")
+        .def(py::init<const PythonSea&>(), py::arg("sea"))
+        .def(
+            "set", &PythonFrame::set, py::arg("t"),
+            "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile.")
+        .def(
+            "evaluate",
+            [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
+               const py::object& cell_m, const py::object& pixel_m, const py::object& position,
+               const py::object& displacement, const py::object& normal, const py::object& velocity,
+               const py::object& slope_variance, const py::object& jacobian, const py::object& coverage,
+               const std::optional<std::vector<std::string>>& outputs) {
+                return self.evaluate(
+                    rest, origin,
+                    {cell_m,
+                     pixel_m,
+                     {position, displacement, normal, velocity, slope_variance, jacobian, coverage},
+                     outputs});
+            },
+            py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(),
+            py::arg("cell_m") = none(), py::arg("pixel_m") = none(), py::arg("position") = none(),
+            py::arg("displacement") = none(), py::arg("normal") = none(), py::arg("velocity") = none(),
+            py::arg("slope_variance") = none(), py::arg("jacobian") = none(), py::arg("coverage") = none(),
+            py::arg("outputs") = none(), kEvaluateDoc)
+        .def_property_readonly("sea", &PythonFrame::sea)
+        .def_property_readonly("time_s", &PythonFrame::time_s, "The time that was set [s].")
+        .def_property_readonly("executed_transforms", &PythonFrame::executed_transforms,
+                               "Transforms run since the frame was made: calls of set() times the sea's "
+                               "transforms_per_frame.");
+}
+
+}  // namespace
+
+void add_sea(py::module_& module) {
+    py::class_<PythonSea>(module, "Sea", kSeaDoc)
+        .def(py::init([](const Scene& scene, std::vector<std::string> products, std::optional<Ladder> cell_m,
+                         std::optional<Ladder> pixel_m, std::optional<std::array<double, 2>> lattice) {
+                 return build_sea(scene,
+                                  {std::move(products), std::move(cell_m), std::move(pixel_m), lattice});
+             }),
+             py::arg("scene"),
+             py::arg("products") =
+                 py::make_tuple("position", "normal", "velocity", "slope_variance", "coverage"),
+             py::kw_only(), py::arg("cell_m") = none(), py::arg("pixel_m") = none(),
+             py::arg("lattice") = none())
+        .def_property_readonly(
+            "significant_height_m",
+            [](const PythonSea& self) { return self.sea->total().significant_height_m(); },
+            "4 times the root of the variance of the whole spectrum [m].")
+        .def_property_readonly(
+            "mss", [](const PythonSea& self) { return self.sea->total().mss(); },
+            "Mean square slope of the whole spectrum, capillary tail included.")
+        .def_property_readonly(
+            "whitecap_threshold", [](const PythonSea& self) { return self.sea->whitecap_threshold(); },
+            "The Jacobian below which there is foam; -inf: there never is.")
+        .def_property_readonly(
+            "products",
+            [](const PythonSea& self) {
+                py::list names;
+                for (const ProductName& row : kProductNames)
+                    if (self.plan().queries.front().query.products[index(row.product)])
+                        names.append(row.name);
+                return py::tuple(names);
+            },
+            "What evaluate() may be asked for.")
+        .def_property_readonly(
+            "transforms_per_frame", [](const PythonSea& self) { return self.plan().transforms_per_frame(); },
+            "Fourier transforms that each Frame.set() runs.")
+        .def_property_readonly(
+            "bytes", [](const PythonSea& self) { return self.plan().sea_bytes(); },
+            "Memory that the sea holds, once for all its frames [bytes].")
+        .def_property_readonly(
+            "frame_bytes", [](const PythonSea& self) { return self.plan().frame_bytes(); },
+            "Memory that each of its frames holds [bytes].");
+    add_frame(module);
+}
+
+}  // namespace pelagic::python

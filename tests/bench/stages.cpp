@@ -1,0 +1,134 @@
+// Where a frame's time goes: each stage in ms and as a ratio to the same number of bare FFTW transforms run
+// beside it.
+//   stages [RESOLUTION…]      default 512 1024
+
+#include <fftw3.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "core/base/constants.h"
+#include "core/evaluate/evaluate.h"
+#include "core/surface/patch.h"
+#include "plugin/exr/exr.h"
+#include "plugin/usd/layers.h"
+#include "plugin/usd/text.h"
+#include "tests/bench/timing.h"
+
+namespace pelagic::bench {
+namespace {
+
+struct Results4 {
+    std::vector<glm::vec3> position, normal, velocity, variance;
+    std::vector<float> coverage;
+
+    explicit Results4(std::size_t n) : position(n), normal(n), velocity(n), variance(n), coverage(n) {}
+    Results<float> views() {
+        return {.position = {position.data()},
+                .displacement = {},
+                .normal = {normal.data()},
+                .velocity = {velocity.data()},
+                .slope_variance = {variance.data()},
+                .jacobian = {},
+                .coverage = {coverage.data()}};
+    }
+};
+
+// That many single-precision complex transforms, one thread each, side by side: nothing but FFTW.
+class BareTransforms {
+  public:
+    BareTransforms(int n, int count) {
+        for (int i = 0; i < count; ++i)
+            buffers_.push_back(fftwf_alloc_complex(static_cast<std::size_t>(n) * n));
+        plan_ = fftwf_plan_dft_2d(n, n, buffers_[0], buffers_[0], FFTW_BACKWARD, FFTW_ESTIMATE);
+        for (fftwf_complex* buffer : buffers_)
+            for (std::size_t i = 0; i < static_cast<std::size_t>(n) * n; ++i)
+                buffer[i][0] = buffer[i][1] = 0.0f;
+    }
+    ~BareTransforms() {
+        fftwf_destroy_plan(plan_);
+        for (fftwf_complex* buffer : buffers_) fftwf_free(buffer);
+    }
+    void run() const {
+        tbb::parallel_for(std::size_t(0), buffers_.size(),
+                          [&](std::size_t i) { fftwf_execute_dft(plan_, buffers_[i], buffers_[i]); });
+    }
+
+  private:
+    std::vector<fftwf_complex*> buffers_;
+    fftwf_plan plan_;
+};
+
+void table(int n) {
+    Scene scene;
+    scene.surface = {.size_m = 400.0, .resolution = n};
+    scene.waves.cascades = {{.size_m = 400.0, .resolution = n}};
+    const auto make_frame = [&](std::vector<Query> queries) {
+        // The plain cost of a whole cascade: nothing filtered away.
+        for (Query& query : queries) query.cell_m = query.pixel_m = {0.0};
+        return Frame<float>(std::make_shared<const Sea<float>>(scene, make_plan(scene, queries)));
+    };
+    std::vector<Query> on_nodes = bake_queries(scene), between = on_nodes;
+    between[0].lattice.reset();
+    Frame<float> node_frame = make_frame(on_nodes), spline_frame = make_frame(between);
+    const auto points = rest_points<float>({.per_side = n + 1, .spacing_m = 400.0 / n, .first_m = -200.0});
+    const Points<float> rest{.count = points.size(), .rest_m = {points.data()}};
+    Results4 out(points.size());
+    const int node_transforms = node_frame.sea().plan().transforms_per_frame();
+    const int spline_n = spline_frame.sea().plan().cascades[0].grids[0].resolution;
+    const BareTransforms bare(n, node_transforms), bare_spline(spline_n, node_transforms);
+
+    double t = 0.0;
+    const auto text = [&] {
+        usd::write_frame_text({.points = out.position,
+                               .normals = out.normal,
+                               .velocities = out.velocity,
+                               .slope_variance = out.variance,
+                               .whitecap_coverage = out.coverage},
+                              [](std::string_view) {});
+    };
+    const auto exr_map = [&] {
+        exr::Image image{.width = n, .height = n, .channels = {}};
+        for (int c = 0; c < 3; ++c)
+            image.channels.push_back(
+                {.name = std::string(1, "BGR"[c]),
+                 .data = &out.position.data()->x + c,
+                 .pixel_stride_bytes = sizeof(glm::vec3),
+                 .row_stride_bytes = static_cast<std::ptrdiff_t>(sizeof(glm::vec3)) * (n + 1)});
+        exr::encode_scanline({}, image);
+    };
+    std::vector<Timed> stages{
+        {"bare FFTW, " + std::to_string(node_transforms) + " transforms of " + std::to_string(n) + "^2",
+         [&] { bare.run(); }},
+        {"set: spectrum and transforms", [&] { node_frame.set(t += 0.04); }},
+        {"evaluate every vertex at its node", [&] { evaluate(node_frame, 0, rest, out.views()); }},
+        {"bare FFTW, the same of " + std::to_string(spline_n) + "^2", [&] { bare_spline.run(); }},
+        {"set, oversampled for the spline", [&] { spline_frame.set(t += 0.04); }},
+        {"evaluate every vertex by spline", [&] { evaluate(spline_frame, 0, rest, out.views()); }},
+        {"USD text of the mesh, one thread", text},
+        {"OpenEXR of the displacement, one thread", exr_map},
+    };
+    interleave(stages, 7);
+    std::printf("\n%d^2, every attribute, %zu vertices\n  %-46s %9s  %s\n", n, points.size(), "stage", "ms",
+                "ratio to bare FFTW");
+    for (const Timed& stage : stages)
+        std::printf("  %-46s %9.2f  %.2f\n", stage.name.c_str(), stage.median(),
+                    stage.median() / stages[0].median());
+}
+
+}  // namespace
+}  // namespace pelagic::bench
+
+int main(int argc, char** argv) {
+    std::vector<int> resolutions;
+    for (int i = 1; i < argc; ++i) resolutions.push_back(std::atoi(argv[i]));
+    if (resolutions.empty()) resolutions = {512, 1024};
+    std::printf(
+        "Stages of one frame, %d threads, medians of 7 interleaved repeats\n",
+        static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    for (const int n : resolutions) pelagic::bench::table(n);
+    std::printf("\npeak memory of this process: %.0f MiB\n", pelagic::bench::peak_mib());
+}

@@ -1,0 +1,46 @@
+// Medians of interleaved repeats: A B C A B C …, so that a machine whose speed drifts slows all alike and
+// ratios hold.
+#pragma once
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pelagic::bench {
+
+struct Timed {
+    std::string name;
+    std::function<void()> work;
+    std::vector<double> ms{};
+
+    double median() const {
+        std::vector<double> sorted = ms;
+        std::sort(sorted.begin(), sorted.end());
+        return sorted[sorted.size() / 2];
+    }
+};
+
+// Runs each once to warm up, then all in turn, `repeats` times.
+inline void interleave(std::vector<Timed>& timed, int repeats) {
+    for (int i = -1; i < repeats; ++i)
+        for (Timed& t : timed) {
+            const auto start = std::chrono::steady_clock::now();
+            t.work();
+            const std::chrono::duration<double, std::milli> elapsed =
+                std::chrono::steady_clock::now() - start;
+            if (i >= 0) t.ms.push_back(elapsed.count());
+        }
+}
+
+// Largest resident memory of this process, or of the children that it has waited for, so far [MiB].
+inline double peak_mib(int who = RUSAGE_SELF) {
+    rusage usage{};
+    getrusage(who, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+}  // namespace pelagic::bench

@@ -1,0 +1,75 @@
+// Whitecaps over a square kilometre: as much foam on a coarse mesh as on a fine one, and as much as is
+// observed.
+#include <gtest/gtest.h>
+
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+double mean_coverage(double wind_mps, int quads) {
+    Scene scene;
+    scene.sea.wind_speed_mps = wind_mps;
+    scene.surface.size_m = 1000.0;
+    scene.surface.resolution = quads;
+    scene.output.attributes = {MeshAttribute::Whitecaps};
+    const auto points =
+        rest_points<float>({.per_side = quads, .spacing_m = 1000.0 / quads, .first_m = -500.0});
+    return mean_of(sample(frame_of<float>(scene, make_plan(scene), 3.0), 0, points).coverage,
+                   [](float w) { return w; });
+}
+
+TEST(WhitecapCoverage, DoesNotDependOnTheGrid) {
+    for (double wind : {8.0, 10.0, 14.0, 20.0}) {
+        const double coarse = mean_coverage(wind, 64);
+        for (int quads : {256, 1024}) {
+            const double fine = mean_coverage(wind, quads);
+            EXPECT_NEAR(fine / coarse, 1.0, 0.1) << "wind " << wind << ", " << quads << " quads";
+        }
+    }
+}
+
+// Monahan and O'Muircheartaigh 1980, W = 2.95e-6 U^3.52, within a factor of 2.
+TEST(WhitecapCoverage, IsTheObservedOne) {
+    for (double wind : {6.0, 8.0, 10.0, 12.0, 14.0, 17.0, 20.0}) {
+        const double observed = 2.95e-6 * std::pow(wind, 3.52), baked = mean_coverage(wind, 256);
+        EXPECT_GT(baked, 0.5 * observed) << wind;
+        EXPECT_LT(baked, 2.0 * observed) << wind;
+    }
+}
+
+TEST(WhitecapCoverage, OfOtherSpectraIsTheObservedOneToo) {
+    for (SpectrumKind kind :
+         {SpectrumKind::PiersonMoskowitz, SpectrumKind::Elfouhaily, SpectrumKind::Omega2}) {
+        Scene scene;
+        scene.sea.spectrum = kind;
+        scene.sea.wind_speed_mps = 12.0;
+        const auto frame = frame_of<float>(scene, {filtered(products(Product::Coverage), 2.0)});
+        const double baked =
+            mean_of(sample(frame, 0, tile_points<float>(1000.0, 300)).coverage, [](float w) { return w; });
+        const double observed = 2.95e-6 * std::pow(12.0, 3.52);
+        EXPECT_GT(baked, 0.5 * observed);
+        EXPECT_LT(baked, 2.0 * observed);
+    }
+}
+
+// Foam lies where the surface is pressed together.
+TEST(WhitecapCoverage, FallsWithTheJacobian) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 15.0;
+    const auto frame =
+        frame_of<float>(scene, {filtered(products(Product::Coverage, Product::JacobianMoments), 0.5)});
+    const auto samples = sample(frame, 0, random_points<float>(500.0, 20000));
+    double weighted = 0.0, coverage = 0.0;
+    for (std::size_t i = 0; i < samples.coverage.size(); ++i) {
+        weighted += double(samples.coverage[i]) * samples.jacobian[i].x;
+        coverage += samples.coverage[i];
+    }
+    ASSERT_GT(coverage, 0.0);
+    EXPECT_LT(weighted / coverage, mean_of(samples.jacobian, [](auto j) { return j.x; }) - 0.1);
+}
+
+}  // namespace
+}  // namespace pelagic

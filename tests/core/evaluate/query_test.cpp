@@ -1,0 +1,169 @@
+// The query's contract: strides, refusals, footprints per point.
+#include <gtest/gtest.h>
+
+#include "core/spectrum/directional_spectrum.h"
+#include "core/spectrum/spectral_moments.h"
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+Scene small_sea() {
+    Scene scene;
+    scene.waves.cascades = {{200.0, 96}, {50.0, 96}};
+    return scene;
+}
+ProductSet all_products() {
+    return ProductSet().set();
+}
+
+TEST(Query, WritesWhereTheCallerWantsItAndNowhereElse) {
+    const auto frame = frame_of<float>(small_sea(), {filtered(all_products(), 1.0)}, 1.0);
+    const auto points = random_points<float>(100.0, 300);
+    const auto packed = sample(frame, 0, points);
+    // Interleaved as a host's vertices may be, with sentinels between.
+    struct Vertex {
+        glm::vec3 position;
+        float before = -7.0f;
+        glm::vec3 normal;
+        float coverage;
+        float after = -7.0f;
+    };
+    std::vector<Vertex> vertices(points.size());
+    Results<float> results;
+    results.position = {&vertices[0].position, sizeof(Vertex)};
+    results.normal = {&vertices[0].normal, sizeof(Vertex)};
+    results.coverage = {&vertices[0].coverage, sizeof(Vertex)};
+    evaluate(frame, 0,
+             {.origin_m = {}, .count = points.size(), .rest_m = {points.data()}, .cell_m = {}, .pixel_m = {}},
+             results);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(vertices[i].position, packed.position[i]);
+        EXPECT_EQ(vertices[i].normal, packed.normal[i]);
+        EXPECT_EQ(vertices[i].coverage, packed.coverage[i]);
+        EXPECT_EQ(vertices[i].before, -7.0f);
+        EXPECT_EQ(vertices[i].after, -7.0f);
+        EXPECT_EQ(packed.position[i], packed.displacement[i] + glm::vec3(points[i], 0.0f));
+    }
+}
+
+TEST(Query, RefusesWhatItDoesNotHold) {
+    const auto frame = frame_of<float>(small_sea(), {unfiltered(products(Product::Displacement))});
+    const auto points = random_points<float>(100.0, 3);
+    std::vector<glm::vec3> vectors(3);
+    std::vector<float> numbers(3);
+    const Points<float> at{
+        .origin_m = {}, .count = 3, .rest_m = {points.data()}, .cell_m = {}, .pixel_m = {}};
+    const auto refused = [&](auto member, auto view) {
+        Results<float> results;
+        results.*member = view;
+        EXPECT_THROW(evaluate(frame, 0, at, results), std::invalid_argument);
+    };
+    const Strided<glm::vec3> vector_view{vectors.data()};
+    refused(&Results<float>::position, vector_view);
+    refused(&Results<float>::normal, vector_view);
+    refused(&Results<float>::velocity, vector_view);
+    refused(&Results<float>::slope_variance, vector_view);
+    refused(&Results<float>::jacobian, vector_view);
+    refused(&Results<float>::coverage, Strided<float>{numbers.data()});
+    EXPECT_THROW(evaluate(frame, 1, at, {}), std::exception);
+    EXPECT_THROW(evaluate(frame, -1, at, {}), std::exception);
+    EXPECT_NO_THROW(evaluate(frame, 0, at, {}));
+    EXPECT_NO_THROW(evaluate(frame, 0, {}, {}));
+}
+
+// A point's answer depends on the point alone: alone or among others.
+TEST(Query, AnswersEachPointByItself) {
+    const auto frame = frame_of<float>(small_sea(), {filtered(all_products(), 1.0)}, 1.0);
+    const auto points = random_points<float>(100.0, 2000);
+    const auto together = sample(frame, 0, points);
+    for (std::size_t i = 0; i < points.size(); i += 191) {
+        const auto alone = sample(frame, 0, {points[i]});
+        EXPECT_EQ(alone.position[0], together.position[i]);
+        EXPECT_EQ(alone.normal[0], together.normal[i]);
+        EXPECT_EQ(alone.coverage[0], together.coverage[i]);
+    }
+}
+
+Query ladder(ProductSet wanted) {
+    Query query = unfiltered(wanted);
+    query.cell_m = query.pixel_m = {0.5, 1.0, 2.0, 4.0};
+    return query;
+}
+
+// On a rung the ladder is the uniform query of that footprint, to rounding; outside it holds its ends.
+TEST(Ladder, IsTheUniformQueryOnItsRungs) {
+    std::vector<Query> queries{ladder(all_products())};
+    for (double rung : {0.5, 1.0, 2.0, 4.0}) queries.push_back(filtered(all_products(), rung));
+    const auto frame = frame_of<float>(small_sea(), queries, 1.0);
+    const auto points = random_points<float>(100.0, 200);
+    const auto at = [&](float footprint) {
+        const std::vector<float> same(points.size(), footprint);
+        return sample(frame, 0, points, {.origin_m = {}, .cell_m = same, .pixel_m = same});
+    };
+    const struct {
+        float footprint;
+        int query;
+    } cases[] = {{0.5f, 1}, {1.0f, 2}, {2.0f, 3}, {4.0f, 4}, {0.01f, 1}, {100.0f, 4}};
+    for (const auto& c : cases) {
+        const auto blended = at(c.footprint), uniform = sample(frame, c.query, points);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_NEAR(blended.displacement[i][axis], uniform.displacement[i][axis], 1e-5)
+                    << c.footprint;
+                EXPECT_NEAR(blended.normal[i][axis], uniform.normal[i][axis], 1e-5) << c.footprint;
+                EXPECT_NEAR(blended.slope_variance[i][axis], uniform.slope_variance[i][axis], 1e-7)
+                    << c.footprint;
+                EXPECT_NEAR(blended.jacobian[i][axis], uniform.jacobian[i][axis], 1e-5) << c.footprint;
+            }
+            EXPECT_NEAR(blended.coverage[i], uniform.coverage[i], 1e-4) << c.footprint;
+        }
+    }
+    // Across a rung: no step. The blend's slope is bounded by the rungs' own difference, some 0.5 per
+    // footprint.
+    for (float rung : {1.0f, 2.0f}) {
+        const auto below = at(rung * (1.0f - 1e-5f)), above = at(rung * (1.0f + 1e-5f));
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            EXPECT_NEAR(below.displacement[i].z, above.displacement[i].z, 1e-4);
+            EXPECT_NEAR(below.normal[i].x, above.normal[i].x, 1e-4);
+            EXPECT_NEAR(below.slope_variance[i].x, above.slope_variance[i].x, 1e-6);
+        }
+    }
+}
+
+// Between rungs too resolved + residual is the spectrum's: the residual is that of the blended weights. The
+// statistics of one point's footprint, many points, eight seeds.
+TEST(Ladder, ConservesSlopeVarianceBetweenItsRungs) {
+    for (float footprint : {0.7f, 1.4f, 3.1f}) {
+        double sum_xx = 0.0, sum_yy = 0.0, sum_xy = 0.0;
+        SpectralMoments spectrum;
+        for (int seed = 1; seed <= 8; ++seed) {
+            Scene scene = small_sea();
+            scene.shot.seed = seed;
+            scene.sea.wind_direction_deg = 30.0;
+            scene.waves.choppiness = 0.0;
+            const auto frame =
+                frame_of<float>(scene, {ladder(products(Product::Normal, Product::SlopeVariance))});
+            const auto points = tile_points<float>(200.0, 150);
+            const std::vector<float> same(points.size(), footprint);
+            const auto samples = sample(frame, 0, points, {.origin_m = {}, .cell_m = same, .pixel_m = same});
+            const auto moment = [&](int a, int b) {
+                return mean_of(samples.normal,
+                               [&](auto n) { return double(n[a] / n.z) * double(n[b] / n.z); });
+            };
+            sum_xx += (moment(0, 0) + samples.slope_variance[0].x) / 8.0;
+            sum_yy += (moment(1, 1) + samples.slope_variance[0].y) / 8.0;
+            sum_xy += (moment(0, 1) + samples.slope_variance[0].z) / 8.0;
+            spectrum = moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
+        }
+        EXPECT_NEAR((sum_xx + sum_yy) / spectrum.mss(), 1.0, 0.03) << footprint;
+        EXPECT_NEAR(sum_xx / spectrum.xx, 1.0, 0.05) << footprint;
+        EXPECT_NEAR(sum_yy / spectrum.yy, 1.0, 0.05) << footprint;
+        EXPECT_NEAR(sum_xy, spectrum.xy, 0.03 * spectrum.mss()) << footprint;
+    }
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,190 @@
+// The closure: what is asked for is there, and nothing else.
+#include "core/plan/plan.h"
+
+#include <gtest/gtest.h>
+
+#include "core/plan/tables.h"
+
+namespace pelagic {
+namespace {
+
+FieldSet fields_of_plan(const Plan& plan) {
+    FieldSet all;
+    for (const CascadePlan& cascade : plan.cascades)
+        for (const Grid& grid : cascade.grids) all |= grid.fields;
+    return all;
+}
+
+Scene scene_with(std::vector<MeshAttribute> attributes) {
+    Scene scene;
+    scene.surface.resolution = 64;
+    scene.output.attributes = std::move(attributes);
+    return scene;
+}
+
+const FieldSet kPositions = fields(Field::Height, Field::Dx, Field::Dy);
+const FieldSet kSlopes = fields(Field::SlopeX, Field::SlopeY);
+const FieldSet kStrain = fields(Field::Dxx, Field::Dyy, Field::Dxy);
+const FieldSet kVelocities = fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
+
+TEST(Plan, HoldsTheFieldsOfWhatIsAskedForAndNoOthers) {
+    using enum MeshAttribute;
+    EXPECT_EQ(fields_of_plan(make_plan(scene_with({}))), kPositions);
+    EXPECT_EQ(fields_of_plan(make_plan(scene_with({Normal}))), kPositions | kSlopes | kStrain);
+    EXPECT_EQ(fields_of_plan(make_plan(scene_with({Velocity}))), kPositions | kVelocities);
+    EXPECT_EQ(fields_of_plan(make_plan(scene_with({Whitecaps}))), kPositions | kStrain);
+    EXPECT_EQ(fields_of_plan(make_plan(scene_with({SlopeVariance}))),
+              kPositions);  // an integral of the spectrum
+}
+
+TEST(Plan, HasNoJacobianWithoutWhitecapsAndNormals) {
+    using enum MeshAttribute;
+    Scene scene = scene_with({Velocity, SlopeVariance, Whitecaps});
+    scene.effects.whitecaps = false;
+    const Plan plan = make_plan(scene);
+    EXPECT_EQ(fields_of_plan(plan) & kStrain, FieldSet());
+    EXPECT_EQ(fields_of_plan(plan) & kSlopes, FieldSet());
+    for (const PlannedQuery& planned : plan.queries) {
+        EXPECT_FALSE(planned.query.products[index(Product::Coverage)]);
+        EXPECT_FALSE(planned.query.products[index(Product::JacobianMoments)]);
+    }
+}
+
+TEST(Plan, HasNoHorizontalFieldsWithoutChoppiness) {
+    Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity, MeshAttribute::Whitecaps});
+    scene.waves.choppiness = 0.0;
+    EXPECT_EQ(fields_of_plan(make_plan(scene)), fields(Field::Height, Field::VelocityZ) | kSlopes);
+}
+
+TEST(Plan, HasNothingToRunWithoutWindAndSwell) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 0.0;
+    const Plan plan = make_plan(scene);
+    EXPECT_EQ(plan.transforms_per_frame(), 0);
+    EXPECT_EQ(plan.sea_bytes(), 0u);
+    EXPECT_EQ(plan.frame_bytes(), 0u);
+    for (const CascadePlan& cascade : plan.cascades) EXPECT_FALSE(cascade.why_empty.empty());
+}
+
+TEST(Plan, SharesAGridBetweenQueriesOfOneFootprint) {
+    Scene scene = scene_with({MeshAttribute::Normal});
+    const int mesh_alone = make_plan(scene).transforms_per_frame();
+    scene.output.maps = {MapKind::Normal, MapKind::Displacement};
+    scene.output.map_resolution = 64;
+    EXPECT_EQ(make_plan(scene).transforms_per_frame(), mesh_alone);
+    scene.output.map_resolution = 32;
+    EXPECT_GT(make_plan(scene).transforms_per_frame(), mesh_alone);
+}
+
+// Every field of a grid rides in exactly one transform, and no transform carries less than it could.
+TEST(Plan, PairsFieldsWithoutLossOrRepetition) {
+    Scene scene;
+    scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
+    for (const CascadePlan& cascade : make_plan(scene).cascades)
+        for (const Grid& grid : cascade.grids) {
+            FieldSet carried;
+            for (const auto& transform : grid.transforms)
+                for (const auto& field : transform)
+                    if (field) {
+                        EXPECT_FALSE(carried[index(*field)]);
+                        carried.set(index(*field));
+                    }
+            EXPECT_EQ(carried, grid.fields);
+            EXPECT_EQ(grid.transforms.size(), (grid.fields.count() + 1) / 2);
+        }
+}
+
+// Bands: from 0 to infinity, each beginning where the one before ends, and the same at every resolution.
+TEST(Plan, CutsBandsThatAreDisjointCompleteAndOfTheSizesAlone) {
+    for (double wind : {3.0, 10.0, 30.0}) {
+        std::vector<double> edges;
+        for (int resolution : {16, 64, 1024}) {
+            Scene scene;
+            scene.sea.wind_speed_mps = wind;
+            scene.surface.resolution = resolution;
+            const Plan plan = make_plan(scene);
+            ASSERT_EQ(plan.cascades.size(), 4u);
+            EXPECT_EQ(plan.cascades.front().k_lower, 0.0);
+            EXPECT_TRUE(std::isinf(plan.cascades.back().k_upper));
+            for (std::size_t c = 1; c < 4; ++c) {
+                EXPECT_EQ(plan.cascades[c].k_lower, plan.cascades[c - 1].k_upper);
+                EXPECT_LT(plan.cascades[c].size_m, plan.cascades[c - 1].size_m);
+            }
+            std::vector<double> these;
+            for (const CascadePlan& cascade : plan.cascades) these.push_back(cascade.k_lower);
+            if (edges.empty()) edges = these;
+            EXPECT_EQ(these, edges);
+        }
+    }
+}
+
+// A grid holds all modes it is filled with (no wrapping), and the waves of its band that its footprint shows.
+TEST(Plan, GivesEachGridRoomForItsModes) {
+    for (int resolution : {1, 2, 7, 64, 256}) {
+        Scene scene;
+        scene.surface.resolution = resolution;
+        const Plan plan = make_plan(scene);
+        for (const CascadePlan& cascade : plan.cascades) {
+            EXPECT_LT(2 * cascade.mode_radius, cascade.resolution);
+            for (const Grid& grid : cascade.grids) {
+                const double step = 2.0 * std::numbers::pi / cascade.size_m;
+                const double last = std::min({plan.filter.cutoff(plan.levels[grid.level].footprint_m),
+                                              cascade.k_upper, cascade.mode_radius * step});
+                EXPECT_GT(grid.resolution * step, 2.0 * last) << resolution;
+            }
+        }
+    }
+}
+
+TEST(Plan, RefusesMalformedFootprints) {
+    const auto query = [](std::vector<double> cell, std::vector<double> pixel) {
+        Query q;
+        q.name = "points";
+        q.products = products(Product::Position);
+        q.cell_m = std::move(cell);
+        q.pixel_m = std::move(pixel);
+        return std::vector<Query>{q};
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 infinity = std::numeric_limits<double>::infinity();
+    EXPECT_NO_THROW(make_plan(Scene{}, query({0.0, 1.0}, {0.5})));
+    EXPECT_THROW(make_plan(Scene{}, query({}, {0.5})), std::invalid_argument);
+    EXPECT_THROW(make_plan(Scene{}, query({0.5}, {})), std::invalid_argument);
+    EXPECT_THROW(make_plan(Scene{}, query({1.0, 0.5}, {0.5})), std::invalid_argument);
+    EXPECT_THROW(make_plan(Scene{}, query({0.5, 0.5}, {0.5})), std::invalid_argument);
+    EXPECT_THROW(make_plan(Scene{}, query({-0.5}, {0.5})), std::invalid_argument);
+    EXPECT_THROW(make_plan(Scene{}, query({0.5}, {nan})), std::invalid_argument);
+    EXPECT_THROW(make_plan(Scene{}, query({0.5}, {nan, 1.0})), std::invalid_argument);
+    EXPECT_THROW(make_plan(Scene{}, query({0.5, nan, 1.0}, {0.5})), std::invalid_argument);
+    EXPECT_THROW(make_plan(Scene{}, query({0.5}, {infinity})), std::invalid_argument);
+}
+
+TEST(Plan, FingerprintFollowsTheSeaAndNotTheRangeOfFrames) {
+    Scene scene;
+    const auto before = make_plan(scene).fingerprint;
+    scene.shot.last_frame = 480;
+    EXPECT_EQ(make_plan(scene).fingerprint, before);
+    for (auto change :
+         {+[](Scene& s) { s.shot.seed = 2; }, +[](Scene& s) { s.sea.wind_speed_mps = 10.5; },
+          +[](Scene& s) { s.waves.choppiness = 0.9; }, +[](Scene& s) { s.surface.resolution = 128; },
+          +[](Scene& s) { s.effects.whitecaps = false; },
+          +[](Scene& s) { s.quality.level = QualityLevel::Draft; }}) {
+        Scene other = scene;
+        change(other);
+        EXPECT_NE(make_plan(other).fingerprint, before);
+    }
+    EXPECT_EQ(make_plan(scene).fingerprint_text().size(), 16u);
+}
+
+TEST(Plan, AnswersAtOnceForTheLargestSea) {
+    Scene scene;
+    scene.waves.cascades = {{4000.0, 8192}, {150.0, 8192}};
+    scene.surface.resolution = 8192;
+    const Plan plan = make_plan(scene);
+    EXPECT_GT(plan.frame_bytes(), std::size_t{1} << 30);  // nothing of which was allocated
+    const std::string page = explain(scene, plan);
+    EXPECT_NE(page.find("8192"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,140 @@
+// A bake as a whole: the record, frames on their own, a real sea.
+
+#include "plugin/bake/bake.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/base/constants.h"
+#include "plugin/shot/ndbc.h"
+#include "plugin/shot/shot.h"
+
+namespace {
+
+using namespace pelagic;
+namespace fs = std::filesystem;
+
+class Bakes : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("pelagic-bake-" + std::to_string(getpid()));
+        fs::remove_all(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    nlohmann::json bake_and_read(const Scene& scene, std::vector<int> frames = {}) {
+        const BakeReport report =
+            bake(scene, {.out = folder_, .frames = std::move(frames), .progress = {}, .cancel = nullptr});
+        std::ifstream stream(report.record);
+        return nlohmann::json::parse(stream);
+    }
+    fs::path folder_;
+};
+
+Scene small_scene() {
+    Scene scene;
+    scene.shot.last_frame = 3;
+    scene.surface = {.size_m = 100.0, .resolution = 8};
+    return scene;
+}
+
+TEST_F(Bakes, RecordSaysWhatTheSpectrumAndTheSeaHold) {
+    const auto record = bake_and_read(small_scene());
+    EXPECT_EQ(record.at("frames").size(), 3u);
+    const double spectrum_hs = record.at("spectrum").at("hs_m").get<double>();
+    // One realisation of ten peak waves a side: its m0 scatters by 7 %, Hs by half of that; four deviations.
+    // The mesh's cells of 12.5 m hide a little more.
+    EXPECT_NEAR(record.at("frames").at("2").at("hs_m").get<double>() / spectrum_hs, 1.0, 0.15);
+    const auto& frame = record.at("frames").at("2");
+    const double mss = frame.at("mss_resolved").get<double>() + frame.at("mss_residual").get<double>();
+    EXPECT_NEAR(mss / record.at("spectrum").at("mss").get<double>(), 1.0, 0.05);
+    EXPECT_GT(record.at("observed").at("cox_munk_1954_mss").get<double>(), 0.04);
+}
+
+TEST_F(Bakes, FramesOutsideTheShotAreRefused) {
+    EXPECT_THROW(bake_and_read(small_scene(), {4}), std::invalid_argument);
+    EXPECT_THROW(bake_and_read(small_scene(), {2, 1}), std::invalid_argument);
+    EXPECT_FALSE(fs::exists(folder_));
+}
+
+TEST_F(Bakes, FramesOfAnotherVersionAreReportedAsStale) {
+    Scene scene = small_scene();
+    bake_and_read(scene);
+    scene.sea.wind_speed_mps = 5.0;
+    const BakeReport report = bake(scene, {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr});
+    EXPECT_EQ(report.kept, 0);
+    EXPECT_EQ(report.stale, (std::vector<int>{2, 3}));
+}
+
+TEST(ParseFrames, TakesFramesRangesAndSteps) {
+    const Shot shot{.first_frame = -3, .last_frame = 20};
+    EXPECT_EQ(parse_frames("7", shot), (std::vector<int>{7}));
+    EXPECT_EQ(parse_frames("1-4", shot), (std::vector<int>{1, 2, 3, 4}));
+    EXPECT_EQ(parse_frames("1-12x5", shot), (std::vector<int>{1, 6, 11}));
+    EXPECT_EQ(parse_frames("-3--1", shot), (std::vector<int>{-3, -2, -1}));
+    for (const char* wrong : {"", "a", "5-1", "1-21", "-4", "1-4x0", "1-4x", "1-4x2y", "1,2", "99999999999"})
+        EXPECT_THROW(parse_frames(wrong, shot), std::invalid_argument) << wrong;
+}
+
+// The baked sea's Hs, Tm−1,0 and mean direction against those of the buoy's own file, over some seeds.
+void expect_the_buoys_sea(Bakes& test, const std::function<nlohmann::json(const Scene&)>& baked,
+                          const fs::path& w_file, const std::string& hour) {
+    (void)test;
+    const std::string text =
+        "spectrum = \"file\"\nspectrum_file = \"" + w_file.string() + "\"\nspectrum_time = " + hour + "\n";
+    Scene scene = parse_shot("[sea]\n" + text, "buoy.toml");
+    scene.shot.last_frame = 1;
+    scene.surface = {.size_m = 100.0, .resolution = 200};
+    scene.output.attributes = {};
+    const MeasuredSpectrum& buoy = *scene.sea.measured;
+    // The buoy's own numbers, by the rule that NDBC states: each bin counts over half the way to its
+    // neighbours.
+    double m0 = 0.0, m_minus1 = 0.0, east = 0.0, north = 0.0;
+    for (std::size_t i = 0; i < buoy.bins.size(); ++i) {
+        const auto& bin = buoy.bins[i];
+        const double low =
+            i > 0 ? 0.5 * (buoy.bins[i - 1].frequency_hz + bin.frequency_hz) : bin.frequency_hz;
+        const double high = i + 1 < buoy.bins.size()
+                                ? 0.5 * (buoy.bins[i + 1].frequency_hz + bin.frequency_hz)
+                                : bin.frequency_hz;
+        const double energy = bin.density_m2_per_hz * (high - low);
+        m0 += energy;
+        m_minus1 += energy / (kTwoPi * bin.frequency_hz);
+        east += energy * bin.c1_re;
+        north += energy * bin.c1_im;
+    }
+    double baked_m0 = 0.0, period = 0.0, baked_east = 0.0, baked_north = 0.0;
+    constexpr int kSeeds = 8;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+        scene.shot.seed = static_cast<std::uint64_t>(seed);
+        const auto frame = baked(scene).at("frames").at("1");
+        const double hs = frame.at("hs_m").get<double>(),
+                     direction = frame.at("mean_direction_deg").get<double>() * kPi / 180.0;
+        baked_m0 += hs * hs / 16.0 / kSeeds;
+        period += frame.at("tm_minus1_0_s").get<double>() / kSeeds;
+        baked_east += std::cos(direction);
+        baked_north += std::sin(direction);
+    }
+    // Eight tiles of ten peak waves: m0 scatters by 7 %/√8 = 2.5 %, so Hs by 1.3 %; the tail beyond the
+    // buoy's last bin adds about a percent and shortens the period a little. Directions within a few degrees.
+    EXPECT_NEAR(4.0 * std::sqrt(baked_m0) / (4.0 * std::sqrt(m0)), 1.0, 0.05);
+    EXPECT_NEAR(period / (kTwoPi * m_minus1 / m0), 1.0, 0.05);
+    const double turn = std::remainder(std::atan2(baked_north, baked_east) - std::atan2(north, east), kTwoPi);
+    EXPECT_NEAR(turn * 180.0 / kPi, 0.0, 6.0);
+}
+
+TEST_F(Bakes, TheBuoysSeaComesBack) {
+    const fs::path data = fs::path(PELAGIC_SOURCE_DIR) / ".." / "shared" / "data" / "ndbc-41010w2019.txt";
+    if (!fs::exists(data)) GTEST_SKIP() << "no " << data << ": the real buoy's data isn't here";
+    for (const char* hour : {"2019-02-06T00:40:00Z", "2019-02-07T12:40:00Z"}) {
+        SCOPED_TRACE(hour);
+        expect_the_buoys_sea(
+            *this, [&](const Scene& scene) { return bake_and_read(scene); }, data, hour);
+    }
+}
+
+}  // namespace

@@ -1,0 +1,81 @@
+// bake_expected SHOT.toml FILE: what OpenUSD must hand back of a bake of this shot, computed by the core
+// alone, as read-stage.mjs takes it with --expect.
+
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <span>
+#include <stdexcept>
+
+#include "core/evaluate/evaluate.h"
+#include "core/surface/patch.h"
+#include "plugin/shot/shot.h"
+
+namespace {
+
+using namespace pelagic;
+
+std::string json_array(const float* values, std::size_t count) {
+    std::string text = "[";
+    for (std::size_t i = 0; i < count; ++i) {
+        char number[32];
+        const auto [end, error] =
+            std::to_chars(number, number + sizeof number, static_cast<double>(values[i]));
+        if (error != std::errc()) throw std::runtime_error("a number does not fit its buffer");
+        text += (i > 0 ? "," : "") + std::string(number, end);
+    }
+    return text + "]";
+}
+
+void write_expected(const std::string& shot_file, const std::string& file) {
+    const Scene scene = load_shot(shot_file);
+    Frame<float> frame(std::make_shared<const Sea<float>>(scene, make_plan(scene)));
+    const int quads = scene.surface.resolution;
+    const auto rest = rest_points<float>({.per_side = quads + 1,
+                                          .spacing_m = scene.surface.size_m / quads,
+                                          .first_m = -0.5 * scene.surface.size_m});
+    std::vector<glm::vec3> position(rest.size()), normal(rest.size()), velocity(rest.size()),
+        variance(rest.size());
+    std::vector<float> whitecaps(rest.size());
+    std::string frames;
+    for (int f = scene.shot.first_frame; f <= scene.shot.last_frame; ++f) {
+        frame.set(scene.shot.time_s(f));
+        Results<float> results;
+        results.position = {position.data()};
+        results.normal = {normal.data()};
+        results.velocity = {velocity.data()};
+        results.slope_variance = {variance.data()};
+        results.coverage = {whitecaps.data()};
+        evaluate(frame, 0, Points<float>{.count = rest.size(), .rest_m = {rest.data()}}, results);
+        const auto vectors = [&](const std::vector<glm::vec3>& v) {
+            return json_array(&v[0].x, 3 * v.size());
+        };
+        frames += (frames.empty() ? "" : ",\n") + ("\"" + std::to_string(f)) +
+                  "\": {\"/a_stage/Sea\": {\"points\": " + vectors(position) +
+                  ", \"normals\": " + vectors(normal) + ", \"velocities\": " + vectors(velocity) +
+                  ", \"slopeVariance\": " + vectors(variance) +
+                  ", \"whitecapCoverage\": " + json_array(whitecaps.data(), whitecaps.size()) + "}}";
+    }
+    std::ofstream out(file);
+    out << R"json({"stage": {"startTimeCode": 1, "endTimeCode": 3, "timeCodesPerSecond": 24},
+"prims": {"/a_stage": "Xform", "/a_stage/Sea": "Mesh", "/a_stage/Camera": "Camera", "/a_stage/Sun": "DistantLight",
+  "/a_stage/Sky": "DomeLight", "/a_stage/Materials/Water": "Material"},
+"root": ["defaultPrim = \"a_stage\"", "upAxis = \"Z\"", "metersPerUnit = 1"],
+"frames": {)json"
+        << frames << "}}\n";
+    if (!out.flush()) throw std::runtime_error("cannot write " + file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        if (argc != 3) throw std::runtime_error("usage: bake_expected SHOT.toml FILE");
+        write_expected(argv[1], argv[2]);
+    } catch (const std::exception& error) {
+        std::cerr << error.what() << "\n";
+        return 1;
+    }
+}

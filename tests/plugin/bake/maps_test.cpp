@@ -1,0 +1,155 @@
+// Maps as they lie on disk, read by OpenEXR.
+
+#include "plugin/bake/maps.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include <glm/geometric.hpp>
+#include "core/evaluate/evaluate.h"
+#include "plugin/bake/bake.h"
+#include "tests/plugin/bake/read_exr.h"
+
+namespace {
+
+using namespace pelagic;
+namespace fs = std::filesystem;
+
+class BakedMaps : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        scene_.shot.last_frame = 1;
+        scene_.sea.wind_speed_mps = 12.0;
+        scene_.waves.cascades = {{.size_m = 600.0, .resolution = 128}};
+        scene_.surface = {.size_m = 600.0, .resolution = 4};
+        scene_.output.mesh = MeshFormat::None;
+        scene_.output.map_resolution = 128;
+        folder_ = fs::temp_directory_path() / ("pelagic-maps-" + std::to_string(getpid()));
+        fs::remove_all(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    fs::path bake_map(MapKind kind, const char* file) {
+        scene_.output.maps = {kind};
+        bake(scene_, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
+        return folder_ / file;
+    }
+
+    Scene scene_;
+    fs::path folder_;
+};
+
+TEST_F(BakedMaps, HeightsHaveTheVarianceOfTheirRealisation) {
+    const auto heights =
+        test::read_scanlines(bake_map(MapKind::Displacement, "maps/displacement.0001.exr"), "B");
+    double mean = 0.0, squares = 0.0;
+    for (const float z : heights.values) mean += static_cast<double>(z);
+    mean /= static_cast<double>(heights.values.size());
+    for (const float z : heights.values)
+        squares += (static_cast<double>(z) - mean) * (static_cast<double>(z) - mean);
+    Frame<float> frame(std::make_shared<const Sea<float>>(scene_, make_plan(scene_)));
+    frame.set(0.0);
+    const double expected = frame.realisation(0).m0;
+    // Parseval; single-precision transforms leave about 1e-6.
+    EXPECT_NEAR(squares / static_cast<double>(heights.values.size()) / expected, 1.0, 1e-5);
+}
+
+TEST_F(BakedMaps, LieAsAMapWithNorthOnTop) {
+    // The texel in column i, j rows from the bottom, is the sea at (−L/2 + i L/N, −L/2 + j L/N), asked for
+    // directly.
+    const fs::path file = bake_map(MapKind::Displacement, "maps/displacement.0001.exr");
+    Frame<float> frame(std::make_shared<const Sea<float>>(scene_, make_plan(scene_)));
+    frame.set(0.0);
+    const int i = 17, j = 101;
+    const double spacing_m = 600.0 / 128.0;
+    const glm::vec2 rest(-300.0 + i * spacing_m, -300.0 + j * spacing_m);
+    glm::vec3 displacement(0.0f);
+    Results<float> results;
+    results.displacement = {&displacement};
+    evaluate(frame, 0, Points<float>{.count = 1, .rest_m = {&rest}}, results);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_EQ(test::read_scanlines(file, std::string(1, "RGB"[c])).at(i, j), displacement[c])
+            << "channel " << c;
+}
+
+TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
+    const fs::path file = bake_map(MapKind::Whitecaps, "maps/whitecaps.0001.exr");
+    const auto mean = test::read_level(file, "mean", 0), variance = test::read_level(file, "variance", 0);
+    const auto coarse_mean = test::read_level(file, "mean", 1),
+               coarse_variance = test::read_level(file, "variance", 1);
+    const auto coarse_coverage = test::read_level(file, "coverage", 1);
+    ASSERT_EQ(coarse_mean.n, 64);
+    // A periodic map: the tent round column 2i has ¼, ½, ¼.
+    const auto tent = [&](int x, int y, auto&& value) {
+        double sum = 0.0;
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx)
+                sum += (dx ? 0.25 : 0.5) * (dy ? 0.25 : 0.5) *
+                       value((2 * x + dx + 128) % 128, (2 * y + dy + 128) % 128);
+        return sum;
+    };
+    for (const auto& [x, y] : {std::pair{0, 0}, {5, 40}, {63, 63}}) {
+        const double m = tent(x, y, [&](int i, int j) { return static_cast<double>(mean.at(i, j)); });
+        const double m2 = tent(x, y, [&](int i, int j) {
+            return static_cast<double>(variance.at(i, j)) +
+                   static_cast<double>(mean.at(i, j)) * static_cast<double>(mean.at(i, j));
+        });
+        EXPECT_NEAR(coarse_mean.at(x, y), m, 1e-6);
+        EXPECT_NEAR(coarse_variance.at(x, y), m2 - m * m, 1e-6);  // single precision of values near 1
+        EXPECT_GE(coarse_coverage.at(x, y), 0.0f);
+    }
+    // The last level is the whole patch: its coverage is that of the sea, not 0 or 1, and near the mean of
+    // level 0.
+    double fine_coverage = 0.0;
+    const auto coverage = test::read_level(file, "coverage", 0);
+    for (const float w : coverage.values)
+        fine_coverage += static_cast<double>(w) / static_cast<double>(coverage.values.size());
+    const double whole = static_cast<double>(test::read_level(file, "coverage", 7).at(0, 0));
+    // One Pearson curve for the whole against one per texel: they agree to some ten percent of a coverage of
+    // 2 %.
+    EXPECT_NEAR(whole / fine_coverage, 1.0, 0.25);
+}
+
+TEST_F(BakedMaps, SlopeVarianceOfACoarserLevelHidesMore) {
+    const fs::path file = bake_map(MapKind::SlopeVariance, "maps/slope-variance.0001.exr");
+    const Plan plan = make_plan(scene_);
+    EXPECT_EQ(plan.transforms_per_frame(), 0) << "variances alone need no transform";
+    const Sea<float> sea(scene_, plan);
+    double before = 0.0;
+    for (int level = 0; level <= 7; ++level) {
+        const double xx = static_cast<double>(test::read_level(file, "xx", level).at(0, 0));
+        EXPECT_GE(xx, before);
+        before = xx;
+    }
+    // A texel of 600 m shows nothing: the whole spectrum's variance.
+    EXPECT_NEAR(before / sea.total().xx, 1.0, 1e-5);
+}
+
+TEST(TentWeights, SumToOneAndKeepCornersOnCorners) {
+    for (const auto& [fine, coarse] : {std::pair{8, 4}, {5, 2}, {3, 1}, {2, 1}})
+        for (const bool periodic : {false, true}) {
+            const TentWeights weights = tent_weights(fine, coarse, periodic);
+            for (int i = 0; i < coarse; ++i) {
+                double sum = 0.0, heaviest = 0.0;
+                int at = -1;
+                for (const auto& tap : weights.taps[i]) {
+                    sum += tap.weight;
+                    if (tap.weight > heaviest) heaviest = tap.weight, at = tap.texel;
+                }
+                EXPECT_NEAR(sum, 1.0, 1e-12);
+                EXPECT_NEAR(at, i * static_cast<double>(fine) / coarse, 0.5);
+            }
+        }
+}
+
+TEST(NormalMips, StayUnitAndFinite) {
+    MipLevel<glm::vec3> full{4, {}};
+    for (int i = 0; i < 16; ++i)
+        full.texels.push_back(i % 2 ? glm::vec3(1, 0, 0) : glm::vec3(-1, 0, 0));  // cancel
+    for (const auto& level : normal_mips(full, true))
+        for (const glm::vec3& n : level.texels) EXPECT_NEAR(glm::dot(n, n), 1.0f, 1e-5f);
+}
+
+}  // namespace

@@ -1,0 +1,188 @@
+// Random shots, from the first day on: whatever a valid-looking shot file asks, it is baked to finite,
+// bounded numbers, the same bits on one thread and on two, or it is refused before anything is written.
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+
+#include "core/plan/plan.h"
+#include "plugin/bake/bake.h"
+#include "plugin/shot/shot.h"
+
+namespace {
+
+using namespace pelagic;
+namespace fs = std::filesystem;
+
+class RandomShot {
+  public:
+    explicit RandomShot(unsigned seed) : engine_(seed) {}
+
+    std::string text() {
+        std::ostringstream shot;
+        const int first = pick({1, 1, -3, 0, 100000});
+        shot << "[shot]\nseed = " << pick({0, 1, 7, 123456789}) << "\nframes = [" << first << ", "
+             << first + pick({0, 1}) << "]\n";
+        shot << "fps = " << pick({24.0, 0.5, 60.0, 1e-3}) << "\n";
+        if (chance(0.15)) shot << "loop_s = " << pick({1.0, 10.0, 0.1}) << "\n";
+        shot << "[sea]\nwind_speed_mps = " << pick({0.0, 0.1, 2.0, 10.0, 20.0, 80.0, uniform(0.0, 30.0)})
+             << "\n";
+        shot << "wind_direction_deg = " << uniform(-360.0, 720.0) << "\n";
+        shot << "fetch_m = " << pick({1.0, 100.0, 300e3, 1e7}) << "\n";
+        if (chance(0.5)) shot << "depth_m = " << pick({0.01, 0.5, 5.0, 100.0}) << "\n";
+        shot << "spectrum = \""
+             << pick({"pierson-moskowitz", "jonswap", "tma", "elfouhaily", "omega-2", "phillips"}) << "\"\n";
+        shot << "spreading = \"" << pick({"hasselmann", "donelan-banner", "cosine", "elfouhaily"}) << "\"\n";
+        if (chance(0.4))
+            shot << "swell = [ { height_m = " << pick({0.0, 0.01, 2.0, 15.0})
+                 << ", period_s = " << pick({2.0, 11.0, 22.0}) << ", direction_deg = " << uniform(0.0, 360.0)
+                 << " } ]\n";
+        shot << "[waves]\nchoppiness = " << pick({0.0, 0.5, 1.0, 1.0, 3.0, 10.0}) << "\n";
+        if (chance(0.6)) {
+            const double size = pick({1.0, 37.0, 400.0, 5000.0});
+            shot << "cascades = [ { size_m = " << size << ", resolution = " << pick({16, 18, 30, 64, 96})
+                 << " }";
+            if (chance(0.5))
+                shot << ", { size_m = " << size / pick({1.3, 2.618, 3.0})
+                     << ", resolution = " << pick({16, 32}) << " }";
+            shot << " ]\n";
+        }
+        shot << "[surface]\nsize_m = " << pick({0.5, 50.0, 400.0, 3e4})
+             << "\nresolution = " << pick({1, 2, 3, 7, 8, 16}) << "\n";
+        shot << "[effects]\nwhitecaps = " << (chance(0.8) ? "true" : "false") << "\n";
+        shot << "[quality]\nlevel = \"" << pick({"draft", "preview", "final", "reference"}) << "\"\n";
+        shot << "[output]\nmesh = \"" << pick({"usda", "usda", "usda", "none"}) << "\"\nattributes = ["
+             << subset({"normal", "velocity", "slope-variance", "whitecaps"}) << "]\nmaps = ["
+             << subset({"displacement", "normal", "slope-variance", "whitecaps"})
+             << "]\nmap_resolution = " << pick({1, 2, 5, 8, 16}) << "\n";
+        if (chance(0.2)) shot << "cascade_tiles = true\n";
+        return shot.str();
+    }
+
+  private:
+    template <class V>
+    V pick(std::initializer_list<V> values) {
+        return *(values.begin() + std::uniform_int_distribution<std::size_t>(0, values.size() - 1)(engine_));
+    }
+    double uniform(double low, double high) { return std::uniform_real_distribution(low, high)(engine_); }
+    bool chance(double p) { return std::bernoulli_distribution(p)(engine_); }
+    std::string subset(std::initializer_list<const char*> words) {
+        std::string list;
+        for (const char* word : words)
+            if (chance(0.6)) list += (list.empty() ? "\"" : ", \"") + std::string(word) + "\"";
+        return list;
+    }
+    std::mt19937 engine_;
+};
+
+using Files = std::map<std::string, std::string>;
+
+Files read_all(const fs::path& folder) {
+    Files files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (!entry.is_regular_file()) continue;
+        std::ifstream stream(entry.path(), std::ios::binary);
+        files[fs::relative(entry.path(), folder).string()] = {std::istreambuf_iterator<char>(stream), {}};
+    }
+    return files;
+}
+
+// The numbers of every array that follows `name` in a layer's text.
+std::vector<double> numbers_after(const std::string& text, const std::string& name) {
+    std::vector<double> numbers;
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+        const std::size_t begin = text.find("[", text.find("timeSamples", at)), end = text.find("]", begin);
+        if (begin == std::string::npos || end == std::string::npos) break;
+        for (const char* p = text.data() + begin; p < text.data() + end;) {
+            double value = 0.0;
+            const auto [after, error] = std::from_chars(p, text.data() + end, value);
+            if (error == std::errc()) {
+                numbers.push_back(value);
+                p = after;
+            } else {
+                ++p;
+            }
+        }
+    }
+    return numbers;
+}
+
+void expect_bounded(const std::string& layer) {
+    for (const char* name : {"point3f[] points", "normal3f[] normals", "vector3f[] velocities",
+                             "slopeVariance", "whitecapCoverage"})
+        for (const double value : numbers_after(layer, name)) ASSERT_TRUE(std::isfinite(value)) << name;
+    const auto variances = numbers_after(layer, "slopeVariance");
+    for (std::size_t i = 0; i < variances.size(); ++i)
+        if (i % 3 != 2) {  // σxx, σyy; σxy has either sign
+            ASSERT_GE(variances[i], 0.0);
+        }
+    for (const double w : numbers_after(layer, "whitecapCoverage")) {
+        ASSERT_GE(w, 0.0);
+        ASSERT_LE(w, 1.0);
+    }
+}
+
+class RandomShots : public ::testing::TestWithParam<int> {};
+
+TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
+    constexpr int kEach = 50;
+    const fs::path folder = fs::temp_directory_path() / ("pelagic-random-" + std::to_string(getpid()));
+    int baked = 0;
+    for (int i = 0; i < kEach; ++i) {
+        const unsigned seed = static_cast<unsigned>(GetParam() * kEach + i);
+        const std::string text = RandomShot(seed).text();
+        SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + text);
+        fs::remove_all(folder);
+        fs::create_directories(folder);
+        std::ofstream(folder / "shot.toml") << text;
+
+        std::vector<Files> results;
+        bool refused = false;
+        for (const int threads : {1, 2}) {
+            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                            static_cast<std::size_t>(threads));
+            const fs::path out = folder / std::to_string(threads);
+            try {
+                const Scene scene = load_shot(folder / "shot.toml");
+                const BakeReport report =
+                    bake(scene, {.out = out, .frames = {}, .progress = {}, .cancel = nullptr});
+                ASSERT_EQ(report.done, report.total);
+                ASSERT_EQ(report.executed_transforms, report.done * make_plan(scene).transforms_per_frame());
+                results.push_back(read_all(out));
+            } catch (const ShotError&) {
+                refused = true;
+            } catch (const std::invalid_argument& error) {
+                // The one refusal that no key of the file is to blame for alone.
+                ASSERT_NE(std::string(error.what()).find("nothing to bake"), std::string::npos)
+                    << error.what();
+                refused = true;
+            }
+            ASSERT_TRUE(!refused || !fs::exists(out)) << "refused, but something was written";
+        }
+        fs::remove_all(folder);
+        if (refused) continue;
+        ++baked;
+        ASSERT_EQ(results[0].size(), results[1].size());
+        for (const auto& [path, bytes] : results[0]) {
+            ASSERT_TRUE(bytes == results[1].at(path)) << path << " differs between one thread and two";
+            // Encoders refuse NaN and infinity by throwing, so that what is there is finite; the layers are
+            // read anyway.
+            if (path.ends_with(".usda") && path.find("mesh/") == 0) expect_bounded(bytes);
+        }
+    }
+    EXPECT_GE(baked, kEach / 2) << "so many refusals test nothing";
+}
+
+// Ten batches of fifty, side by side under ctest.
+INSTANTIATE_TEST_SUITE_P(Batch, RandomShots, ::testing::Range(0, 10));
+
+}  // namespace

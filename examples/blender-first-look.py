@@ -78,7 +78,7 @@ def make_mesh(rest, quads, size_m):
 
 
 class LivingSea:
-    """Keeps the sea, one frame of it and the arrays; writes the time's sea into the mesh that carries OBJECT's name."""
+    """Keeps the sea, one frame of it and the arrays; writes the time's sea into the object that it made."""
 
     # The mesh's attributes: name, type, how foreach_set calls the numbers, the module's name.
     ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
@@ -101,6 +101,7 @@ class LivingSea:
         self.time_s = None
 
         self.object = bpy.data.objects.new(OBJECT, make_mesh(self.rest, quads, surface.size_m))
+        self.name = self.object.name  # the object itself may not outlive an undo
         for name, kind, _, product in self.ATTRIBUTES:
             if product in self.arrays:
                 self.object.data.attributes.new(name, kind, "POINT")
@@ -112,7 +113,7 @@ class LivingSea:
             self.frame.set(time_s)
             self.frame.evaluate(self.rest, cell_m=self.cell_m, pixel_m=self.cell_m, **self.arrays)
             self.time_s = time_s
-        sea = bpy.data.objects.get(OBJECT)
+        sea = bpy.data.objects.get(self.name)
         if sea is None or len(sea.data.vertices) != len(self.rest):
             return  # deleted or edited: no longer ours
         sea.data.vertices.foreach_set("co", self.arrays["position"].ravel())
@@ -166,16 +167,17 @@ def water_material(shot):
 
     place = add("ShaderNodeVectorMath", {0: add("ShaderNodeUVMap", uv_map="UVMap"), 1: (shot.surface.size_m,) * 3},
                 operation="MULTIPLY")  # the rest position [m]: what is drawn there rides with the water
+    along = add("ShaderNodeVectorRotate", {"Vector": place, "Angle": -math.radians(shot.sea.wind_direction_deg)})
     variance = add("ShaderNodeSeparateXYZ",
                    {"Vector": add("ShaderNodeAttribute", attribute_name="slope_variance", output="Vector")}).node.outputs
-    normal = ripples(nodes, shot, place, variance)
+    normal = ripples(nodes, shot, along, variance)
     # The rest is roughness: facets of the width α² = 2σ², with σ² the mean of the variances along x and y, and
     # Principled's roughness is √α. So roughness = ((1 − part)(σxx + σyy))^¼.
     roughness = calc("POWER", calc("MULTIPLY", calc("ADD", variance[0], variance[1]), 1 - RIPPLE_PART), 0.25)
     # Light that comes back from under the surface: a dark body, a little greener in the thin crests.
     height = add("ShaderNodeSeparateXYZ", {"Vector": add("ShaderNodeNewGeometry", output="Position")}, output=2)
     crest = add("ShaderNodeMapRange", {"Value": height, "From Min": 0.0, "From Max": 3.0})
-    body = add("ShaderNodeMixRGB", {"Fac": crest, "Color1": (0.003, 0.022, 0.034, 1), "Color2": (0.008, 0.07, 0.075, 1)})
+    body = add("ShaderNodeMixRGB", {"Fac": crest, "Color1": (0.004, 0.035, 0.052, 1), "Color2": (0.012, 0.1, 0.105, 1)})
     normal_reflectance = ((WATER_IOR - 1) / (WATER_IOR + 1)) ** 2
     water = add("ShaderNodeBsdfPrincipled",
                 {"Base Color": body, "Roughness": roughness, "Specular": normal_reflectance / 0.08,
@@ -184,34 +186,35 @@ def water_material(shot):
     # Foam: coverage is the part of the surface that is white. Fine noise decides which part, so that a half-covered
     # crest is streaks of foam and not grey paint.
     coverage = add("ShaderNodeAttribute", attribute_name="whitecap_coverage", output="Fac")
-    noise = add("ShaderNodeTexNoise", {"Vector": place, "Scale": FOAM_PER_M, **NOISE})
+    noise = add("ShaderNodeTexNoise", {"Vector": scaled(nodes, along, FOAM_PER_M), **NOISE})
     foam = foam_mask(nodes, coverage, noise)
-    white = add("ShaderNodeBsdfDiffuse", {"Color": (0.75, 0.78, 0.8, 1)})
+    white = add("ShaderNodeBsdfDiffuse", {"Color": (0.9, 0.92, 0.93, 1)})
     surface = add("ShaderNodeMixShader", {0: foam, 1: water, 2: white})
     add("ShaderNodeOutputMaterial", {"Surface": surface})
     return material
 
 
-# Blender's noise at detail 6 and roughness 0.65: mean and standard deviation, measured over 512² points. It is as good as
-# normally distributed between its 0.1 and 99.9 %.
-NOISE = {"Detail": 6.0, "Roughness": 0.65}
+# Blender's noise, mean and deviation measured over 512² points; as good as normally distributed from its 0.1 to its 99.9 %.
+NOISE = {"Scale": 1.0, "Detail": 6.0, "Roughness": 0.65}
 NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0602
-RIPPLE_PART = 0.8  # of the hidden slope variance, drawn as ripples; the remainder is the capillary waves' blur
-RIPPLE_PER_M = 0.9  # the coarsest of the noise's octaves along the wind
-FOAM_PER_M = 0.8
-FOAM_EDGE = 0.5  # half the width of the soft edge, in logits
+RIPPLE_PART = 0.8  # of the hidden slope variance, drawn as ripples; the remainder is the shortest waves' blur
+RIPPLE_PER_M = 1.4  # the coarsest of the noise's octaves, along the wind; twice as long across it, as crests are
+FOAM_PER_M = 0.7
+FOAM_EDGE = 0.7  # half the width of the soft edge, in logits
 
 
-def ripples(nodes, shot, place, variance):
+def scaled(nodes, along, per_m):
+    return nodes.add("ShaderNodeVectorMath", {0: along, 1: (per_m, per_m / 2, 1)}, operation="MULTIPLY")
+
+
+def ripples(nodes, shot, along, variance):
     """A normal: the mesh's, tilted by noise whose slopes have the hidden variance. So the waves that are too short for
     the mesh are there, if not at their own places, and near and far the sea has the roughness that the shot gives it."""
     add = nodes.add
-    # Stretched across the wind, as crests are; it changes over about a second.
-    turned = add("ShaderNodeVectorRotate", {"Vector": place, "Angle": -math.radians(shot.sea.wind_direction_deg)})
-    stretched = add("ShaderNodeVectorMath", {0: turned, 1: (RIPPLE_PER_M, RIPPLE_PER_M / 2, 1)}, operation="MULTIPLY")
     noise = nodes.tree.nodes.new("ShaderNodeTexNoise")
     noise.noise_dimensions = "4D"
-    nodes.connect(noise, {"Vector": stretched, "Scale": 1.0, **NOISE})
+    nodes.connect(noise, {"Vector": scaled(nodes, along, RIPPLE_PER_M), **NOISE})
+    # It changes over about a second.
     noise.inputs["W"].driver_add("default_value").driver.expression = f"frame / {shot.shot.fps}"
     numbers = add("ShaderNodeSeparateXYZ", {"Vector": noise.outputs["Color"]}).node.outputs
     slopes = [nodes.math("MULTIPLY", nodes.math("SUBTRACT", NOISE_MEAN, numbers[axis]),
@@ -238,7 +241,7 @@ def foam_mask(nodes, coverage, noise):
                                             "From Max": FOAM_EDGE}, interpolation_type="SMOOTHSTEP")
 
 
-DUST = 0.4  # less haze than Blender's default, for a bluer sky
+DUST, OZONE = 0.15, 4.0  # in Blender's units, whose defaults are 1: less haze and more ozone, for a bluer sky
 
 
 def make_world(light):
@@ -246,7 +249,7 @@ def make_world(light):
     world = bpy.data.worlds.new("Sky")
     world.use_nodes = True
     nodes = Nodes(world.node_tree)
-    sky = nodes.add("ShaderNodeTexSky", sky_type="NISHITA", sun_disc=True, dust_density=DUST,
+    sky = nodes.add("ShaderNodeTexSky", sky_type="NISHITA", sun_disc=True, dust_density=DUST, ozone_density=OZONE,
                     sun_elevation=math.radians(light.sun_elevation_deg),
                     sun_rotation=math.radians(90.0 - light.sun_azimuth_deg))
     nodes.add("ShaderNodeOutputWorld", {"Surface": nodes.add("ShaderNodeBackground", {"Color": sky})})
@@ -320,8 +323,12 @@ def render(scene, path):
     bpy.ops.render.render(write_still=True, scene=scene.name)
 
 
+MIDDLE_GREY, HIGHLIGHT = 0.22, 7.0  # scene-linear; Filmic's curve ends at 16
+
+
 def meter(scene):
-    """Sets the exposure as a camera's meter does, from a thumbnail: the median becomes a middle grey."""
+    """Sets the exposure as a camera's meter does, from a thumbnail: the median becomes a middle grey, unless the
+    brightest fiftieth, a sun's glitter, would lose its drawing."""
     settings, samples = scene.render.image_settings, scene.cycles.samples
     with tempfile.TemporaryDirectory() as folder:
         settings.file_format, scene.cycles.samples = "OPEN_EXR", min(samples, 4)
@@ -333,10 +340,8 @@ def meter(scene):
         bpy.data.images.remove(image)
     scene.cycles.samples, scene.render.resolution_percentage = samples, 100
     luminance = pixels[:, :3] @ np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
-    scene.view_settings.exposure = math.log2(MIDDLE_GREY / max(float(np.median(luminance)), 1e-6))
-
-
-MIDDLE_GREY = 0.18
+    middle, bright = np.maximum(np.percentile(luminance, [50, 98]), 1e-6)
+    scene.view_settings.exposure = math.log2(min(MIDDLE_GREY / middle, HIGHLIGHT / bright))
 
 
 def parse_arguments(arguments):

@@ -340,6 +340,11 @@ void check_effects_and_output(Checker& check, const Effects& effects, const Outp
     if (output.mesh == MeshFormat::Usdc) {
         check.not_built("output.mesh", choice_text(output.mesh), "\"usda\" or \"none\"");
     }
+    if (output.mesh == MeshFormat::None && output.maps.empty()) {
+        check.refuse({"output.mesh", choice_text(output.mesh),
+                      "leaves nothing to bake: there are no maps either",
+                      "a mesh, or at least one map in output.maps"});
+    }
     check.no_duplicates("output.attributes", output.attributes);
     check.no_duplicates("output.maps", output.maps);
     for (std::size_t i = 0; i < output.maps.size(); ++i) {

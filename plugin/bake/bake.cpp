@@ -22,10 +22,6 @@ void refuse_invalid(const Scene& scene, const std::vector<int>& frames) {
     for (const Problem& problem : validate(scene))
         problems += (problems.empty() ? "" : "\n") + text_of(problem);
     if (!problems.empty()) throw std::invalid_argument(problems);
-    if (scene.output.mesh == MeshFormat::None && scene.output.maps.empty())
-        throw std::invalid_argument(
-            "output.mesh = \"none\" and output.maps = []: there is nothing to bake; "
-            "accepted: a mesh, or at least one map");
     for (std::size_t i = 0; i < frames.size(); ++i)
         if (frames[i] < scene.shot.first_frame || frames[i] > scene.shot.last_frame ||
             (i > 0 && frames[i] <= frames[i - 1]))
@@ -91,6 +87,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     try {
         stop_if_cancelled();
         const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan);
+        report_progress(BakeStage::Frames);
         record.describe(scene, plan, sequence->total(), sequence->whitecap_threshold());
         sequence->produce_static(write);
         if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");
@@ -99,6 +96,11 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         const auto first_frame = std::chrono::steady_clock::now();
         for (const int frame : missing) {
             stop_if_cancelled();
+            // Its files are about to be replaced one by one: the record must not vouch for a mixture.
+            if (record.frames().contains(frame)) {
+                record.forget(frame);
+                save_record();
+            }
             record.set(frame, sequence->produce(frame, write));
             save_record();
             progress.frame = frame;

@@ -64,6 +64,23 @@ TEST(Mesh, HoldsNothingBeyondItsNyquist) {
     EXPECT_LT(error / energy, 1e-6);  // the images again
 }
 
+// Slopes, where short waves count as much as long ones: with a filter that began at 1.5 samples a wavelength,
+// 1e-4 of them would be beyond. Choppiness 0: the normal's slopes are then linear in the waves, and
+// band-limited as they are.
+TEST(Mesh, HasNoSlopesBeyondItsNyquist) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 12.0;
+    scene.waves.choppiness = 0.0;
+    scene.waves.cascades = {{200.0, 96}, {50.0, 96}, {12.5, 128}};
+    const auto frame = frame_of<double>(scene, {filtered(products(Product::Normal), kPatch_m / kQuads)}, 1.0);
+    const auto normals = sample(frame, 0, tile_points<double>(kPatch_m, kDense)).normal;
+    for (int axis = 0; axis < 2; ++axis)
+        EXPECT_LT(share_beyond<glm::dvec3>(normals, kDense, kQuads / 2,
+                                           [&](const auto& n) { return n[axis] / n.z; }),
+                  1e-6)
+            << axis;
+}
+
 // Read at its nodes there are no images: zero to double rounding. And without the filter there is plenty, so
 // the measure sees what it is for.
 TEST(Mesh, ReadAtNodesHoldsNothingBeyondItsNyquistToRounding) {

@@ -194,6 +194,15 @@ TEST(Validate, AMeasuredSpectrumIsThereExactlyWithFile) {
         with([](MeasuredSpectrum& m) { m.bins[1].c2_im = kNan; }));  // without a direction, not looked at
 }
 
+TEST(Validate, SomethingMustBeBaked) {
+    expect_refused([](Scene& s) { s.output.mesh = MeshFormat::None; },
+                   {"output.mesh", "\"none\"", "at least one map"});
+    expect_good([](Scene& s) {
+        s.output.mesh = MeshFormat::None;
+        s.output.maps = {MapKind::Normal};
+    });
+}
+
 TEST(Validate, CascadesReachEachOther) {
     expect_good([](Scene& s) { s.waves.cascades = {{400.0, 16}}; });
     expect_good([](Scene& s) { s.waves.cascades = {{400.0, 512}, {50.0, 512}, {5.0, 8192}}; });

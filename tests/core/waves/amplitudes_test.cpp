@@ -70,8 +70,8 @@ double energy_near_modes(const DirectionalSpectrum& spectrum, double size_m, dou
 
 class Amplitudes : public testing::TestWithParam<Case> {};
 
-// ΣE|h|² per cascade = the band's m0, to 1e-3: what the issue of a wrong √2, a cell sampled instead of
-// integrated or a band's edge cut wrongly would break.
+// ΣE|h|² per cascade = the band's m0, to 1e-3. A cell sampled instead of integrated, a rim of cells left out
+// or an edge cut wrongly would break it.
 TEST_P(Amplitudes, HoldTheirBandOfTheSpectrum) {
     const Scene scene = scene_of(GetParam());
     const auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});

@@ -47,7 +47,9 @@ class RandomShot {
                  << ", period_s = " << pick({2.0, 11.0, 22.0}) << ", direction_deg = " << uniform(0.0, 360.0)
                  << " } ]\n";
         shot << "[waves]\nchoppiness = " << pick({0.0, 0.5, 1.0, 1.0, 3.0, 10.0}) << "\n";
-        if (chance(0.6)) {
+        // "auto" goes as fine as somebody looks: a patch of half a metre would cost a grid of 2048² and more.
+        const bool own_cascades = chance(0.6);
+        if (own_cascades) {
             const double size = pick({1.0, 37.0, 400.0, 5000.0});
             shot << "cascades = [ { size_m = " << size << ", resolution = " << pick({16, 18, 30, 64, 96})
                  << " }";
@@ -56,7 +58,7 @@ class RandomShot {
                      << ", resolution = " << pick({16, 32}) << " }";
             shot << " ]\n";
         }
-        shot << "[surface]\nsize_m = " << pick({0.5, 50.0, 400.0, 3e4})
+        shot << "[surface]\nsize_m = " << (own_cascades ? pick({0.5, 50.0, 400.0, 3e4}) : pick({200.0, 3e4}))
              << "\nresolution = " << pick({1, 2, 3, 7, 8, 16}) << "\n";
         shot << "[effects]\nwhitecaps = " << (chance(0.8) ? "true" : "false") << "\n";
         shot << "[quality]\nlevel = \"" << pick({"draft", "preview", "final", "reference"}) << "\"\n";
@@ -64,7 +66,7 @@ class RandomShot {
              << subset({"normal", "velocity", "slope-variance", "whitecaps"}) << "]\nmaps = ["
              << subset({"displacement", "normal", "slope-variance", "whitecaps"})
              << "]\nmap_resolution = " << pick({1, 2, 5, 8, 16}) << "\n";
-        if (chance(0.2)) shot << "cascade_tiles = true\n";
+        if (own_cascades && chance(0.3)) shot << "cascade_tiles = true\n";
         return shot.str();
     }
 
@@ -159,11 +161,6 @@ TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
                 ASSERT_EQ(report.executed_transforms, report.done * make_plan(scene).transforms_per_frame());
                 results.push_back(read_all(out));
             } catch (const ShotError&) {
-                refused = true;
-            } catch (const std::invalid_argument& error) {
-                // The one refusal that no key of the file is to blame for alone.
-                ASSERT_NE(std::string(error.what()).find("nothing to bake"), std::string::npos)
-                    << error.what();
                 refused = true;
             }
             ASSERT_TRUE(!refused || !fs::exists(out)) << "refused, but something was written";

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# A first look at a shot in Blender: builds the Python module where it is missing, and renders two pictures of the shot.
+#   examples/blender-first-look.sh [SHOT.toml [OPTION…]]     default: examples/first-shot.toml; pictures in baked/first-look
+#   OPTION: --out DIR, --frames A,B, --samples N, --size WxH
+set -euo pipefail
+if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
+    sed -n '2,4s/^# //p' "$0"
+    exit 0
+fi
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# shellcheck source=setup.sh
+source "$here/setup.sh"
+shot=${1:-$here/first-shot.toml}
+[ $# -eq 0 ] || shift
+module=$PELAGIC_ROOT/build/release/python
+
+if ! compgen -G "$module/pelagic.*.so" >/dev/null; then
+    echo "The Python module isn't built yet: installing what is missing, and building it into $module"
+    install_packages
+    build release pelagic_python
+fi
+command -v blender >/dev/null || install_packages
+
+# Later options win, so a --out among the caller's does. Blender ends with 0 even where its script failed, but for this.
+PYTHONPATH=$module PYTHONDONTWRITEBYTECODE=1 blender -b --factory-startup --python-exit-code 1 \
+    --python "$here/blender-first-look.py" -- "$shot" --out "$PELAGIC_ROOT/baked/first-look" --size 960x540 "$@"
+
+cat <<EOT
+
+To look around in it, and play it:
+  PYTHONPATH=$module blender --factory-startup --python $here/blender-first-look.py -- $shot
+EOT

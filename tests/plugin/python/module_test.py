@@ -1,0 +1,274 @@
+"""The module `pelagic`: arrays of any stride, refusals, threads. What the numbers mean is tested in tests/core."""
+
+import math
+import threading
+import time
+import unittest
+
+import numpy as np
+import pelagic
+
+SIZE_M, RESOLUTION = 40.0, 16
+ALL = ("position", "displacement", "normal", "velocity", "slope_variance", "jacobian", "coverage")
+
+
+def small_scene():
+    scene = pelagic.Scene()
+    scene.surface.size_m, scene.surface.resolution = SIZE_M, RESOLUTION
+    scene.sea.wind_speed_mps = 12.0
+    return scene
+
+
+class Scene(unittest.TestCase):
+    def test_keys_read_back_what_was_written(self):
+        scene = pelagic.Scene()
+        scene.sea.wind_speed_mps, scene.sea.spectrum = 7.5, "elfouhaily"
+        scene.sea.swell = [pelagic.Swell(height_m=1.5, period_s=11.0, direction_deg=80.0)]
+        scene.shot.frames, scene.shot.name = (3, 9), "bay"
+        scene.camera.position_m = (1.0, 2.0, 3.0)
+        scene.output.attributes = ["normal"]
+        self.assertEqual((scene.sea.wind_speed_mps, scene.sea.spectrum), (7.5, "elfouhaily"))
+        self.assertEqual([s.period_s for s in scene.sea.swell], [11.0])
+        self.assertEqual((scene.shot.frames, scene.shot.name), ((3, 9), "bay"))
+        self.assertEqual(scene.camera.position_m, (1.0, 2.0, 3.0))
+        self.assertEqual(scene.output.attributes, ("normal",))
+        self.assertEqual(scene.validate(), [])
+
+    def test_a_misspelt_key_is_refused_not_added(self):
+        with self.assertRaises(AttributeError):
+            pelagic.Scene().sea.wind_speed = 3.0
+
+    def test_words_are_checked_with_the_nearest(self):
+        with self.assertRaisesRegex(pelagic.ShotError, 'sea.spectrum = "jonsvap".*nearest is "jonswap"'):
+            pelagic.Scene().sea.spectrum = "jonsvap"
+
+    def test_validate_lists_every_problem_and_a_sea_refuses_them(self):
+        scene = small_scene()
+        scene.sea.wind_speed_mps, scene.surface.resolution = -3.0, 0
+        problems = scene.validate()
+        self.assertEqual([p.split(" = ")[0] for p in problems], ["sea.wind_speed_mps", "surface.resolution"])
+        with self.assertRaises(pelagic.ShotError) as refused:
+            pelagic.Sea(scene)
+        self.assertEqual(str(refused.exception).splitlines(), problems)
+        with self.assertRaises(pelagic.ShotError):
+            pelagic.explain(scene)
+
+    def test_a_missing_file_is_a_value_error_that_names_it(self):
+        with self.assertRaisesRegex(ValueError, "nowhere.toml"):
+            pelagic.Scene.from_file("nowhere.toml")
+
+    def test_frame_times_are_the_shot_files(self):
+        self.assertEqual(pelagic.Scene().shot.time_s(25), 1.0)
+        self.assertEqual(pelagic.Scene().shot.time_s(1.5), 0.5 / 24)
+
+    def test_explain_says_what_the_sea_does(self):
+        self.assertIn("transforms", pelagic.explain(small_scene()))
+
+
+class Patch(unittest.TestCase):
+    def test_points_and_quads_are_in_the_files_order(self):
+        rest, quads = pelagic.patch(2.0, 2)
+        self.assertEqual((rest.dtype, quads.dtype), (np.float32, np.int32))
+        np.testing.assert_array_equal(rest, [(x, y) for y in (-1, 0, 1) for x in (-1, 0, 1)])
+        np.testing.assert_array_equal(quads, [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]])
+
+    def test_impossible_patches_are_refused(self):
+        for size_m, resolution in ((0.0, 4), (math.nan, 4), (10.0, 0), (10.0, 10**6)):
+            with self.assertRaisesRegex(ValueError, "accepted"):
+                pelagic.patch(size_m, resolution)
+
+
+class Query(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sea = pelagic.Sea(small_scene(), ALL)
+        cls.frame = pelagic.Frame(cls.sea)
+        cls.frame.set(2.5)
+        cls.rest, _ = pelagic.patch(SIZE_M, RESOLUTION)
+        cls.plain = cls.frame.evaluate(cls.rest)
+
+    def test_fresh_arrays_hold_all_products_or_those_asked_for(self):
+        self.assertEqual(tuple(self.plain), ALL)
+        for name, array in self.plain.items():
+            self.assertEqual((array.dtype, len(array)), (np.float32, len(self.rest)))
+            self.assertTrue(np.isfinite(array).all(), name)
+        self.assertEqual(list(self.frame.evaluate(self.rest, outputs=("coverage",))), ["coverage"])
+        # The sea moves: an answer of zeros would pass everything else here.
+        self.assertGreater(self.plain["position"][:, 2].std(), 0.1)
+
+    def test_strided_outputs_are_the_same_bits_and_nothing_between_is_touched(self):
+        # Blender 3.4's vertex: three floats, then four bytes that are its own.
+        vertices = np.zeros(len(self.rest), np.dtype([("co", np.float32, 3), ("flags", np.uint32)]))
+        vertices["flags"] = 0xDEADBEEF
+        mixed = np.full((len(self.rest), 9), 7.0, np.float32)
+        backwards = np.empty((len(self.rest), 3), np.float32)
+        written = self.frame.evaluate(self.rest, position=vertices["co"], velocity=mixed[:, 1:4],
+                                      coverage=mixed[:, 6], normal=backwards[::-1])
+        np.testing.assert_array_equal(vertices["co"], self.plain["position"])
+        np.testing.assert_array_equal(vertices["flags"], 0xDEADBEEF)
+        np.testing.assert_array_equal(mixed[:, 1:4], self.plain["velocity"])
+        np.testing.assert_array_equal(mixed[:, 6], self.plain["coverage"])
+        np.testing.assert_array_equal(mixed[:, [0, 4, 5, 7, 8]], 7.0)
+        np.testing.assert_array_equal(backwards[::-1], self.plain["normal"])
+        self.assertEqual(sorted(written), ["coverage", "normal", "position", "velocity"])
+
+    def test_strided_points_give_the_same_bits(self):
+        wide = np.zeros((len(self.rest), 5), np.float32)
+        wide[:, 2:4] = self.rest
+        got = self.frame.evaluate(wide[:, 2:4], outputs=("position",))["position"]
+        np.testing.assert_array_equal(got, self.plain["position"])
+
+    def test_an_origin_stands_for_far_points(self):
+        # 2^20 m on, in a float32 position the points would be 1/16 m off; as an origin they are not: the same sea to the
+        # rounding of a phase, 40 m · 2^-24 times its steepness, whichever way the distance is split.
+        far = self.frame.evaluate(self.rest, (2.0**20, 0.0), outputs=("displacement",))["displacement"]
+        split = self.frame.evaluate(self.rest + np.float32([8, 0]), (2.0**20 - 8, 0.0),
+                                    outputs=("displacement",))["displacement"]
+        np.testing.assert_allclose(far, split, atol=1e-4)
+        self.assertGreater(np.abs(far - self.plain["displacement"]).max(), 0.1)
+
+    def test_footprints_a_number_or_one_a_point(self):
+        ladder = [2.5, 5.0, 10.0]
+        frame = pelagic.Frame(pelagic.Sea(small_scene(), ALL, cell_m=ladder, pixel_m=ladder))
+        frame.set(2.5)
+        one = frame.evaluate(self.rest, cell_m=7, pixel_m=np.float32(7))
+        each = np.full(len(self.rest), 7, np.float32)
+        for name, array in frame.evaluate(self.rest, cell_m=each, pixel_m=each).items():
+            np.testing.assert_array_equal(array, one[name])
+        # What a larger footprint hides is slope variance.
+        finest = frame.evaluate(self.rest)
+        self.assertTrue((one["slope_variance"][:, :2] > finest["slope_variance"][:, :2]).all())
+
+    def test_types_that_would_need_a_copy_are_refused(self):
+        points = len(self.rest)
+        for wrong in (self.rest.astype(np.float64), self.rest.astype(">f4"), self.rest.tolist(), None):
+            with self.assertRaisesRegex(TypeError, "rest: .*accepted: a float32 numpy array"):
+                self.frame.evaluate(wrong)
+        with self.assertRaisesRegex(TypeError, "position: .*float64"):
+            self.frame.evaluate(self.rest, position=np.zeros((points, 3)))
+        with self.assertRaisesRegex(TypeError, "cell_m"):
+            self.frame.evaluate(self.rest, cell_m="wide")
+
+    def test_shapes_and_memory_that_cannot_serve_are_refused(self):
+        points = len(self.rest)
+        read_only = np.zeros((points, 3), np.float32)
+        read_only.flags.writeable = False
+        overlapping = np.lib.stride_tricks.as_strided(np.zeros(points + 3, np.float32), (points, 3), (4, 4))
+        unaligned = np.zeros(12 * points + 1, np.uint8)[1:].view(np.float32).reshape(points, 3)
+        for said, wrong in (("its shape is", np.zeros((points, 4), np.float32)),
+                            ("its shape is", np.zeros((points - 1, 3), np.float32)),
+                            ("read-only", read_only), ("overlap", overlapping), ("multiples of 4", unaligned),
+                            ("bytes apart", np.zeros((3, points), np.float32).T)):
+            with self.assertRaisesRegex(ValueError, "position: .*" + said):
+                self.frame.evaluate(self.rest, position=wrong)
+        with self.assertRaisesRegex(ValueError, "coverage: its shape is"):
+            self.frame.evaluate(self.rest, coverage=np.zeros((points, 1), np.float32))
+
+    def test_values_that_are_no_place_or_time_are_refused(self):
+        for bad in (math.nan, math.inf, 1e30):
+            rest = self.rest.copy()
+            rest[5, 1] = bad
+            with self.assertRaisesRegex(ValueError, "rest: point 5"):
+                self.frame.evaluate(rest)
+        with self.assertRaisesRegex(ValueError, "origin"):
+            self.frame.evaluate(self.rest, (math.nan, 0.0))
+        with self.assertRaisesRegex(ValueError, "pixel_m"):
+            self.frame.evaluate(self.rest, pixel_m=-1.0)
+        with self.assertRaisesRegex(ValueError, "finite"):
+            pelagic.Frame(self.sea).set(math.inf)
+        with self.assertRaisesRegex(ValueError, "set"):
+            pelagic.Frame(self.sea).evaluate(self.rest)
+
+    def test_products_are_those_of_the_sea(self):
+        frame = pelagic.Frame(pelagic.Sea(small_scene(), ("position",)))
+        frame.set(0.0)
+        self.assertEqual(frame.sea.products, ("position",))
+        with self.assertRaisesRegex(ValueError, "coverage: the sea was built without it"):
+            frame.evaluate(self.rest, outputs=("coverage",))
+        with self.assertRaisesRegex(ValueError, 'nearest is "position"'):
+            frame.evaluate(self.rest, outputs=("positon",))
+        with self.assertRaisesRegex(ValueError, 'nearest is "velocity"'):
+            pelagic.Sea(small_scene(), ("velocty",))
+
+    def test_no_points_are_an_empty_answer(self):
+        for array in self.frame.evaluate(np.empty((0, 2), np.float32)).values():
+            self.assertEqual(len(array), 0)
+
+
+class Threads(unittest.TestCase):
+    def test_two_frames_of_one_sea_in_two_threads_give_the_same_bits(self):
+        sea = pelagic.Sea(small_scene(), ALL)
+        rest, _ = pelagic.patch(SIZE_M, RESOLUTION)
+        times = [0.25 * i for i in range(40)]
+
+        def run(order, answers):
+            frame = pelagic.Frame(sea)
+            for t in order:
+                frame.set(t)
+                answers[t] = frame.evaluate(rest)
+            answers["transforms"] = frame.executed_transforms
+
+        alone, first, second = {}, {}, {}
+        run(times, alone)
+        threads = [threading.Thread(target=run, args=(times, first)),
+                   threading.Thread(target=run, args=(times[::-1], second))]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for answers in (first, second):
+            self.assertEqual(answers["transforms"], len(times) * sea.transforms_per_frame)
+            for t in times:
+                for name in ALL:
+                    np.testing.assert_array_equal(answers[t][name], alone[t][name])
+
+    def test_other_threads_run_while_a_frame_is_computed(self):
+        # A second thread looks at the clock all the time. While set() held the interpreter it could not, and its
+        # longest pause would be all of set().
+        scene = small_scene()
+        scene.waves.cascades = [pelagic.CascadeSize(size_m=400.0, resolution=1024)]
+        frame = pelagic.Frame(pelagic.Sea(scene, ALL, cell_m=0.0, pixel_m=0.0))
+        pauses, done = [], threading.Event()
+
+        def watch():
+            last = time.perf_counter()
+            while not done.is_set():
+                now = time.perf_counter()
+                pauses.append((now - last, last))
+                last = now
+
+        thread = threading.Thread(target=watch)
+        thread.start()
+        begin = time.perf_counter()
+        frame.set(1.0)
+        end = time.perf_counter()
+        done.set()
+        thread.join()
+        longest = max(pause for pause, start in pauses if begin - pause <= start <= end)
+        self.assertLess(longest, 0.5 * (end - begin))
+
+
+class Numbers(unittest.TestCase):
+    def test_the_sea_says_what_it_is(self):
+        sea = pelagic.Sea(small_scene())
+        points = pelagic.patch(2000.0, 200)[0]
+        frame = pelagic.Frame(pelagic.Sea(small_scene(), ("displacement",), cell_m=0.0, pixel_m=0.0))
+        frame.set(0.0)
+        height = frame.evaluate(points, outputs=("displacement",))["displacement"][:, 2]
+        # One realisation on 2 km: its variance strays by some 7 % from the spectrum's, Hs by half of that; 4 deviations.
+        self.assertLess(abs(4 * height.std() / sea.significant_height_m - 1), 0.14)
+        self.assertTrue(0.0 < sea.mss < 0.2)
+        self.assertTrue(-1.0 < sea.whitecap_threshold < 1.0)
+        self.assertGreater(sea.transforms_per_frame, 0)
+        self.assertGreater(sea.bytes, 0)
+        self.assertGreater(sea.frame_bytes, 0)
+
+    def test_only_what_is_asked_for_is_computed(self):
+        counts = [pelagic.Sea(small_scene(), products).transforms_per_frame
+                  for products in (("slope_variance",), ("position",), ("position", "normal"), ALL)]
+        self.assertEqual(counts[0], 0)
+        self.assertEqual(counts, sorted(set(counts)))
+
+
+if __name__ == "__main__":
+    unittest.main()

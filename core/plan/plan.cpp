@@ -247,7 +247,8 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
     for (const Query& query : queries) {
         const auto rising = [](const std::vector<double>& footprints) {
             return !footprints.empty() && footprints.front() >= 0.0 && std::isfinite(footprints.back()) &&
-                   std::is_sorted(footprints.begin(), footprints.end(), std::less_equal<>());
+                   std::adjacent_find(footprints.begin(), footprints.end(),
+                                      [](double a, double b) { return !(a < b); }) == footprints.end();
         };
         if (!rising(query.cell_m) || !rising(query.pixel_m))
             throw std::invalid_argument(

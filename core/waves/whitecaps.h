@@ -130,7 +130,7 @@ T coverage(const JacobianMoments<T>& j, T threshold, bool third_moment) {
     if (!(j.variance > T(0))) return j.mean < threshold ? T(1) : T(0);
     const T sigma = std::sqrt(j.variance);
     T z = (threshold - j.mean) / sigma;
-    if (third_moment) z = whitecaps_detail::to_normal(z, j.third / (j.variance * sigma));
+    if (third_moment) z = whitecaps_detail::to_normal(z, j.third / j.variance / sigma);
     return std::clamp(T(0.5) * std::erfc(-z / T(std::sqrt(2.0))), T(0), T(1));
 }
 
@@ -148,7 +148,7 @@ inline double calibrated_threshold(const SpectralMoments& all_waves, double wind
     constexpr double kNoFoam = 1e-9;  // a square millimetre in a thousand square metres
     if (w < kNoFoam || !(j.variance > 0.0)) return -std::numeric_limits<double>::infinity();
     const double sigma = std::sqrt(j.variance);
-    const double skewness = j.third / (j.variance * sigma);
+    const double skewness = j.third / j.variance / sigma;
     return j.mean + sigma * whitecaps_detail::from_normal(whitecaps_detail::normal_quantile(w), skewness);
 }
 

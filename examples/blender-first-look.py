@@ -323,7 +323,7 @@ def render(scene, path):
     bpy.ops.render.render(write_still=True, scene=scene.name)
 
 
-MIDDLE_GREY, HIGHLIGHT = 0.22, 5.0  # scene-linear; Filmic's curve ends at 16
+MIDDLE_GREY, HIGHLIGHT = 0.22, 6.5  # scene-linear; Filmic's curve ends at 16
 
 
 def meter(scene):

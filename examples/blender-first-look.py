@@ -1,10 +1,11 @@
-"""A first look at a shot in Blender: its sea as a mesh that moves with the timeline, out to the horizon, under its sun.
+"""A first look at a shot in Blender: its sea as a mesh that moves with the timeline, to the horizon, under its sun.
 
     blender -b --factory-startup --python examples/blender-first-look.py -- SHOT.toml --out DIR
     blender --factory-startup --python examples/blender-first-look.py -- SHOT.toml
 
-The first renders two pictures, DIR/NAME.####.png; the second leaves the sea in the window to look around in and to play.
-examples/blender-first-look.sh builds the module `pelagic`, whose folder has to be in PYTHONPATH, and calls this.
+The first renders two pictures, DIR/NAME.####.png; the second leaves the sea in the window, to play and to look
+around in. examples/blender-first-look.sh builds the module `pelagic`, whose folder has to be in PYTHONPATH, and
+calls this.
 How the buffers get into the mesh, and why in this way: examples/blender-buffers.md.
 """
 
@@ -89,14 +90,15 @@ class LivingSea:
         self.shot = shot
         surface = shot.surface
         self.rest, quads, self.cell_m = sea_points(surface.size_m, surface.resolution)
-        # Rungs a factor of two apart, from the patch's quads to the farthest: what a quad is too large for goes into the
-        # variance and the coverage, and the far sea is as rough as the near one.
+        # Rungs a factor of two apart, from the patch's quads to the farthest: what a quad is too large for goes into
+        # the variance and the coverage, and the far sea is as rough as the near one.
         spacing_m = surface.size_m / surface.resolution
         rungs = 1 + math.ceil(math.log2(max(self.cell_m.max() / spacing_m, 1)))
         ladder_m = [spacing_m * 2**i for i in range(rungs + 1)]
         products = ["position", "velocity", "slope_variance"] + ["coverage"] * shot.effects.whitecaps
         self.frame = pelagic.Frame(pelagic.Sea(shot, products, cell_m=ladder_m, pixel_m=ladder_m))
-        self.arrays = {product: np.empty((len(self.rest),) if product == "coverage" else (len(self.rest), 3), np.float32)
+        points = len(self.rest)
+        self.arrays = {product: np.empty(points if product == "coverage" else (points, 3), np.float32)
                        for product in products}
         self.time_s = None
 
@@ -168,8 +170,8 @@ def water_material(shot):
     place = add("ShaderNodeVectorMath", {0: add("ShaderNodeUVMap", uv_map="UVMap"), 1: (shot.surface.size_m,) * 3},
                 operation="MULTIPLY")  # the rest position [m]: what is drawn there rides with the water
     along = add("ShaderNodeVectorRotate", {"Vector": place, "Angle": -math.radians(shot.sea.wind_direction_deg)})
-    variance = add("ShaderNodeSeparateXYZ",
-                   {"Vector": add("ShaderNodeAttribute", attribute_name="slope_variance", output="Vector")}).node.outputs
+    hidden = add("ShaderNodeAttribute", attribute_name="slope_variance", output="Vector")
+    variance = add("ShaderNodeSeparateXYZ", {"Vector": hidden}).node.outputs
     normal = ripples(nodes, shot, along, variance)
     # The rest is roughness: facets of the width α² = 2σ², with σ² the mean of the variances along x and y, and
     # Principled's roughness is √α. So roughness = ((1 − part)(σxx + σyy))^¼.
@@ -177,7 +179,8 @@ def water_material(shot):
     # Light that comes back from under the surface: a dark body, a little greener in the thin crests.
     height = add("ShaderNodeSeparateXYZ", {"Vector": add("ShaderNodeNewGeometry", output="Position")}, output=2)
     crest = add("ShaderNodeMapRange", {"Value": height, "From Min": 0.0, "From Max": 3.0})
-    body = add("ShaderNodeMixRGB", {"Fac": crest, "Color1": (0.004, 0.035, 0.052, 1), "Color2": (0.012, 0.1, 0.105, 1)})
+    body = add("ShaderNodeMixRGB",
+               {"Fac": crest, "Color1": (0.004, 0.035, 0.052, 1), "Color2": (0.012, 0.1, 0.105, 1)})
     normal_reflectance = ((WATER_IOR - 1) / (WATER_IOR + 1)) ** 2
     water = add("ShaderNodeBsdfPrincipled",
                 {"Base Color": body, "Roughness": roughness, "Specular": normal_reflectance / 0.08,
@@ -194,7 +197,8 @@ def water_material(shot):
     return material
 
 
-# Blender's noise, mean and deviation measured over 512² points; as good as normally distributed from its 0.1 to its 99.9 %.
+# Blender's noise, mean and deviation measured over 512² points; as good as normally distributed from its 0.1 to its
+# 99.9 %.
 NOISE = {"Scale": 1.0, "Detail": 6.0, "Roughness": 0.65}
 NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0602
 RIPPLE_PART = 0.8  # of the hidden slope variance, drawn as ripples; the remainder is the shortest waves' blur
@@ -208,8 +212,8 @@ def scaled(nodes, along, per_m):
 
 
 def ripples(nodes, shot, along, variance):
-    """A normal: the mesh's, tilted by noise whose slopes have the hidden variance. So the waves that are too short for
-    the mesh are there, if not at their own places, and near and far the sea has the roughness that the shot gives it."""
+    """A normal: the mesh's, tilted by noise whose slopes have the hidden variance. So the waves that are too short
+    for the mesh are there, if not at their own places, and near and far the sea is as rough as the shot says."""
     add = nodes.add
     noise = nodes.tree.nodes.new("ShaderNodeTexNoise")
     noise.noise_dimensions = "4D"

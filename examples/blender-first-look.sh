@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A first look at a shot in Blender: builds the Python module where it is missing, and renders two pictures of the shot.
-#   examples/blender-first-look.sh [SHOT.toml [OPTION…]]     default: examples/first-shot.toml; pictures in baked/first-look
+# A first look at a shot in Blender: builds the Python module where it is missing, and renders two pictures.
+#   examples/blender-first-look.sh [SHOT.toml [OPTION…]]     default: examples/first-shot.toml, into baked/first-look
 #   OPTION: --out DIR, --frames A,B, --samples N, --size WxH
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
@@ -21,7 +21,7 @@ if ! compgen -G "$module/pelagic.*.so" >/dev/null; then
 fi
 command -v blender >/dev/null || install_packages
 
-# Later options win, so a --out among the caller's does. Blender ends with 0 even where its script failed, but for this.
+# Of options given twice the later counts: the caller's. Without --python-exit-code Blender hides a script's failure.
 PYTHONPATH=$module PYTHONDONTWRITEBYTECODE=1 blender -b --factory-startup --python-exit-code 1 \
     --python "$here/blender-first-look.py" -- "$shot" --out "$PELAGIC_ROOT/baked/first-look" --size 960x540 "$@"
 

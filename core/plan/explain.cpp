@@ -131,9 +131,10 @@ std::string explain(const Scene& scene, const Plan& plan) {
             page += "\n";
         }
     }
-    page += format("\nEach frame: %d transforms. Held: %s for the sea, %s for a frame.\n",
-                   plan.transforms_per_frame(), bytes_text(plan.sea_bytes()).c_str(),
-                   bytes_text(plan.frame_bytes()).c_str());
+    page += format(
+        "\nEach frame: %d transforms. Held: %s for the sea, %s for a frame, %s for points and results.\n",
+        plan.transforms_per_frame(), bytes_text(plan.sea_bytes()).c_str(),
+        bytes_text(plan.frame_bytes()).c_str(), bytes_text(plan.output_bytes()).c_str());
     page += format("Quality %s: %s precision, %d-tap splines, %.3g × oversampled.\n",
                    std::string(word_of(scene.quality.level)).c_str(),
                    plan.knobs.double_precision ? "double" : "single", plan.knobs.spline_taps,

@@ -194,6 +194,7 @@ void add_map_queries(std::vector<Query>& queries, const Scene& scene, double siz
                 (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) + row.name;
             query.products = row.needs();
             query.map = map;
+            query.points = static_cast<std::size_t>(n) * n;
             query.lattice = Lattice{-0.5 * size_m, size_m / n};
             query.only_cascade = cascade;
             query.pixel_m =
@@ -222,6 +223,7 @@ std::vector<Query> bake_queries(const Scene& scene) {
                 if (row.attribute == attribute && (!row.of_whitecaps || scene.effects.whitecaps))
                     mesh.products.set(index(row.product));
         mesh.cell_m = mesh.pixel_m = {spacing_m};
+        mesh.points = (surface.resolution + std::size_t(1)) * (surface.resolution + std::size_t(1));
         mesh.lattice = Lattice{-0.5 * surface.size_m, spacing_m};
         queries.push_back(std::move(mesh));
         finest_m = spacing_m;
@@ -311,6 +313,27 @@ std::size_t Plan::frame_bytes() const {
         for (const Grid& grid : cascade.grids)
             bytes += grid.transforms.size() * complex_bytes * grid.resolution *
                      static_cast<std::size_t>(grid.resolution);
+    }
+    return bytes;
+}
+
+std::size_t Plan::output_bytes() const {
+    const std::size_t scalar = knobs.double_precision ? sizeof(double) : sizeof(float);
+    std::size_t bytes = 0;
+    for (const ProductRow& row : kProductTable) {
+        std::size_t most = 0;  // one array a product, as long as the longest query needs
+        for (const PlannedQuery& planned : queries)
+            if (planned.query.products[index(row.product)]) most = std::max(most, planned.query.points);
+        bytes += most * row.scalars * (sizeof(float) + (knobs.double_precision ? sizeof(double) : 0));
+    }
+    std::vector<std::pair<std::size_t, double>>
+        squares;  // points at rest, shared by queries over the same square
+    for (const PlannedQuery& planned : queries) {
+        const std::pair square(planned.query.points,
+                               planned.query.lattice ? planned.query.lattice->spacing_m : 0.0);
+        if (std::find(squares.begin(), squares.end(), square) != squares.end()) continue;
+        squares.push_back(square);
+        bytes += square.first * 2 * scalar;
     }
     return bytes;
 }

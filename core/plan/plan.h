@@ -32,8 +32,8 @@ struct Query {
     // `pixel_m` everything that comes from derivatives.
     std::vector<double> cell_m{0.0};
     std::vector<double> pixel_m{0.0};
-    std::optional<Lattice>
-        lattice;  // where the points are known to lie on one: sampling may be free of error
+    std::size_t points = 0;           // how many at a time, for explain()'s account of memory
+    std::optional<Lattice> lattice;   // where the points are known to lie on one: no error of sampling
     std::optional<int> only_cascade;  // a cascade's own tile: the others count as unresolved
     std::optional<MapKind> map;       // what a bake makes of the answers; a mesh where there is none
 };
@@ -102,8 +102,10 @@ struct Plan {
     std::uint64_t fingerprint = 0;  // of everything that decides what the files hold, except which frames
 
     int transforms_per_frame() const;
-    std::size_t sea_bytes() const;         // held once, shared
-    std::size_t frame_bytes() const;       // held by each Frame
+    std::size_t sea_bytes() const;    // held once, shared
+    std::size_t frame_bytes() const;  // held by each Frame
+    std::size_t output_bytes()
+        const;  // points at rest and results, reused from query to query and frame to frame
     std::string fingerprint_text() const;  // 16 hexadecimal digits
 };
 

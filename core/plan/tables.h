@@ -13,25 +13,26 @@ struct ProductRow {
     const char* name;
     FieldSet (*needs)();
     const char* why;
+    std::size_t scalars;  // a point
 };
 
 inline const std::array<ProductRow, kProductCount> kProductTable{{
     {Product::Position, "position", [] { return fields(Field::Height, Field::Dx, Field::Dy); },
-     "the displaced point"},
+     "the displaced point", 3},
     {Product::Displacement, "displacement", [] { return fields(Field::Height, Field::Dx, Field::Dy); },
-     "the displaced point less the point at rest"},
+     "the displaced point less the point at rest", 3},
     {Product::Normal, "normal",
      [] { return fields(Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy, Field::Dxy); },
-     "the cross product of the displaced tangents"},
+     "the cross product of the displaced tangents", 3},
     {Product::Velocity, "velocity",
-     [] { return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ); },
-     "the sums' time derivative"},
+     [] { return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ); }, "the sums' time derivative",
+     3},
     {Product::SlopeVariance, "slope variance", [] { return FieldSet(); },
-     "a remainder of the spectrum: no transform"},
+     "a remainder of the spectrum: no transform", 3},
     {Product::JacobianMoments, "Jacobian moments", [] { return fields(Field::Dxx, Field::Dyy, Field::Dxy); },
-     "J and the variance that the footprint hides"},
+     "J and the variance that the footprint hides", 3},
     {Product::Coverage, "whitecap coverage", [] { return fields(Field::Dxx, Field::Dyy, Field::Dxy); },
-     "where J falls below the threshold of breaking"},
+     "where J falls below the threshold of breaking", 1},
 }};
 
 struct AttributeRow {

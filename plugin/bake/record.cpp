@@ -132,6 +132,7 @@ void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoment
     planned["transforms_per_frame"] = plan.transforms_per_frame();
     planned["sea_bytes"] = plan.sea_bytes();
     planned["frame_bytes"] = plan.frame_bytes();
+    planned["output_bytes"] = plan.output_bytes();
     planned["cascades"] = Json::array();
     for (const CascadePlan& cascade : plan.cascades)
         planned["cascades"].push_back({{"size_m", cascade.size_m},

@@ -34,7 +34,7 @@ std::string summary(const Scene& scene, const Plan& plan) {
                 " m/s";
     }
     return text + ": " + count_text(plan.transforms_per_frame(), "transform", "transforms") + " a frame, " +
-           bytes_text(plan.sea_bytes() + plan.frame_bytes());
+           bytes_text(plan.sea_bytes() + plan.frame_bytes() + plan.output_bytes());
 }
 
 }  // namespace

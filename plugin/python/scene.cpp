@@ -43,7 +43,6 @@ std::string class_doc(const std::string& path) {
 }
 
 // ---- How values look in Python: choices are the shot file's words, vectors and lists are tuples
-// ----------------------
 
 template <class Value>
 struct Face {
@@ -103,7 +102,6 @@ struct Face<std::vector<Element>> {
 };
 
 // ---- Classes out of structs
-// ------------------------------------------------------------------------------------------
 
 // A table, or an entry of a list ("sea.swell[]"): its keys become attributes.
 template <class Table>

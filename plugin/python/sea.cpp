@@ -57,7 +57,6 @@ const ProductName& product_of(const std::string& name) {
 }
 
 // ---- Sea
-// -------------------------------------------------------------------------------------------------------------
 
 using Ladder = std::variant<double, std::vector<double>>;
 
@@ -102,7 +101,6 @@ PythonSea build_sea(const Scene& scene, const SeaRequest& request) {
 }
 
 // ---- Frame
-// -----------------------------------------------------------------------------------------------------------
 
 // A point further out is a mistake: the finest waves need their phase, and indices their range.
 constexpr Range kRest_m = limits::kCameraCoordinate_m;

@@ -119,12 +119,13 @@ class Query(unittest.TestCase):
         np.testing.assert_array_equal(got, self.plain["position"])
 
     def test_an_origin_stands_for_far_points(self):
-        # 2^20 m on, in a float32 position the points would be 1/16 m off; as an origin they are not: the same sea to the
-        # rounding of a phase, 40 m · 2^-24 times its steepness, whichever way the distance is split.
+        # 2^20 m on, single-precision positions are 1/8 m apart. As an origin in double, the distance may be split
+        # anyhow: what differs is the rounding of the rest, 2e-6 m, times the displacement's gradient (below 1), and
+        # that of the sums, some 1e-7 of metres; with a margin of ten.
         far = self.frame.evaluate(self.rest, (2.0**20, 0.0), outputs=("displacement",))["displacement"]
         split = self.frame.evaluate(self.rest + np.float32([8, 0]), (2.0**20 - 8, 0.0),
                                     outputs=("displacement",))["displacement"]
-        np.testing.assert_allclose(far, split, atol=1e-4)
+        np.testing.assert_allclose(far, split, atol=3e-5)
         self.assertGreater(np.abs(far - self.plain["displacement"]).max(), 0.1)
 
     def test_footprints_a_number_or_one_a_point(self):
@@ -255,7 +256,8 @@ class Numbers(unittest.TestCase):
         frame = pelagic.Frame(pelagic.Sea(small_scene(), ("displacement",), cell_m=0.0, pixel_m=0.0))
         frame.set(0.0)
         height = frame.evaluate(points, outputs=("displacement",))["displacement"][:, 2]
-        # One realisation on 2 km: its variance strays by some 7 % from the spectrum's, Hs by half of that; 4 deviations.
+        # One realisation on 2 km: its variance strays by some 7 % from the spectrum's, Hs by half of that; four
+        # deviations.
         self.assertLess(abs(4 * height.std() / sea.significant_height_m - 1), 0.14)
         self.assertTrue(0.0 < sea.mss < 0.2)
         self.assertTrue(-1.0 < sea.whitecap_threshold < 1.0)

@@ -57,8 +57,9 @@ JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, const HiddenStrain<T>& 
     return result;
 }
 
-// Mean, variance and third cumulant of a weighted set of parts from theirs and from the spread of their means: how a mip
-// level is made (law of total cumulance). Powers are taken about the first part's mean, so that a calm sea doesn't cancel.
+// Mean, variance and third cumulant of a weighted set of parts from theirs and from the spread of their
+// means: how a mip level is made (law of total cumulance). Powers are taken about the first part's mean, so
+// that a calm sea doesn't cancel.
 template <class T>
 class MomentSum {
   public:

@@ -189,9 +189,11 @@ def water_material(shot):
     # Foam: coverage is the part of the surface that is white. Fine noise decides which part, so that a half-covered
     # crest is streaks of foam and not grey paint.
     coverage = add("ShaderNodeAttribute", attribute_name="whitecap_coverage", output="Fac")
-    noise = add("ShaderNodeTexNoise", {"Vector": scaled(nodes, along, FOAM_PER_M), **NOISE})
+    # Streaks: long along the wind, which combs foam into lines.
+    streaks = add("ShaderNodeVectorMath", {0: along, 1: (FOAM_PER_M / 4, FOAM_PER_M, 1)}, operation="MULTIPLY")
+    noise = add("ShaderNodeTexNoise", {"Vector": streaks, **NOISE})
     foam = foam_mask(nodes, coverage, noise)
-    white = add("ShaderNodeBsdfDiffuse", {"Color": (0.9, 0.92, 0.93, 1)})
+    white = add("ShaderNodeBsdfDiffuse", {"Color": FOAM_ALBEDO})
     surface = add("ShaderNodeMixShader", {0: foam, 1: water, 2: white})
     add("ShaderNodeOutputMaterial", {"Surface": surface})
     return material
@@ -203,8 +205,9 @@ NOISE = {"Scale": 1.0, "Detail": 6.0, "Roughness": 0.65}
 NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0602
 RIPPLE_PART = 0.8  # of the hidden slope variance, drawn as ripples; the remainder is the shortest waves' blur
 RIPPLE_PER_M = 1.4  # the coarsest of the noise's octaves, along the wind; twice as long across it, as crests are
-FOAM_PER_M = 0.7
-FOAM_EDGE = 0.7  # half the width of the soft edge, in logits
+FOAM_PER_M = 1.6  # the coarsest octave across the wind
+FOAM_EDGE = 1.6  # half the width of the soft edge, in logits: foam thins out before it ends
+FOAM_ALBEDO = (0.55, 0.565, 0.57, 1)  # dense fresh foam (Koepke 1984)
 
 
 def scaled(nodes, along, per_m):

@@ -29,8 +29,8 @@ struct Rung {
 template <class T>
 Rung<T> rung_of(const std::vector<double>& ladder_m, const Strided<const T>& footprint_m, std::size_t point) {
     if (!footprint_m || ladder_m.size() == 1) return {};
-    const double wanted =
-        std::clamp(static_cast<double>(footprint_m[point]), ladder_m.front(), ladder_m.back());
+    const double wanted = std::min(static_cast<double>(footprint_m[point]), ladder_m.back());
+    if (!(wanted > ladder_m.front())) return {};  // the finest rung, for a footprint that is no number, too
     const auto above = std::upper_bound(ladder_m.begin() + 1, ladder_m.end() - 1, wanted);
     const std::size_t upper = static_cast<std::size_t>(above - ladder_m.begin());
     const double lower_m = ladder_m[upper - 1], upper_m = ladder_m[upper];
@@ -104,7 +104,9 @@ void add_grid(const Reader<T>& reader, glm::dvec2 relative_m, int taps, const Su
     const double n = reader.grid->resolution;
     const auto wrap = [n](double nodes) {
         const double inside = nodes - n * std::floor(nodes / n);
-        return inside < n ? inside : 0.0;  // −1e-20 rounds up to n itself
+        // −1e-20 rounds up to n itself; a place that is no number, or so far that nothing of it is left,
+        // becomes 0.
+        return inside >= 0.0 && inside < n ? inside : 0.0;
     };
     const glm::dvec2 node(wrap(reader.origin_nodes_x + relative_m.x * reader.nodes_per_m),
                           wrap(reader.origin_nodes_y + relative_m.y * reader.nodes_per_m));
@@ -125,7 +127,7 @@ struct Hidden {
 template <class T>
 Hidden hidden_at(const Sea<T>& sea, int query, const Rung<T>& rung) {
     const QueryStatistics& statistics = sea.statistics(query);
-    const SpectralMoments& total = sea.total();
+    const SpectralMoments& total = statistics.whole;
     const double t = static_cast<double>(rung.t);
     // ((1−t) w_a + t w_b)², expanded.
     const auto resolved = [&](double SpectralMoments::*m) {
@@ -155,21 +157,16 @@ Hidden hidden_at(const Sea<T>& sea, int query, const Rung<T>& rung) {
 }
 
 template <class T>
-void refuse_unasked(const Query& query, const Results<T>& results) {
-    const auto check = [&](bool given, Product product) {
-        if (!given || query.products[index(product)]) return;
-        for (const ProductRow& row : kProductTable)
-            if (row.product == product)
-                throw std::invalid_argument("query \"" + query.name + "\" does not hold \"" + row.name +
-                                            "\": ask for it when the plan is made");
-    };
-    check(static_cast<bool>(results.position), Product::Position);
-    check(static_cast<bool>(results.displacement), Product::Displacement);
-    check(static_cast<bool>(results.normal), Product::Normal);
-    check(static_cast<bool>(results.velocity), Product::Velocity);
-    check(static_cast<bool>(results.slope_variance), Product::SlopeVariance);
-    check(static_cast<bool>(results.jacobian), Product::JacobianMoments);
-    check(static_cast<bool>(results.coverage), Product::Coverage);
+ProductSet given_by(const Results<T>& results) {
+    ProductSet given;
+    given[index(Product::Position)] = static_cast<bool>(results.position);
+    given[index(Product::Displacement)] = static_cast<bool>(results.displacement);
+    given[index(Product::Normal)] = static_cast<bool>(results.normal);
+    given[index(Product::Velocity)] = static_cast<bool>(results.velocity);
+    given[index(Product::SlopeVariance)] = static_cast<bool>(results.slope_variance);
+    given[index(Product::JacobianMoments)] = static_cast<bool>(results.jacobian);
+    given[index(Product::Coverage)] = static_cast<bool>(results.coverage);
+    return given;
 }
 
 }  // namespace
@@ -181,7 +178,12 @@ void evaluate(const Frame<T>& frame, int query_index, const Points<T>& points, c
     const Plan& plan = sea.plan();
     const PlannedQuery& planned = plan.queries.at(query_index);
     const Query& query = planned.query;
-    refuse_unasked(query, results);
+    if (!frame.is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
+    const ProductSet given = given_by(results);
+    for (const ProductRow& row : kProductTable)
+        if (given[index(row.product)] && !query.products[index(row.product)])
+            throw std::invalid_argument("query \"" + query.name + "\" does not hold \"" + row.name +
+                                        "\": ask for it when the plan is made");
 
     const FieldSet cell_group = cell_fields();
     const bool jacobian_wanted = results.jacobian || results.coverage;
@@ -216,7 +218,7 @@ void evaluate(const Frame<T>& frame, int query_index, const Points<T>& points, c
                     if (const Reader<T> reader = reader_of(c, level); reader.grid)
                         readers[level].push_back(reader);
 
-    const FieldSet needed = fields_of(query.products);
+    const FieldSet needed = fields_of(given);
     const auto evaluate_point = [&](std::size_t i) {
         const glm::vec<2, T> rest = points.rest_m[i];
         const Rung<T> cell = rung_of(query.cell_m, points.cell_m, i),

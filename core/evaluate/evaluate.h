@@ -22,7 +22,7 @@ struct Points {
 };
 
 // Where results go: the caller's memory, any stride. An empty view is skipped; one that the query did not ask
-// for is refused. Every value written is finite.
+// for is refused. Every value written is finite if rest_m is.
 template <class T>
 struct Results {
     Strided<glm::vec<3, T>> position;      // [m], relative to Points::origin_m; z up

@@ -107,7 +107,7 @@ std::string explain(const Scene& scene, const Plan& plan) {
             cascade.k_lower > 0.0 ? format("%.4g m", kTwoPi / cascade.k_lower) : std::string("any length");
         page += std::isfinite(cascade.k_upper)
                     ? format(" down to %.4g m", kTwoPi / cascade.k_upper)
-                    : format(" down to %.4g m", 2.0 * cascade.size_m / cascade.resolution);
+                    : format(" down to %.4g m", cascade.size_m / (cascade.resolution / 2 - 1));
         page += "\n";
         if (cascade.grids.empty()) {
             page += "     nothing runs: " + cascade.why_empty + "\n";
@@ -115,7 +115,7 @@ std::string explain(const Scene& scene, const Plan& plan) {
         }
         page += format("     %zu modes, %s\n", half_plane_modes(cascade.mode_radius),
                        bytes_text(half_plane_modes(cascade.mode_radius) *
-                                  sea_bytes_per_mode(plan.knobs.double_precision))
+                                  sea_bytes_per_mode(plan.knobs.double_precision, plan.choppiness > 0.0))
                            .c_str());
         for (const Grid& grid : cascade.grids) {
             const auto n = static_cast<std::size_t>(grid.resolution);

@@ -37,6 +37,10 @@ ProductSet products(E... wanted) {
     return set;
 }
 
+inline FieldSet velocity_fields() {
+    return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
+}
+
 // The fields of the horizontal displacement: identically zero where the choppiness is.
 inline FieldSet horizontal_fields() {
     return fields(Field::Dx, Field::Dy, Field::Dxx, Field::Dyy, Field::Dxy, Field::VelocityX,

@@ -34,9 +34,9 @@ inline std::size_t half_plane_modes(int radius) {
 
 // What a mode costs in a Sea: h0(k) and conj(h0(−k)), choppiness·coth(kd)/k, and the angular frequency
 // (double, so that phases stay exact late in time).
-inline std::size_t sea_bytes_per_mode(bool double_precision) {
+inline std::size_t sea_bytes_per_mode(bool double_precision, bool choppy) {
     const std::size_t scalar = double_precision ? 8 : 4;
-    return 4 * scalar + scalar + sizeof(double);
+    return 4 * scalar + (choppy ? scalar : 0) + sizeof(double);
 }
 
 }  // namespace pelagic

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -17,11 +18,15 @@
 namespace pelagic {
 namespace {
 
+// Raised whenever the same scene gives other bits or other files than before, so that frames of two kinds are
+// never taken for one bake.
+constexpr int kRevision = 1;
+
 Knobs knobs_of(QualityLevel level) {
     // Errors and times of each row: tests/bench, "sampling".
     switch (level) {
         case QualityLevel::Draft:
-            return {.spline_taps = 4, .oversampling = 1.25, .third_moment = false};
+            return {.spline_taps = 4, .oversampling = 1.25};
         case QualityLevel::Preview:
             return {.spline_taps = 4, .oversampling = 2.0};
         case QualityLevel::Final:
@@ -86,6 +91,16 @@ FieldSet fields_at(const Plan& plan, int level, FieldSet dropped) {
     return wanted;
 }
 
+// Whether some query wants to know what this level's pixels hide.
+bool hides(const Plan& plan, int level) {
+    for (const PlannedQuery& planned : plan.queries)
+        if ((planned.query.products & hidden_products()).any() &&
+            std::find(planned.pixel_levels.begin(), planned.pixel_levels.end(), level) !=
+                planned.pixel_levels.end())
+            return true;
+    return false;
+}
+
 void add_grids(Plan& plan, int cascade_index, FieldSet dropped) {
     CascadePlan& cascade = plan.cascades[cascade_index];
     const int last_mode = cascade.resolution / 2 - 1;
@@ -95,7 +110,11 @@ void add_grids(Plan& plan, int cascade_index, FieldSet dropped) {
         const FieldSet wanted = fields_at(plan, level, dropped);
         const double cutoff = std::min(plan.filter.cutoff(at.footprint_m), cascade.k_upper);
         const int radius = std::min(last_mode, modes_within(cascade.size_m, cutoff));
-        if (wanted.none() || cutoff <= cascade.k_lower || radius < 1) continue;
+        if (cutoff <= cascade.k_lower || radius < 1) continue;
+        // What is hidden is the spectrum less what these modes hold, whether they are also asked for fields
+        // or not.
+        if (hides(plan, level)) cascade.mode_radius = std::max(cascade.mode_radius, radius);
+        if (wanted.none()) continue;
 
         Grid grid;
         grid.level = level;
@@ -103,7 +122,8 @@ void add_grids(Plan& plan, int cascade_index, FieldSet dropped) {
         grid.resolution =
             transform_size(static_cast<int>(std::ceil(plan.knobs.oversampling * (2.0 * radius + 1.0))));
         if (const auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
-            nodes && *nodes >= 2 * radius + 1 && (at.only_cascade || *nodes <= 2 * grid.resolution)) {
+            nodes && *nodes >= 2 * radius + 1 &&
+            (at.only_cascade || (*nodes <= 2 * grid.resolution && *nodes == transform_size(*nodes)))) {
             // Up to four times the samples of the spline's grid are cheaper than the spline, and without its
             // error.
             grid.resolution = *nodes;
@@ -130,10 +150,24 @@ std::uint64_t fnv1a(std::string_view text) {  // Fowler, Noll, Vo: 64-bit FNV-1a
     return hash;
 }
 
+// The scene's canonical text without what only the stage's root shows: a new lens or another sun leaves every
+// frame as it is.
+std::string what_frames_hold(const Scene& scene) {
+    std::istringstream lines(canonical(scene));
+    std::string text = "pelagic " PELAGIC_VERSION " revision " + std::to_string(kRevision);
+    for (std::string line; std::getline(lines, line);)
+        if (!line.starts_with("camera.") && !line.starts_with("light.")) text += "\n" + line;
+    return text;
+}
+
 }  // namespace
 
 FieldSet cell_fields() {
     return fields(Field::Height, Field::Dx, Field::Dy, Field::VelocityX, Field::VelocityY, Field::VelocityZ);
+}
+
+ProductSet hidden_products() {
+    return products(Product::SlopeVariance, Product::JacobianMoments, Product::Coverage);
 }
 
 FieldSet fields_of(ProductSet wanted) {
@@ -242,7 +276,7 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
     Plan plan;
     plan.knobs = knobs_of(scene.quality.level);
     plan.choppiness = scene.waves.choppiness;
-    plan.fingerprint = fnv1a(canonical(scene) + "\npelagic " PELAGIC_VERSION);
+    plan.fingerprint = fnv1a(what_frames_hold(scene));
 
     double finest_m = std::numeric_limits<double>::infinity();
     for (const Query& query : queries) {
@@ -291,6 +325,11 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
     return plan;
 }
 
+bool CascadePlan::moves() const {
+    return std::any_of(grids.begin(), grids.end(),
+                       [](const Grid& grid) { return (grid.fields & velocity_fields()).any(); });
+}
+
 int Plan::transforms_per_frame() const {
     std::size_t count = 0;
     for (const CascadePlan& cascade : cascades)
@@ -301,7 +340,9 @@ int Plan::transforms_per_frame() const {
 std::size_t Plan::sea_bytes() const {
     std::size_t bytes = 0;
     for (const CascadePlan& cascade : cascades)
-        bytes += half_plane_modes(cascade.mode_radius) * sea_bytes_per_mode(knobs.double_precision);
+        if (!cascade.grids.empty())
+            bytes += half_plane_modes(cascade.mode_radius) *
+                     sea_bytes_per_mode(knobs.double_precision, choppiness > 0.0);
     return bytes;
 }
 
@@ -309,10 +350,11 @@ std::size_t Plan::frame_bytes() const {
     const std::size_t complex_bytes = knobs.double_precision ? 16 : 8;
     std::size_t bytes = 0;
     for (const CascadePlan& cascade : cascades) {
-        if (!cascade.grids.empty()) bytes += 2 * half_plane_modes(cascade.mode_radius) * complex_bytes;
+        const std::size_t modes = half_plane_modes(cascade.mode_radius);
+        if (!cascade.grids.empty()) bytes += (cascade.moves() ? 2 : 1) * modes * complex_bytes;
         for (const Grid& grid : cascade.grids)
-            bytes += grid.transforms.size() * complex_bytes * grid.resolution *
-                     static_cast<std::size_t>(grid.resolution);
+            bytes += modes * complex_bytes / 2 + grid.transforms.size() * complex_bytes * grid.resolution *
+                                                     static_cast<std::size_t>(grid.resolution);
     }
     return bytes;
 }

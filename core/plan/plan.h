@@ -60,10 +60,13 @@ struct CascadePlan {
     // The band [rad/m]: lower ≤ |k| < upper, from the sizes alone. The finest cascade's upper edge is
     // infinite: it ends with its last mode, mode_radius.
     double k_lower = 0.0, k_upper = 0.0;
-    int mode_radius = 0;             // modes with mx² + my² ≤ mode_radius² are generated
+    // Modes with mx² + my² ≤ mode_radius² are counted, and generated where there are grids.
+    int mode_radius = 0;
     std::vector<Grid> grids;         // only those through which something passes
     std::vector<int> grid_of_level;  // index into grids, −1: nothing of this cascade passes
     std::string why_empty;           // set when there are no grids
+
+    bool moves() const;  // whether somebody asks for velocities
 };
 
 // A footprint that some query uses; queries with the same footprint and sampling share it.

@@ -64,5 +64,7 @@ inline const std::array<MapRow, 4> kMapTable{{
 // The fields that a point's cell filters (positions and velocities); its pixel filters the others.
 FieldSet cell_fields();
 FieldSet fields_of(ProductSet);
+// The products that count what a footprint hides.
+ProductSet hidden_products();
 
 }  // namespace pelagic

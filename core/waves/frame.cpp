@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -81,7 +82,7 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)) {
         const std::size_t modes = half_plane_modes(radius);
         State state;
         state.height.resize(modes);
-        state.rate.resize(modes);
+        if (planned.moves()) state.rate.resize(modes);
         for (const Grid& grid : planned.grids) {
             GridState made{{}, {}, transform_of(transforms, grid.resolution), {}};
             if (grid.sampling == Sampling::Spline)
@@ -107,14 +108,15 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)) {
 
 template <class T>
 void Frame<T>::set(double t_s) {
-    if (!std::isfinite(t_s)) throw std::invalid_argument("a frame's time must be finite");
+    if (!(std::abs(t_s) <= kLatest_s))
+        throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
     time_s_ = reduced_time_s_ = t_s;
     if (const double loop_s = sea_->loop_s(); loop_s > 0.0) {
         // Modulo the loop, so that its last frame meets its first to the bit.
         reduced_time_s_ -= loop_s * std::floor(t_s / loop_s);
-        constexpr double kSame = 1e-9;  // of a loop: rounding of (f − 1)/fps, far below anything that moves
-        if (loop_s - reduced_time_s_ < kSame * loop_s || reduced_time_s_ < kSame * loop_s)
-            reduced_time_s_ = 0.0;
+        // Rounding of (f − 1)/fps and of the division.
+        const double same_s = 4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_s), loop_s);
+        if (loop_s - reduced_time_s_ < same_s || reduced_time_s_ < same_s) reduced_time_s_ = 0.0;
     }
     tbb::parallel_for(0, static_cast<int>(states_.size()), [&](int c) { advance(c); });
 
@@ -137,7 +139,7 @@ void Frame<T>::set(double t_s) {
                 fill(tasks[i].cascade, tasks[i].grid, tasks[i].transform);
         },
         tbb::simple_partitioner());
-    executed_transforms_ += static_cast<long>(tasks.size());
+    is_set_ = true;
 }
 
 // h(k,t) and its rate, for each mode.
@@ -161,7 +163,7 @@ void Frame<T>::advance(int c) {
                                          b.imag() * cosine + b.real() * sine);
             state.height[i] = going + coming;
             const std::complex<T> d = coming - going;  // ∂h/∂t = iω (coming − going)
-            state.rate[i] = {-omega * d.imag(), omega * d.real()};
+            if (!state.rate.empty()) state.rate[i] = {-omega * d.imag(), omega * d.real()};
         }
     });
 }
@@ -200,6 +202,7 @@ void Frame<T>::fill(int c, int g, int transform) {
                                                                                 b.real() - a.imag()};
     });
     grid_state.transform.execute(buffer);
+    ++executed_transforms_;
 }
 
 template <class T>

@@ -2,6 +2,7 @@
 // once.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -17,9 +18,12 @@ class Frame {
   public:
     explicit Frame(std::shared_ptr<const Sea<T>>);
 
-    // Any finite t [s]; throws std::invalid_argument otherwise. Runs the plan's transforms, several side by
-    // side.
+    // t [s] within ± kLatest_s; throws std::invalid_argument otherwise. Runs the plan's transforms, several
+    // side by side.
     void set(double t_s);
+
+    static constexpr double kLatest_s = 1e12;  // a phase in cycles then still has four digits after the point
+    bool is_set() const { return is_set_; }
 
     const Sea<T>& sea() const { return *sea_; }
     double time_s() const { return time_s_; }
@@ -44,7 +48,8 @@ class Frame {
         std::vector<TransformBuffer<T>> buffers;
     };
     struct State {
-        std::vector<std::complex<T>> height, rate;  // h(k,t) and ∂h/∂t
+        std::vector<std::complex<T>> height;  // h(k,t)
+        std::vector<std::complex<T>> rate;    // ∂h/∂t; empty where nobody asks for velocities
         std::vector<GridState> grids;
     };
     void advance(int cascade);
@@ -53,7 +58,8 @@ class Frame {
     std::shared_ptr<const Sea<T>> sea_;
     std::vector<State> states_;
     double time_s_ = 0.0, reduced_time_s_ = 0.0;
-    long executed_transforms_ = 0;
+    std::atomic<long> executed_transforms_ = 0;
+    bool is_set_ = false;
 };
 
 }  // namespace pelagic

@@ -70,12 +70,18 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
     const double choppiness = scene.waves.choppiness;
     total_ = moments(spectrum, 0.0, std::numeric_limits<double>::infinity());
     scale_strain(total_, choppiness * choppiness);
-    whitecap_threshold_ = calibrated_threshold(total_, scene.sea.wind_speed_mps);
+    whitecap_threshold_ = calibrated_threshold(total_, scene.sea.wind_speed_mps, plan_.knobs.third_moment);
 
     for (const PlannedQuery& planned : plan_.queries) {
         const std::size_t levels = planned.pixel_levels.size();
+        SpectralMoments whole = total_;
+        if (planned.query.only_cascade) {
+            const CascadePlan& band = plan_.cascades[*planned.query.only_cascade];
+            whole = moments(spectrum, band.k_lower, band.k_upper);
+            scale_strain(whole, choppiness * choppiness);
+        }
         statistics_.push_back(
-            {std::vector<SpectralMoments>(levels), std::vector<SpectralMoments>(levels - 1)});
+            {whole, std::vector<SpectralMoments>(levels), std::vector<SpectralMoments>(levels - 1)});
     }
 
     for (std::size_t c = 0; c < plan_.cascades.size(); ++c) {
@@ -103,16 +109,18 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
 
         // Rows side by side; their sums are added up in the order of the rows, whoever computed them.
         const double step = kTwoPi / planned.size_m;
-        const int rows = cascade.radius > 0 ? cascade.radius + 1 : 0;
+        // Without a grid the modes are only counted: what they hold of the hidden statistics.
+        const bool generated = cascade.radius > 0;
+        const int rows = planned.mode_radius > 0 ? planned.mode_radius + 1 : 0;
         std::vector<std::size_t> row_offset(rows + 1, 0);
         for (int my = 0; my < rows; ++my)
-            row_offset[my + 1] = row_offset[my] + row_length(cascade.radius, my);
+            row_offset[my + 1] = row_offset[my] + row_length(planned.mode_radius, my);
         std::vector<double> row_m0(rows, 0.0);
         std::vector<std::vector<SpectralMoments>> row_sums(rows, std::vector<SpectralMoments>(pairs.size()));
         tbb::parallel_for(0, rows, [&](int my) {
             std::size_t at = row_offset[my];
-            for (int i = 0; i < row_length(cascade.radius, my); ++i, ++at) {
-                const int mx = row_first(cascade.radius, my) + i;
+            for (int i = 0; i < row_length(planned.mode_radius, my); ++i, ++at) {
+                const int mx = row_first(planned.mode_radius, my) + i;
                 const glm::dvec2 k(mx * step, my * step);
                 const double length = std::hypot(k.x, k.y);
                 const double omega = spectrum.dispersion().omega(length);
@@ -127,20 +135,24 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
                                                   .k_hi = planned.k_upper});
                 };
                 const double energy = energy_at(+1.0), mirrored = energy_at(-1.0);
-                // h0(k) = ½ (ξr + iξi) √E(k) (Tessendorf 2001, Eq. 25, with the ½ that makes Var(η) = ΣE).
-                const auto amplitude = [&](double e, int x, int y) {
-                    const auto xi = normal_pair({static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(x),
-                                                 static_cast<std::uint32_t>(y), 0u},
-                                                scene.shot.seed);
-                    return 0.5 * std::sqrt(e) * std::complex<double>(xi[0], xi[1]);
-                };
-                const std::complex<double> h0 = energy > 0.0 ? amplitude(energy, mx, my) : 0.0;
-                const std::complex<double> h0_mirrored = mirrored > 0.0 ? amplitude(mirrored, -mx, -my) : 0.0;
-                cascade.forward[at] = std::complex<T>(h0);
-                cascade.backward[at] = std::complex<T>(std::conj(h0_mirrored));
-                cascade.cycles_per_s[at] = cycles_per_s(omega, loop_s_);
-                if (!cascade.chop.empty()) cascade.chop[at] = static_cast<T>(chop);
-
+                if (generated) {
+                    // h0(k) = ½ (ξr + iξi) √E(k) (Tessendorf 2001, Eq. 25, with the ½ that makes Var(η) =
+                    // ΣE).
+                    const auto amplitude = [&](double e, int x, int y) {
+                        const auto xi =
+                            normal_pair({static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(x),
+                                         static_cast<std::uint32_t>(y), 0u},
+                                        scene.shot.seed);
+                        return 0.5 * std::sqrt(e) * std::complex<double>(xi[0], xi[1]);
+                    };
+                    const std::complex<double> h0 = energy > 0.0 ? amplitude(energy, mx, my) : 0.0;
+                    const std::complex<double> h0_mirrored =
+                        mirrored > 0.0 ? amplitude(mirrored, -mx, -my) : 0.0;
+                    cascade.forward[at] = std::complex<T>(h0);
+                    cascade.backward[at] = std::complex<T>(std::conj(h0_mirrored));
+                    cascade.cycles_per_s[at] = cycles_per_s(omega, loop_s_);
+                    if (!cascade.chop.empty()) cascade.chop[at] = static_cast<T>(chop);
+                }
                 row_m0[my] += energy + mirrored;
                 for (std::size_t p = 0; p < pairs.size(); ++p) {
                     const double weight = plan_.filter.weight(length, pairs[p].footprint_a) *

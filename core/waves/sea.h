@@ -19,12 +19,15 @@ struct Cascade {
     double size_m = 0.0;
     int radius = 0;
     std::vector<std::complex<T>> forward, backward;  // [m]
-    std::vector<T> chop;               // choppiness · coth(kd) / k [m]; empty where nobody asks
+    std::vector<T> chop;               // choppiness · coth(kd) / k [m]; empty without choppiness
     std::vector<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
 };
 
 // What the spectrum holds, in expectation: sums and integrals of Ψ, not of one realisation.
 struct QueryStatistics {
+    // Everything that the query could show: the whole spectrum, or its band alone for a cascade's own tile,
+    // so that what tiles hide adds up to what the sea hides.
+    SpectralMoments whole;
     // Resolved by pixel level i alone, weights squared, and by levels i and i + 1 together (for blends).
     std::vector<SpectralMoments> resolved, resolved_next;
 };

@@ -25,8 +25,8 @@ class TransformBuffer {
 };
 
 // f_{jy,jx} = Σ F_{my,mx} exp(+2πi (mx jx + my jy)/N), in place, one thread, unnormalised. Planned by FFTW's
-// estimate and never by timing, so that every run takes the same path. execute() may be called from several
-// threads at once.
+// estimate and never by timing, so that every run takes the same path (where the host has not given FFTW
+// wisdom of its own). execute() may be called from several threads at once.
 template <class T>
 class InverseTransform {
   public:

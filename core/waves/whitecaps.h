@@ -142,14 +142,16 @@ inline double observed_coverage(double wind_speed_mps) {
 
 // The threshold ε at which the whole sea, every wave of the spectrum counted, has the coverage that is
 // observed at this wind. −∞ (never any foam) without wind or where nothing converges.
-inline double calibrated_threshold(const SpectralMoments& all_waves, double wind_speed_mps) {
+// `third_moment`: as coverage() will be asked.
+inline double calibrated_threshold(const SpectralMoments& all_waves, double wind_speed_mps,
+                                   bool third_moment) {
     const auto j = jacobian_moments<double>(
         0.0, 0.0, 0.0, {all_waves.xxxx, all_waves.xxxy, all_waves.xxyy, all_waves.xyyy, all_waves.yyyy});
     const double w = observed_coverage(wind_speed_mps);
     constexpr double kNoFoam = 1e-9;  // a square millimetre in a thousand square metres
     if (w < kNoFoam || !(j.variance > 0.0)) return -std::numeric_limits<double>::infinity();
     const double sigma = std::sqrt(j.variance);
-    const double skewness = j.third / j.variance / sigma;
+    const double skewness = third_moment ? j.third / j.variance / sigma : 0.0;
     return j.mean + sigma * whitecaps_detail::from_normal(whitecaps_detail::normal_quantile(w), skewness);
 }
 

@@ -345,6 +345,10 @@ void check_effects_and_output(Checker& check, const Effects& effects, const Outp
                       "leaves nothing to bake: there are no maps either",
                       "a mesh, or at least one map in output.maps"});
     }
+    if (output.cascade_tiles && output.maps.empty()) {
+        check.refuse({"output.cascade_tiles", "true", "asks for tiles of no map",
+                      "true together with at least one map in output.maps, or false"});
+    }
     check.no_duplicates("output.attributes", output.attributes);
     check.no_duplicates("output.maps", output.maps);
     for (std::size_t i = 0; i < output.maps.size(); ++i) {

@@ -132,13 +132,15 @@ void Frame<T>::set(double t_s) {
     // The large ones first: the small ones then fill the gaps.
     std::stable_sort(tasks.begin(), tasks.end(),
                      [](const Task& a, const Task& b) { return a.cost > b.cost; });
+    std::atomic<long> executed = 0;
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, tasks.size(), 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
             for (std::size_t i = range.begin(); i < range.end(); ++i)
-                fill(tasks[i].cascade, tasks[i].grid, tasks[i].transform);
+                fill(tasks[i].cascade, tasks[i].grid, tasks[i].transform, executed);
         },
         tbb::simple_partitioner());
+    executed_transforms_ += executed;
     is_set_ = true;
 }
 
@@ -170,7 +172,7 @@ void Frame<T>::advance(int c) {
 
 // One pair of real fields A, B: the spectrum of A + iB into the buffer, then its inverse transform.
 template <class T>
-void Frame<T>::fill(int c, int g, int transform) {
+void Frame<T>::fill(int c, int g, int transform, std::atomic<long>& executed) {
     const Cascade<T>& cascade = sea_->cascades()[c];
     const Grid& grid = sea_->plan().cascades[c].grids[g];
     const State& state = states_[c];
@@ -202,7 +204,7 @@ void Frame<T>::fill(int c, int g, int transform) {
                                                                                 b.real() - a.imag()};
     });
     grid_state.transform.execute(buffer);
-    ++executed_transforms_;
+    ++executed;
 }
 
 template <class T>

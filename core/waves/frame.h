@@ -53,12 +53,13 @@ class Frame {
         std::vector<GridState> grids;
     };
     void advance(int cascade);
-    void fill(int cascade, int grid, int transform);
+    // Counts the transform that it has run.
+    void fill(int cascade, int grid, int transform, std::atomic<long>& executed);
 
     std::shared_ptr<const Sea<T>> sea_;
     std::vector<State> states_;
     double time_s_ = 0.0, reduced_time_s_ = 0.0;
-    std::atomic<long> executed_transforms_ = 0;
+    long executed_transforms_ = 0;
     bool is_set_ = false;
 };
 

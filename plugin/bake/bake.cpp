@@ -91,24 +91,37 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         record.describe(scene, plan, sequence->total(), sequence->whitecap_threshold());
         sequence->produce_static(write);
         if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");
-        const auto save_record = [&] { files::write_atomically(report.record, record.text()); };
-        save_record();
+        if (!scene.output.maps.empty()) report.maps = options.out / "maps";
+        record.save(report.record);
         const auto first_frame = std::chrono::steady_clock::now();
-        for (const int frame : missing) {
-            stop_if_cancelled();
-            // Its files are about to be replaced one by one: the record must not vouch for a mixture.
-            if (record.frames().contains(frame)) {
-                record.forget(frame);
-                save_record();
+        double last_save_s = 0.0, save_cost_s = 0.0;
+        try {
+            for (const int frame : missing) {
+                stop_if_cancelled();
+                record.set(frame, sequence->produce(frame, write));
+                report.executed_transforms = sequence->executed_transforms();
+                progress.frame = frame;
+                progress.done = ++report.done;
+                progress.seconds = seconds_since(first_frame);
+                // The record grows with the shot: writing it takes at most a twentieth of the time. Frames
+                // that a killed process had not recorded yet are baked again.
+                if (progress.seconds - last_save_s >= 20.0 * save_cost_s) {
+                    record.save(report.record);
+                    last_save_s = seconds_since(first_frame);
+                    save_cost_s = last_save_s - progress.seconds;
+                }
+                report_progress(BakeStage::Frames);
             }
-            record.set(frame, sequence->produce(frame, write));
-            save_record();
-            progress.frame = frame;
-            progress.done = ++report.done;
-            progress.seconds = seconds_since(first_frame);
-            report.executed_transforms = sequence->executed_transforms();
-            report_progress(BakeStage::Frames);
+        } catch (...) {
+            // What was finished stays recorded; if even that can't be written, the first reason is the one to
+            // tell.
+            try {
+                record.save(report.record);
+            } catch (const files::FileError&) {
+            }
+            throw;
         }
+        record.save(report.record);
     } catch (const Cancelled&) {
         report.cancelled = true;
     }

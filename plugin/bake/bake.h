@@ -38,7 +38,7 @@ struct BakeOptions {
 };
 
 struct BakeReport {
-    std::filesystem::path root, record;  // DIR/NAME.usda (empty without a mesh), DIR/NAME.json
+    std::filesystem::path root, maps, record;  // DIR/NAME.usda and DIR/maps (empty without), DIR/NAME.json
     int done = 0, kept = 0, total = 0;
     bool cancelled = false;
     double seconds = 0.0;

@@ -23,19 +23,41 @@ Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+// The canonical lines: numbers as numbers, words as text, a key of several lines (swells, cascades, …) as a
+// list.
 Json settings(const Scene& scene) {
     Json lines = Json::object();
     std::istringstream text(canonical(scene));
     for (std::string line; std::getline(text, line);) {
         const std::size_t equals = line.find(" = ");
-        if (equals != std::string::npos) lines[line.substr(0, equals)] = line.substr(equals + 3);
+        if (equals == std::string::npos) continue;
+        const std::string key = line.substr(0, equals), words = line.substr(equals + 3);
+        Json value = Json::parse(words, nullptr, false);
+        if (value.is_discarded()) value = words;
+        if (!lines.contains(key)) {
+            lines[key] = value;
+        } else {
+            if (!lines[key].is_array()) lines[key] = Json::array({lines[key]});
+            lines[key].push_back(value);
+        }
     }
     return lines;
+}
+
+// Whether the fingerprint stands in the head of the file: layers and maps carry it among their first lines.
+bool carries(const std::filesystem::path& file, const std::string& fingerprint) {
+    constexpr std::streamsize kHead = 8192;  // bytes; the attributes before it take some hundreds
+    std::ifstream stream(file, std::ios::binary);
+    std::string head(kHead, '\0');
+    stream.read(head.data(), kHead);
+    head.resize(static_cast<std::size_t>(stream.gcount()));
+    return head.find(fingerprint) != std::string::npos;
 }
 
 Json to_json(const FrameRecord& frame) {
     Json json;
     json["fingerprint"] = frame.fingerprint;
+    json["instruction_set"] = frame.instruction_set;
     json["time_s"] = frame.time_s;
     if (frame.waves) {
         json["hs_m"] = frame.waves->significant_height_m;
@@ -54,6 +76,7 @@ Json to_json(const FrameRecord& frame) {
 FrameRecord from_json(const Json& json) {
     FrameRecord frame;
     frame.fingerprint = json.at("fingerprint").get<std::string>();
+    frame.instruction_set = json.at("instruction_set").get<std::string>();
     frame.time_s = json.at("time_s").get<double>();
     if (json.contains("hs_m"))
         frame.waves =
@@ -99,7 +122,6 @@ void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoment
     shot["pelagic"] = PELAGIC_VERSION;
     shot["name"] = scene.shot.name;
     shot["fingerprint"] = plan.fingerprint_text();
-    shot["instruction_set"] = instruction_set();
     shot["precision"] = plan.knobs.double_precision ? "double" : "single";
     shot["frame_range"] = {scene.shot.first_frame, scene.shot.last_frame};
     shot["fps"] = scene.shot.fps;
@@ -146,8 +168,15 @@ bool Record::is_whole(int frame, const std::string& fingerprint, const std::file
     const auto found = frames_.find(frame);
     if (found == frames_.end() || found->second.fingerprint != fingerprint) return false;
     for (const auto& [path, size] : found->second.files)
-        if (files::file_size(folder / path) != size) return false;
+        if (files::file_size(folder / path) != size || !carries(folder / path, fingerprint)) return false;
     return true;
+}
+
+void Record::save(const std::filesystem::path& file) {
+    const files::FolderLock lock(file.parent_path());
+    for (const auto& [frame, entry] : load(file).frames_)
+        if (!own_.contains(frame)) frames_[frame] = entry;
+    files::write_atomically(file, text());
 }
 
 std::string Record::text() const {

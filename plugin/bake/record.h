@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "core/plan/plan.h"
@@ -14,6 +15,10 @@
 #include "core/spectrum/spectral_moments.h"
 
 namespace pelagic {
+
+// The widest vector instructions that the running CPU offers to FFTW: "avx2", "avx", "sse2" or "baseline".
+// Frames of two kinds of machine agree to 1e-5 of Hs; on one kind they are the same bits.
+std::string instruction_set();
 
 // Of the waves of one moment, over their whole period: sums over the modes that the outputs show.
 struct WaveRecord {
@@ -23,6 +28,7 @@ struct WaveRecord {
 // Of one frame. What nobody paid for is absent.
 struct FrameRecord {
     std::string fingerprint;
+    std::string instruction_set = pelagic::instruction_set();
     std::map<std::string, std::uintmax_t> files;  // path below DIR, with /; size in bytes
     double time_s = 0.0;
     std::optional<WaveRecord> waves;
@@ -42,21 +48,25 @@ class Record {
                   double whitecap_threshold);
 
     const std::map<int, FrameRecord>& frames() const { return frames_; }
-    void set(int frame, FrameRecord record) { frames_[frame] = std::move(record); }
-    void forget(int frame) { frames_.erase(frame); }
+    void set(int frame, FrameRecord record) {
+        frames_[frame] = std::move(record);
+        own_.insert(frame);
+    }
 
-    // Every file of the frame is there with its recorded size and the frame is of this fingerprint.
+    // Every file of the frame is there, has its recorded size and says in its head that it is of this
+    // fingerprint: the record alone would vouch for a file that another shot has replaced since.
     bool is_whole(int frame, const std::string& fingerprint, const std::filesystem::path& folder) const;
 
-    std::string text() const;
+    // Writes the record to `file`, with the frames that other runs have recorded there meanwhile. Throws
+    // files::FileError.
+    void save(const std::filesystem::path& file);
 
   private:
+    std::string text() const;
+
     nlohmann::ordered_json shot_;
+    std::set<int> own_;  // frames of this run
     std::map<int, FrameRecord> frames_;
 };
-
-// The widest vector instructions that the running CPU offers to FFTW: "avx2", "avx", "sse2" or "baseline".
-// Frames of two kinds of machine agree to 1e-5 of Hs; on one kind they are the same bits.
-std::string instruction_set();
 
 }  // namespace pelagic

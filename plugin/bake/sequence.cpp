@@ -11,6 +11,7 @@
 #include "core/evaluate/evaluate.h"
 #include "core/plan/tables.h"
 #include "core/scene/names.h"
+#include "core/scene/text.h"
 #include "core/surface/patch.h"
 #include "plugin/bake/maps.h"
 #include "plugin/exr/exr.h"
@@ -158,6 +159,7 @@ class SequenceOf final : public Sequence {
             hand_over(usd::frame_file(scene_.shot.name, frame, kMeshExtension),
                       usd::frame_text({.frame = frame,
                                        .fps = scene_.shot.fps,
+                                       .fingerprint = record.fingerprint,
                                        .points = arrays_.position,
                                        .normals = arrays_.normal,
                                        .velocities = arrays_.velocity,
@@ -167,7 +169,7 @@ class SequenceOf final : public Sequence {
         for (const MapJob<T>& job : maps_) {
             runner_.run(frame_, job.query, job.square->points, arrays_);
             if (!arrays_.coverage.empty() && !record.coverage) record.coverage = mean_of(arrays_.coverage);
-            hand_over(job.stem + "." + frame_number(frame) + ".exr", encode(job, frame));
+            hand_over(job.stem + "." + usd::frame_number(frame) + ".exr", encode(job, frame));
         }
         return record;
     }
@@ -250,6 +252,15 @@ class SequenceOf final : public Sequence {
         record.waves = waves;
     }
 
+    // "1.6 m 11 s towards 110 deg, …"
+    std::string swell_text() const {
+        std::string text;
+        for (const Swell& swell : scene_.sea.swell)
+            text += (text.empty() ? "" : ", ") + number_text(swell.height_m) + " m " +
+                    number_text(swell.period_s) + " s towards " + number_text(swell.direction_deg) + " deg";
+        return text;
+    }
+
     usd::Stage stage(const usd::AttributeSet& attributes) const {
         const Shot& shot = scene_.shot;
         const SeaState& sea = scene_.sea;
@@ -267,8 +278,10 @@ class SequenceOf final : public Sequence {
             stage.camera->keys.push_back({key.frame, key.position_m, key.look_at_m});
         if (camera.keys.empty())
             stage.camera->keys.push_back({shot.first_frame, camera.position_m, camera.look_at_m});
-        stage.sun = usd::Sun{.elevation_deg = scene_.light.sun_elevation_deg,
-                             .azimuth_deg = scene_.light.sun_azimuth_deg};
+        // Its upper edge sets half a degree after its centre has.
+        if (constexpr double kDiscRadius_deg = 0.27; scene_.light.sun_elevation_deg > -kDiscRadius_deg)
+            stage.sun = usd::Sun{.elevation_deg = scene_.light.sun_elevation_deg,
+                                 .azimuth_deg = scene_.light.sun_azimuth_deg};
         stage.sky = usd::Sky{};
         stage.custom_data = {
             {"version", std::string(PELAGIC_VERSION)},
@@ -284,6 +297,11 @@ class SequenceOf final : public Sequence {
             {"significant_height_m", sea_->total().significant_height_m()},
             {"loop_s", shot.loop_s},
         };
+        if (!sea.swell.empty()) stage.custom_data.push_back({"swell", swell_text()});
+        if (sea.measured) {
+            stage.custom_data.push_back({"station", sea.measured->station});
+            stage.custom_data.push_back({"measured_at", sea.measured->time});
+        }
         return stage;
     }
 
@@ -397,12 +415,18 @@ class SequenceOf final : public Sequence {
             {"fps", scene_.shot.fps},
             {"frame", frame},
             {"seed", std::to_string(scene_.shot.seed)},
-            {"windSpeed", sea.wind_speed_mps},
-            {"windDirection", sea.wind_direction_deg},
+            {"windSpeed_mps", sea.wind_speed_mps},
+            {"windTowards_deg", sea.wind_direction_deg},
             {"spectrum", std::string(word_of(sea.spectrum))},
             {"fingerprint", sea_->plan().fingerprint_text()},
             {"software", std::string("pelagic " PELAGIC_VERSION)}};
-        if (job.periodic) header.attributes.push_back({"period", job.size_m});
+        if (job.periodic) header.attributes.push_back({"period", job.size_m});  // absent: it does not repeat
+        if (scene_.shot.loop_s > 0.0) header.attributes.push_back({"loop", scene_.shot.exact_loop_s()});
+        if (!sea.swell.empty()) header.attributes.push_back({"swell", swell_text()});
+        if (sea.measured) {
+            header.attributes.push_back({"station", sea.measured->station});
+            header.attributes.push_back({"measuredAt", sea.measured->time});
+        }
         return header;
     }
 
@@ -421,12 +445,6 @@ class SequenceOf final : public Sequence {
 std::unique_ptr<Sequence> make_sequence(const Scene& scene, const Plan& plan) {
     if (plan.knobs.double_precision) return std::make_unique<SequenceOf<double>>(scene, plan);
     return std::make_unique<SequenceOf<float>>(scene, plan);
-}
-
-std::string frame_number(int frame) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%04d", frame);
-    return text;
 }
 
 }  // namespace pelagic

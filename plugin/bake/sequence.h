@@ -1,7 +1,7 @@
-// One sea, frame after frame, turned into the bytes of files. Buffers are allocated once.
+// One sea, frame after frame, turned into the bytes of files. The sea's buffers and the results are allocated
+// once; the bytes of a file are made anew and let go.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -29,9 +29,5 @@ class Sequence {
 
 // In the plan's precision. The plan must be make_plan(scene): its queries are the scene's mesh and maps.
 std::unique_ptr<Sequence> make_sequence(const Scene& scene, const Plan& plan);
-
-// The number of a frame as it stands in file names: at least four characters, zeros in front, as USD expands
-// "####".
-std::string frame_number(int frame);
 
 }  // namespace pelagic

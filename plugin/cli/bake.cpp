@@ -8,6 +8,7 @@
 #include <charconv>
 #include <iostream>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -27,8 +28,8 @@ constexpr int kMostThreads = 256;  // beyond, a frame's work is too small to be 
 
 struct Arguments {
     std::string shot;
-    std::string out;
-    std::string frames;
+    std::optional<std::string> out;
+    std::optional<std::string> frames;
     std::string threads;  // empty: all cores of the process's affinity mask
 };
 
@@ -48,6 +49,7 @@ int thread_count(const Arguments& arguments) {
 
 void print_done(const BakeReport& report, const std::string& out) {
     if (!report.root.empty()) std::cout << "stage:  " << report.root.string() << '\n';
+    if (!report.maps.empty()) std::cout << "maps:   " << report.maps.string() << '\n';
     std::cout << "record: " << report.record.string() << '\n';
     std::cout << count_text(report.done, "frame", "frames") << " baked";
     if (report.kept > 0) std::cout << ", " << report.kept << " kept as they were";
@@ -86,15 +88,20 @@ int stopped(const BakeReport& report, const std::string& out, int signal) {
 int run(const Arguments& arguments) {
     const Scene scene = load_shot(arguments.shot);
     BakeOptions options;
-    if (!arguments.frames.empty()) {
+    if (arguments.frames) {
         try {
-            options.frames = parse_frames(arguments.frames, scene.shot);
+            options.frames = parse_frames(*arguments.frames, scene.shot);
         } catch (const std::invalid_argument& error) {
             std::cerr << "pelagic: " << error.what() << "\nSee: pelagic bake --help\n";
             return kWrongUsage;
         }
     }
-    options.out = arguments.out.empty() ? scene.shot.name : arguments.out;
+    if (arguments.out && arguments.out->empty()) {
+        std::cerr << "pelagic: --out \"\": that is no folder; accepted: a path, or no --out for ./"
+                  << scene.shot.name << '\n';
+        return kWrongUsage;
+    }
+    options.out = arguments.out.value_or(scene.shot.name);
 
     StopSignals stop;
     Progress progress;

@@ -274,4 +274,14 @@ std::optional<std::uintmax_t> file_size(const std::filesystem::path& path) {
     return size;
 }
 
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : descriptor_(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+    }
+}
+
+FolderLock::~FolderLock() {
+    if (descriptor_ >= 0) close(descriptor_);
+}
+
 }  // namespace pelagic::files

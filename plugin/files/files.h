@@ -49,6 +49,19 @@ std::size_t remove_stale_temporaries(const std::filesystem::path& folder);
 // missing; an empty path is the working folder. Throws FileError.
 void ensure_folder(const std::filesystem::path& folder);
 
+// Holds the folder for this process until it is destroyed, waiting for others that do: for files that several
+// runs read, change and write again. Without effect on file systems that have no locks.
+class FolderLock {
+  public:
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+  private:
+    int descriptor_;
+};
+
 // The size in bytes of the regular file at `path` (links followed); none where there is no such file.
 std::optional<std::uintmax_t> file_size(const std::filesystem::path& path);
 

@@ -68,10 +68,14 @@ std::string manifest_file(std::string_view shot_name) {
     return "mesh/" + std::string(shot_name) + ".manifest.usda";
 }
 
-std::string frame_file(std::string_view shot_name, int frame, std::string_view extension) {
-    char number[16];  // an int takes 11 characters
+std::string frame_number(int frame) {
+    char number[16];
     std::snprintf(number, sizeof number, "%04d", frame);
-    return "mesh/" + std::string(shot_name) + "." + number + "." + std::string(extension);
+    return number;
+}
+
+std::string frame_file(std::string_view shot_name, int frame, std::string_view extension) {
+    return "mesh/" + std::string(shot_name) + "." + frame_number(frame) + "." + std::string(extension);
 }
 
 std::string frame_file_template(std::string_view shot_name, std::string_view extension) {

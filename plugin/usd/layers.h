@@ -45,10 +45,11 @@ struct AttributeSet {
 // One frame of the mesh: `size()` vertices, each array as long as points or empty (not written).
 struct MeshSample {
     int frame = 1;
-    double fps = 24.0;                            // > 0
-    std::span<const glm::vec3> points{};          // [m]
-    std::span<const glm::vec3> normals{};         // unit
-    std::span<const glm::vec3> velocities{};      // [m/s]
+    double fps = 24.0;                        // > 0
+    std::string_view fingerprint{};           // letters and digits; in customLayerData, empty: not written
+    std::span<const glm::vec3> points{};      // [m]
+    std::span<const glm::vec3> normals{};     // unit
+    std::span<const glm::vec3> velocities{};  // [m/s]
     std::span<const glm::vec3> slope_variance{};  // (σxx, σyy, σxy) of what the mesh does not resolve
     std::span<const float> whitecap_coverage{};   // 0 … 1
 
@@ -92,7 +93,9 @@ struct Sun {
     double elevation_deg = 20.0;
     double azimuth_deg = 90.0;  // towards the sun, counter-clockwise from +x
     double angle_deg = 0.53;    // the disc's diameter as seen from the Earth
-    double intensity = 1.0;
+    // Irradiance across its rays (inputs:normalize), whatever the disc's size. A dome of intensity 1 gives π;
+    // a clear sky's sun gives some five times as much as the sky.
+    double intensity = 15.0;
     glm::vec3 color{1.0f, 1.0f, 1.0f};  // linear
 };
 
@@ -142,6 +145,7 @@ std::string topology_file(std::string_view shot_name, std::string_view extension
 std::string manifest_file(std::string_view shot_name);
 // The number is printed as USD expands "####": at least four characters, zeros in front, a minus sign counted
 // among them (7 → 0007, 12345 → 12345, 0 → 0000, −5 → -005). Every int has a file of its own.
+std::string frame_number(int frame);
 std::string frame_file(std::string_view shot_name, int frame, std::string_view extension);
 // frame_file with "####" for the number.
 std::string frame_file_template(std::string_view shot_name, std::string_view extension);

@@ -216,6 +216,7 @@ void write_sun(Page& page, const Sun& sun) {
     page.line({"float inputs:angle = ", real32("the sun's angle", sun.angle_deg)});
     page.line({"color3f inputs:color = ", color("the sun's colour", sun.color)});
     page.line({"float inputs:intensity = ", real32("the sun's intensity", sun.intensity)});
+    page.line({"bool inputs:normalize = 1"});
     page.line({"float3 xformOp:rotateXYZ = (0, ", real32("the sun's elevation", 90.0 - sun.elevation_deg),
                ", ", real32("the sun's azimuth", sun.azimuth_deg), ")"});
     page.line({"uniform token[] xformOpOrder = [\"xformOp:rotateXYZ\"]"});

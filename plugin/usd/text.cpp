@@ -132,6 +132,13 @@ void write_frame_text(const MeshSample& sample, const Sink& sink) {
     const std::vector<VaryingValues> all = varying_values(sample, extent);
     Page page;
     page.open({"("});
+    if (!sample.fingerprint.empty()) {
+        page.open({"customLayerData = {"});
+        page.open({"dictionary pelagic = {"});
+        page.line({"string fingerprint = \"", sample.fingerprint, "\""});
+        page.close("}");
+        page.close("}");
+    }
     write_head(page, {.default_prim = kMeshName,
                       .fps = sample.fps,
                       .first_frame = sample.frame,

@@ -22,7 +22,7 @@ double mean_coverage(double wind_mps, int quads) {
 }
 
 TEST(WhitecapCoverage, DoesNotDependOnTheGrid) {
-    for (double wind : {8.0, 10.0, 14.0, 20.0}) {
+    for (double wind : {6.0, 8.0, 10.0, 14.0, 20.0}) {
         const double coarse = mean_coverage(wind, 64);
         for (int quads : {256, 1024}) {
             const double fine = mean_coverage(wind, quads);

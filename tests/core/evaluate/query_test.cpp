@@ -1,6 +1,10 @@
 // The query's contract: strides, refusals, footprints per point.
 #include <gtest/gtest.h>
+#include <limits>
+#include <memory>
+#include <stdexcept>
 
+#include <cmath>
 #include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/spectral_moments.h"
 #include "tests/core/waves/samples.h"
@@ -47,6 +51,31 @@ TEST(Query, WritesWhereTheCallerWantsItAndNowhereElse) {
         EXPECT_EQ(vertices[i].after, -7.0f);
         EXPECT_EQ(packed.position[i], packed.displacement[i] + glm::vec3(points[i], 0.0f));
     }
+}
+
+TEST(Query, RefusesAFrameWithoutATime) {
+    const Scene scene = small_sea();
+    const Frame<float> frame(std::make_shared<const Sea<float>>(
+        scene, make_plan(scene, {unfiltered(products(Product::Displacement))})));
+    EXPECT_THROW(sample(frame, 0, random_points<float>(100.0, 3)), std::invalid_argument);
+}
+
+// Places so far off that single precision has no tile left, and footprints that are no number: nothing is
+// read outside the grids, and what does not contain the place itself is finite.
+TEST(Query, StaysInsideItsGridsWhateverThePlace) {
+    const auto frame = frame_of<float>(small_sea(), {filtered(all_products(), 1.0)}, 1.0);
+    std::vector<glm::vec2> points{{1e20f, -1e20f}, {3e38f, 0.0f}, {-1e-30f, 5e16f}};
+    const auto far = sample(frame, 0, points);
+    for (const glm::vec3& d : far.displacement)
+        for (int axis = 0; axis < 3; ++axis) EXPECT_LT(std::abs(d[axis]), 100.0f);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::vector<glm::vec3> variance(1);
+    Results<float> results;
+    results.slope_variance = {variance.data()};
+    evaluate(frame, 0,
+             {.origin_m = {}, .count = 1, .rest_m = {points.data()}, .cell_m = {&nan}, .pixel_m = {&nan}},
+             results);
+    EXPECT_TRUE(std::isfinite(variance[0].x));
 }
 
 TEST(Query, RefusesWhatItDoesNotHold) {

@@ -72,17 +72,52 @@ TEST(SlopeVariance, OfAHugeFootprintIsTheWholeSpectrum) {
 // The residual turns with the wind, as a tensor does.
 TEST(SlopeVariance, TurnsWithTheWind) {
     Scene scene;
-    const auto at = [&](double direction_deg) {
+    const auto at = [&](double direction_deg, double footprint_m) {
         scene.sea.wind_direction_deg = direction_deg;
-        const auto frame = frame_of<double>(scene, {filtered(products(Product::SlopeVariance), 1.0)});
+        const auto frame = frame_of<double>(scene, {filtered(products(Product::SlopeVariance), footprint_m)});
         return sample(frame, 0, std::vector<glm::dvec2>{{0.0, 0.0}}).slope_variance[0];
     };
-    const auto along = at(0.0), across = at(90.0), between = at(45.0);
-    EXPECT_GT(along.x, 1.1 * along.y);
+    const auto all = at(0.0, 1e6);
+    EXPECT_GT(all.x, 1.1 * all.y);
+    // The short waves alone, which are what a footprint of a metre hides, run more across the wind than along
+    // it (Hasselmann's s below 1): only their turning is looked at.
+    const auto along = at(0.0, 1.0), across = at(90.0, 1.0), between = at(45.0, 1.0);
     EXPECT_NEAR(along.z, 0.0, 1e-4 * along.x);  // the lattice of modes isn't round: some 1e-5
     EXPECT_NEAR(across.x / along.y, 1.0, 1e-3);
     EXPECT_NEAR(across.y / along.x, 1.0, 1e-3);
     EXPECT_NEAR(between.z / (0.5 * (along.x - along.y)), 1.0, 0.02);
+}
+
+// What is hidden depends on the footprint alone, not on what else is asked for.
+TEST(SlopeVariance, IsTheSameAskedForAloneOrTogether) {
+    const Scene scene;
+    const std::vector<glm::dvec2> origin{{0.0, 0.0}};
+    const auto of = [&](ProductSet wanted) {
+        const auto frame = frame_of<double>(scene, {filtered(wanted, 0.4)});
+        return sample(frame, 0, origin).slope_variance[0];
+    };
+    const auto alone = of(products(Product::SlopeVariance));
+    EXPECT_EQ(alone, of(products(Product::SlopeVariance, Product::Normal)));
+    EXPECT_EQ(alone, of(products(Product::SlopeVariance, Product::Position)));
+    // And it is not everything: waves of more than 1.6 m show.
+    const auto all = frame_of<double>(scene, {filtered(products(Product::SlopeVariance), 1e6)});
+    EXPECT_LT(alone.x, 0.8 * sample(all, 0, origin).slope_variance[0].x);
+}
+
+// A cascade's own tile hides its own band: what the tiles hide adds up to what the sea hides.
+TEST(SlopeVariance, OfTheTilesAddsUp) {
+    Scene scene;
+    scene.waves.cascades = {{400.0, 128}, {50.0, 64}};
+    std::vector<Query> queries{unfiltered(products(Product::SlopeVariance))};
+    for (int i = 0; i < 2; ++i)
+        queries.push_back(tile(products(Product::SlopeVariance), i, scene.waves.cascades[i].size_m, 16));
+    const auto frame = frame_of<double>(scene, queries);
+    const std::vector<glm::dvec2> origin{{0.0, 0.0}};
+    const auto whole = sample(frame, 0, origin).slope_variance[0];
+    const auto tiles =
+        sample(frame, 1, origin).slope_variance[0] + sample(frame, 2, origin).slope_variance[0];
+    EXPECT_NEAR(tiles.x / whole.x, 1.0, 1e-4);  // the quadratures' own accuracy
+    EXPECT_NEAR(tiles.y / whole.y, 1.0, 1e-4);
 }
 
 }  // namespace

@@ -201,6 +201,8 @@ TEST(Validate, SomethingMustBeBaked) {
         s.output.mesh = MeshFormat::None;
         s.output.maps = {MapKind::Normal};
     });
+    expect_refused([](Scene& s) { s.output.cascade_tiles = true; },
+                   {"output.cascade_tiles", "true", "at least one map"});
 }
 
 TEST(Validate, CascadesReachEachOther) {

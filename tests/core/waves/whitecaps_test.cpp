@@ -192,11 +192,13 @@ TEST(CalibratedThreshold, GivesTheObservedCoverageOfTheWholeSea) {
             moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
         const auto j =
             jacobian_moments(0.0, 0.0, 0.0, HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
-        const double w = coverage(j, calibrated_threshold(m, wind), true);
-        EXPECT_NEAR(w / (2.95e-6 * std::pow(wind, 3.52)), 1.0, 1e-6);
+        for (const bool third_moment : {false, true}) {
+            const double w = coverage(j, calibrated_threshold(m, wind, third_moment), third_moment);
+            EXPECT_NEAR(w / (2.95e-6 * std::pow(wind, 3.52)), 1.0, 1e-6);
+        }
     }
-    EXPECT_EQ(calibrated_threshold({}, 0.0), -std::numeric_limits<double>::infinity());
-    EXPECT_EQ(calibrated_threshold({}, 10.0), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(calibrated_threshold({}, 0.0, true), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(calibrated_threshold({}, 10.0, true), -std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

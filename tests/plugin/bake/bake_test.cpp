@@ -8,7 +8,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core/base/constants.h"
 #include "plugin/shot/ndbc.h"
@@ -81,9 +83,8 @@ TEST(ParseFrames, TakesFramesRangesAndSteps) {
 }
 
 // The baked sea's Hs, Tm−1,0 and mean direction against those of the buoy's own file, over some seeds.
-void expect_the_buoys_sea(Bakes& test, const std::function<nlohmann::json(const Scene&)>& baked,
-                          const fs::path& w_file, const std::string& hour) {
-    (void)test;
+void expect_the_buoys_sea(const std::function<nlohmann::json(const Scene&)>& baked, const fs::path& w_file,
+                          const std::string& hour) {
     const std::string text =
         "spectrum = \"file\"\nspectrum_file = \"" + w_file.string() + "\"\nspectrum_time = " + hour + "\n";
     Scene scene = parse_shot("[sea]\n" + text, "buoy.toml");
@@ -127,13 +128,61 @@ void expect_the_buoys_sea(Bakes& test, const std::function<nlohmann::json(const 
     EXPECT_NEAR(turn * 180.0 / kPi, 0.0, 6.0);
 }
 
+TEST_F(Bakes, AMadeUpBuoysSeaComesBack) {
+    const fs::path data = fs::path(PELAGIC_SOURCE_DIR) / "examples" / "data" / "made-up-99002w2024.txt";
+    expect_the_buoys_sea([&](const Scene& scene) { return bake_and_read(scene); }, data,
+                         "2024-10-03T06:00:00Z");
+}
+
+// Two shots of different names in one folder share the names of their maps: what another one has replaced is
+// not whole.
+TEST_F(Bakes, MapsThatAnotherShotHasReplacedAreBakedAgain) {
+    Scene one = small_scene(), two = small_scene();
+    one.output.mesh = two.output.mesh = MeshFormat::None;
+    one.output.maps = two.output.maps = {MapKind::Displacement};
+    one.output.map_resolution = two.output.map_resolution = 8;
+    one.shot.name = "one";
+    two.shot.name = "two";
+    two.shot.seed = 2;
+    const auto kept = [&](const Scene& scene) {
+        return bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept;
+    };
+    EXPECT_EQ(kept(one), 0);
+    EXPECT_EQ(kept(one), 3);
+    EXPECT_EQ(kept(two), 0);
+    EXPECT_EQ(kept(one), 0);
+}
+
+TEST_F(Bakes, RunsSideBySideRecordTheFramesOfBoth) {
+    std::thread other(
+        [&] { bake(small_scene(), {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr}); });
+    bake(small_scene(), {.out = folder_, .frames = {2, 3}, .progress = {}, .cancel = nullptr});
+    other.join();
+    EXPECT_EQ(bake_and_read(small_scene()).at("frames").size(), 3u);
+    EXPECT_EQ(bake(small_scene(), {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept, 3);
+}
+
+TEST_F(Bakes, RecordKeepsEveryOneOfAList) {
+    Scene scene = small_scene();
+    scene.sea.swell = {{1.0, 9.0, 10.0}, {0.5, 7.0, 90.0}};
+    const auto settings = bake_and_read(scene).at("settings");
+    EXPECT_EQ(settings.at("sea.swell").size(), 2u);
+    EXPECT_EQ(settings.at("sea.wind_speed_mps"), 10);
+}
+
+TEST_F(Bakes, AnotherLensKeepsTheFrames) {
+    Scene scene = small_scene();
+    bake_and_read(scene);
+    scene.camera.fov_deg = 35.0;
+    EXPECT_EQ(bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept, 3);
+}
+
 TEST_F(Bakes, TheBuoysSeaComesBack) {
     const fs::path data = fs::path(PELAGIC_SOURCE_DIR) / ".." / "shared" / "data" / "ndbc-41010w2019.txt";
     if (!fs::exists(data)) GTEST_SKIP() << "no " << data << ": the real buoy's data isn't here";
     for (const char* hour : {"2019-02-06T00:40:00Z", "2019-02-07T12:40:00Z"}) {
         SCOPED_TRACE(hour);
-        expect_the_buoys_sea(
-            *this, [&](const Scene& scene) { return bake_and_read(scene); }, data, hour);
+        expect_the_buoys_sea([&](const Scene& scene) { return bake_and_read(scene); }, data, hour);
     }
 }
 

@@ -110,6 +110,8 @@ TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
     // One Pearson curve for the whole against one per texel: they agree to some ten percent of a coverage of
     // 2 %.
     EXPECT_NEAR(whole / fine_coverage, 1.0, 0.25);
+    // And it is not the average of level 0, which a filter of thresholded coverage would give.
+    EXPECT_GT(std::abs(whole / fine_coverage - 1.0), 1e-4);
 }
 
 TEST_F(BakedMaps, SlopeVarianceOfACoarserLevelHidesMore) {

@@ -107,7 +107,7 @@ TEST(SlopeVariance, IsTheSameAskedForAloneOrTogether) {
 // A cascade's own tile hides its own band: what the tiles hide adds up to what the sea hides.
 TEST(SlopeVariance, OfTheTilesAddsUp) {
     Scene scene;
-    scene.waves.cascades = {{400.0, 128}, {50.0, 64}};
+    scene.waves.cascades = {{400.0, 160}, {50.0, 64}};
     std::vector<Query> queries{unfiltered(products(Product::SlopeVariance))};
     for (int i = 0; i < 2; ++i)
         queries.push_back(tile(products(Product::SlopeVariance), i, scene.waves.cascades[i].size_m, 16));

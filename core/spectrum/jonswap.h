@@ -16,7 +16,7 @@
 namespace pelagic {
 
 struct Jonswap {
-    static constexpr double kGamma = 3.3;
+    static constexpr double kLnGamma = 1.1939224684724346;  // γ = 3.3
     static constexpr double kSigmaBelow = 0.07;
     static constexpr double kSigmaAbove = 0.09;
     static constexpr double kDevelopedPeak = 0.877;  // ωp U19.5 / g of Pierson & Moskowitz
@@ -40,9 +40,8 @@ struct Jonswap {
     double density(double omega) const {
         const double r = omega_p / omega;
         const double off_peak = (omega - omega_p) / ((omega > omega_p ? kSigmaAbove : kSigmaBelow) * omega_p);
-        const double ln_gamma = 1.1939224684724346;  // ln 3.3
         return alpha * kGravity * kGravity / fifth_power(omega) *
-               std::exp(-1.25 * (r * r) * (r * r) + ln_gamma * std::exp(-0.5 * off_peak * off_peak));
+               std::exp(-1.25 * (r * r) * (r * r) + kLnGamma * std::exp(-0.5 * off_peak * off_peak));
     }
 
     double peak_omega() const { return omega_p; }

@@ -160,12 +160,12 @@ void WaveSystem::find_panels(const Dispersion& dispersion) {
     // Log-spaced, narrower than the width of the narrowest peak (a swell's 0.14 in k), from far below the
     // peak to where the viscous cutoff has left 1e-16.
     constexpr double kRatio = 1.12;
-    constexpr double kDecadesBelow = 1e-5;
+    constexpr double kFarBelow = 1e-5;  // of the peak
     constexpr double kEnd = 6.0 * kViscousWavenumber;
     constexpr double kNegligible = 1e-15;  // of the largest k S_k: 300 panels of it are below 1e-12 of m0
 
     std::vector<double> grid;
-    for (double k = peak_wavenumber_ * kDecadesBelow; k < kEnd * kRatio; k *= kRatio) grid.push_back(k);
+    for (double k = peak_wavenumber_ * kFarBelow; k < kEnd * kRatio; k *= kRatio) grid.push_back(k);
     std::vector<double> content(grid.size());
     double largest = 0.0;
     for (std::size_t i = 0; i < grid.size(); ++i) {

@@ -214,23 +214,41 @@ Realisation Frame<T>::realisation(int query) const {
     Realisation sum;
     for (std::size_t c = 0; c < states_.size(); ++c) {
         const Cascade<T>& cascade = sea_->cascades()[c];
-        if (asked.only_cascade && *asked.only_cascade != static_cast<int>(c)) continue;
+        if (cascade.radius == 0 || (asked.only_cascade && *asked.only_cascade != static_cast<int>(c)))
+            continue;
         const double step = kTwoPi / cascade.size_m;
-        for_each_mode(cascade.radius, [&](std::size_t at, int mx, int my) {
-            const double k = step * std::hypot(mx, my);
-            const double cell_weight = plan.filter.weight(k, asked.cell_m.front());
-            const double pixel_weight = plan.filter.weight(k, asked.pixel_m.front());
-            // Twice: the mode and its mirror image.
-            const double height2 = 2.0 * std::norm(std::complex<double>(states_[c].height[at]));
-            sum.m0 += cell_weight * cell_weight * height2;
-            sum.m_minus1 += cell_weight * cell_weight * height2 / (kTwoPi * cascade.cycles_per_s[at]);
-            sum.mss += pixel_weight * pixel_weight * k * k * height2;
-            // forward is h0(k), which travels along +k; backward belongs to −k.
-            const double net = std::norm(std::complex<double>(cascade.forward[at])) -
-                               std::norm(std::complex<double>(cascade.backward[at]));
-            sum.east += cell_weight * cell_weight * net * step * mx / k;
-            sum.north += cell_weight * cell_weight * net * step * my / k;
+        std::vector<std::size_t> row_offset{0};
+        for (int my = 0; my <= cascade.radius; ++my)
+            row_offset.push_back(row_offset.back() +
+                                 static_cast<std::size_t>(row_length(cascade.radius, my)));
+        // Rows side by side, added up in their order.
+        std::vector<Realisation> rows(row_offset.size() - 1);
+        tbb::parallel_for(0, static_cast<int>(rows.size()), [&](int my) {
+            Realisation& row = rows[static_cast<std::size_t>(my)];
+            for (std::size_t at = row_offset[my]; at < row_offset[my + 1]; ++at) {
+                const int mx = row_first(cascade.radius, my) + static_cast<int>(at - row_offset[my]);
+                const double k = step * std::hypot(mx, my);
+                const double cell_weight = plan.filter.weight(k, asked.cell_m.front());
+                const double pixel_weight = plan.filter.weight(k, asked.pixel_m.front());
+                // Twice: the mode and its mirror image.
+                const double height2 = 2.0 * std::norm(std::complex<double>(states_[c].height[at]));
+                row.m0 += cell_weight * cell_weight * height2;
+                row.m_minus1 += cell_weight * cell_weight * height2 / (kTwoPi * cascade.cycles_per_s[at]);
+                row.mss += pixel_weight * pixel_weight * k * k * height2;
+                // forward is h0(k), which travels along +k; backward belongs to −k.
+                const double net = std::norm(std::complex<double>(cascade.forward[at])) -
+                                   std::norm(std::complex<double>(cascade.backward[at]));
+                row.east += cell_weight * cell_weight * net * step * mx / k;
+                row.north += cell_weight * cell_weight * net * step * my / k;
+            }
         });
+        for (const Realisation& row : rows) {
+            sum.m0 += row.m0;
+            sum.m_minus1 += row.m_minus1;
+            sum.mss += row.mss;
+            sum.east += row.east;
+            sum.north += row.north;
+        }
     }
     return sum;
 }

@@ -196,7 +196,14 @@ void add_tables(py::module_& module) {
         .key("depth_m", &SeaState::depth_m)
         .key("spectrum", &SeaState::spectrum)
         .key("spreading", &SeaState::spreading)
-        .key("swell", &SeaState::swell);
+        .key("swell", &SeaState::swell)
+        .python()
+        .def_property_readonly(
+            "is_measured", [](const SeaState& self) { return self.measured.has_value(); },
+            "Whether a buoy's hour is in it, from Scene.from_file.")
+        .def(
+            "forget_measured", [](SeaState& self) { self.measured.reset(); },
+            "Lets the buoy's hour go, so that spectrum can be another than \"file\".");
     Binder<Waves>(module, "Waves", "waves")
         .key("model", &Waves::model)
         .key("choppiness", &Waves::choppiness)

@@ -9,8 +9,9 @@ namespace {
 
 using namespace test;
 
-double mean_coverage(double wind_mps, int quads) {
+double mean_coverage(double wind_mps, int quads, QualityLevel level = QualityLevel::Final) {
     Scene scene;
+    scene.quality.level = level;
     scene.sea.wind_speed_mps = wind_mps;
     scene.surface.size_m = 1000.0;
     scene.surface.resolution = quads;
@@ -29,6 +30,12 @@ TEST(WhitecapCoverage, DoesNotDependOnTheGrid) {
             EXPECT_NEAR(fine / coarse, 1.0, 0.1) << "wind " << wind << ", " << quads << " quads";
         }
     }
+}
+
+TEST(WhitecapCoverage, IsTheSameAtEveryQualityInSinglePrecision) {
+    const double at_final = mean_coverage(8.0, 256);
+    for (QualityLevel level : {QualityLevel::Draft, QualityLevel::Preview})
+        EXPECT_NEAR(mean_coverage(8.0, 256, level) / at_final, 1.0, 0.01);  // only the sampling differs
 }
 
 // Monahan and O'Muircheartaigh 1980, W = 2.95e-6 U^3.52, within a factor of 2.

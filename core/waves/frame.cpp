@@ -198,9 +198,9 @@ void Frame<T>::fill(int c, int g, int transform, std::atomic<long>& executed) {
         const std::complex<T> b = second ? weight * spectrum_of(*second, at, kx, ky) : std::complex<T>(0);
         const int x = mx < 0 ? mx + n : mx, mirrored_x = mx > 0 ? n - mx : -mx;
         const int mirrored_y = my > 0 ? n - my : 0;
-        // Both fields are real: at −k stand their conjugates.
-        buffer.data()[static_cast<std::size_t>(my) * n + x] = {a.real() - b.imag(), a.imag() + b.real()};
-        buffer.data()[static_cast<std::size_t>(mirrored_y) * n + mirrored_x] = {a.real() + b.imag(),
+        // The transform takes y side by side. Both fields are real: at −k stand their conjugates.
+        buffer.data()[static_cast<std::size_t>(x) * n + my] = {a.real() - b.imag(), a.imag() + b.real()};
+        buffer.data()[static_cast<std::size_t>(mirrored_x) * n + mirrored_y] = {a.real() + b.imag(),
                                                                                 b.real() - a.imag()};
     });
     grid_state.transform.execute(buffer);

@@ -24,9 +24,10 @@ class TransformBuffer {
     std::size_t size_ = 0;
 };
 
-// f_{jy,jx} = Σ F_{my,mx} exp(+2πi (mx jx + my jy)/N), in place, one thread, unnormalised. Planned by FFTW's
-// estimate and never by timing, so that every run takes the same path (where the host has not given FFTW
-// wisdom of its own). execute() may be called from several threads at once.
+// f(jx, jy) = Σ F(mx, my) exp(+2πi (mx jx + my jy)/N), in place, one thread, unnormalised. Takes F(mx, my) at
+// mx N + my, my side by side, and leaves f(jx, jy) at jy N + jx, x side by side. Planned by FFTW's estimate
+// and never by timing, so that every run takes the same path (where the host has not given FFTW wisdom of its
+// own). execute() may be called from several threads at once.
 template <class T>
 class InverseTransform {
   public:

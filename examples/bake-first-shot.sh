@@ -18,7 +18,7 @@ build release pelagic
 cat <<EOF
 
 The sea is in $out
-  first-shot.usda    open it in usdview, Houdini, Maya, or Blender 3.6 and later (File > Import > Universal Scene Description)
+  first-shot.usda    the stage: open it in a program that reads OpenUSD (usdview; Blender 3.5 or later, File > Import > USD)
   mesh/              a layer a frame: positions, normals, velocities, slope variances, whitecap coverage
   maps/              displacement and whitecaps as OpenEXR, for a shader on a flat plane
   first-shot.json    what was baked, and each frame's statistics

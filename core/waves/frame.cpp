@@ -181,7 +181,7 @@ void Frame<T>::fill(int c, int g, int transform, std::atomic<long>& executed) {
     const int n = grid.resolution;
     std::fill_n(buffer.data(), buffer.size(), std::complex<T>(0));
 
-    const auto [first, second] = grid.transforms[transform];
+    const std::optional<Field> first = grid.transforms[transform][0], second = grid.transforms[transform][1];
     const T step = static_cast<T>(kTwoPi / cascade.size_m);
     const auto spectrum_of = [&](Field field, std::size_t at, T kx, T ky) {
         const Factor<T> by = factor(field, kx, ky, cascade.chop.empty() ? T(0) : cascade.chop[at]);

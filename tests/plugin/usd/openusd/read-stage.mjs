@@ -41,6 +41,8 @@ Exit status: 0 all well; 1 OpenUSD complained, or something is not as expected; 
 // renderer draws meshes only and says so of every light and camera, and of the primvars of a cage; the shader registry's
 // discovery plugin is not in the build and is missed at the first material.
 const known = [
+    // Emscripten's runtime, of OpenUSD's own threads, when the machine is slow: no word about any stage.
+    /^Blocking on the main thread is very dangerous, see https:\/\/emscripten\.org\/\S+$/,
     /Failed to find plugin for schema type 'UsdVol(OpenVDBAsset|Volume|Field3DAsset)'$/,
     /Selected hydra renderer doesn't support prim type '(DistantLight|LightAPI|DomeLight|Camera)'$/,
     /webRenderDelegate\.cpp -- Unsupported interpolation type 'varying' for primvar \w+$/,

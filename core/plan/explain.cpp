@@ -45,16 +45,11 @@ std::string field_list(FieldSet set) {
     return text.empty() ? "no field" : text;
 }
 
-std::string footprint_text(const std::vector<double>& footprints_m) {
+std::string footprint_text(const std::vector<double>& footprints_m, double n_min) {
     if (footprints_m.size() == 1 && footprints_m.front() == 0.0) return "nothing filtered";
-    std::string text = format("waves from %.4g m up", FootprintFilter{}.n_min * footprints_m.front());
-    if (footprints_m.size() > 1) text += format(" … %.4g m", FootprintFilter{}.n_min * footprints_m.back());
+    std::string text = format("waves from %.4g m up", n_min * footprints_m.front());
+    if (footprints_m.size() > 1) text += format(" … %.4g m", n_min * footprints_m.back());
     return text;
-}
-
-// The horizontal displacement's fields are zero without choppiness: asked for, but never computed.
-FieldSet computed(const Plan& plan, ProductSet wanted) {
-    return fields_of(wanted) & ~(plan.choppiness > 0.0 ? FieldSet() : horizontal_fields());
 }
 
 }  // namespace
@@ -70,11 +65,12 @@ std::string explain(const Scene& scene, const Plan& plan) {
 
     page += "\nOutputs\n";
     for (const PlannedQuery& planned : plan.queries) {
-        page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m) + "\n";
+        page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m, plan.filter.n_min) +
+                "\n";
         for (const ProductRow& row : kProductTable)
             if (planned.query.products[index(row.product)])
                 page += format("    %-18s ← %s (%s)\n", row.name,
-                               field_list(computed(plan, products(row.product))).c_str(), row.why);
+                               field_list(fields_of(products(row.product)) & ~plan.dropped).c_str(), row.why);
     }
     if (plan.queries.empty()) page += "  none: no mesh and no maps are asked for\n";
     if (scene.output.mesh != MeshFormat::None) {

@@ -58,9 +58,11 @@ std::optional<int> node_resolution(const Lattice& lattice, double size_m) {
 }
 
 bool has_energy(const DirectionalSpectrum& spectrum, double k_lower, double k_upper) {
-    const double from = std::max(k_lower, 1e-6);
-    for (int i = 0; i <= 256; ++i)
-        if (spectrum.omnidirectional(from * std::pow(k_upper / from, i / 256.0)) > 0.0) return true;
+    constexpr double kLongest = 1e-6;  // rad/m: no wave is longer than 6000 km
+    constexpr int kSteps = 256;  // each below 10 % in k, narrower than the narrowest system, a swell's 14 %
+    const double from = std::max(k_lower, kLongest);
+    for (int i = 0; i <= kSteps; ++i)
+        if (spectrum.omnidirectional(from * std::pow(k_upper / from, i / double{kSteps})) > 0.0) return true;
     return false;
 }
 
@@ -78,13 +80,13 @@ int level_index(Plan& plan, const Level& level) {
 }
 
 // Fields that a grid of this cascade and level must hold for all queries together.
-FieldSet fields_at(const Plan& plan, int level, FieldSet dropped) {
+FieldSet fields_at(const Plan& plan, int level) {
     FieldSet wanted;
     for (const PlannedQuery& planned : plan.queries) {
         const auto uses = [&](const std::vector<int>& levels) {
             return std::find(levels.begin(), levels.end(), level) != levels.end();
         };
-        const FieldSet needed = fields_of(planned.query.products) & ~dropped;
+        const FieldSet needed = fields_of(planned.query.products) & ~plan.dropped;
         if (uses(planned.cell_levels)) wanted |= needed & cell_fields();
         if (uses(planned.pixel_levels)) wanted |= needed & ~cell_fields();
     }
@@ -101,13 +103,13 @@ bool hides(const Plan& plan, int level) {
     return false;
 }
 
-void add_grids(Plan& plan, int cascade_index, FieldSet dropped) {
+void add_grids(Plan& plan, int cascade_index) {
     CascadePlan& cascade = plan.cascades[cascade_index];
     const int last_mode = cascade.resolution / 2 - 1;
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
         if (at.only_cascade && *at.only_cascade != cascade_index) continue;
-        const FieldSet wanted = fields_at(plan, level, dropped);
+        const FieldSet wanted = fields_at(plan, level);
         const double cutoff = std::min(plan.filter.cutoff(at.footprint_m), cascade.k_upper);
         const int radius = std::min(last_mode, modes_within(cascade.size_m, cutoff));
         if (cutoff <= cascade.k_lower || radius < 1) continue;
@@ -300,8 +302,8 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
         plan.queries.push_back(std::move(planned));
     }
 
-    const FieldSet dropped = scene.waves.choppiness > 0.0 ? FieldSet() : horizontal_fields();
-    if (dropped.any()) plan.closure.push_back({"no horizontal displacement", "waves.choppiness is 0"});
+    if (!(scene.waves.choppiness > 0.0)) plan.dropped = horizontal_fields();
+    if (plan.dropped.any()) plan.closure.push_back({"no horizontal displacement", "waves.choppiness is 0"});
     if (!scene.effects.whitecaps) plan.closure.push_back({"no whitecaps", "effects.whitecaps is false"});
     const auto sizes = resolve_cascades(scene, std::isfinite(finest_m) ? finest_m : 0.0);
     std::vector<double> sizes_m;
@@ -318,7 +320,7 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
         plan.cascades.push_back(std::move(cascade));
         const double last = std::min(plan.cascades[i].k_upper, kPi * sizes[i].resolution / sizes[i].size_m);
         if (has_energy(spectrum, edges[i], last))
-            add_grids(plan, static_cast<int>(i), dropped);
+            add_grids(plan, static_cast<int>(i));
         else
             plan.cascades[i].why_empty = "the spectrum has no energy in its band";
     }

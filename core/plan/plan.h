@@ -101,6 +101,7 @@ struct Plan {
     std::vector<PlannedQuery> queries;
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
+    FieldSet dropped;  // fields that are zero in this scene, whoever asks: never computed
     std::vector<Reason> closure;
     std::uint64_t fingerprint = 0;  // of everything that decides what the files hold, except which frames
 

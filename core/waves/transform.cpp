@@ -97,7 +97,7 @@ InverseTransform<T>::InverseTransform(int n) : n_(n) {
 template <class T>
 void InverseTransform<T>::execute(const TransformBuffer<T>& buffer) const {
     // Along y, where y lies side by side; turned; along x. Asked for the square at once, or for its columns,
-    // FFTW's estimate picks passes that are some 9 (1024²) to 8 times (512²) slower than what its timing
+    // FFTW's estimate picks passes that are 8 to 14 times slower than what its timing
     // would find; rows it estimates well.
     auto* data = reinterpret_cast<typename Fftw<T>::Complex*>(buffer.data());
     Fftw<T>::execute_dft(plan_->rows, data, data);

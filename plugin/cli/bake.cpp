@@ -124,8 +124,7 @@ int run(const Arguments& arguments) {
         std::cerr << out_of_memory(scene);
         return kRefused;
     } catch (const std::invalid_argument& error) {
-        // Of the shot as a whole: it asks for nothing. Values have been looked at with their lines by
-        // load_shot().
+        // load_shot() has looked at every value with its line: what is refused here is what it can't see.
         progress.clear();
         std::cerr << arguments.shot << ": " << error.what() << '\n';
         return kRefused;

@@ -21,11 +21,11 @@
 namespace pelagic::bench {
 namespace {
 
-struct Results4 {
+struct VertexArrays {
     std::vector<glm::vec3> position, normal, velocity, variance;
     std::vector<float> coverage;
 
-    explicit Results4(std::size_t n) : position(n), normal(n), velocity(n), variance(n), coverage(n) {}
+    explicit VertexArrays(std::size_t n) : position(n), normal(n), velocity(n), variance(n), coverage(n) {}
     Results<float> views() {
         return {.position = {position.data()},
                 .displacement = {},
@@ -78,7 +78,7 @@ void table(int n) {
     Frame<float> node_frame = make_frame(on_nodes), spline_frame = make_frame(between);
     const auto points = rest_points<float>({.per_side = n + 1, .spacing_m = 400.0 / n, .first_m = -200.0});
     const Points<float> rest{.count = points.size(), .rest_m = {points.data()}};
-    Results4 out(points.size());
+    VertexArrays out(points.size());
     const int node_transforms = node_frame.sea().plan().transforms_per_frame();
     const int spline_n = spline_frame.sea().plan().cascades[0].grids[0].resolution;
     const BareTransforms bare(n, node_transforms), bare_spline(spline_n, node_transforms);

@@ -1,0 +1,25 @@
+// A few hundred points on their way through evaluate(): small enough for the first-level cache, each quantity
+// side by side so that vectors read and write it whole.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/plan/fields.h"
+
+namespace pelagic {
+
+template <class T>
+struct Chunk {
+    static constexpr std::size_t kPoints = 256;  // a multiple of every vector's length
+    using Values = std::array<T, kPoints>;
+
+    // 1 … kPoints. Vectors work on whole multiples of their length: what lies beyond is finite and is not
+    // read.
+    std::size_t count = 0;
+    alignas(64) Values rest_x, rest_y;  // [m], relative to the query's origin
+    // Σ over the components so far, by field; only the wanted ones are set.
+    alignas(64) std::array<Values, kFieldCount> sums;
+};
+
+}  // namespace pelagic

@@ -9,15 +9,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/evaluate/kernels.h"
+#include "core/evaluate/trains.h"
 #include "core/plan/tables.h"
-#include "core/waves/spline.h"
-#include "core/waves/whitecaps.h"
 
 namespace pelagic {
 namespace {
-
-template <class T>
-using Sums = std::array<T, kFieldCount>;
 
 // A point's place on a ladder of footprints: (1 − t) of the lower rung and t of the next.
 template <class T>
@@ -37,123 +34,39 @@ Rung<T> rung_of(const std::vector<double>& ladder_m, const Strided<const T>& foo
     return {upper - 1, static_cast<T>((wanted - lower_m) / (upper_m - lower_m))};
 }
 
-// One grid, ready to be read.
+// What a rung of pixels hides of `whole`: less what passes through the cascades, variances never negative.
 template <class T>
-struct Reader {
-    const Frame<T>* frame;
-    int cascade, grid_index;
-    const Grid* grid;
-    double nodes_per_m, origin_nodes_x, origin_nodes_y;
-};
-
-// Adds weight × (the grid's fields) at a point; cell fields by one weight, pixel fields by the other.
-template <int P, class T>
-void add_spline(const Reader<T>& reader, glm::dvec2 node, const Sums<T>& weight, Sums<T>& sums) {
-    const int n = reader.grid->resolution;
-    const double base_x = std::floor(node.x), base_y = std::floor(node.y);
-    T wx[P], wy[P];
-    bspline_weights<P, T>(static_cast<T>(node.x - base_x), wx);
-    bspline_weights<P, T>(static_cast<T>(node.y - base_y), wy);
-    std::size_t column[P], row[P];
-    for (int i = 0; i < P; ++i) {
-        const int offset = i - P / 2 + 1;
-        column[i] = static_cast<std::size_t>((static_cast<int>(base_x) + offset + n) % n);
-        row[i] = static_cast<std::size_t>((static_cast<int>(base_y) + offset + n) % n) *
-                 static_cast<std::size_t>(n);
-    }
-    for (std::size_t t = 0; t < reader.grid->transforms.size(); ++t) {
-        const auto [first, second] = reader.grid->transforms[t];
-        const T first_weight = weight[index(*first)], second_weight = second ? weight[index(*second)] : T(0);
-        if (first_weight == T(0) && second_weight == T(0)) continue;
-        const std::complex<T>* samples =
-            reader.frame->samples(reader.cascade, reader.grid_index, static_cast<int>(t));
-        T real = T(0), imaginary = T(0);
-        for (int j = 0; j < P; ++j) {
-            T row_real = T(0), row_imaginary = T(0);
-            for (int i = 0; i < P; ++i) {
-                const std::complex<T> value = samples[row[j] + column[i]];
-                row_real += wx[i] * value.real();
-                row_imaginary += wx[i] * value.imag();
-            }
-            real += wy[j] * row_real;
-            imaginary += wy[j] * row_imaginary;
-        }
-        sums[index(*first)] += first_weight * real;
-        if (second) sums[index(*second)] += second_weight * imaginary;
-    }
-}
-
-template <class T>
-void add_node(const Reader<T>& reader, glm::dvec2 node, const Sums<T>& weight, Sums<T>& sums) {
-    const int n = reader.grid->resolution;
-    const auto column = static_cast<std::size_t>(static_cast<int>(std::lround(node.x)) % n);
-    const auto row = static_cast<std::size_t>(static_cast<int>(std::lround(node.y)) % n);
-    for (std::size_t t = 0; t < reader.grid->transforms.size(); ++t) {
-        const auto [first, second] = reader.grid->transforms[t];
-        const std::complex<T> value =
-            reader.frame->samples(reader.cascade, reader.grid_index,
-                                  static_cast<int>(t))[row * static_cast<std::size_t>(n) + column];
-        sums[index(*first)] += weight[index(*first)] * value.real();
-        if (second) sums[index(*second)] += weight[index(*second)] * value.imag();
-    }
-}
-
-template <class T>
-void add_grid(const Reader<T>& reader, glm::dvec2 relative_m, int taps, const Sums<T>& weight,
-              Sums<T>& sums) {
-    const double n = reader.grid->resolution;
-    const auto wrap = [n](double nodes) {
-        const double inside = nodes - n * std::floor(nodes / n);
-        // −1e-20 rounds up to n itself; a place that is no number, or so far that nothing of it is left,
-        // becomes 0.
-        return inside >= 0.0 && inside < n ? inside : 0.0;
-    };
-    const glm::dvec2 node(wrap(reader.origin_nodes_x + relative_m.x * reader.nodes_per_m),
-                          wrap(reader.origin_nodes_y + relative_m.y * reader.nodes_per_m));
-    if (reader.grid->sampling == Sampling::Nodes)
-        add_node(reader, node, weight, sums);
-    else if (taps == 6)
-        add_spline<6>(reader, node, weight, sums);
-    else
-        add_spline<4>(reader, node, weight, sums);
-}
-
-// What the pixel footprint hides: the whole spectrum less what passes, never negative.
-struct Hidden {
-    double xx, yy, xy;
-    HiddenStrain<double> strain;
-};
-
-template <class T>
-Hidden hidden_at(const Sea<T>& sea, int query, const Rung<T>& rung) {
-    const QueryStatistics& statistics = sea.statistics(query);
-    const SpectralMoments& total = statistics.whole;
+HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& rung,
+                           const HiddenMoments<double>& whole) {
     const double t = static_cast<double>(rung.t);
-    // ((1−t) w_a + t w_b)², expanded.
-    const auto resolved = [&](double SpectralMoments::*m) {
-        double sum = (1.0 - t) * (1.0 - t) * (statistics.resolved[rung.lower].*m);
+    const auto left = [&](std::size_t moment) {
+        const auto m = kHiddenMoments[moment];
+        // ((1−t) w_a + t w_b)², expanded.
+        double resolved = (1.0 - t) * (1.0 - t) * (statistics.resolved[rung.lower].*m);
         if (t > 0.0)
-            sum += 2.0 * t * (1.0 - t) * (statistics.resolved_next[rung.lower].*m) +
-                   t * t * (statistics.resolved[rung.lower + 1].*m);
-        return sum;
+            resolved += 2.0 * t * (1.0 - t) * (statistics.resolved_next[rung.lower].*m) +
+                        t * t * (statistics.resolved[rung.lower + 1].*m);
+        return whole[moment] - resolved;
     };
-    const auto variance = [&](double SpectralMoments::*m) { return std::max(total.*m - resolved(m), 0.0); };
-    const auto covariance = [&](double SpectralMoments::*m, double a, double b) {
+    const auto variance = [&](std::size_t moment) { return std::max(left(moment), 0.0); };
+    const auto covariance = [&](std::size_t moment, double a, double b) {
         const double bound = std::sqrt(a * b);
-        return std::clamp(total.*m - resolved(m), -bound, bound);
+        return std::clamp(left(moment), -bound, bound);
     };
-    using M = SpectralMoments;
-    Hidden hidden{};
-    hidden.xx = variance(&M::xx);
-    hidden.yy = variance(&M::yy);
-    hidden.xy = covariance(&M::xy, hidden.xx, hidden.yy);
-    HiddenStrain<double>& v = hidden.strain;
-    v.xxxx = variance(&M::xxxx);
-    v.yyyy = variance(&M::yyyy);
-    v.xxyy = std::min(variance(&M::xxyy), std::sqrt(v.xxxx * v.yyyy));
-    v.xxxy = covariance(&M::xxxy, v.xxxx, v.xxyy);
-    v.xyyy = covariance(&M::xyyy, v.yyyy, v.xxyy);
-    return hidden;
+    const double xx = variance(0), yy = variance(2), xxxx = variance(3), yyyy = variance(7);
+    const double xxyy = std::min(variance(5), std::sqrt(xxxx * yyyy));
+    const std::array<double, kHiddenMoments.size()> hidden{
+        xx,   covariance(1, xx, yy),     yy,  xxxx, covariance(4, xxxx, xxyy),
+        xxyy, covariance(6, yyyy, xxyy), yyyy};
+    HiddenMoments<T> result;
+    std::transform(hidden.begin(), hidden.end(), result.begin(), [](double v) { return static_cast<T>(v); });
+    return result;
+}
+
+HiddenMoments<double> hidden_part(const SpectralMoments& moments) {
+    HiddenMoments<double> part;
+    for (std::size_t m = 0; m < part.size(); ++m) part[m] = moments.*kHiddenMoments[m];
+    return part;
 }
 
 template <class T>
@@ -169,113 +82,234 @@ ProductSet given_by(const Results<T>& results) {
     return given;
 }
 
+// Results beginning at a later point.
+template <class Value>
+Strided<Value> from_point(const Strided<Value>& view, std::size_t first) {
+    return view ? Strided<Value>{&view[first], view.stride_bytes} : view;
+}
+template <class T>
+Results<T> from_point(const Results<T>& results, std::size_t first) {
+    return {.position = from_point(results.position, first),
+            .displacement = from_point(results.displacement, first),
+            .normal = from_point(results.normal, first),
+            .velocity = from_point(results.velocity, first),
+            .slope_variance = from_point(results.slope_variance, first),
+            .jacobian = from_point(results.jacobian, first),
+            .coverage = from_point(results.coverage, first)};
+}
+
+// Everything about a query that is the same for all points.
+template <class T>
+class Evaluation {
+  public:
+    Evaluation(const Frame<T>& frame, int query_index, const Points<T>& points, const Results<T>& results)
+        : frame_(frame),
+          plan_(frame.sea().plan()),
+          planned_(plan_.queries[query_index]),
+          statistics_(frame.sea().statistics(query_index)),
+          points_(points),
+          results_(results),
+          kernels_(evaluate_kernels<T>()) {
+        const ProductSet given = given_by(results);
+        needed_ = fields_of(given) & ~plan_.dropped;
+        hidden_wanted_ = (given & hidden_products()).any();
+        ladder_ = (points.cell_m && planned_.cell_levels.size() > 1) ||
+                  (points.pixel_m && planned_.pixel_levels.size() > 1);
+        has_trains_ = plan_.trains && !planned_.query.only_cascade;
+        if (has_trains_)
+            start_cycles_ = phases_at(frame.sea().trains(), points.origin_m, frame.time_within_loop_s());
+        for (const std::vector<int>* levels : {&planned_.cell_levels, &planned_.pixel_levels})
+            for (int level : *levels) {
+                if (std::find(levels_.begin(), levels_.end(), level) != levels_.end()) continue;
+                levels_.push_back(level);
+                grids_.push_back(grids_of(level));
+            }
+        // Only where trains see each point's own pixel, or cascades a ladder, do points differ.
+        uniform_hidden_ =
+            !(has_trains_ && points.pixel_m) && !(points.pixel_m && planned_.pixel_levels.size() > 1);
+        if (hidden_wanted_ && uniform_hidden_)
+            hidden_ = hidden_at<T>(statistics_, {},
+                                   hidden_part(has_trains_ ? hidden(frame.sea().trains(), plan_.filter,
+                                                                    planned_.query.pixel_m.front())
+                                                           : statistics_.whole));
+    }
+
+    void run(std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const {
+        chunk.count = std::min(Chunk<T>::kPoints, points_.count - first);
+        for (std::size_t i = 0; i < Chunk<T>::kPoints; ++i) {
+            const glm::vec<2, T> rest = i < chunk.count ? points_.rest_m[first + i] : glm::vec<2, T>(T(0));
+            chunk.rest_x[i] = rest.x;
+            chunk.rest_y[i] = rest.y;
+        }
+        // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
+        for (typename Chunk<T>::Values& sum : chunk.sums) sum.fill(T(0));
+        if (ladder_)
+            add_ladder(first, chunk, hidden_of);
+        else
+            for (std::size_t i = 0; i < levels_.size(); ++i) {
+                FieldSet fields;
+                if (levels_[i] == planned_.cell_levels.front()) fields |= cell_fields();
+                if (levels_[i] == planned_.pixel_levels.front()) fields |= ~cell_fields();
+                add_grids(grids_[i], {fields, nullptr, nullptr}, chunk);
+            }
+        add_own_footprints(first, chunk, hidden_of);
+        kernels_.derive({.chunk = &chunk,
+                         .results = from_point(results_, first),
+                         .hidden = hidden_,
+                         .hidden_of = hidden_wanted_ && !uniform_hidden_ ? &hidden_of : nullptr,
+                         .whitecap_threshold = static_cast<T>(frame_.sea().whitecap_threshold()),
+                         .third_moment = plan_.knobs.third_moment});
+    }
+
+  private:
+    // How a level's grids count at a chunk's points.
+    struct Share {
+        FieldSet fields;
+        const T *cell_weight, *pixel_weight;
+    };
+
+    // A level's grids, cascade after cascade; those through which nothing passes have nothing to add.
+    std::vector<GridArgs<T>> grids_of(int level) const {
+        std::vector<GridArgs<T>> grids;
+        for (int c = 0; c < static_cast<int>(plan_.cascades.size()); ++c) {
+            const CascadePlan& cascade = plan_.cascades[c];
+            const int g = cascade.grid_of_level[level];
+            if (g < 0) continue;
+            const Grid& grid = cascade.grids[g];
+            // The origin's own phase within the tile, in double: the rest of the way is short.
+            const auto phase = [&](double x) {
+                const double tiles = x / cascade.size_m;
+                return (tiles - std::floor(tiles)) * grid.resolution;
+            };
+            GridArgs<T> args{.sampling = grid.sampling,
+                             .taps = plan_.knobs.spline_taps,
+                             .n = grid.resolution,
+                             .nodes_per_m = grid.resolution / cascade.size_m,
+                             .origin_nodes_x = phase(points_.origin_m.x),
+                             .origin_nodes_y = phase(points_.origin_m.y),
+                             .cell_group = cell_fields()};
+            for (std::size_t f = 0; f < kFieldCount; ++f)
+                if (needed_[f]) args.samples[f] = frame_.samples(c, g, static_cast<Field>(f));
+            grids.push_back(args);
+        }
+        return grids;
+    }
+
+    void add_grids(const std::vector<GridArgs<T>>& grids, const Share& share, Chunk<T>& chunk) const {
+        if (share.fields.none()) return;
+        for (GridArgs<T> args : grids) {
+            for (std::size_t f = 0; f < kFieldCount; ++f)
+                if (!share.fields[f]) args.samples[f] = nullptr;
+            args.cell_weight = share.cell_weight;
+            args.pixel_weight = share.pixel_weight;
+            kernels_.add_grid(args, chunk);
+        }
+    }
+
+    // Each point between two rungs: the levels one after another, each with the points' shares in it.
+    void add_ladder(std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const {
+        std::array<Rung<T>, Chunk<T>::kPoints> cell, pixel;
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            cell[i] = rung_of(planned_.query.cell_m, points_.cell_m, first + i);
+            pixel[i] = rung_of(planned_.query.pixel_m, points_.pixel_m, first + i);
+        }
+        typename Chunk<T>::Values cell_weight, pixel_weight;
+        const auto shares = [&](const std::vector<int>& levels, int level, const auto& rungs,
+                                typename Chunk<T>::Values& weight) {
+            bool any = false;
+            weight.fill(T(0));
+            for (std::size_t i = 0; i < chunk.count; ++i) {
+                if (levels[rungs[i].lower] == level) weight[i] += T(1) - rungs[i].t;
+                if (rungs[i].t > T(0) && levels[rungs[i].lower + 1] == level) weight[i] += rungs[i].t;
+                any = any || weight[i] > T(0);
+            }
+            return any;
+        };
+        for (std::size_t l = 0; l < levels_.size(); ++l) {
+            FieldSet fields;
+            if (shares(planned_.cell_levels, levels_[l], cell, cell_weight)) fields |= cell_fields();
+            if (shares(planned_.pixel_levels, levels_[l], pixel, pixel_weight)) fields |= ~cell_fields();
+            add_grids(grids_[l], {fields, cell_weight.data(), pixel_weight.data()}, chunk);
+        }
+        if (!hidden_wanted_ || uniform_hidden_ || has_trains_) return;
+        const HiddenMoments<double> whole = hidden_part(statistics_.whole);
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            const HiddenMoments<T> left = hidden_at<T>(statistics_, pixel[i], whole);
+            for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
+        }
+    }
+
+    // The trains, which see each point's own footprints, and what all together hide.
+    void add_own_footprints(std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const {
+        if (!has_trains_) return;
+        typename Chunk<T>::Values cell, pixel;
+        const auto own = [&](const Strided<const T>& footprint_m, double finest_m,
+                             typename Chunk<T>::Values& of) {
+            const T finest = static_cast<T>(finest_m);
+            for (std::size_t i = 0; i < Chunk<T>::kPoints; ++i) {
+                const T wanted = i < chunk.count ? footprint_m[first + i] : finest;
+                of[i] = wanted > finest ? wanted : finest;  // the finest for one that is no number, too
+            }
+        };
+        const Query& query = planned_.query;
+        if (points_.cell_m) own(points_.cell_m, query.cell_m.front(), cell);
+        if (points_.pixel_m) own(points_.pixel_m, query.pixel_m.front(), pixel);
+        const bool varied = hidden_wanted_ && !uniform_hidden_;
+        add_trains<T>({.trains = &frame_.sea().trains(),
+                       .start_cycles = start_cycles_.data(),
+                       .filter = plan_.filter,
+                       .wanted = needed_,
+                       .cell_m = static_cast<T>(query.cell_m.front()),
+                       .pixel_m = static_cast<T>(query.pixel_m.front()),
+                       .cell_of = points_.cell_m ? cell.data() : nullptr,
+                       .pixel_of = points_.pixel_m ? pixel.data() : nullptr,
+                       .hidden = varied ? &hidden_of : nullptr},
+                      chunk);
+        if (!varied || plan_.cascades.empty()) return;
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            HiddenMoments<double> whole;
+            for (std::size_t m = 0; m < whole.size(); ++m)
+                whole[m] = static_cast<double>(hidden_of.moments[m][i]);
+            const HiddenMoments<T> left =
+                hidden_at<T>(statistics_, rung_of(query.pixel_m, points_.pixel_m, first + i), whole);
+            for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
+        }
+    }
+
+    const Frame<T>& frame_;
+    const Plan& plan_;
+    const PlannedQuery& planned_;
+    const QueryStatistics& statistics_;
+    const Points<T>& points_;
+    const Results<T>& results_;
+    EvaluateKernels<T> kernels_;
+    FieldSet needed_;
+    bool hidden_wanted_ = false, ladder_ = false, has_trains_ = false, uniform_hidden_ = true;
+    HiddenMoments<T> hidden_{};
+    std::vector<double> start_cycles_;
+    std::vector<int> levels_;
+    std::vector<std::vector<GridArgs<T>>> grids_;  // parallel to levels_
+};
+
 }  // namespace
 
 template <class T>
 void evaluate(const Frame<T>& frame, int query_index, const Points<T>& points, const Results<T>& results) {
-    using Vec3 = glm::vec<3, T>;
-    const Sea<T>& sea = frame.sea();
-    const Plan& plan = sea.plan();
-    const PlannedQuery& planned = plan.queries.at(query_index);
-    const Query& query = planned.query;
+    const Query& query = frame.sea().plan().queries.at(query_index).query;
     if (!frame.is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
     const ProductSet given = given_by(results);
     for (const ProductRow& row : kProductTable)
         if (given[index(row.product)] && !query.products[index(row.product)])
             throw std::invalid_argument("query \"" + query.name + "\" does not hold \"" + row.name +
                                         "\": ask for it when the plan is made");
-
-    const FieldSet cell_group = cell_fields();
-    const bool jacobian_wanted = results.jacobian || results.coverage;
-    const bool hidden_wanted = jacobian_wanted || results.slope_variance;
-    const T threshold = static_cast<T>(sea.whitecap_threshold());
-    const bool uniform = !points.pixel_m || query.pixel_m.size() == 1;
-    const Hidden uniform_hidden =
-        uniform && hidden_wanted ? hidden_at(sea, query_index, Rung<T>{}) : Hidden{};
-
-    const auto reader_of = [&](int cascade, int level) {
-        const CascadePlan& cascade_plan = plan.cascades[cascade];
-        const int grid_index = cascade_plan.grid_of_level[level];
-        Reader<T> reader{&frame, cascade, grid_index, nullptr, 0.0, 0.0, 0.0};
-        if (grid_index < 0) return reader;
-        reader.grid = &cascade_plan.grids[grid_index];
-        reader.nodes_per_m = reader.grid->resolution / cascade_plan.size_m;
-        // The origin's own phase within the tile, in double: the rest of the way is short.
-        const auto phase = [&](double x) {
-            const double tiles = x / cascade_plan.size_m;
-            return (tiles - std::floor(tiles)) * reader.grid->resolution;
-        };
-        reader.origin_nodes_x = phase(points.origin_m.x);
-        reader.origin_nodes_y = phase(points.origin_m.y);
-        return reader;
-    };
-    // By level, cascade after cascade; a reader without a grid has nothing to add.
-    std::vector<std::vector<Reader<T>>> readers(plan.levels.size());
-    for (const std::vector<int>* levels : {&planned.cell_levels, &planned.pixel_levels})
-        for (int level : *levels)
-            if (readers[level].empty())
-                for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c)
-                    if (const Reader<T> reader = reader_of(c, level); reader.grid)
-                        readers[level].push_back(reader);
-
-    const FieldSet needed = fields_of(given);
-    const auto evaluate_point = [&](std::size_t i) {
-        const glm::vec<2, T> rest = points.rest_m[i];
-        const Rung<T> cell = rung_of(query.cell_m, points.cell_m, i),
-                      pixel = rung_of(query.pixel_m, points.pixel_m, i);
-        Sums<T> sums{};
-        const auto read = [&](int level, T cell_weight, T pixel_weight) {
-            if (readers[level].empty() || (cell_weight == T(0) && pixel_weight == T(0))) return;
-            Sums<T> weight;
-            for (std::size_t f = 0; f < kFieldCount; ++f)
-                weight[f] = !needed[f] ? T(0) : cell_group[f] ? cell_weight : pixel_weight;
-            for (const Reader<T>& reader : readers[level])
-                add_grid(reader, glm::dvec2(rest), plan.knobs.spline_taps, weight, sums);
-        };
-        if (planned.cell_levels == planned.pixel_levels && cell.lower == pixel.lower && cell.t == pixel.t) {
-            read(planned.cell_levels[cell.lower], T(1) - cell.t, T(1) - cell.t);
-            if (cell.t > T(0)) read(planned.cell_levels[cell.lower + 1], cell.t, cell.t);
-        } else {
-            read(planned.cell_levels[cell.lower], T(1) - cell.t, T(0));
-            if (cell.t > T(0)) read(planned.cell_levels[cell.lower + 1], cell.t, T(0));
-            read(planned.pixel_levels[pixel.lower], T(0), T(1) - pixel.t);
-            if (pixel.t > T(0)) read(planned.pixel_levels[pixel.lower + 1], T(0), pixel.t);
-        }
-
-        const auto at = [&](Field field) { return sums[index(field)]; };
-        const Vec3 displacement(at(Field::Dx), at(Field::Dy), at(Field::Height));
-        if (results.displacement) results.displacement[i] = displacement;
-        if (results.position) results.position[i] = displacement + Vec3(rest, T(0));
-        if (results.velocity)
-            results.velocity[i] = Vec3(at(Field::VelocityX), at(Field::VelocityY), at(Field::VelocityZ));
-        const T dxx = at(Field::Dxx), dyy = at(Field::Dyy), dxy = at(Field::Dxy);
-        if (results.normal) {
-            // T_x × T_y, T_x = (1 + Dxx, Dxy, ηx), T_y = (Dxy, 1 + Dyy, ηy): its z is J, finite however J
-            // vanishes.
-            const T sx = at(Field::SlopeX), sy = at(Field::SlopeY);
-            const Vec3 n(dxy * sy - sx * (T(1) + dyy), sx * dxy - sy * (T(1) + dxx),
-                         (T(1) + dxx) * (T(1) + dyy) - dxy * dxy);
-            const T length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
-            // Both tangents parallel: no normal exists; up is as good as any.
-            results.normal[i] = length > T(0) ? n / length : Vec3(T(0), T(0), T(1));
-        }
-        if (!hidden_wanted) return;
-        const Hidden hidden = uniform ? uniform_hidden : hidden_at(sea, query_index, pixel);
-        if (results.slope_variance)
-            results.slope_variance[i] =
-                Vec3(static_cast<T>(hidden.xx), static_cast<T>(hidden.yy), static_cast<T>(hidden.xy));
-        if (!jacobian_wanted) return;
-        const HiddenStrain<double>& v = hidden.strain;
-        const JacobianMoments<T> j =
-            jacobian_moments<T>(dxx, dyy, dxy,
-                                {static_cast<T>(v.xxxx), static_cast<T>(v.xxxy), static_cast<T>(v.xxyy),
-                                 static_cast<T>(v.xyyy), static_cast<T>(v.yyyy)});
-        if (results.jacobian) results.jacobian[i] = Vec3(j.mean, j.variance, j.third);
-        if (results.coverage) results.coverage[i] = coverage(j, threshold, plan.knobs.third_moment);
-    };
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, 512),
+    const Evaluation<T> evaluation(frame, query_index, points, results);
+    constexpr std::size_t kPoints = Chunk<T>::kPoints;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (points.count + kPoints - 1) / kPoints),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                          for (std::size_t i = range.begin(); i < range.end(); ++i) evaluate_point(i);
+                          Chunk<T> chunk;
+                          HiddenChunk<T> hidden_of;
+                          for (std::size_t c = range.begin(); c < range.end(); ++c)
+                              evaluation.run(c * kPoints, chunk, hidden_of);
                       });
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/constants.h"
+#include "core/plan/grid_layout.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/plan.h"
 #include "core/plan/tables.h"
@@ -109,27 +110,29 @@ std::string explain(const Scene& scene, const Plan& plan) {
             page += "     nothing runs: " + cascade.why_empty + "\n";
             continue;
         }
-        page += format("     %zu modes, %s\n", half_plane_modes(cascade.mode_radius),
-                       bytes_text(half_plane_modes(cascade.mode_radius) *
-                                  sea_bytes_per_mode(plan.knobs.double_precision, plan.choppiness > 0.0))
-                           .c_str());
+        const std::size_t modes = lattice_modes(cascade.grid_radius());
+        page +=
+            format("     %zu modes, %s\n", modes,
+                   bytes_text(modes * sea_bytes_per_mode(plan.knobs.double_precision, plan.choppiness > 0.0))
+                       .c_str());
         for (const Grid& grid : cascade.grids) {
-            const auto n = static_cast<std::size_t>(grid.resolution);
-            const std::size_t bytes = grid.transforms.size() * n * n * (plan.knobs.double_precision ? 16 : 8);
-            page += format("     %d × %d, %zu complex transforms, %s, read %s:", grid.resolution,
-                           grid.resolution, grid.transforms.size(), bytes_text(bytes).c_str(),
+            const std::size_t bytes =
+                grid.fields.count() * grid_bytes(grid.resolution, plan.knobs.double_precision);
+            page += format("     %d × %d, %zu real transforms of %d lines, %s, read %s:", grid.resolution,
+                           grid.resolution, grid.fields.count(), grid.lines_per_field(),
+                           bytes_text(bytes).c_str(),
                            grid.sampling == Sampling::Nodes
                                ? "at its nodes"
                                : (plan.knobs.spline_taps == 6 ? "by quintic spline" : "by cubic spline"));
-            for (const auto& [first, second] : grid.transforms)
-                page += std::string(" (") + field_name(*first) +
-                        (second ? std::string(" + ") + field_name(*second) : "") + ")";
+            for (std::size_t f = 0; f < kFieldCount; ++f)
+                if (grid.fields[f]) page += std::string(" ") + field_name(static_cast<Field>(f));
             page += "\n";
         }
     }
     page += format(
-        "\nEach frame: %d transforms. Held: %s for the sea, %s for a frame, %s for points and results.\n",
-        plan.transforms_per_frame(), bytes_text(plan.sea_bytes()).c_str(),
+        "\nEach frame: %d real transforms (%ld lines of complex numbers). Held: %s for the sea, %s for a "
+        "frame, %s for points and results.\n",
+        plan.transforms_per_frame(), plan.lines_per_frame(), bytes_text(plan.sea_bytes()).c_str(),
         bytes_text(plan.frame_bytes()).c_str(), bytes_text(plan.output_bytes()).c_str());
     page += format("Quality %s: %s precision, %d-tap splines, %.3g × oversampled.\n",
                    std::string(word_of(scene.quality.level)).c_str(),

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/base/constants.h"
+#include "core/plan/grid_layout.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/tables.h"
 #include "core/scene/canonical.h"
@@ -20,7 +21,7 @@ namespace {
 
 // Raised whenever the same scene gives other bits or other files than before, so that frames of two kinds are
 // never taken for one bake.
-constexpr int kRevision = 1;
+constexpr int kRevision = 2;
 
 Knobs knobs_of(QualityLevel level) {
     // Errors and times of each row: tests/bench, "sampling".
@@ -121,6 +122,7 @@ void add_grids(Plan& plan, int cascade_index) {
         Grid grid;
         grid.level = level;
         grid.fields = wanted;
+        grid.radius = radius;
         grid.resolution =
             transform_size(static_cast<int>(std::ceil(plan.knobs.oversampling * (2.0 * radius + 1.0))));
         if (const auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
@@ -130,13 +132,6 @@ void add_grids(Plan& plan, int cascade_index) {
             // error.
             grid.resolution = *nodes;
             grid.sampling = Sampling::Nodes;
-        }
-        for (std::size_t f = 0; f < kFieldCount; ++f) {
-            if (!wanted[f]) continue;
-            if (grid.transforms.empty() || grid.transforms.back()[1])
-                grid.transforms.push_back({static_cast<Field>(f), std::nullopt});
-            else
-                grid.transforms.back()[1] = static_cast<Field>(f);
         }
         cascade.mode_radius = std::max(cascade.mode_radius, radius);
         cascade.grid_of_level[level] = static_cast<int>(cascade.grids.size());
@@ -180,7 +175,8 @@ FieldSet fields_of(ProductSet wanted) {
 }
 
 std::vector<CascadeSize> resolve_cascades(const Scene& scene, double finest_footprint_m) {
-    if (!scene.waves.cascades.empty()) return scene.waves.cascades;
+    if (!scene.waves.cascades.empty() || scene.waves.model == WaveModel::Trochoid)
+        return scene.waves.cascades;
     // Ten of the longest peak waves fit into the first tile (their m0 then varies by some 7 % from seed to
     // seed); each further one is smaller by the golden ratio cubed, about as far from a common period as
     // numbers go.
@@ -305,7 +301,9 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
     if (!(scene.waves.choppiness > 0.0)) plan.dropped = horizontal_fields();
     if (plan.dropped.any()) plan.closure.push_back({"no horizontal displacement", "waves.choppiness is 0"});
     if (!scene.effects.whitecaps) plan.closure.push_back({"no whitecaps", "effects.whitecaps is false"});
-    const auto sizes = resolve_cascades(scene, std::isfinite(finest_m) ? finest_m : 0.0);
+    const double finest_footprint_m = std::isfinite(finest_m) ? finest_m : 0.0;
+    if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(scene, finest_footprint_m);
+    const auto sizes = resolve_cascades(scene, finest_footprint_m);
     std::vector<double> sizes_m;
     for (const CascadeSize& cascade : sizes) sizes_m.push_back(cascade.size_m);
     const auto edges = lower_edges(sizes_m);
@@ -314,15 +312,17 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
         CascadePlan cascade;
         cascade.size_m = sizes[i].size_m;
         cascade.resolution = sizes[i].resolution;
-        cascade.k_lower = edges[i];
+        cascade.k_lower = plan.trains ? std::max(edges[i], kTwoPi / plan.trains->shortest_m) : edges[i];
         cascade.k_upper = i + 1 < sizes.size() ? edges[i + 1] : std::numeric_limits<double>::infinity();
         cascade.grid_of_level.assign(plan.levels.size(), -1);
         plan.cascades.push_back(std::move(cascade));
         const double last = std::min(plan.cascades[i].k_upper, kPi * sizes[i].resolution / sizes[i].size_m);
-        if (has_energy(spectrum, edges[i], last))
+        if (last > plan.cascades[i].k_lower && has_energy(spectrum, plan.cascades[i].k_lower, last))
             add_grids(plan, static_cast<int>(i));
         else
-            plan.cascades[i].why_empty = "the spectrum has no energy in its band";
+            plan.cascades[i].why_empty = plan.trains && !(last > plan.cascades[i].k_lower)
+                                             ? "its waves are those of the trains"
+                                             : "the spectrum has no energy in its band";
     }
     return plan;
 }
@@ -332,32 +332,40 @@ bool CascadePlan::moves() const {
                        [](const Grid& grid) { return (grid.fields & velocity_fields()).any(); });
 }
 
+int CascadePlan::grid_radius() const {
+    int radius = 0;
+    for (const Grid& grid : grids) radius = std::max(radius, grid.radius);
+    return radius;
+}
+
 int Plan::transforms_per_frame() const {
     std::size_t count = 0;
     for (const CascadePlan& cascade : cascades)
-        for (const Grid& grid : cascade.grids) count += grid.transforms.size();
+        for (const Grid& grid : cascade.grids) count += grid.fields.count();
     return static_cast<int>(count);
+}
+
+long Plan::lines_per_frame() const {
+    long count = 0;
+    for (const CascadePlan& cascade : cascades)
+        for (const Grid& grid : cascade.grids)
+            count += static_cast<long>(grid.fields.count()) * grid.lines_per_field();
+    return count;
 }
 
 std::size_t Plan::sea_bytes() const {
     std::size_t bytes = 0;
     for (const CascadePlan& cascade : cascades)
-        if (!cascade.grids.empty())
-            bytes += half_plane_modes(cascade.mode_radius) *
-                     sea_bytes_per_mode(knobs.double_precision, choppiness > 0.0);
+        bytes += lattice_modes(cascade.grid_radius()) *
+                 sea_bytes_per_mode(knobs.double_precision, choppiness > 0.0);
     return bytes;
 }
 
 std::size_t Plan::frame_bytes() const {
-    const std::size_t complex_bytes = knobs.double_precision ? 16 : 8;
     std::size_t bytes = 0;
-    for (const CascadePlan& cascade : cascades) {
-        const std::size_t modes = half_plane_modes(cascade.mode_radius);
-        if (!cascade.grids.empty()) bytes += (cascade.moves() ? 2 : 1) * modes * complex_bytes;
+    for (const CascadePlan& cascade : cascades)
         for (const Grid& grid : cascade.grids)
-            bytes += modes * complex_bytes / 2 + grid.transforms.size() * complex_bytes * grid.resolution *
-                                                     static_cast<std::size_t>(grid.resolution);
-    }
+            bytes += grid.fields.count() * grid_bytes(grid.resolution, knobs.double_precision);
     return bytes;
 }
 

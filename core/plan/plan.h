@@ -13,6 +13,7 @@
 
 #include "core/plan/fields.h"
 #include "core/plan/filter.h"
+#include "core/plan/trains.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
@@ -49,9 +50,12 @@ struct Grid {
     int level = 0;
     int resolution = 0;  // N
     Sampling sampling = Sampling::Spline;
-    FieldSet fields;
-    // Two real fields ride in one complex transform; the last may travel alone.
-    std::vector<std::array<std::optional<Field>, 2>> transforms;
+    int radius = 0;   // modes with mx² + my² ≤ radius² pass, 2 radius < N
+    FieldSet fields;  // each is one real N × N transform
+
+    // One-dimensional complex transforms of N points that a frame takes for each field: a column for each mx
+    // from 0 to radius, and two real rows at a time.
+    int lines_per_field() const { return radius + 1 + (resolution + 1) / 2; }
 };
 
 struct CascadePlan {
@@ -60,13 +64,14 @@ struct CascadePlan {
     // The band [rad/m]: lower ≤ |k| < upper, from the sizes alone. The finest cascade's upper edge is
     // infinite: it ends with its last mode, mode_radius.
     double k_lower = 0.0, k_upper = 0.0;
-    // Modes with mx² + my² ≤ mode_radius² are counted, and generated where there are grids.
+    // Modes with mx² + my² ≤ mode_radius² are counted in what is resolved.
     int mode_radius = 0;
     std::vector<Grid> grids;         // only those through which something passes
     std::vector<int> grid_of_level;  // index into grids, −1: nothing of this cascade passes
     std::string why_empty;           // set when there are no grids
 
-    bool moves() const;  // whether somebody asks for velocities
+    bool moves() const;       // whether somebody asks for velocities
+    int grid_radius() const;  // the largest of its grids': modes within it have amplitudes; 0 without grids
 };
 
 // A footprint that some query uses; queries with the same footprint and sampling share it.
@@ -101,13 +106,15 @@ struct Plan {
     std::vector<PlannedQuery> queries;
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
-    FieldSet dropped;  // fields that are zero in this scene, whoever asks: never computed
+    std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
+    FieldSet dropped;                  // fields that are zero in this scene, whoever asks: never computed
     std::vector<Reason> closure;
     std::uint64_t fingerprint = 0;  // of everything that decides what the files hold, except which frames
 
-    int transforms_per_frame() const;
-    std::size_t sea_bytes() const;    // held once, shared
-    std::size_t frame_bytes() const;  // held by each Frame
+    int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid
+    long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
+    std::size_t sea_bytes() const;     // held once, shared
+    std::size_t frame_bytes() const;   // held by each Frame, a few hundred kilobytes a thread aside
     std::size_t output_bytes()
         const;  // points at rest and results, reused from query to query and frame to frame
     std::string fingerprint_text() const;  // 16 hexadecimal digits
@@ -123,7 +130,7 @@ inline Plan make_plan(const Scene& scene) {
 }
 
 // The cascades in force, largest first: the scene's own, or "auto" resolved for the finest footprint asked
-// for.
+// for; none for a sea of trains alone.
 std::vector<CascadeSize> resolve_cascades(const Scene&, double finest_footprint_m);
 
 // A page of text: each output, product, field, transform with its size, bytes held, and why.

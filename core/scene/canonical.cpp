@@ -5,6 +5,7 @@
 #include "core/scene/canonical.h"
 
 #include <concepts>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 
@@ -20,6 +21,9 @@ std::string text_of(bool value) {
 }
 std::string text_of(double value) {
     return number_text(value);
+}
+std::string text_of(const std::optional<double>& value) {
+    return value ? number_text(*value) : "default";
 }
 std::string text_of(const std::string& value) {
     return quoted_text(value);
@@ -98,13 +102,16 @@ void write(Writer& out, const SeaState& sea) {
 }
 
 void write(Writer& out, const Waves& waves) {
-    const auto& [model, choppiness, cascades] = waves;
+    const auto& [model, choppiness, cascades, trains, shortest, longest] = waves;
     out.line("waves.model", model);
     out.line("waves.choppiness", choppiness);
     for (const CascadeSize& cascade : cascades) {
         const auto& [size, resolution] = cascade;
         out.line("waves.cascade", size, resolution);
     }
+    out.line("waves.trains", trains);
+    out.line("waves.shortest_m", shortest);
+    out.line("waves.longest_m", longest);
 }
 
 void write(Writer& out, const Surface& surface) {

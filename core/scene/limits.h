@@ -44,6 +44,9 @@ inline constexpr Range kChoppiness{0.0, 10.0};  // waves fold over near 1 … 2
 inline constexpr int kCascades = 16;
 inline constexpr Range kCascadeSize_m{0.01, 1e6};
 inline constexpr Range kCascadeResolution{kMinCascadeResolution, kMaxCascadeResolution};
+inline constexpr Range kTrains{1, 10000};
+inline constexpr Range kTrain_m{1e-3,
+                                1e6};  // the spectra end at a millimetre (core/spectrum/viscous_cutoff.h)
 
 inline constexpr Range kSurfaceSize_m{0.01, 1e6};
 inline constexpr Range kSurfaceResolution{1, 8192};

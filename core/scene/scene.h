@@ -85,8 +85,14 @@ struct CascadeSize {
 // [waves]
 struct Waves {
     WaveModel model = WaveModel::Fft;
-    double choppiness = 1.0;            // λ ≥ 0
-    std::vector<CascadeSize> cascades;  // largest first; empty: "auto"
+    double choppiness = 1.0;  // λ ≥ 0
+    // Largest first; empty: "auto", which is none with WaveModel::Trochoid. With both, the cascades hold the
+    // waves that are shorter than the trains.
+    std::vector<CascadeSize> cascades;
+    // With WaveModel::Trochoid. Wavelengths in geometric progression; without a value, the range is the
+    // spectrum's (core/plan/trains.h).
+    int trains = 60;  // 1 … 10000
+    std::optional<double> shortest_m, longest_m;
 };
 
 // [surface]
@@ -139,7 +145,7 @@ struct Quality {
 
 // [output]
 struct Output {
-    MeshFormat mesh = MeshFormat::Usda;
+    MeshFormat mesh = MeshFormat::Usdc;
     std::vector<MeshAttribute> attributes{MeshAttribute::Normal, MeshAttribute::Velocity,
                                           MeshAttribute::SlopeVariance, MeshAttribute::Whitecaps};
     std::vector<MapKind> maps;

@@ -199,9 +199,34 @@ void check_bands(Checker& check, const std::vector<CascadeSize>& cascades) {
     }
 }
 
+void check_trains(Checker& check, const Waves& waves) {
+    check.in_range("waves.trains", waves.trains, limits::kTrains);
+    bool all_good = true;
+    for (const auto& [key, end_m] :
+         {std::pair{"waves.shortest_m", waves.shortest_m}, std::pair{"waves.longest_m", waves.longest_m}})
+        if (end_m) all_good = check.in_range(key, *end_m, limits::kTrain_m) && all_good;
+    if (all_good && waves.shortest_m && waves.longest_m && !(*waves.shortest_m < *waves.longest_m)) {
+        check.refuse({"waves.shortest_m", number_text(*waves.shortest_m),
+                      "is not shorter than longest_m, " + number_text(*waves.longest_m),
+                      "a shortest train below the longest"});
+    }
+}
+
+void check_no_trains(Checker& check, const Waves& waves) {
+    const auto refuse = [&](const char* key, std::string value) {
+        check.refuse({key, std::move(value), "speaks of wave trains, and the model has none",
+                      "model = \"trochoid\", or a file without this key"});
+    };
+    if (waves.trains != Waves{}.trains) refuse("waves.trains", std::to_string(waves.trains));
+    if (waves.shortest_m) refuse("waves.shortest_m", number_text(*waves.shortest_m));
+    if (waves.longest_m) refuse("waves.longest_m", number_text(*waves.longest_m));
+}
+
 void check_waves(Checker& check, const Waves& waves) {
-    if (waves.model != WaveModel::Fft) {
-        check.not_built("waves.model", choice_text(waves.model), "\"fft\"");
+    if (waves.model == WaveModel::Trochoid) {
+        check_trains(check, waves);
+    } else {
+        check_no_trains(check, waves);
     }
     check.in_range("waves.choppiness", waves.choppiness, limits::kChoppiness);
     if (waves.cascades.size() > static_cast<std::size_t>(limits::kCascades)) {
@@ -333,13 +358,18 @@ void check_light_and_water(Checker& check, const Light& light, const Water& wate
                         {water.chlorophyll_mg_m3, Water{}.chlorophyll_mg_m3});
 }
 
+void check_tiles(Checker& check, const Output& output, const Waves& waves) {
+    if (output.cascade_tiles && waves.model == WaveModel::Trochoid && waves.cascades.empty()) {
+        check.refuse({"output.cascade_tiles", "true",
+                      "asks for the tiles of cascades, and wave trains alone have none",
+                      "false, waves.model = \"fft\", or cascades listed in waves.cascades"});
+    }
+}
+
 void check_effects_and_output(Checker& check, const Effects& effects, const Output& output) {
     if (effects.spray) check.not_built("effects.spray", "true", "false");
     check_unused_number(check, "effects.spray_gain", {effects.spray_gain, Effects{}.spray_gain});
 
-    if (output.mesh == MeshFormat::Usdc) {
-        check.not_built("output.mesh", choice_text(output.mesh), "\"usda\" or \"none\"");
-    }
     if (output.mesh == MeshFormat::None && output.maps.empty()) {
         check.refuse({"output.mesh", choice_text(output.mesh),
                       "leaves nothing to bake: there are no maps either",
@@ -387,6 +417,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_camera(check, scene.camera);
     check_light_and_water(check, scene.light, scene.water);
     check_effects_and_output(check, scene.effects, scene.output);
+    check_tiles(check, scene.output, scene.waves);
     return check.take();
 }
 

@@ -18,6 +18,30 @@ double SpectralMoments::energy_period_s() const {
     return m0 > 0.0 ? 2.0 * kPi * m_minus1 / m0 : 0.0;
 }
 
+double SpectralMoments::mean_direction() const {
+    return std::atan2(north, east);
+}
+
+SpectralMoments moments_of(const Wave& wave) {
+    const auto [kx, ky] = std::array{wave.k.x, wave.k.y};
+    const double length = std::hypot(kx, ky);
+    const double strain = wave.chop * wave.chop * wave.energy;
+    SpectralMoments out;
+    out.m0 = wave.energy;
+    out.m_minus1 = wave.energy / wave.omega;
+    out.xx = kx * kx * wave.energy;
+    out.xy = kx * ky * wave.energy;
+    out.yy = ky * ky * wave.energy;
+    out.xxxx = strain * kx * kx * kx * kx;
+    out.xxxy = strain * kx * kx * kx * ky;
+    out.xxyy = strain * kx * kx * ky * ky;
+    out.xyyy = strain * kx * ky * ky * ky;
+    out.yyyy = strain * ky * ky * ky * ky;
+    out.east = wave.energy * kx / length;
+    out.north = wave.energy * ky / length;
+    return out;
+}
+
 SpectralMoments moments(const DirectionalSpectrum& spectrum, double k_lo, double k_hi) {
     SpectralMoments out;
     const auto panels = spectrum.panels();
@@ -63,7 +87,8 @@ SpectralMoments moments(const DirectionalSpectrum& spectrum, double k_lo, double
             }
         }
     }
-    out.mean_direction = std::arg(first);
+    out.east = first.real();
+    out.north = first.imag();
     return out;
 }
 

@@ -4,6 +4,9 @@
 // (∫ D e^{inθ} dθ, n = 1, 2, 4), known per wave system in closed form or by quadrature.
 #pragma once
 
+#include <array>
+#include <glm/vec2.hpp>
+
 #include "core/spectrum/directional_spectrum.h"
 
 namespace pelagic {
@@ -20,12 +23,48 @@ struct SpectralMoments {
     // each by λ².
     double xxxx = 0.0, xxxy = 0.0, xxyy = 0.0, xyyy = 0.0, yyyy = 0.0;
 
-    double mean_direction = 0.0;  // arg ∬ Ψ e^{iθ} [rad], towards; 0 for an empty band
+    double east = 0.0, north = 0.0;  // ∬ Ψ k/|k| [m²]: where the energy travels
 
     double mss() const { return xx + yy; }
     double significant_height_m() const;
     double energy_period_s() const;  // Tm−1,0; 0 for an empty band
+    double mean_direction() const;   // arg ∬ Ψ e^{iθ} [rad], towards; 0 for an empty band
+
+    // Another band's waves beside these.
+    SpectralMoments& operator+=(const SpectralMoments& other);
+    // All moments of waves whose energy is `factor` times as large.
+    SpectralMoments& operator*=(double factor);
+    // The moments of the horizontal displacement alone: choppiness λ is a factor of λ².
+    SpectralMoments& scale_strain(double factor);
 };
+
+// Every moment, for loops that treat all alike.
+inline constexpr std::array<double SpectralMoments::*, 12> kSpectralMoments{
+    &SpectralMoments::m0,   &SpectralMoments::m_minus1, &SpectralMoments::xx,   &SpectralMoments::xy,
+    &SpectralMoments::yy,   &SpectralMoments::xxxx,     &SpectralMoments::xxxy, &SpectralMoments::xxyy,
+    &SpectralMoments::xyyy, &SpectralMoments::yyyy,     &SpectralMoments::east, &SpectralMoments::north};
+
+inline SpectralMoments& SpectralMoments::operator+=(const SpectralMoments& other) {
+    for (double SpectralMoments::*m : kSpectralMoments) this->*m += other.*m;
+    return *this;
+}
+inline SpectralMoments& SpectralMoments::operator*=(double factor) {
+    for (double SpectralMoments::*m : kSpectralMoments) this->*m *= factor;
+    return *this;
+}
+inline SpectralMoments& SpectralMoments::scale_strain(double factor) {
+    for (double* m : {&xxxx, &xxxy, &xxyy, &xyyy, &yyyy}) *m *= factor;
+    return *this;
+}
+
+// One sinusoidal wave.
+struct Wave {
+    glm::dvec2 k{0.0};    // [rad/m], not 0
+    double energy = 0.0;  // its part of m0 [m²]: half its amplitude squared
+    double omega = 0.0;   // [rad/s]
+    double chop = 0.0;    // horizontal amplitude over k times the vertical one: choppiness · coth(kd)/k [m]
+};
+SpectralMoments moments_of(const Wave& wave);
 
 // The moments of k_lo ≤ k < k_hi [rad/m]; k_hi may be infinite. Relative error below 1e-6.
 SpectralMoments moments(const DirectionalSpectrum& spectrum, double k_lo, double k_hi);

@@ -3,253 +3,273 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <stdexcept>
 
 #include "core/base/constants.h"
 #include "core/plan/mode_lattice.h"
+#include "core/waves/loop.h"
 #include "core/waves/spline.h"
 
 namespace pelagic {
 namespace {
 
+// Columns that are transformed at once and then written as pieces of rows: a cache line's worth in single
+// precision.
+constexpr int kBlockColumns = 16;
+constexpr int kBlockRows = 32;
+
 // Re-using one FFTW plan per size.
 template <class T>
-InverseTransform<T> transform_of(std::map<int, InverseTransform<T>>& known, int n) {
+LineTransform<T> transform_of(std::map<int, LineTransform<T>>& known, int n) {
     const auto found = known.find(n);
-    return found != known.end() ? found->second : known.emplace(n, InverseTransform<T>(n)).first->second;
+    return found != known.end() ? found->second : known.emplace(n, LineTransform<T>(n)).first->second;
 }
 
-template <class Work>
-void for_each_mode(int radius, Work&& work) {
-    std::size_t at = 0;
-    for (int my = 0; radius > 0 && my <= radius; ++my) {
-        const int first = row_first(radius, my), last = first + row_length(radius, my);
-        for (int mx = first; mx < last; ++mx, ++at) work(at, mx, my);
-    }
-}
-
-// A field's factor on h(k,t), or on ∂h/∂t for velocities: real, or real times i.
-template <class T>
-struct Factor {
-    T value;
-    bool imaginary;
-    bool of_rate;
-};
-
-// Tessendorf 2001, Eqs. 19, 20, 29 and their derivatives; D with +i, which sharpens the crests (his printed
-// −i flattens them). chop = choppiness · coth(kd)/k.
-template <class T>
-Factor<T> factor(Field field, T kx, T ky, T chop) {
-    switch (field) {
-        case Field::Height:
-            return {T(1), false, false};
-        case Field::Dx:
-            return {chop * kx, true, false};
-        case Field::Dy:
-            return {chop * ky, true, false};
-        case Field::SlopeX:
-            return {kx, true, false};
-        case Field::SlopeY:
-            return {ky, true, false};
-        case Field::Dxx:
-            return {-chop * kx * kx, false, false};
-        case Field::Dyy:
-            return {-chop * ky * ky, false, false};
-        case Field::Dxy:
-            return {-chop * kx * ky, false, false};
-        case Field::VelocityX:
-            return {chop * kx, true, true};
-        case Field::VelocityY:
-            return {chop * ky, true, true};
-        case Field::VelocityZ:
-            return {T(1), false, true};
-    }
-    return {};
+// Work on each item, one at a time to whoever is free; the sum of what it returns.
+template <class Item, class Work>
+long sum_of_each(const std::vector<Item>& items, Work&& work) {
+    std::atomic<long> sum = 0;
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, items.size(), 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            long part = 0;
+            for (std::size_t i = range.begin(); i < range.end(); ++i) part += work(items[i]);
+            sum += part;
+        },
+        tbb::simple_partitioner());
+    return sum;
 }
 
 }  // namespace
 
 template <class T>
-Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)) {
+Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)), kernels_(kernels<T>()) {
     const Plan& plan = sea_->plan();
-    std::map<int, InverseTransform<T>> transforms;
-    for (std::size_t c = 0; c < plan.cascades.size(); ++c) {
+    std::map<int, LineTransform<T>> transforms;
+    for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
         const CascadePlan& planned = plan.cascades[c];
-        const int radius = sea_->cascades()[c].radius;
-        const std::size_t modes = half_plane_modes(radius);
-        State state;
-        state.height.resize(modes);
-        if (planned.moves()) state.rate.resize(modes);
-        for (const Grid& grid : planned.grids) {
-            GridState made{{}, {}, transform_of(transforms, grid.resolution), {}};
-            if (grid.sampling == Sampling::Spline)
-                for (int m = 0; m <= radius; ++m)
-                    made.prefilter.push_back(static_cast<T>(bspline_prefilter(
-                        std::min(m, grid.resolution / 2 - 1), grid.resolution, plan.knobs.spline_taps)));
-            const double footprint_m = plan.levels[grid.level].footprint_m;
-            const double step = kTwoPi / planned.size_m;
-            made.weight.resize(modes);
-            for_each_mode(radius, [&](std::size_t at, int mx, int my) {
-                // What this grid cannot hold has weight 0 already; the test keeps an index from wrapping.
-                const bool held = 2 * std::max(std::abs(mx), my) < grid.resolution;
-                made.weight[at] =
-                    held ? static_cast<T>(plan.filter.weight(step * std::hypot(mx, my), footprint_m)) : T(0);
-            });
-            for (std::size_t i = 0; i < grid.transforms.size(); ++i)
-                made.buffers.emplace_back(static_cast<std::size_t>(grid.resolution) * grid.resolution);
-            state.grids.push_back(std::move(made));
+        const Cascade<T>& cascade = sea_->cascades()[c];
+        std::vector<GridState> grids;
+        for (int g = 0; g < static_cast<int>(planned.grids.size()); ++g) {
+            const Grid& grid = planned.grids[g];
+            const int n = grid.resolution;
+            GridState made{transform_of(transforms, n), {}, {}};
+            if (grid.sampling == Sampling::Spline) {
+                made.prefilter = Buffer<T>(2 * static_cast<std::size_t>(grid.radius) + 1);
+                for (int m = -grid.radius; m <= grid.radius; ++m)
+                    made.prefilter[m + grid.radius] =
+                        static_cast<T>(bspline_prefilter(m, n, plan.knobs.spline_taps));
+            }
+            for (std::size_t f = 0; f < kFieldCount; ++f) {
+                if (!grid.fields[f]) continue;
+                made.planes[f] = Buffer<T>(grid_samples<T>(n));
+                for (int first = 0; first < n; first += kBlockRows)
+                    rows_.push_back({c, g, static_cast<Field>(f), first, std::min(kBlockRows, n - first)});
+            }
+            line_values_ = std::max(line_values_, 2 * line_stride<T>(n));
+            grids.push_back(std::move(made));
         }
-        states_.push_back(std::move(state));
+        grids_.push_back(std::move(grids));
+        for (int mx = 0; cascade.radius > 0 && mx <= cascade.radius; mx += kBlockColumns) {
+            const Block block{c, mx, std::min(kBlockColumns, cascade.radius + 1 - mx)};
+            block_modes_ = std::max(block_modes_, cascade.columns[mx + block.columns] - cascade.columns[mx]);
+            blocks_.push_back(block);
+        }
     }
+    const auto modes_of = [&](const Block& block) {
+        const std::vector<std::size_t>& columns = sea_->cascades()[block.cascade].columns;
+        return columns[block.first_mx + block.columns] - columns[block.first_mx];
+    };
+    std::stable_sort(blocks_.begin(), blocks_.end(),
+                     [&](const Block& a, const Block& b) { return modes_of(a) > modes_of(b); });
+    std::stable_sort(rows_.begin(), rows_.end(), [&](const Rows& a, const Rows& b) {
+        return plan.cascades[a.cascade].grids[a.grid].resolution >
+               plan.cascades[b.cascade].grids[b.grid].resolution;
+    });
 }
 
 template <class T>
 void Frame<T>::set(double t_s) {
     if (!(std::abs(t_s) <= kLatest_s))
         throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
-    time_s_ = reduced_time_s_ = t_s;
-    if (const double loop_s = sea_->loop_s(); loop_s > 0.0) {
-        // Modulo the loop, so that its last frame meets its first to the bit.
-        reduced_time_s_ -= loop_s * std::floor(t_s / loop_s);
-        // Rounding of (f − 1)/fps and of the division.
-        const double same_s = 4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(t_s), loop_s);
-        if (loop_s - reduced_time_s_ < same_s || reduced_time_s_ < same_s) reduced_time_s_ = 0.0;
-    }
-    tbb::parallel_for(0, static_cast<int>(states_.size()), [&](int c) { advance(c); });
-
-    struct Task {
-        int cascade, grid, transform;
-        int cost;
-    };
-    std::vector<Task> tasks;
-    for (int c = 0; c < static_cast<int>(states_.size()); ++c)
-        for (int g = 0; g < static_cast<int>(states_[c].grids.size()); ++g)
-            for (int i = 0; i < static_cast<int>(states_[c].grids[g].buffers.size()); ++i)
-                tasks.push_back({c, g, i, states_[c].grids[g].transform.n()});
-    // The large ones first: the small ones then fill the gaps.
-    std::stable_sort(tasks.begin(), tasks.end(),
-                     [](const Task& a, const Task& b) { return a.cost > b.cost; });
-    std::atomic<long> executed = 0;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, tasks.size(), 1),
-        [&](const tbb::blocked_range<std::size_t>& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i)
-                fill(tasks[i].cascade, tasks[i].grid, tasks[i].transform, executed);
-        },
-        tbb::simple_partitioner());
-    executed_transforms_ += executed;
+    time_s_ = t_s;
+    time_within_loop_s_ = pelagic::time_within_loop_s(t_s, sea_->loop_s());
+    executed_lines_ += sum_of_each(blocks_, [this](const Block& block) { return transform_columns(block); });
+    executed_lines_ += sum_of_each(rows_, [this](const Rows& rows) { return transform_rows(rows); });
+    executed_transforms_ +=
+        std::count_if(rows_.begin(), rows_.end(), [](const Rows& rows) { return rows.first == 0; });
     is_set_ = true;
 }
 
-// h(k,t) and its rate, for each mode.
 template <class T>
-void Frame<T>::advance(int c) {
-    const Cascade<T>& cascade = sea_->cascades()[c];
-    State& state = states_[c];
-    const std::size_t count = state.height.size();
-    constexpr std::size_t kBlock = 4096;
-    tbb::parallel_for(std::size_t(0), (count + kBlock - 1) / kBlock, [&](std::size_t block) {
-        for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
-            // The phase in cycles, reduced in double before it is rounded: as exact after ten weeks as at 0.
-            const double cycles = cascade.cycles_per_s[i] * reduced_time_s_;
-            const T phase = static_cast<T>(kTwoPi * (cycles - std::round(cycles)));
-            const T omega = static_cast<T>(kTwoPi * cascade.cycles_per_s[i]);
-            const T cosine = std::cos(phase), sine = std::sin(phase);
-            const std::complex<T> f = cascade.forward[i], b = cascade.backward[i];
-            const std::complex<T> going(f.real() * cosine + f.imag() * sine,
-                                        f.imag() * cosine - f.real() * sine);
-            const std::complex<T> coming(b.real() * cosine - b.imag() * sine,
-                                         b.imag() * cosine + b.real() * sine);
-            state.height[i] = going + coming;
-            const std::complex<T> d = coming - going;  // ∂h/∂t = iω (coming − going)
-            if (!state.rate.empty()) state.rate[i] = {-omega * d.imag(), omega * d.real()};
-        }
-    });
+typename Frame<T>::Scratch& Frame<T>::scratch() const {
+    Scratch& scratch = scratches_.local();
+    if (scratch.line.empty()) {
+        for (Buffer<T>* modes : {&scratch.height_re, &scratch.height_im, &scratch.rate_re, &scratch.rate_im,
+                                 &scratch.through, &scratch.chop_through})
+            *modes = Buffer<T>(block_modes_);
+        scratch.line = Buffer<T>(line_values_);
+        scratch.lines = Buffer<T>(kBlockColumns * line_values_);
+    }
+    return scratch;
 }
 
-// One pair of real fields A, B: the spectrum of A + iB into the buffer, then its inverse transform.
+// h(k,t), and its rate where somebody asks for velocities, of a block's modes.
 template <class T>
-void Frame<T>::fill(int c, int g, int transform, std::atomic<long>& executed) {
-    const Cascade<T>& cascade = sea_->cascades()[c];
-    const Grid& grid = sea_->plan().cascades[c].grids[g];
-    const State& state = states_[c];
-    const GridState& grid_state = state.grids[g];
-    const TransformBuffer<T>& buffer = grid_state.buffers[transform];
-    const int n = grid.resolution;
-    std::fill_n(buffer.data(), buffer.size(), std::complex<T>(0));
+void Frame<T>::advance(const Block& block, Scratch& at) const {
+    const Cascade<T>& cascade = sea_->cascades()[block.cascade];
+    const std::size_t first = cascade.columns[block.first_mx];
+    const bool moves = sea_->plan().cascades[block.cascade].moves();
+    kernels_.advance({.forward_re = cascade.forward_re.data() + first,
+                      .forward_im = cascade.forward_im.data() + first,
+                      .backward_re = cascade.backward_re.data() + first,
+                      .backward_im = cascade.backward_im.data() + first,
+                      .cycles_per_s = cascade.cycles_per_s.data() + first,
+                      .time_s = time_within_loop_s_,
+                      .count = cascade.columns[block.first_mx + block.columns] - first,
+                      .height_re = at.height_re.data(),
+                      .height_im = at.height_im.data(),
+                      .rate_re = moves ? at.rate_re.data() : nullptr,
+                      .rate_im = moves ? at.rate_im.data() : nullptr});
+}
 
-    const std::optional<Field> first = grid.transforms[transform][0], second = grid.transforms[transform][1];
+// The spectrum of a block's columns at this time, once; then each field of each grid: written into lines,
+// transformed along y and laid into the rows.
+template <class T>
+long Frame<T>::transform_columns(const Block& block) {
+    const Plan& plan = sea_->plan();
+    const Cascade<T>& cascade = sea_->cascades()[block.cascade];
+    const CascadePlan& planned = plan.cascades[block.cascade];
+    Scratch& at = scratch();
+    advance(block, at);
     const T step = static_cast<T>(kTwoPi / cascade.size_m);
-    const auto spectrum_of = [&](Field field, std::size_t at, T kx, T ky) {
-        const Factor<T> by = factor(field, kx, ky, cascade.chop.empty() ? T(0) : cascade.chop[at]);
-        const std::complex<T> h = by.of_rate ? state.rate[at] : state.height[at];
-        return by.imaginary ? std::complex<T>(-by.value * h.imag(), by.value * h.real()) : by.value * h;
-    };
-    for_each_mode(cascade.radius, [&](std::size_t at, int mx, int my) {
-        T weight = grid_state.weight[at];
-        if (weight == T(0)) return;
-        if (!grid_state.prefilter.empty())
-            weight *= grid_state.prefilter[std::abs(mx)] * grid_state.prefilter[my];
-        const T kx = static_cast<T>(mx) * step, ky = static_cast<T>(my) * step;
-        const std::complex<T> a = weight * spectrum_of(*first, at, kx, ky);
-        const std::complex<T> b = second ? weight * spectrum_of(*second, at, kx, ky) : std::complex<T>(0);
-        const int x = mx < 0 ? mx + n : mx, mirrored_x = mx > 0 ? n - mx : -mx;
-        const int mirrored_y = my > 0 ? n - my : 0;
-        // The transform takes y side by side. Both fields are real: at −k stand their conjugates.
-        buffer.data()[static_cast<std::size_t>(x) * n + my] = {a.real() - b.imag(), a.imag() + b.real()};
-        buffer.data()[static_cast<std::size_t>(mirrored_x) * n + mirrored_y] = {a.real() + b.imag(),
-                                                                                b.real() - a.imag()};
-    });
-    grid_state.transform.execute(buffer);
-    ++executed;
+    long lines = 0;
+    for (std::size_t g = 0; g < planned.grids.size(); ++g) {
+        const Grid& grid = planned.grids[g];
+        GridState& state = grids_[block.cascade][g];
+        const int columns = std::min(block.columns, grid.radius + 1 - block.first_mx);
+        // Where a column's my = 0 stands in the scratch.
+        const auto middle = [&](int column) {
+            return cascade.middle(block.first_mx + column) - cascade.columns[block.first_mx];
+        };
+        for (int column = 0; column < columns; ++column) {
+            const int mx = block.first_mx + column;
+            const T* prefilter = state.prefilter.empty() ? nullptr : state.prefilter.data() + grid.radius;
+            kernels_.through(
+                {.half_height = half_height(grid.radius, mx),
+                 .kx = static_cast<T>(mx) * step,
+                 .step = step,
+                 .footprint_m = plan.levels[grid.level].footprint_m,
+                 .n_min = plan.filter.n_min,
+                 .n_max = plan.filter.n_max,
+                 .prefilter = prefilter,
+                 .prefilter_x = prefilter ? prefilter[mx] : T(1),
+                 .chop = cascade.chop.empty() ? nullptr : cascade.chop.data() + cascade.middle(mx),
+                 .through = at.through.data() + middle(column),
+                 .chop_through = at.chop_through.data() + middle(column)});
+        }
+        const std::size_t stride = line_stride<T>(grid.resolution);
+        for (std::size_t f = 0; f < kFieldCount && columns > 0; ++f) {
+            if (!grid.fields[f]) continue;
+            for (int column = 0; column < columns; ++column) {
+                const int mx = block.first_mx + column;
+                const std::size_t m = middle(column);
+                kernels_.line({.field = static_cast<Field>(f),
+                               .half_height = half_height(grid.radius, mx),
+                               .n = grid.resolution,
+                               .kx = static_cast<T>(mx) * step,
+                               .step = step,
+                               .height_re = at.height_re.data() + m,
+                               .height_im = at.height_im.data() + m,
+                               .rate_re = at.rate_re.data() + m,
+                               .rate_im = at.rate_im.data() + m,
+                               .through = at.through.data() + m,
+                               .chop_through = at.chop_through.data() + m,
+                               .line_re = at.line.data(),
+                               .line_im = at.line.data() + stride});
+                state.transform.execute(at.line.data(), at.lines.data() + 2 * stride * column);
+            }
+            kernels_.scatter({.lines = at.lines.data(),
+                              .columns = columns,
+                              .first_column = block.first_mx,
+                              .n = grid.resolution,
+                              .rows = state.planes[f].data()});
+            lines += columns;
+        }
+    }
+    return lines;
+}
+
+// Two real rows ride in one complex line.
+template <class T>
+long Frame<T>::transform_rows(const Rows& rows) {
+    const Grid& grid = sea_->plan().cascades[rows.cascade].grids[rows.grid];
+    GridState& state = grids_[rows.cascade][rows.grid];
+    const int n = grid.resolution;
+    const std::size_t stride = line_stride<T>(n);
+    Scratch& at = scratch();
+    long lines = 0;
+    for (int y = rows.first; y < rows.first + rows.count; y += 2, ++lines) {
+        T* row = state.planes[index(rows.field)].data() + y * stride;
+        kernels_.pair({.first = row,
+                       .second = y + 1 < n ? row + stride : nullptr,
+                       .radius = grid.radius,
+                       .n = n,
+                       .line_re = at.line.data(),
+                       .line_im = at.line.data() + stride});
+        state.transform.execute(at.line.data(), row);
+        for (T* real : {row, row + stride})
+            for (std::size_t i = 0; i < kRowSkirt; ++i)
+                real[n + i] = real[i];  // again and again where N is short
+    }
+    return lines;
 }
 
 template <class T>
 Realisation Frame<T>::realisation(int query) const {
     const Plan& plan = sea_->plan();
     const Query& asked = plan.queries.at(query).query;
-    Realisation sum;
-    for (std::size_t c = 0; c < states_.size(); ++c) {
-        const Cascade<T>& cascade = sea_->cascades()[c];
-        if (cascade.radius == 0 || (asked.only_cascade && *asked.only_cascade != static_cast<int>(c)))
-            continue;
+    constexpr int kSums = 5;
+    // Blocks side by side, added up in their order.
+    std::vector<std::array<double, kSums>> parts(blocks_.size(), std::array<double, kSums>{});
+    tbb::parallel_for(std::size_t(0), blocks_.size(), [&](std::size_t b) {
+        const Block& block = blocks_[b];
+        if (asked.only_cascade && *asked.only_cascade != block.cascade) return;
+        const Cascade<T>& cascade = sea_->cascades()[block.cascade];
         const double step = kTwoPi / cascade.size_m;
-        std::vector<std::size_t> row_offset{0};
-        for (int my = 0; my <= cascade.radius; ++my)
-            row_offset.push_back(row_offset.back() +
-                                 static_cast<std::size_t>(row_length(cascade.radius, my)));
-        // Rows side by side, added up in their order.
-        std::vector<Realisation> rows(row_offset.size() - 1);
-        tbb::parallel_for(0, static_cast<int>(rows.size()), [&](int my) {
-            Realisation& row = rows[static_cast<std::size_t>(my)];
-            for (std::size_t at = row_offset[my]; at < row_offset[my + 1]; ++at) {
-                const int mx = row_first(cascade.radius, my) + static_cast<int>(at - row_offset[my]);
-                const double k = step * std::hypot(mx, my);
-                const double cell_weight = plan.filter.weight(k, asked.cell_m.front());
-                const double pixel_weight = plan.filter.weight(k, asked.pixel_m.front());
-                // Twice: the mode and its mirror image.
-                const double height2 = 2.0 * std::norm(std::complex<double>(states_[c].height[at]));
-                row.m0 += cell_weight * cell_weight * height2;
-                row.m_minus1 += cell_weight * cell_weight * height2 / (kTwoPi * cascade.cycles_per_s[at]);
-                row.mss += pixel_weight * pixel_weight * k * k * height2;
-                // forward is h0(k), which travels along +k; backward belongs to −k.
-                const double net = std::norm(std::complex<double>(cascade.forward[at])) -
-                                   std::norm(std::complex<double>(cascade.backward[at]));
-                row.east += cell_weight * cell_weight * net * step * mx / k;
-                row.north += cell_weight * cell_weight * net * step * my / k;
-            }
-        });
-        for (const Realisation& row : rows) {
-            sum.m0 += row.m0;
-            sum.m_minus1 += row.m_minus1;
-            sum.mss += row.mss;
-            sum.east += row.east;
-            sum.north += row.north;
+        Scratch& at = scratch();
+        advance(block, at);
+        for (int mx = block.first_mx; mx < block.first_mx + block.columns; ++mx) {
+            const std::size_t end = cascade.columns[mx + 1];
+            // Column 0 holds its modes twice.
+            const std::size_t first = mx == 0 ? cascade.middle(0) : cascade.columns[mx];
+            const std::size_t local = first - cascade.columns[block.first_mx];
+            kernels_.realise({.height_re = at.height_re.data() + local,
+                              .height_im = at.height_im.data() + local,
+                              .forward_re = cascade.forward_re.data() + first,
+                              .forward_im = cascade.forward_im.data() + first,
+                              .backward_re = cascade.backward_re.data() + first,
+                              .backward_im = cascade.backward_im.data() + first,
+                              .cycles_per_s = cascade.cycles_per_s.data() + first,
+                              .first_my = static_cast<int>(first) - static_cast<int>(cascade.middle(mx)),
+                              .count = static_cast<int>(end - first),
+                              .kx = mx * step,
+                              .step = step,
+                              .cell_m = asked.cell_m.front(),
+                              .pixel_m = asked.pixel_m.front(),
+                              .n_min = plan.filter.n_min,
+                              .n_max = plan.filter.n_max,
+                              .sums = parts[b].data()});
         }
-    }
+    });
+    Realisation sum;
+    for (const auto& part : parts) sum += Realisation{part[0], part[1], part[2], part[3], part[4]};
+    if (plan.trains && !asked.only_cascade)
+        sum +=
+            pelagic::realisation(sea_->trains(), plan.filter, {asked.cell_m.front(), asked.pixel_m.front()});
     return sum;
 }
 

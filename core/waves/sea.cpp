@@ -2,8 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
-#include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 #include "core/base/constants.h"
@@ -11,6 +11,7 @@
 #include "core/plan/mode_lattice.h"
 #include "core/spectrum/cell_energy.h"
 #include "core/spectrum/directional_spectrum.h"
+#include "core/waves/loop.h"
 #include "core/waves/whitecaps.h"
 
 namespace pelagic {
@@ -22,54 +23,19 @@ struct LevelPair {
     SpectralMoments* sum;
 };
 
-void scale_strain(SpectralMoments& moments, double factor) {
-    for (double* m : {&moments.xxxx, &moments.xxxy, &moments.xxyy, &moments.xyyy, &moments.yyyy})
-        *m *= factor;
-}
-
-// What one mode (and its mirror image −k) holds, `energy` being both together.
-void add_mode(SpectralMoments& sum, glm::dvec2 k, double energy, double omega, double chop) {
-    const double along = chop * chop * energy;  // (choppiness coth(kd) / k)² E
-    sum.m0 += energy;
-    sum.m_minus1 += energy / omega;
-    sum.xx += k.x * k.x * energy;
-    sum.xy += k.x * k.y * energy;
-    sum.yy += k.y * k.y * energy;
-    sum.xxxx += along * k.x * k.x * k.x * k.x;
-    sum.xxxy += along * k.x * k.x * k.x * k.y;
-    sum.xxyy += along * k.x * k.x * k.y * k.y;
-    sum.xyyy += along * k.x * k.y * k.y * k.y;
-    sum.yyyy += along * k.y * k.y * k.y * k.y;
-}
-
-void accumulate(SpectralMoments& sum, const SpectralMoments& part) {
-    sum.m0 += part.m0;
-    sum.m_minus1 += part.m_minus1;
-    sum.xx += part.xx;
-    sum.xy += part.xy;
-    sum.yy += part.yy;
-    sum.xxxx += part.xxxx;
-    sum.xxxy += part.xxxy;
-    sum.xxyy += part.xxyy;
-    sum.xyyy += part.xyyy;
-    sum.yyyy += part.yyyy;
-}
-
-// ω in cycles per second. In a loop of T seconds every wave makes a whole number of cycles (Tessendorf 2001,
-// §4), and at least one, so that slow waves don't freeze.
-double cycles_per_s(double omega, double loop_s) {
-    const double cycles = omega / kTwoPi;
-    return loop_s > 0.0 ? std::max(1.0, std::round(cycles * loop_s)) / loop_s : cycles;
-}
-
 }  // namespace
 
 template <class T>
 Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.shot.exact_loop_s()) {
     const DirectionalSpectrum spectrum(scene.sea);
     const double choppiness = scene.waves.choppiness;
-    total_ = moments(spectrum, 0.0, std::numeric_limits<double>::infinity());
-    scale_strain(total_, choppiness * choppiness);
+    if (plan_.trains) {
+        trains_ = make_trains<T>(scene, *plan_.trains, spectrum);
+        total_ = pelagic::total(trains_);
+    } else {
+        total_ = moments(spectrum, 0.0, std::numeric_limits<double>::infinity());
+        total_.scale_strain(choppiness * choppiness);
+    }
     whitecap_threshold_ = calibrated_threshold(total_, scene.sea.wind_speed_mps, plan_.knobs.third_moment);
 
     for (const PlannedQuery& planned : plan_.queries) {
@@ -78,7 +44,7 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
         if (planned.query.only_cascade) {
             const CascadePlan& band = plan_.cascades[*planned.query.only_cascade];
             whole = moments(spectrum, band.k_lower, band.k_upper);
-            scale_strain(whole, choppiness * choppiness);
+            whole.scale_strain(choppiness * choppiness);
         }
         statistics_.push_back(
             {whole, std::vector<SpectralMoments>(levels), std::vector<SpectralMoments>(levels - 1)});
@@ -88,12 +54,17 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
         const CascadePlan& planned = plan_.cascades[c];
         Cascade<T> cascade;
         cascade.size_m = planned.size_m;
-        cascade.radius = planned.grids.empty() ? 0 : planned.mode_radius;
-        const std::size_t count = half_plane_modes(cascade.radius);
-        cascade.forward.resize(count);
-        cascade.backward.resize(count);
-        cascade.cycles_per_s.resize(count);
-        if (choppiness > 0.0) cascade.chop.resize(count);
+        cascade.radius = planned.grid_radius();
+        for (int mx = 0; cascade.radius > 0 && mx <= cascade.radius; ++mx) {
+            if (mx == 0) cascade.columns.push_back(0);
+            cascade.columns.push_back(cascade.columns.back() + column_length(cascade.radius, mx));
+        }
+        const std::size_t count = lattice_modes(cascade.radius);
+        for (Buffer<T>* values :
+             {&cascade.forward_re, &cascade.forward_im, &cascade.backward_re, &cascade.backward_im})
+            *values = Buffer<T>(count);
+        cascade.cycles_per_s = Buffer<double>(count);
+        if (choppiness > 0.0) cascade.chop = Buffer<T>(count);
 
         std::vector<LevelPair> pairs;
         for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
@@ -107,20 +78,18 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
             }
         }
 
-        // Rows side by side; their sums are added up in the order of the rows, whoever computed them.
+        // Columns side by side; their sums are added up in their order, whoever computed them.
         const double step = kTwoPi / planned.size_m;
-        // Without a grid the modes are only counted: what they hold of the hidden statistics.
-        const bool generated = cascade.radius > 0;
-        const int rows = planned.mode_radius > 0 ? planned.mode_radius + 1 : 0;
-        std::vector<std::size_t> row_offset(rows + 1, 0);
-        for (int my = 0; my < rows; ++my)
-            row_offset[my + 1] = row_offset[my] + row_length(planned.mode_radius, my);
-        std::vector<double> row_m0(rows, 0.0);
-        std::vector<std::vector<SpectralMoments>> row_sums(rows, std::vector<SpectralMoments>(pairs.size()));
-        tbb::parallel_for(0, rows, [&](int my) {
-            std::size_t at = row_offset[my];
-            for (int i = 0; i < row_length(planned.mode_radius, my); ++i, ++at) {
-                const int mx = row_first(planned.mode_radius, my) + i;
+        const int columns = planned.mode_radius > 0 ? planned.mode_radius + 1 : 0;
+        std::vector<double> column_m0(columns, 0.0);
+        std::vector<std::vector<SpectralMoments>> column_sums(columns,
+                                                              std::vector<SpectralMoments>(pairs.size()));
+        tbb::parallel_for(0, columns, [&](int mx) {
+            // Beyond the grids' radius modes are only counted: what they hold of the hidden statistics.
+            const int generated = mx <= cascade.radius ? half_height(cascade.radius, mx) : -1;
+            const int counted = half_height(planned.mode_radius, mx);
+            for (int my = -counted; my <= counted; ++my) {
+                if (mx == 0 && my == 0) continue;
                 const glm::dvec2 k(mx * step, my * step);
                 const double length = std::hypot(k.x, k.y);
                 const double omega = spectrum.dispersion().omega(length);
@@ -135,7 +104,7 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
                                                   .k_hi = planned.k_upper});
                 };
                 const double energy = energy_at(+1.0), mirrored = energy_at(-1.0);
-                if (generated) {
+                if (std::abs(my) <= generated) {
                     // h0(k) = ½ (ξr + iξi) √E(k) (Tessendorf 2001, Eq. 25, with the ½ that makes Var(η) =
                     // ΣE).
                     const auto amplitude = [&](double e, int x, int y) {
@@ -148,23 +117,28 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
                     const std::complex<double> h0 = energy > 0.0 ? amplitude(energy, mx, my) : 0.0;
                     const std::complex<double> h0_mirrored =
                         mirrored > 0.0 ? amplitude(mirrored, -mx, -my) : 0.0;
-                    cascade.forward[at] = std::complex<T>(h0);
-                    cascade.backward[at] = std::complex<T>(std::conj(h0_mirrored));
-                    cascade.cycles_per_s[at] = cycles_per_s(omega, loop_s_);
+                    const std::size_t at = cascade.middle(mx) + my;
+                    cascade.forward_re[at] = static_cast<T>(h0.real());
+                    cascade.forward_im[at] = static_cast<T>(h0.imag());
+                    cascade.backward_re[at] = static_cast<T>(h0_mirrored.real());
+                    cascade.backward_im[at] = static_cast<T>(-h0_mirrored.imag());
+                    cascade.cycles_per_s[at] = looped_cycles_per_s(omega, loop_s_);
                     if (!cascade.chop.empty()) cascade.chop[at] = static_cast<T>(chop);
                 }
-                row_m0[my] += energy + mirrored;
+                if (!counts_as_wave(mx, my)) continue;
+                column_m0[mx] += energy + mirrored;
                 for (std::size_t p = 0; p < pairs.size(); ++p) {
                     const double weight = plan_.filter.weight(length, pairs[p].footprint_a) *
                                           plan_.filter.weight(length, pairs[p].footprint_b);
-                    if (weight > 0.0) add_mode(row_sums[my][p], k, weight * (energy + mirrored), omega, chop);
+                    if (weight > 0.0)
+                        column_sums[mx][p] += moments_of({k, weight * (energy + mirrored), omega, chop});
                 }
             }
         });
         double m0 = 0.0;
-        for (int my = 0; my < rows; ++my) {
-            m0 += row_m0[my];
-            for (std::size_t p = 0; p < pairs.size(); ++p) accumulate(*pairs[p].sum, row_sums[my][p]);
+        for (int mx = 0; mx < columns; ++mx) {
+            m0 += column_m0[mx];
+            for (std::size_t p = 0; p < pairs.size(); ++p) *pairs[p].sum += column_sums[mx][p];
         }
         expected_m0_.push_back(m0);
         cascades_.push_back(std::move(cascade));

@@ -2,25 +2,31 @@
 // frames.
 #pragma once
 
-#include <complex>
 #include <span>
 #include <vector>
 
+#include "core/base/buffer.h"
 #include "core/plan/plan.h"
 #include "core/spectrum/spectral_moments.h"
+#include "core/waves/trains.h"
 
 namespace pelagic {
 
 // The FFT component: the modes of one cascade (core/plan/mode_lattice.h gives their order), of its own band
-// only.
+// only; each quantity side by side.
 //   h(k,t) = forward · e^{−iωt} + backward · e^{iωt},  forward = h0(k), backward = conj(h0(−k))
 template <class T>
 struct Cascade {
     double size_m = 0.0;
-    int radius = 0;
-    std::vector<std::complex<T>> forward, backward;  // [m]
-    std::vector<T> chop;               // choppiness · coth(kd) / k [m]; empty without choppiness
-    std::vector<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
+    int radius = 0;                    // 0: no modes
+    std::vector<std::size_t> columns;  // where each mx begins, and the end of the last
+    Buffer<T> forward_re, forward_im, backward_re, backward_im;  // [m]
+    Buffer<T> chop;               // choppiness · coth(kd) / k [m]; empty without choppiness
+    Buffer<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
+
+    std::size_t modes() const { return cycles_per_s.size(); }
+    // Where (mx, my = 0) stands.
+    std::size_t middle(int mx) const { return (columns[mx] + columns[mx + 1]) / 2; }
 };
 
 // What the spectrum holds, in expectation: sums and integrals of Ψ, not of one realisation.
@@ -32,14 +38,6 @@ struct QueryStatistics {
     std::vector<SpectralMoments> resolved, resolved_next;
 };
 
-// What the waves of one moment hold: sums over modes of |h(k,t)|² and nothing of a mesh.
-struct Realisation {
-    double m0 = 0.0;                 // Σ|h|² [m²]
-    double m_minus1 = 0.0;           // Σ|h|²/ω [m² s/rad]
-    double mss = 0.0;                // Σk²|h|²
-    double east = 0.0, north = 0.0;  // Σ|h0|² k/|k|: the direction in which the energy travels
-};
-
 template <class T>
 class Sea {
   public:
@@ -48,8 +46,9 @@ class Sea {
 
     const Plan& plan() const { return plan_; }
     std::span<const Cascade<T>> cascades() const { return cascades_; }
+    const Trains<T>& trains() const { return trains_; }  // none unless plan().trains
     double loop_s() const { return loop_s_; }
-    // The whole spectrum, capillary tail included; Jacobian moments times choppiness².
+    // The whole sea, capillary tail included; Jacobian moments times choppiness².
     const SpectralMoments& total() const { return total_; }
     const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
     // J below this is foam (core/waves/whitecaps.h).
@@ -63,6 +62,7 @@ class Sea {
     SpectralMoments total_;
     double whitecap_threshold_;
     std::vector<Cascade<T>> cascades_;
+    Trains<T> trains_;
     std::vector<QueryStatistics> statistics_;
     std::vector<double> expected_m0_;
 };

@@ -13,21 +13,7 @@
 
 namespace pelagic {
 
-// The P weights of the uniform B-spline at fraction f ∈ [0, 1] after node i: for the nodes i − P/2 + 1 … i +
-// P/2. They sum to 1. (de Boor's recursion on integer knots.)
-template <int P, class T>
-inline void bspline_weights(T f, T (&w)[P]) {
-    w[0] = T(1);
-    for (int degree = 1; degree < P; ++degree) {
-        T saved = T(0);
-        for (int r = 0; r < degree; ++r) {
-            const T share = w[r] / T(degree);
-            w[r] = saved + (T(r + 1) - f) * share;
-            saved = (f + T(degree - 1 - r)) * share;
-        }
-        w[degree] = saved;
-    }
-}
+#include "core/waves/spline.inl"
 
 // 1 / sinc(m/N)^P: the factor on mode m of an N-node axis, |m| < N/2, that makes the spline pass it
 // unchanged.

@@ -1,38 +1,26 @@
-// Inverse Fourier transforms of complex squares: the one place that knows FFTW.
+// Fourier transforms of single lines: the one place that knows FFTW.
+//
+// A field is real and its spectrum lives in a disc of modes, so a square of N × N samples takes R + 1
+// transforms along y (R: the disc's radius; mx ≥ 0 only) and N/2 along x (two real rows ride in one complex
+// line). That is the arithmetic of half a complex square, less for the empty columns, whichever fields are
+// asked for. core/waves/frame puts the lines together.
 #pragma once
 
-#include <complex>
-#include <cstddef>
 #include <memory>
+
+#include "core/plan/grid_layout.h"
 
 namespace pelagic {
 
-// Memory aligned as FFTW's vector code wants it, always alike, so that the same plan gives the same bits.
+// f(j) = Σ F(m) exp(+2πi m j/N), m and j from 0 to N − 1, one thread, unnormalised, from one place to
+// another; real parts at the pointer, imaginary parts line_stride(N) behind it, both aligned to 64 bytes. The
+// input is kept. Planned by FFTW's estimate and never by timing, so that every run takes the same path (where
+// the host has not given FFTW wisdom of its own). execute() may be called from several threads at once.
 template <class T>
-class TransformBuffer {
+class LineTransform {
   public:
-    TransformBuffer() = default;
-    explicit TransformBuffer(std::size_t count);  // throws std::bad_alloc
-    std::complex<T>* data() const { return data_.get(); }
-    std::size_t size() const { return size_; }
-
-  private:
-    struct Free {
-        void operator()(std::complex<T>*) const;
-    };
-    std::unique_ptr<std::complex<T>[], Free> data_;
-    std::size_t size_ = 0;
-};
-
-// f(jx, jy) = Σ F(mx, my) exp(+2πi (mx jx + my jy)/N), in place, one thread, unnormalised. Takes F(mx, my) at
-// mx N + my, my side by side, and leaves f(jx, jy) at jy N + jx, x side by side. Planned by FFTW's estimate
-// and never by timing, so that every run takes the same path (where the host has not given FFTW wisdom of its
-// own). execute() may be called from several threads at once.
-template <class T>
-class InverseTransform {
-  public:
-    explicit InverseTransform(int n);  // throws std::runtime_error where FFTW has no plan
-    void execute(const TransformBuffer<T>&) const;
+    explicit LineTransform(int n);  // throws std::runtime_error where FFTW has no plan
+    void execute(const T* from, T* to) const;
     int n() const { return n_; }
 
   private:

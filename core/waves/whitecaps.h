@@ -15,47 +15,12 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/base/number.h"
 #include "core/spectrum/spectral_moments.h"
 
 namespace pelagic {
 
-// Mean, variance and third cumulant of J in a footprint [-].
-template <class T>
-struct JacobianMoments {
-    T mean = T(1), variance = T(0), third = T(0);
-};
-
-// Covariance of (sxx, syy, sxy): the fourth moments of the waves that a footprint hides, times choppiness².
-template <class T>
-struct HiddenStrain {
-    T xxxx = T(0), xxxy = T(0), xxyy = T(0), xyyy = T(0), yyyy = T(0);
-};
-
-// J's cumulants given the shown derivatives of the displacement. Variance ≥ 0; exactly 0 where nothing is
-// hidden.
-template <class T>
-JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, const HiddenStrain<T>& v) {
-    const T gx = T(1) + dyy, gy = T(1) + dxx, gs = T(-2) * dxy;
-    // Vg, AV and then the traces; A has ½ off the diagonal (xx, yy) and −1 at (xy, xy).
-    const T vg_x = v.xxxx * gx + v.xxyy * gy + v.xxxy * gs;
-    const T vg_y = v.xxyy * gx + v.yyyy * gy + v.xyyy * gs;
-    const T vg_s = v.xxxy * gx + v.xyyy * gy + v.xxyy * gs;
-    const T h = T(0.5);
-    const T m[3][3] = {{h * v.xxyy, h * v.yyyy, h * v.xyyy},
-                       {h * v.xxxx, h * v.xxyy, h * v.xxxy},
-                       {-v.xxxy, -v.xyyy, -v.xxyy}};
-    T trace2 = T(0), trace3 = T(0);
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-            trace2 += m[i][j] * m[j][i];
-            for (int k = 0; k < 3; ++k) trace3 += m[i][j] * m[j][k] * m[k][i];
-        }
-    JacobianMoments<T> result;
-    result.mean = gx * gy - dxy * dxy;
-    result.variance = std::max(gx * vg_x + gy * vg_y + gs * vg_s + T(2) * trace2, T(0));
-    result.third = T(6) * (vg_x * vg_y - vg_s * vg_s) + T(8) * trace3;
-    return result;
-}
+#include "core/waves/whitecaps.inl"
 
 // Mean, variance and third cumulant of a weighted set of parts from theirs and from the spread of their
 // means: how a mip level is made (law of total cumulance). Powers are taken about the first part's mean, so
@@ -74,7 +39,7 @@ class MomentSum {
     }
     // Of nothing: J = 1 everywhere.
     JacobianMoments<T> moments() const {
-        if (!(weight_ > T(0))) return {};
+        if (!(weight_ > T(0))) return {T(1), T(0), T(0)};
         const T m1 = first_ / weight_, m2 = second_ / weight_, m3 = third_ / weight_;
         return {origin_ + m1, std::max(m2 - m1 * m1, T(0)), m3 - T(3) * m1 * m2 + T(2) * m1 * m1 * m1};
     }
@@ -84,21 +49,6 @@ class MomentSum {
 };
 
 namespace whitecaps_detail {
-
-// Beyond these |skewness| Wilson and Hilferty's cube leaves its range; a J that lopsided is calm almost
-// everywhere.
-inline constexpr double kLargestSkewness = 2.0;
-inline constexpr double kNoSkewness = 1e-4;  // below, the correction is smaller than single precision
-
-// The standard normal deviate as improbable as the deviate z of a Pearson III (shifted gamma) variable of
-// mean 0, variance 1 and the given skewness: Wilson and Hilferty 1931. Rising in z, and the identity for
-// skewness → 0.
-template <class T>
-T to_normal(T z, T skewness) {
-    const T s = std::clamp(skewness, T(-kLargestSkewness), T(kLargestSkewness));
-    if (std::abs(s) < T(kNoSkewness)) return z;
-    return (T(6) / s) * (std::cbrt(T(1) + T(0.5) * s * z) - T(1)) + s / T(6);
-}
 
 template <class T>
 T from_normal(T y, T skewness) {
@@ -122,18 +72,6 @@ inline double normal_quantile(double p) {
 }
 
 }  // namespace whitecaps_detail
-
-// The part of a footprint with J < threshold, 0 … 1. Two moments: ½(1 + erf((ε − μ)/(√2 σ))) (Dupuy and
-// Bruneton 2012, Eq. 6). The third makes J's distribution a shifted gamma: with a skewness of 0.24, the
-// Gaussian is off by +85 % at a coverage of 0.005. Variance 0: the step, without a division.
-template <class T>
-T coverage(const JacobianMoments<T>& j, T threshold, bool third_moment) {
-    if (!(j.variance > T(0))) return j.mean < threshold ? T(1) : T(0);
-    const T sigma = std::sqrt(j.variance);
-    T z = (threshold - j.mean) / sigma;
-    if (third_moment) z = whitecaps_detail::to_normal(z, j.third / j.variance / sigma);
-    return std::clamp(T(0.5) * std::erfc(-z / T(std::sqrt(2.0))), T(0), T(1));
-}
 
 // Monahan and O'Muircheartaigh 1980: W = 2.95e-6 U10^3.52, U10 in m/s. Held below 1 (reached at 37 m/s).
 inline double observed_coverage(double wind_speed_mps) {

@@ -1,7 +1,9 @@
 #include "plugin/bake/bake.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 
 #include "core/scene/validate.h"
 #include "plugin/bake/record.h"
@@ -80,38 +82,49 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
 
     report_progress(BakeStage::Building);
     const auto start = std::chrono::steady_clock::now();
-    const auto write = [&](const std::string& path, const std::string& bytes) {
+    const auto write = [&](const std::string& path, const FileContent& content) {
         stop_if_cancelled();
-        files::write_atomically(options.out / path, bytes);
+        return files::write_atomically(options.out / path, content);
     };
     try {
         stop_if_cancelled();
         const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan);
         report_progress(BakeStage::Frames);
         record.describe(scene, plan, sequence->total(), sequence->whitecap_threshold());
-        sequence->produce_static(write);
+        sequence->write_static(write);
         if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");
         if (!scene.output.maps.empty()) report.maps = options.out / "maps";
         record.save(report.record);
         const auto first_frame = std::chrono::steady_clock::now();
+        std::array<FrameSlot, kFramesInFlight> slots;
         double last_save_s = 0.0, save_cost_s = 0.0;
-        try {
-            for (const int frame : missing) {
-                stop_if_cancelled();
-                record.set(frame, sequence->produce(frame, write));
-                report.executed_transforms = sequence->executed_transforms();
-                progress.frame = frame;
-                progress.done = ++report.done;
-                progress.seconds = seconds_since(first_frame);
-                // The record grows with the shot: writing it takes at most a twentieth of the time. Frames
-                // that a killed process had not recorded yet are baked again.
-                if (progress.seconds - last_save_s >= 20.0 * save_cost_s) {
-                    record.save(report.record);
-                    last_save_s = seconds_since(first_frame);
-                    save_cost_s = last_save_s - progress.seconds;
-                }
-                report_progress(BakeStage::Frames);
+        PipelineStages stages;
+        stages.compute = [&](int item, int place) {
+            stop_if_cancelled();
+            sequence->compute(missing[item], slots[place]);
+            report.executed_transforms = sequence->executed_transforms();
+        };
+        stages.encode = [&](int, int place) { sequence->encode(slots[place]); };
+        stages.write = [&](int item, int place) {
+            sequence->write(slots[place], write);
+            record.set(missing[item], slots[place].record);
+            // The record grows with the shot: writing it takes at most a twentieth of the time. Frames that a
+            // killed process had not recorded yet are baked again.
+            const double now_s = seconds_since(first_frame);
+            if (now_s - last_save_s >= 20.0 * save_cost_s) {
+                record.save(report.record);
+                last_save_s = seconds_since(first_frame);
+                save_cost_s = last_save_s - now_s;
             }
+        };
+        stages.written = [&](int item) {
+            progress.frame = missing[item];
+            progress.done = ++report.done;
+            progress.seconds = seconds_since(first_frame);
+            report_progress(BakeStage::Frames);
+        };
+        try {
+            report.times = run_pipeline(static_cast<int>(missing.size()), kFramesInFlight, stages);
         } catch (...) {
             // What was finished stays recorded; if even that can't be written, the first reason is the one to
             // tell.
@@ -127,6 +140,19 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     }
     report.seconds = seconds_since(start);
     return report;
+}
+
+std::string time_text(const BakeReport& report) {
+    const PipelineTimes& times = report.times;
+    if (times.wall_s <= 0.0 || report.done == 0) return {};
+    const auto percent = [&](double busy_s) {
+        return std::to_string(std::lround(100.0 * busy_s / times.wall_s)) + " %";
+    };
+    const char* bottleneck = times.compute_busy_s >= times.encode_busy_s ? "computing" : "encoding";
+    if (times.waiting_for_write_s >= times.waiting_for_encode_s) bottleneck = "the disk";
+    return "compute " + percent(times.compute_busy_s) + ", encode " + percent(times.encode_busy_s) +
+           ", write " + percent(times.write_busy_s) + " of the time busy; " + bottleneck +
+           " was the bottleneck";
 }
 
 }  // namespace pelagic

@@ -3,7 +3,14 @@
 //   DIR/NAME.usda, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
 //
 // Frames that a former run left whole, with the same fingerprint, are kept; everything else that is asked for
-// is done again. Memory does not grow with the number of frames.
+// is done again.
+//
+// One frame is computed while others are encoded and written, kFramesInFlight at most together. Beside the
+// plan's sea and frame, each of these holds, whatever the shot's length,
+//   12 bytes a vertex for positions, normals, velocities and slope variances each, 4 for whitecaps, and with
+//      a mesh in text up to 18 bytes more for each of their numbers
+//   12 bytes a texel for each map and tile, and its file, which is no larger but for mip levels (a third)
+// and while it is encoded once more a map's mip levels.
 #pragma once
 
 #include <atomic>
@@ -14,14 +21,18 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "plugin/bake/pipeline.h"
 
 namespace pelagic {
+
+// One being computed, one encoded, one written.
+inline constexpr int kFramesInFlight = 3;
 
 enum class BakeStage { Planning, Building, Frames };
 
 struct BakeProgress {
     BakeStage stage = BakeStage::Planning;
-    int frame = 0;         // the one just finished
+    int frame = 0;         // the one that was finished last
     int done = 0;          // frames computed by this run
     int kept = 0;          // frames that were whole already
     int total = 0;         // frames asked for: done + kept + what is left
@@ -33,7 +44,7 @@ struct BakeOptions {
     std::vector<int> frames;    // rising, within the shot's range; empty: the whole shot
     std::function<void(const BakeProgress&)> progress;  // called from the baking thread; may be empty
     // Set from elsewhere (a signal handler, another thread): the bake stops as soon as the file at hand is
-    // whole.
+    // whole and the frame at hand is computed.
     const std::atomic<bool>* cancel = nullptr;
 };
 
@@ -43,6 +54,7 @@ struct BakeReport {
     bool cancelled = false;
     double seconds = 0.0;
     long executed_transforms = 0;
+    PipelineTimes times;  // of the frames that were baked; all 0 where the bake was cancelled
     // Frames of this shot's range that lie in DIR but belong to another version of it: not asked for, not
     // touched.
     std::vector<int> stale;
@@ -52,6 +64,10 @@ struct BakeReport {
 // std::invalid_argument for frames outside the shot's range or a scene that validate() refuses or that asks
 // for nothing.
 BakeReport bake(const Scene& scene, const BakeOptions& options);
+
+// Where the time of a finished bake went: "compute 41 %, encode 22 %, write 97 % of the time busy; the disk
+// was the bottleneck". Empty where no frame was baked.
+std::string time_text(const BakeReport& report);
 
 // "--frames": "1-48", "7", "1-48x5" (every fifth), with negative numbers as in "-3--1": any part of the
 // shot's range. Throws std::invalid_argument saying what is accepted.

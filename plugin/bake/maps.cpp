@@ -1,5 +1,7 @@
 #include "plugin/bake/maps.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,19 +9,20 @@ namespace pelagic {
 namespace {
 
 template <class Value, class Combine>
-std::vector<MipLevel<Value>> mips(MipLevel<Value> full, bool periodic, Combine&& combine) {
-    const int n = full.n;
-    std::vector<MipLevel<Value>> levels{std::move(full)};
-    for (int level = 1; level < exr::mip_level_count(n, n); ++level) {
-        const MipLevel<Value>& fine = levels.back();
-        MipLevel<Value> coarse;
-        coarse.n = exr::mip_level_size(n, n, level).first;
-        const TentWeights weights = tent_weights(fine.n, coarse.n, periodic);
-        coarse.texels.reserve(static_cast<std::size_t>(coarse.n) * coarse.n);
-        for (int y = 0; y < coarse.n; ++y)
-            for (int x = 0; x < coarse.n; ++x)
-                coarse.texels.push_back(combine(fine, weights.taps[x], weights.taps[y]));
+std::vector<MipLevel<Value>> mips(const FullMap<Value>& full, Combine&& combine) {
+    std::vector<MipLevel<Value>> levels;
+    FullMap<Value> fine = full;
+    for (int level = 1; level < exr::mip_level_count(full.n, full.n); ++level) {
+        const int n = exr::mip_level_size(full.n, full.n, level).first;
+        MipLevel<Value> coarse{n, std::vector<Value>(static_cast<std::size_t>(n) * n)};
+        const TentWeights weights = tent_weights(fine.n, n, fine.periodic);
+        tbb::parallel_for(0, n, [&](int y) {
+            for (int x = 0; x < n; ++x)
+                coarse.texels[static_cast<std::size_t>(y) * n + x] =
+                    combine(fine, weights.taps[x], weights.taps[y]);
+        });
         levels.push_back(std::move(coarse));
+        fine = {n, levels.back().texels, full.periodic};
     }
     return levels;
 }
@@ -46,11 +49,10 @@ TentWeights tent_weights(int fine, int coarse, bool periodic) {
     return weights;
 }
 
-std::vector<MipLevel<JacobianMoments<float>>> moment_mips(MipLevel<JacobianMoments<float>> full,
-                                                          bool periodic) {
-    using Level = MipLevel<JacobianMoments<float>>;
+std::vector<MipLevel<JacobianMoments<float>>> moment_mips(const FullMap<JacobianMoments<float>>& full) {
+    using Level = FullMap<JacobianMoments<float>>;
     using Taps = std::vector<TentWeights::Tap>;
-    return mips(std::move(full), periodic, [](const Level& fine, const Taps& columns, const Taps& rows) {
+    return mips(full, [](const Level& fine, const Taps& columns, const Taps& rows) {
         MomentSum<double> sum;
         for (const auto& row : rows)
             for (const auto& column : columns) {
@@ -64,10 +66,10 @@ std::vector<MipLevel<JacobianMoments<float>>> moment_mips(MipLevel<JacobianMomen
     });
 }
 
-std::vector<MipLevel<glm::vec3>> normal_mips(MipLevel<glm::vec3> full, bool periodic) {
-    using Level = MipLevel<glm::vec3>;
+std::vector<MipLevel<glm::vec3>> normal_mips(const FullMap<glm::vec3>& full) {
+    using Level = FullMap<glm::vec3>;
     using Taps = std::vector<TentWeights::Tap>;
-    return mips(std::move(full), periodic, [](const Level& fine, const Taps& columns, const Taps& rows) {
+    return mips(full, [](const Level& fine, const Taps& columns, const Taps& rows) {
         glm::dvec3 sum(0.0);
         for (const auto& row : rows)
             for (const auto& column : columns)

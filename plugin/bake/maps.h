@@ -2,7 +2,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "core/waves/whitecaps.h"
@@ -30,13 +30,20 @@ struct TentWeights {
 };
 TentWeights tent_weights(int fine, int coarse, bool periodic);
 
-// The levels below a whitecap map, from the moments of J: mean, variance and third cumulant under the tent by
-// the law of total cumulance, never from coverage.
-std::vector<MipLevel<JacobianMoments<float>>> moment_mips(MipLevel<JacobianMoments<float>> full,
-                                                          bool periodic);
+// A whole map: n × n texels, the caller's.
+template <class Value>
+struct FullMap {
+    int n = 0;
+    std::span<const Value> texels;
+    bool periodic = false;
+};
 
-// The levels below a map of unit normals: the mean normal, unit again. What its shortening hides is in the
-// slope-variance map's levels.
-std::vector<MipLevel<glm::vec3>> normal_mips(MipLevel<glm::vec3> full, bool periodic);
+// The levels below a whitecap map, the largest first, from the moments of J: mean, variance and third
+// cumulant under the tent by the law of total cumulance, never from coverage.
+std::vector<MipLevel<JacobianMoments<float>>> moment_mips(const FullMap<JacobianMoments<float>>& full);
+
+// The levels below a map of unit normals, the largest first: the mean normal, unit again. What its shortening
+// hides is in the slope-variance map's levels.
+std::vector<MipLevel<glm::vec3>> normal_mips(const FullMap<glm::vec3>& full);
 
 }  // namespace pelagic

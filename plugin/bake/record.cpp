@@ -1,5 +1,6 @@
 #include "plugin/bake/record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -44,14 +45,21 @@ Json settings(const Scene& scene) {
     return lines;
 }
 
-// Whether the fingerprint stands in the head of the file: layers and maps carry it among their first lines.
+// Whether the fingerprint stands near one end of the file: maps and layers in text carry it among their first
+// lines, crates among the tokens after the arrays.
 bool carries(const std::filesystem::path& file, const std::string& fingerprint) {
-    constexpr std::streamsize kHead = 8192;  // bytes; the attributes before it take some hundreds
-    std::ifstream stream(file, std::ios::binary);
-    std::string head(kHead, '\0');
-    stream.read(head.data(), kHead);
-    head.resize(static_cast<std::size_t>(stream.gcount()));
-    return head.find(fingerprint) != std::string::npos;
+    constexpr std::streamoff kEnd = 8192;  // bytes; what lies before or behind it takes one or two thousand
+    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    const std::streamoff size = stream.tellg();
+    const auto stands_from = [&](std::streamoff begin) {
+        std::string bytes(kEnd, '\0');
+        stream.clear();
+        stream.seekg(begin);
+        stream.read(bytes.data(), kEnd);
+        bytes.resize(static_cast<std::size_t>(stream.gcount()));
+        return bytes.find(fingerprint) != std::string::npos;
+    };
+    return stream && (stands_from(0) || stands_from(std::max<std::streamoff>(size - kEnd, 0)));
 }
 
 Json to_json(const FrameRecord& frame) {
@@ -131,7 +139,7 @@ void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoment
     spectrum["kind"] = word_of(scene.sea.spectrum);
     spectrum["hs_m"] = total.significant_height_m();
     spectrum["tm_minus1_0_s"] = total.energy_period_s();
-    spectrum["mean_direction_deg"] = total.mean_direction * 180.0 / kPi;
+    spectrum["mean_direction_deg"] = total.mean_direction() * 180.0 / kPi;
     spectrum["mss"] = total.mss();
     spectrum["slope_variance_xx_yy_xy"] = {total.xx, total.yy, total.xy};
     spectrum["dispersion"] = "gravity and capillarity, finite depth";
@@ -161,7 +169,7 @@ void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoment
                                        {"resolution", cascade.resolution},
                                        {"k_lower_rad_per_m", cascade.k_lower},
                                        {"k_upper_rad_per_m", number(cascade.k_upper)},
-                                       {"modes", half_plane_modes(cascade.mode_radius)}});
+                                       {"modes", lattice_modes(cascade.grid_radius())}});
 }
 
 bool Record::is_whole(int frame, const std::string& fingerprint, const std::filesystem::path& folder) const {

@@ -53,7 +53,7 @@ class Record {
         own_.insert(frame);
     }
 
-    // Every file of the frame is there, has its recorded size and says in its head that it is of this
+    // Every file of the frame is there, has its recorded size and says that it is of this
     // fingerprint: the record alone would vouch for a file that another shot has replaced since.
     bool is_whole(int frame, const std::string& fingerprint, const std::filesystem::path& folder) const;
 

@@ -1,9 +1,11 @@
 #include "plugin/bake/sequence.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 
@@ -15,17 +17,12 @@
 #include "core/surface/patch.h"
 #include "plugin/bake/maps.h"
 #include "plugin/exr/exr.h"
+#include "plugin/usd/crate.h"
 #include "plugin/usd/layers.h"
 #include "plugin/usd/text.h"
 
 namespace pelagic {
 namespace {
-
-// What one query gives, in single precision, which is what files hold. Empty where the query doesn't ask.
-struct Arrays {
-    std::vector<glm::vec3> position, displacement, normal, velocity, slope_variance, jacobian;
-    std::vector<float> coverage;
-};
 
 template <class T>
 struct Square {  // points at rest over a square
@@ -80,7 +77,7 @@ Square<T> square_of(int per_side, double size_m, int intervals) {
 template <class T>
 class QueryRunner {
   public:
-    void run(const Frame<T>& frame, int query_index, const std::vector<glm::vec<2, T>>& points, Arrays& out) {
+    void run(const Frame<T>& frame, int query_index, const std::vector<glm::vec<2, T>>& points, Values& out) {
         const Query& query = frame.sea().plan().queries.at(query_index).query;
         Results<T> results;
         results.position = target(query, Product::Position, points.size(), out.position, position_);
@@ -142,39 +139,57 @@ class SequenceOf final : public Sequence {
         }
     }
 
-    FrameRecord produce(int frame, const FileSink& sink) override {
-        FrameRecord record;
-        record.fingerprint = sea_->plan().fingerprint_text();
-        record.time_s = scene_.shot.time_s(frame);
-        frame_.set(record.time_s);
-        describe_waves(record);
-        const auto hand_over = [&](const std::string& path, const std::string& bytes) {
-            sink(path, bytes);
-            record.files[path] = bytes.size();
-        };
-        if (mesh_query_ >= 0) {
-            runner_.run(frame_, mesh_query_, mesh_square_.points, arrays_);
-            record.mesh_significant_height_m = significant_height_of(arrays_.position);
-            if (!arrays_.coverage.empty()) record.coverage = mean_of(arrays_.coverage);
-            hand_over(usd::frame_file(scene_.shot.name, frame, kMeshExtension),
-                      usd::frame_text({.frame = frame,
-                                       .fps = scene_.shot.fps,
-                                       .fingerprint = record.fingerprint,
-                                       .points = arrays_.position,
-                                       .normals = arrays_.normal,
-                                       .velocities = arrays_.velocity,
-                                       .slope_variance = arrays_.slope_variance,
-                                       .whitecap_coverage = arrays_.coverage}));
+    void compute(int frame, FrameSlot& slot) override {
+        slot.frame = frame;
+        slot.record = {};
+        slot.record.fingerprint = sea_->plan().fingerprint_text();
+        slot.record.time_s = scene_.shot.time_s(frame);
+        frame_.set(slot.record.time_s);
+        describe_waves(slot.record);
+        if (mesh_query_ >= 0) runner_.run(frame_, mesh_query_, mesh_square_.points, slot.mesh);
+        slot.maps.resize(maps_.size());
+        for (std::size_t m = 0; m < maps_.size(); ++m) {
+            runner_.run(frame_, maps_[m].query, maps_[m].square->points, slot.maps[m].values);
+            if (maps_[m].kind == MapKind::SlopeVariance) slot.maps[m].hidden = hidden_by_level(maps_[m]);
         }
-        for (const MapJob<T>& job : maps_) {
-            runner_.run(frame_, job.query, job.square->points, arrays_);
-            if (!arrays_.coverage.empty() && !record.coverage) record.coverage = mean_of(arrays_.coverage);
-            hand_over(job.stem + "." + usd::frame_number(frame) + ".exr", encode(job, frame));
-        }
-        return record;
     }
 
-    void produce_static(const FileSink& sink) override {
+    void encode(FrameSlot& slot) const override {
+        tbb::parallel_for(std::size_t(0), maps_.size() + 1, [&](std::size_t file) {
+            if (file < maps_.size()) {
+                FrameSlot::Map& map = slot.maps[file];
+                map.file = std::string();  // let go before the new one is made
+                map.file = encoded(maps_[file], map, slot.frame);
+            } else if (mesh_query_ >= 0) {
+                encode_mesh(slot);
+            }
+        });
+        const auto take_coverage = [&](const Values& values) {
+            if (!values.coverage.empty() && !slot.record.coverage)
+                slot.record.coverage = mean_of(values.coverage);
+        };
+        take_coverage(slot.mesh);
+        for (const FrameSlot::Map& map : slot.maps) take_coverage(map.values);
+    }
+
+    void write(FrameSlot& slot, const FileSink& sink) const override {
+        const auto hand_over = [&](const std::string& path, const FileContent& content) {
+            slot.record.files[path] = sink(path, content);
+        };
+        if (mesh_query_ >= 0)
+            hand_over(usd::frame_file(scene_.shot.name, slot.frame, mesh_extension()),
+                      [&](const usd::Sink& take) {
+                          if (mesh_is_text())
+                              take(slot.mesh_text);
+                          else
+                              usd::write_frame_crate(mesh_sample(slot), take);
+                      });
+        for (std::size_t m = 0; m < maps_.size(); ++m)
+            hand_over(maps_[m].stem + "." + usd::frame_number(slot.frame) + ".exr",
+                      [&](const usd::Sink& take) { take(slot.maps[m].file); });
+    }
+
+    void write_static(const FileSink& sink) const override {
         if (mesh_query_ < 0) return;
         const Shot& shot = scene_.shot;
         const Query& query = sea_->plan().queries[mesh_query_].query;
@@ -183,14 +198,22 @@ class SequenceOf final : public Sequence {
                                            .slope_variance = asks(query, Product::SlopeVariance),
                                            .whitecap_coverage = asks(query, Product::Coverage)};
         const usd::GridFaces faces = usd::grid_faces(scene_.surface.resolution);
-        sink(usd::topology_file(shot.name, kMeshExtension),
-             usd::topology_text({.fps = shot.fps,
-                                 .face_vertex_counts = faces.counts,
-                                 .face_vertex_indices = faces.indices,
-                                 .st = faces.st,
-                                 .attributes = attributes}));
-        sink(usd::manifest_file(shot.name), usd::manifest_text({.fps = shot.fps, .attributes = attributes}));
-        sink(usd::root_file(shot.name), usd::root_text(stage(attributes)));
+        const usd::Topology topology{.fps = shot.fps,
+                                     .face_vertex_counts = faces.counts,
+                                     .face_vertex_indices = faces.indices,
+                                     .st = faces.st,
+                                     .attributes = attributes};
+        sink(usd::topology_file(shot.name, mesh_extension()), [&](const usd::Sink& take) {
+            if (mesh_is_text())
+                usd::write_topology_text(topology, take);
+            else
+                usd::write_topology_crate(topology, take);
+        });
+        const auto text = [&](const std::string& path, const std::string& bytes) {
+            sink(path, [&](const usd::Sink& take) { take(bytes); });
+        };
+        text(usd::manifest_file(shot.name), usd::manifest_text({.fps = shot.fps, .attributes = attributes}));
+        text(usd::root_file(shot.name), usd::root_text(stage(attributes)));
     }
 
     const SpectralMoments& total() const override { return sea_->total(); }
@@ -198,7 +221,26 @@ class SequenceOf final : public Sequence {
     long executed_transforms() const override { return frame_.executed_transforms(); }
 
   private:
-    static constexpr const char* kMeshExtension = "usda";
+    bool mesh_is_text() const { return scene_.output.mesh == MeshFormat::Usda; }
+    std::string mesh_extension() const { return std::string(word_of(scene_.output.mesh)); }
+
+    usd::MeshSample mesh_sample(const FrameSlot& slot) const {
+        return {.frame = slot.frame,
+                .fps = scene_.shot.fps,
+                .fingerprint = slot.record.fingerprint,
+                .points = slot.mesh.position,
+                .normals = slot.mesh.normal,
+                .velocities = slot.mesh.velocity,
+                .slope_variance = slot.mesh.slope_variance,
+                .whitecap_coverage = slot.mesh.coverage};
+    }
+
+    void encode_mesh(FrameSlot& slot) const {
+        slot.record.mesh_significant_height_m = significant_height_of(slot.mesh.position);
+        if (!mesh_is_text()) return;
+        slot.mesh_text.clear();
+        usd::write_frame_text(mesh_sample(slot), [&](std::string_view part) { slot.mesh_text += part; });
+    }
 
     double hidden_mss(int query) const {
         return std::max(sea_->total().mss() - sea_->statistics(query).resolved.front().mss(), 0.0);
@@ -271,7 +313,7 @@ class SequenceOf final : public Sequence {
         stage.last_frame = shot.last_frame;
         stage.fps = shot.fps;
         stage.attributes = attributes;
-        stage.frame_extension = stage.topology_extension = kMeshExtension;
+        stage.frame_extension = stage.topology_extension = mesh_extension();
         stage.material.roughness = preview_roughness(hidden_mss(mesh_query_));
         stage.camera = usd::Camera{.keys = {}, .fov_deg = camera.fov_deg, .resolution = camera.resolution};
         for (const CameraKey& key : camera.keys)
@@ -305,69 +347,90 @@ class SequenceOf final : public Sequence {
         return stage;
     }
 
-    // Values per texel and channel, one level after another, as OpenEXR wants them.
+    // Three values a texel, as OpenEXR wants them.
     struct Level {
         int n;
-        std::vector<glm::vec3> texels;
+        std::span<const glm::vec3> texels;
     };
 
-    std::string encode(const MapJob<T>& job, int frame) {
+    std::string encoded(const MapJob<T>& job, const FrameSlot::Map& map, int frame) const {
         switch (job.kind) {
             case MapKind::Displacement: {
-                exr::Header header = header_of(job, frame, "displacement", "m", arrays_.displacement);
-                return exr::encode_scanline(
-                    header, image({job.n, arrays_.displacement}, {"R", "G", "B"}, exr::PixelType::Float));
+                const std::vector<glm::vec3>& texels = map.values.displacement;
+                const exr::Header header = header_of(job, frame, {"displacement", "m", texels});
+                return exr::encode_scanline(header,
+                                            image({job.n, texels}, {"R", "G", "B"}, exr::PixelType::Float));
             }
             case MapKind::Normal: {
-                const exr::Header header = header_of(job, frame, "unit normal", "1", arrays_.normal);
-                std::vector<Level> levels;
-                for (auto& level : normal_mips({job.n, arrays_.normal}, job.periodic))
-                    levels.push_back({level.n, std::move(level.texels)});
+                const std::vector<glm::vec3>& texels = map.values.normal;
+                const exr::Header header = header_of(job, frame, {"unit normal", "1", texels});
+                const auto below = normal_mips({.n = job.n, .texels = texels, .periodic = job.periodic});
+                std::vector<Level> levels{{job.n, texels}};
+                for (const MipLevel<glm::vec3>& level : below) levels.push_back({level.n, level.texels});
                 return encode_levels(header, levels, {"R", "G", "B"}, exr::PixelType::Half);
             }
             case MapKind::SlopeVariance: {
-                const exr::Header header =
-                    header_of(job, frame, "slope variance of the waves that a texel hides", "1",
-                              arrays_.slope_variance);
-                return encode_levels(header, slope_variance_levels(job), {"xx", "yy", "xy"},
-                                     exr::PixelType::Float);
-            }
-            case MapKind::Whitecaps: {
-                MipLevel<JacobianMoments<float>> full{job.n, {}};
-                for (const glm::vec3& j : arrays_.jacobian) full.texels.push_back({j.x, j.y, j.z});
+                const exr::Header header = header_of(
+                    job, frame,
+                    {"slope variance of the waves that a texel hides", "1", map.values.slope_variance});
+                // The same all over a level.
+                std::vector<std::vector<glm::vec3>> texels;
                 std::vector<Level> levels;
-                const bool third = sea_->plan().knobs.third_moment;
-                const auto threshold = static_cast<float>(sea_->whitecap_threshold());
-                for (const auto& level : moment_mips(std::move(full), job.periodic)) {
-                    levels.push_back({level.n, {}});
-                    for (const JacobianMoments<float>& j : level.texels)
-                        levels.back().texels.emplace_back(coverage(j, threshold, third), j.mean, j.variance);
+                for (const glm::vec3& hidden : map.hidden) {
+                    const auto level = static_cast<int>(levels.size());
+                    const int n = exr::mip_level_size(job.n, job.n, level).first;
+                    texels.emplace_back(static_cast<std::size_t>(n) * n, hidden);
+                    levels.push_back({n, texels.back()});
                 }
-                const exr::Header header =
-                    header_of(job, frame, "whitecap coverage, mean and variance of the Jacobian", "1",
-                              levels[0].texels);
-                return encode_levels(header, levels, {"coverage", "mean", "variance"}, exr::PixelType::Float);
+                return encode_levels(header, levels, {"xx", "yy", "xy"}, exr::PixelType::Float);
             }
+            case MapKind::Whitecaps:
+                return encoded_whitecaps(job, map, frame);
         }
         throw std::logic_error("a map of no kind");
     }
 
+    std::string encoded_whitecaps(const MapJob<T>& job, const FrameSlot::Map& map, int frame) const {
+        using Moments = JacobianMoments<float>;
+        const bool third = sea_->plan().knobs.third_moment;
+        const auto threshold = static_cast<float>(sea_->whitecap_threshold());
+        std::vector<std::vector<glm::vec3>> texels;
+        const auto add_level = [&](const std::vector<Moments>& moments) {
+            std::vector<glm::vec3>& level = texels.emplace_back(moments.size());
+            tbb::parallel_for(std::size_t(0), moments.size(), [&](std::size_t i) {
+                const Moments& j = moments[i];
+                level[i] = {coverage(j, threshold, third), j.mean, j.variance};
+            });
+        };
+        std::vector<Moments> full;
+        full.reserve(map.values.jacobian.size());
+        for (const glm::vec3& j : map.values.jacobian) full.push_back({j.x, j.y, j.z});
+        add_level(full);
+        for (const MipLevel<Moments>& level :
+             moment_mips({.n = job.n, .texels = full, .periodic = job.periodic}))
+            add_level(level.texels);
+        std::vector<Level> levels;
+        for (std::size_t i = 0; i < texels.size(); ++i)
+            levels.push_back({exr::mip_level_size(job.n, job.n, static_cast<int>(i)).first, texels[i]});
+        const exr::Header header =
+            header_of(job, frame, {"whitecap coverage, mean and variance of the Jacobian", "1", texels[0]});
+        return encode_levels(header, levels, {"coverage", "mean", "variance"}, exr::PixelType::Float);
+    }
+
     // Each level hides what its own texels are too coarse for: the query's ladder, asked at one point of each
     // level.
-    std::vector<Level> slope_variance_levels(const MapJob<T>& job) {
-        const std::vector<double>& footprints_m = sea_->plan().queries[job.query].query.pixel_m;
-        std::vector<Level> levels;
-        for (std::size_t i = 0; i < footprints_m.size(); ++i) {
+    std::vector<glm::vec3> hidden_by_level(const MapJob<T>& job) const {
+        std::vector<glm::vec3> levels;
+        for (const double footprint_m : sea_->plan().queries[job.query].query.pixel_m) {
             const glm::vec<2, T> rest(0);
-            const T footprint = static_cast<T>(footprints_m[i]);
+            const T footprint = static_cast<T>(footprint_m);
             glm::vec<3, T> hidden(0);
             Points<T> point{.count = 1, .rest_m = {&rest}};
             point.pixel_m = {&footprint};
             Results<T> result;
             result.slope_variance = {&hidden};
             evaluate(frame_, job.query, point, result);
-            const int n = exr::mip_level_size(job.n, job.n, static_cast<int>(i)).first;
-            levels.push_back({n, std::vector<glm::vec3>(static_cast<std::size_t>(n) * n, glm::vec3(hidden))});
+            levels.emplace_back(hidden);
         }
         return levels;
     }
@@ -390,10 +453,16 @@ class SequenceOf final : public Sequence {
         return exr::encode_mipmapped(header, images);
     }
 
-    exr::Header header_of(const MapJob<T>& job, int frame, const char* content, const char* unit,
-                          const std::vector<glm::vec3>& texels) const {
-        std::array<float, 3> low{texels[0].x, texels[0].y, texels[0].z}, high = low;
-        for (const glm::vec3& t : texels)
+    struct Content {
+        const char* what;
+        const char* unit;
+        const std::vector<glm::vec3>& texels;
+    };
+
+    exr::Header header_of(const MapJob<T>& job, int frame, const Content& content) const {
+        const glm::vec3& first = content.texels.front();
+        std::array<float, 3> low{first.x, first.y, first.z}, high = low;
+        for (const glm::vec3& t : content.texels)
             for (int c = 0; c < 3; ++c) {
                 low[c] = std::min(low[c], t[c]);
                 high[c] = std::max(high[c], t[c]);
@@ -402,8 +471,8 @@ class SequenceOf final : public Sequence {
         exr::Header header;
         header.periodic = job.periodic;
         header.attributes = {
-            {"content", std::string(content)},
-            {"unit", std::string(unit)},
+            {"content", std::string(content.what)},
+            {"unit", std::string(content.unit)},
             {"space", std::string("object: metres, z up, right-handed")},
             {"axisOrder", std::string("xyz")},
             {"sampling", std::string("pixel corners: column i is x = -L/2 + i L/N, the bottom row is "
@@ -434,7 +503,6 @@ class SequenceOf final : public Sequence {
     std::shared_ptr<const Sea<T>> sea_;
     Frame<T> frame_;
     QueryRunner<T> runner_;
-    Arrays arrays_;
     int mesh_query_ = -1;
     Square<T> mesh_square_;
     std::vector<MapJob<T>> maps_;

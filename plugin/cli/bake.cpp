@@ -54,7 +54,9 @@ void print_done(const BakeReport& report, const std::string& out) {
     std::cout << count_text(report.done, "frame", "frames") << " baked";
     if (report.kept > 0) std::cout << ", " << report.kept << " kept as they were";
     if (report.done > 0) std::cout << ", in " << duration_text(report.seconds);
-    std::cout << std::endl;
+    std::cout << '\n';
+    if (const std::string times = time_text(report); !times.empty()) std::cout << times << '\n';
+    std::cout << std::flush;
     if (!report.stale.empty()) {
         std::cerr
             << "pelagic: in " << out << " the frames " << frames_text(report.stale)

@@ -163,6 +163,9 @@ class Temporary {
             }
             bytes = bytes.subspan(static_cast<std::size_t>(written));
         }
+    }
+
+    void flush() {
         while (fsync(file_.number()) != 0) {
             if (errno != EINTR) fail_to_write(target_, errno);
         }
@@ -235,15 +238,25 @@ bool remove_if_stale(const fs::path& path, const std::string& own_host) {
 FileError::FileError(const std::string& message, std::filesystem::path path, std::error_code code)
     : std::runtime_error(message), path_(std::move(path)), code_(code) {}
 
-void write_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes) {
+std::uintmax_t write_atomically(const std::filesystem::path& target, const Content& content) {
     Temporary temporary(target);
-    temporary.write(bytes);
+    std::uintmax_t written = 0;
+    content([&](std::string_view piece) {
+        temporary.write(std::as_bytes(std::span(piece)));
+        written += piece.size();
+    });
+    temporary.flush();
     temporary.rename_to_target();
     flush_folder(target);
+    return written;
+}
+
+void write_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes) {
+    write_atomically(target, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 void write_atomically(const std::filesystem::path& target, std::string_view bytes) {
-    write_atomically(target, std::as_bytes(std::span(bytes)));
+    write_atomically(target, [bytes](const ByteSink& sink) { sink(bytes); });
 }
 
 std::size_t remove_stale_temporaries(const std::filesystem::path& folder) {

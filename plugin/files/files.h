@@ -1,12 +1,13 @@
 // Files that appear under their name only when they are whole, and messages that say what to do when they
 // can't.
 //
-// Knows no format: every format encodes into memory and hands the bytes over. POSIX only (Linux and macOS).
+// Knows no format: every format hands its bytes over. POSIX only (Linux and macOS).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -39,6 +40,15 @@ class FileError : public std::runtime_error {
 // under its name.)
 void write_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
 void write_atomically(const std::filesystem::path& target, std::string_view bytes);
+
+// Takes the bytes of a file, piece after piece.
+using ByteSink = std::function<void(std::string_view)>;
+// Hands the bytes of a file over; they need to live for the call only.
+using Content = std::function<void(const ByteSink&)>;
+
+// The same with bytes that need never be in memory as a whole: each piece goes to the hidden file as it
+// comes. Returns how many they were. What `content` throws passes through, and nothing is changed then.
+std::uintmax_t write_atomically(const std::filesystem::path& target, const Content& content);
 
 // Deletes the hidden files that write_atomically() left in `folder` (not in its sub-folders) when its process
 // was killed, and returns how many. Files of writers still at work stay. Without effect, and without an

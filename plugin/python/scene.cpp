@@ -207,7 +207,10 @@ void add_tables(py::module_& module) {
     Binder<Waves>(module, "Waves", "waves")
         .key("model", &Waves::model)
         .key("choppiness", &Waves::choppiness)
-        .key("cascades", &Waves::cascades);
+        .key("cascades", &Waves::cascades)
+        .key("trains", &Waves::trains)
+        .key("shortest_m", &Waves::shortest_m)
+        .key("longest_m", &Waves::longest_m);
     Binder<Surface>(module, "Surface", "surface")
         .key("kind", &Surface::kind)
         .key("size_m", &Surface::size_m)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <type_traits>
 
 #include "core/scene/limits.h"
@@ -130,6 +131,18 @@ struct Type<double> {
         if (const auto* number = node.as_floating_point()) return out = number->get(), true;
         if (const auto* integer = node.as_integer()) return out = static_cast<double>(integer->get()), true;
         return false;
+    }
+};
+
+// A key without a default of its own.
+template <>
+struct Type<std::optional<double>> : Type<double> {
+    static std::string fallback(const std::optional<double>&) { return {}; }
+    static bool read(const toml::node& node, std::optional<double>& out) {
+        double value = 0.0;
+        if (!Type<double>::read(node, value)) return false;
+        out = value;
+        return true;
     }
 };
 
@@ -482,14 +495,14 @@ void read_cascades(Reader& reader, const Asked& asked, Waves& waves) {
 }
 
 Key<Waves> cascades_key() {
-    Key<Waves> key{
-        .name = "cascades",
-        .fallback = quoted_text("auto"),
-        .accepted = "\"auto\", or a list of { size_m, resolution }",
-        .unit = {},
-        .help =
-            "the periodic tiles; auto: four, from the spectrum's peak down. Their bands depend on the "
-            "sizes alone; a resolution that leaves a gap is refused"};
+    Key<Waves> key{.name = "cascades",
+                   .fallback = quoted_text("auto"),
+                   .accepted = "\"auto\", or a list of { size_m, resolution }",
+                   .unit = {},
+                   .help =
+                       "the periodic tiles; auto: four, from the spectrum's peak down, and none with "
+                       "trochoid. Their bands "
+                       "depend on the sizes alone; a resolution that leaves a gap is refused"};
     key.read = [accepted = key.accepted](Reader& reader, const toml::node& node, const std::string& path,
                                          Waves& waves) {
         read_cascades(reader, Asked{node, path, accepted}, waves);
@@ -591,21 +604,27 @@ template <>
 const std::vector<Key<Waves>>& keys_of() {
     static const std::vector<Key<Waves>> keys{
         value(&Waves::model,
-              {.name = "model", .help = "fft, or a sum of wave trains (trochoid, not built yet)"}),
+              {.name = "model", .help = "fft: periodic tiles; trochoid: a sum of wave trains"}),
         value(&Waves::choppiness, {.name = "choppiness",
                                    .help = "sharpness of the crests; 1 is the trochoid's own",
                                    .range = text_of(limits::kChoppiness)}),
         cascades_key(),
-        not_built<Waves>(
-            {.name = "trains", .help = "number of wave trains", .accepted = "use model = \"fft\""}),
-        not_built<Waves>({.name = "shortest_m",
-                          .help = "shortest wave train",
-                          .unit = "m",
-                          .accepted = "use model = \"fft\""}),
-        not_built<Waves>({.name = "longest_m",
-                          .help = "longest wave train",
-                          .unit = "m",
-                          .accepted = "use model = \"fft\""}),
+        value(&Waves::trains, {.name = "trains",
+                               .help = "with trochoid: how many, their wavelengths in geometric progression",
+                               .range = text_of(limits::kTrains)}),
+        value(&Waves::shortest_m,
+              {.name = "shortest_m",
+               .help =
+                   "with trochoid: the shortest train; what is shorter counts as variance, or is left to the "
+                   "cascades if there are any. Without it: 2 cm, or shorter so that ten trains are below a "
+                   "pixel",
+               .unit = "m",
+               .range = text_of(limits::kTrain_m)}),
+        value(&Waves::longest_m,
+              {.name = "longest_m",
+               .help = "with trochoid: the longest train. Without it: all but 0.1 % of the energy is shorter",
+               .unit = "m",
+               .range = text_of(limits::kTrain_m)}),
     };
     return keys;
 }
@@ -726,7 +745,8 @@ const std::vector<Key<Quality>>& keys_of() {
 template <>
 const std::vector<Key<Output>>& keys_of() {
     static const std::vector<Key<Output>> keys{
-        value(&Output::mesh, {.name = "mesh", .help = "how the mesh is written; usdc is not built yet"}),
+        value(&Output::mesh,
+              {.name = "mesh", .help = "how the mesh is written: as binary crates, as text, or not"}),
         value(&Output::attributes, {.name = "attributes", .help = "what the mesh carries per vertex"}),
         value(&Output::maps, {.name = "maps", .help = "images over the patch, a file a frame"}),
         value(&Output::map_resolution, {.name = "map_resolution",

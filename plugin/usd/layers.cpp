@@ -125,6 +125,17 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
     return result;
 }
 
+std::string_view interpolation(SubdivisionScheme scheme) {
+    return scheme == SubdivisionScheme::None ? "vertex" : "varying";
+}
+
+void check_rate(double fps) {
+    if (!(fps > 0.0)) throw std::invalid_argument("USD: the frames per second must be above 0");
+    if (!std::isfinite(fps)) {
+        throw std::invalid_argument("USD: the frames per second must be a finite number");
+    }
+}
+
 void check(const Topology& topology) {
     std::size_t corners = 0;
     for (const std::int32_t count : topology.face_vertex_counts) {

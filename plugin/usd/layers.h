@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -24,6 +25,9 @@
 #include <vector>
 
 namespace pelagic::usd {
+
+// Takes the bytes of a layer, piece after piece. What it throws passes through.
+using Sink = std::function<void(std::string_view)>;
 
 // The mesh prim, "/Sea" in topology, manifest and frames, "/ROOT/Sea" in the stage.
 inline constexpr std::string_view kMeshName = "Sea";
@@ -175,6 +179,13 @@ std::vector<VaryingAttribute> varying_attributes(const AttributeSet& attributes)
 // Throws std::invalid_argument naming the attribute if an array's length isn't that of points, or if it holds
 // a NaN or an infinity.
 std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent& extent);
+
+// The `interpolation` metadata of a vertex's values: "vertex", or on a cage "varying", since vertex primvars
+// would be smoothed by the subdivision, and overshoot, where varying ones are bilinear.
+std::string_view interpolation(SubdivisionScheme scheme);
+
+// Throws std::invalid_argument unless the frames per second are finite and above 0.
+void check_rate(double fps);
 
 // Throws std::invalid_argument naming the array: a face with fewer than three vertices, indices that don't
 // match the counts, a negative index, an index without st where there is st, st that isn't finite.

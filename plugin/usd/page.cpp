@@ -11,8 +11,8 @@ namespace pelagic::usd {
 namespace {
 
 std::string rate(double fps) {
-    if (!(fps > 0.0)) throw std::invalid_argument("USD: the frames per second must be above 0");
-    return real("the frames per second", fps);
+    check_rate(fps);
+    return number(fps);
 }
 
 }  // namespace

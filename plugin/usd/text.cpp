@@ -64,12 +64,8 @@ class ArrayWriter {
     std::size_t used_ = 0;
 };
 
-std::string with_interpolation(const VaryingAttribute& attribute, SubdivisionScheme scheme) {
-    if (!attribute.interpolates) return "";
-    // On a cage, vertex primvars would be smoothed by the subdivision, and overshoot; varying ones are
-    // bilinear.
-    return scheme == SubdivisionScheme::None ? " (interpolation = \"vertex\")"
-                                             : " (interpolation = \"varying\")";
+std::string metadata(SubdivisionScheme scheme) {
+    return " (interpolation = \"" + std::string(interpolation(scheme)) + "\")";
 }
 
 template <class Write>
@@ -105,7 +101,8 @@ void write_topology_text(const Topology& topology, const Sink& sink) {
     // Declared here, with the metadata that clips ignore, and without a value, which would hide the clips'
     // ones.
     for (const VaryingAttribute& attribute : varying_attributes(topology.attributes)) {
-        page.line({attribute.type, "[] ", attribute.name, with_interpolation(attribute, topology.scheme)});
+        page.line({attribute.type, "[] ", attribute.name,
+                   attribute.interpolates ? metadata(topology.scheme) : std::string()});
     }
 
     ArrayWriter writer(sink);
@@ -113,7 +110,7 @@ void write_topology_text(const Topology& topology, const Sink& sink) {
     if (!topology.st.empty()) {
         writer.text("    texCoord2f[] primvars:st = ");
         writer.array(std::span<const float>(&topology.st[0].x, 2 * topology.st.size()), 2);
-        writer.text(cage ? " (interpolation = \"varying\")\n" : " (interpolation = \"vertex\")\n");
+        writer.text(metadata(topology.scheme) + "\n");
     }
     writer.text("    int[] faceVertexCounts = ");
     writer.array(topology.face_vertex_counts, 1);

@@ -2,7 +2,6 @@
 // read back as the same float. Nothing here touches a file: the caller puts the text where it belongs.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 
@@ -10,9 +9,8 @@
 
 namespace pelagic::usd {
 
-// Takes the text of a layer, piece after piece, about a megabyte each. What it throws passes through.
-using Sink = std::function<void(std::string_view)>;
-
+// The writers give the sink about a megabyte of text at a time.
+//
 // All throw std::invalid_argument, naming what is wrong, before the sink is called for the first time.
 
 std::string root_text(const Stage& stage);

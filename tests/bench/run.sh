@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
-# Builds the benchmarks and prints their tables: stages of a frame, price of sampling, what resolution hides, a bake. A few minutes.
+# Builds the benchmarks and prints their tables: stages of a frame, price of sampling, what resolution hides,
+# crate against text, a bake. A few minutes.
 #   tests/bench/run.sh
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
 install_packages
-build release pelagic bench_stages bench_sampling bench_conservation >/dev/null
+build release pelagic bench_stages bench_sampling bench_conservation bench_crate >/dev/null
 bin=$PELAGIC_ROOT/build/release
 "$bin/bench/bench_stages"
 "$bin/bench/bench_sampling"
 "$bin/bench/bench_conservation"
+"$bin/bench/bench_crate"
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT

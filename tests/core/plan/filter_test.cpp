@@ -39,18 +39,21 @@ TEST(FootprintFilter, CutsOffWhereTheWeightEnds) {
     EXPECT_TRUE(std::isinf(filter.cutoff(0.0)));
 }
 
-// With its mirror image the half plane is the whole disc without its centre, each mode once.
-TEST(ModeLattice, HoldsEachModeOfTheDiscOnce) {
+// With its mirror image the half is the whole disc without its centre, each wave once; column 0 stands whole.
+TEST(ModeLattice, HoldsEachWaveOfTheDiscOnce) {
     for (int radius : {1, 2, 5, 13, 50}) {
         std::set<std::pair<int, int>> seen;
         std::size_t count = 0;
-        for (int my = 0; my <= radius; ++my)
-            for (int i = 0; i < row_length(radius, my); ++i, ++count) {
-                const int mx = row_first(radius, my) + i;
+        for (int mx = 0; mx <= radius; ++mx) {
+            const int height = half_height(radius, mx);
+            EXPECT_EQ(column_length(radius, mx), 2u * height + 1u);
+            for (int my = -height; my <= height; ++my, ++count) {
+                if (!counts_as_wave(mx, my)) continue;
                 EXPECT_TRUE(seen.insert({mx, my}).second);
                 EXPECT_TRUE(seen.insert({-mx, -my}).second);
             }
-        EXPECT_EQ(count, half_plane_modes(radius));
+        }
+        EXPECT_EQ(count, lattice_modes(radius));
         std::size_t disc = 0;
         for (int y = -radius; y <= radius; ++y)
             for (int x = -radius; x <= radius; ++x)
@@ -59,8 +62,9 @@ TEST(ModeLattice, HoldsEachModeOfTheDiscOnce) {
                     EXPECT_TRUE(seen.contains({x, y})) << radius << ' ' << x << ' ' << y;
                 }
         EXPECT_EQ(seen.size(), disc);
+        EXPECT_EQ(count, disc / 2 + radius + 1);  // column 0's lower half and (0, 0)
     }
-    EXPECT_EQ(half_plane_modes(0), 0u);
+    EXPECT_EQ(lattice_modes(0), 0u);
 }
 
 }  // namespace

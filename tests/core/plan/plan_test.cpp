@@ -76,24 +76,6 @@ TEST(Plan, SharesAGridBetweenQueriesOfOneFootprint) {
     EXPECT_GT(make_plan(scene).transforms_per_frame(), mesh_alone);
 }
 
-// Every field of a grid rides in exactly one transform, and no transform carries less than it could.
-TEST(Plan, PairsFieldsWithoutLossOrRepetition) {
-    Scene scene;
-    scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
-    for (const CascadePlan& cascade : make_plan(scene).cascades)
-        for (const Grid& grid : cascade.grids) {
-            FieldSet carried;
-            for (const auto& transform : grid.transforms)
-                for (const auto& field : transform)
-                    if (field) {
-                        EXPECT_FALSE(carried[index(*field)]);
-                        carried.set(index(*field));
-                    }
-            EXPECT_EQ(carried, grid.fields);
-            EXPECT_EQ(grid.transforms.size(), (grid.fields.count() + 1) / 2);
-        }
-}
-
 // Bands: from 0 to infinity, each beginning where the one before ends, and the same at every resolution.
 TEST(Plan, CutsBandsThatAreDisjointCompleteAndOfTheSizesAlone) {
     for (double wind : {3.0, 10.0, 30.0}) {

@@ -79,6 +79,16 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
          [](Scene& s, double v) {
              s.waves.cascades = {{v, 64}};
          }},
+        {"waves.shortest_m", limits::kTrain_m,
+         [](Scene& s, double v) {
+             s.waves.model = WaveModel::Trochoid;
+             s.waves.shortest_m = v;
+         }},
+        {"waves.longest_m", limits::kTrain_m,
+         [](Scene& s, double v) {
+             s.waves.model = WaveModel::Trochoid;
+             s.waves.longest_m = v;
+         }},
         {"surface.size_m", limits::kSurfaceSize_m, [](Scene& s, double v) { s.surface.size_m = v; }},
         {"camera.fov_deg", limits::kFov_deg, [](Scene& s, double v) { s.camera.fov_deg = v; }},
         {"light.sun_elevation_deg", limits::kSunElevation_deg,
@@ -201,6 +211,8 @@ TEST(Validate, SomethingMustBeBaked) {
         s.output.mesh = MeshFormat::None;
         s.output.maps = {MapKind::Normal};
     });
+    for (const MeshFormat mesh : {MeshFormat::Usda, MeshFormat::Usdc})
+        expect_good([&](Scene& s) { s.output.mesh = mesh; });
     expect_refused([](Scene& s) { s.output.cascade_tiles = true; },
                    {"output.cascade_tiles", "true", "at least one map"});
 }
@@ -319,17 +331,57 @@ TEST(Validate, WhitecapsThatAreOff) {
         {"output.maps[1]", "\"whitecaps\"", "effects.whitecaps = true"});
 }
 
+// A change to a scene of wave trains.
+std::function<void(Scene&)> of_trains(const std::function<void(Scene&)>& change) {
+    return [change](Scene& s) {
+        s.waves.model = WaveModel::Trochoid;
+        change(s);
+    };
+}
+
+TEST(Validate, Trains) {
+    expect_good(of_trains([](Scene&) {}));
+    for (const int good : {1, 10000}) expect_good(of_trains([&](Scene& s) { s.waves.trains = good; }));
+    for (const int bad : {-1, 0, 10001})
+        expect_refused(of_trains([&](Scene& s) { s.waves.trains = bad; }),
+                       {"waves.trains", std::to_string(bad), "1 … 10000"});
+    const auto range = [](double shortest_m, double longest_m) {
+        return of_trains([=](Scene& s) {
+            s.waves.shortest_m = shortest_m;
+            s.waves.longest_m = longest_m;
+        });
+    };
+    expect_good(range(0.02, 30.0));
+    expect_refused(range(30.0, 0.02), {"waves.shortest_m", "30", "below the longest"});
+    expect_refused(range(30.0, 30.0), {"waves.shortest_m", "30", "below the longest"});
+    // Without trains, nothing that speaks of them.
+    expect_refused([](Scene& s) { s.waves.trains = 59; }, {"waves.trains", "59", "model = \"trochoid\""});
+    expect_refused([](Scene& s) { s.waves.shortest_m = 0.02; },
+                   {"waves.shortest_m", "0.02", "model = \"trochoid\""});
+    expect_refused([](Scene& s) { s.waves.longest_m = 30.0; },
+                   {"waves.longest_m", "30", "model = \"trochoid\""});
+}
+
+TEST(Validate, TilesOfTrainsAreThoseOfTheCascadesBesideThem) {
+    const auto tiles = [](Scene& s) {
+        s.output.maps = {MapKind::Normal};
+        s.output.cascade_tiles = true;
+    };
+    expect_refused(of_trains(tiles), {"output.cascade_tiles", "true", "cascades listed in waves.cascades"});
+    expect_good(of_trains([&](Scene& s) {
+        tiles(s);
+        s.waves.cascades = {{50.0, 256}};
+    }));
+    expect_good(tiles);
+}
+
 TEST(Validate, WhatIsNotBuiltYetIsRefused) {
-    expect_refused([](Scene& s) { s.waves.model = WaveModel::Trochoid; },
-                   {"waves.model", "\"trochoid\"", "\"fft\""});
     for (const auto& [kind, word] :
          {std::pair{SurfaceKind::ProjectedGrid, "\"projected-grid\""},
           std::pair{SurfaceKind::NearFar, "\"near-far\""}, std::pair{SurfaceKind::Cage, "\"cage\""},
           std::pair{SurfaceKind::Planet, "\"planet\""}}) {
         expect_refused([&, k = kind](Scene& s) { s.surface.kind = k; }, {"surface.kind", word, "\"patch\""});
     }
-    expect_refused([](Scene& s) { s.output.mesh = MeshFormat::Usdc; },
-                   {"output.mesh", "\"usdc\"", "\"usda\""});
     expect_refused([](Scene& s) { s.output.mesh_scheme = MeshScheme::CatmullClark; },
                    {"output.mesh_scheme", "\"catmullClark\"", "\"none\""});
     expect_refused([](Scene& s) { s.output.volumes = {VolumeKind::LevelSet}; },

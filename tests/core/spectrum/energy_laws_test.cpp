@@ -178,7 +178,7 @@ TEST(Swell, HeightAndPeriodAreThoseAskedFor) {
             const double wp = 2.0 * oracle::kPi / period;
             EXPECT_NEAR(peak(0.5 * wp, 2.0 * wp, [&](double w) { return law.density(w); }) / wp, 1.0, 1e-6);
             EXPECT_NEAR(sea.dispersion().omega(sea.peak_wavenumber()) / wp, 1.0, 1e-12);
-            EXPECT_NEAR(moments(sea, 0.0, oracle::kInfinity).mean_direction, 80.0 * oracle::kPi / 180.0,
+            EXPECT_NEAR(moments(sea, 0.0, oracle::kInfinity).mean_direction(), 80.0 * oracle::kPi / 180.0,
                         1e-9);
         }
     }

@@ -61,7 +61,7 @@ TEST(SpectralMoments, AreThePlainIntegrals) {
             near(got.xxyy, plain.xxyy, plain.xxxx);
             near(got.xyyy, plain.xyyy, plain.xxxx);
             near(got.yyyy, plain.yyyy, plain.xxxx);
-            EXPECT_NEAR(got.mean_direction, std::atan2(y, x), 1e-4);
+            EXPECT_NEAR(got.mean_direction(), std::atan2(y, x), 1e-4);
         }
     }
 }

@@ -158,7 +158,9 @@ TEST(Loop, RepeatsToTheBitAndFreezesNothing) {
         }
     }
     for (const Cascade<float>& cascade : frame.sea().cascades())
-        for (double cycles : cascade.cycles_per_s) {
+        for (std::size_t i = 0; i < cascade.modes(); ++i) {
+            if (i == cascade.middle(0)) continue;  // (0, 0) is no wave
+            const double cycles = cascade.cycles_per_s[i];
             EXPECT_NEAR(cycles * 10.0, std::round(cycles * 10.0), 1e-9);
             EXPECT_GE(cycles * 10.0, 1.0 - 1e-9);
         }

@@ -101,12 +101,16 @@ TEST_P(TransformCount, IsTheMinimumAndIsWhatRuns) {
     scene.output.maps = c.maps;
     scene.output.map_resolution = 64;
     const Plan plan = make_plan(scene);
-    EXPECT_EQ(plan.transforms_per_frame(), (c.fields + 1) / 2);
+    EXPECT_EQ(plan.transforms_per_frame(), c.fields);
+    // A column for each mx of the disc, two rows at a time.
+    const Grid& grid = plan.cascades[0].grids[0];
+    EXPECT_EQ(plan.lines_per_frame(), c.fields * (grid.radius + 1 + grid.resolution / 2));
     Frame<float> frame(std::make_shared<const Sea<float>>(scene, plan));
     EXPECT_EQ(frame.executed_transforms(), 0);
     for (int i = 1; i <= 3; ++i) {
         frame.set(0.5 * i);
         EXPECT_EQ(frame.executed_transforms(), i * plan.transforms_per_frame());
+        EXPECT_EQ(frame.executed_lines(), i * plan.lines_per_frame());
     }
 }
 

@@ -121,19 +121,17 @@ template <class T>
 std::vector<double> field_at_nodes(const Frame<T>& frame, int cascade, Field field) {
     const Grid& grid = frame.sea().plan().cascades.at(cascade).grids.at(0);
     if (grid.sampling != Sampling::Nodes) throw std::logic_error("the grid is not read at its nodes");
-    for (std::size_t t = 0; t < grid.transforms.size(); ++t)
-        for (int part = 0; part < 2; ++part)
-            if (grid.transforms[t][part] == field) {
-                const auto* values = frame.samples(cascade, 0, static_cast<int>(t));
-                std::vector<double> result(static_cast<std::size_t>(grid.resolution) * grid.resolution);
-                for (std::size_t i = 0; i < result.size(); ++i)
-                    result[i] = part == 0 ? values[i].real() : values[i].imag();
-                return result;
-            }
+    if (const T* samples = frame.samples(cascade, 0, field)) {
+        std::vector<double> result;
+        for (int y = 0; y < grid.resolution; ++y)
+            for (int x = 0; x < grid.resolution; ++x)
+                result.push_back(static_cast<double>(samples[y * line_stride<T>(grid.resolution) + x]));
+        return result;
+    }
     throw std::logic_error("the grid doesn't hold the field");
 }
 
-// A mode of the half plane at time t, from the sea's amplitudes alone; phases in long double.
+// A wave at time t, from the sea's amplitudes alone; phases in long double.
 struct Mode {
     int mx, my;
     double k, omega;
@@ -144,18 +142,19 @@ template <class T>
 std::vector<Mode> modes_of(const Sea<T>& sea, int cascade, double t_s) {
     const Cascade<T>& waves = sea.cascades()[cascade];
     std::vector<Mode> modes;
-    std::size_t at = 0;
-    for (int my = 0; waves.radius > 0 && my <= waves.radius; ++my)
-        for (int i = 0; i < row_length(waves.radius, my); ++i, ++at) {
-            const int mx = row_first(waves.radius, my) + i;
+    for (int mx = 0; waves.radius > 0 && mx <= waves.radius; ++mx)
+        for (int my = -half_height(waves.radius, mx); my <= half_height(waves.radius, mx); ++my) {
+            if (!counts_as_wave(mx, my)) continue;
+            const std::size_t at = waves.middle(mx) + my;
             const long double cycles = static_cast<long double>(waves.cycles_per_s[at]) * t_s;
             const double phase =
                 static_cast<double>(2.0L * std::numbers::pi_v<long double> * (cycles - std::floor(cycles)));
             const std::complex<double> turn = std::polar(1.0, phase);
+            const std::complex<double> forward(waves.forward_re[at], waves.forward_im[at]);
+            const std::complex<double> backward(waves.backward_re[at], waves.backward_im[at]);
             modes.push_back({mx, my, 2.0 * kPi / waves.size_m * std::hypot(mx, my),
                              2.0 * kPi * waves.cycles_per_s[at],
-                             std::complex<double>(waves.forward[at]) * std::conj(turn) +
-                                 std::complex<double>(waves.backward[at]) * turn});
+                             forward * std::conj(turn) + backward * turn});
         }
     return modes;
 }

@@ -26,12 +26,26 @@ class Scene(unittest.TestCase):
         scene.sea.swell = [pelagic.Swell(height_m=1.5, period_s=11.0, direction_deg=80.0)]
         scene.shot.frames, scene.shot.name = (3, 9), "bay"
         scene.camera.position_m = (1.0, 2.0, 3.0)
-        scene.output.attributes = ["normal"]
+        self.assertEqual(scene.output.mesh, "usdc")
+        scene.output.attributes, scene.output.mesh = ["normal"], "usda"
         self.assertEqual((scene.sea.wind_speed_mps, scene.sea.spectrum), (7.5, "elfouhaily"))
         self.assertEqual([s.period_s for s in scene.sea.swell], [11.0])
         self.assertEqual((scene.shot.frames, scene.shot.name), ((3, 9), "bay"))
         self.assertEqual(scene.camera.position_m, (1.0, 2.0, 3.0))
-        self.assertEqual(scene.output.attributes, ("normal",))
+        self.assertEqual((scene.output.attributes, scene.output.mesh), (("normal",), "usda"))
+        self.assertEqual(scene.validate(), [])
+
+    def test_trains_have_a_range_of_their_own_or_none(self):
+        scene = pelagic.Scene()
+        self.assertEqual((scene.waves.trains, scene.waves.shortest_m, scene.waves.longest_m), (60, None, None))
+        scene.waves.model = "trochoid"
+        scene.waves.trains = 12
+        scene.waves.longest_m = 30
+        self.assertEqual((scene.waves.trains, scene.waves.longest_m), (12, 30.0))
+        self.assertEqual(scene.validate(), [])
+        scene.waves.shortest_m = 31.0
+        self.assertIn("waves.shortest_m = 31: ", scene.validate()[0])
+        scene.waves.shortest_m = None
         self.assertEqual(scene.validate(), [])
 
     def test_a_misspelt_key_is_refused_not_added(self):

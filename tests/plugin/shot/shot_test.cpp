@@ -94,7 +94,7 @@ spray = false
 [quality]
 level = "final"
 [output]
-mesh = "usda"
+mesh = "usdc"
 attributes = ["normal", "velocity", "slope-variance", "whitecaps"]
 maps = []
 map_resolution = 512
@@ -301,17 +301,37 @@ TEST(Shot, CascadesWithAGap) {
         "2:77: waves.cascades[1].resolution = 128: leaves a gap", "at least 132");
 }
 
+TEST(Shot, Trains) {
+    const Scene all =
+        parse("[waves]\nmodel = \"trochoid\"\ntrains = 12\nshortest_m = 0.02\nlongest_m = 30\n");
+    EXPECT_EQ(all.waves.model, WaveModel::Trochoid);
+    EXPECT_EQ(all.waves.trains, 12);
+    EXPECT_EQ(all.waves.shortest_m, 0.02);
+    EXPECT_EQ(all.waves.longest_m, 30.0);
+    EXPECT_TRUE(all.waves.cascades.empty());
+    const Scene none = parse("[waves]\nmodel = \"trochoid\"\n");
+    EXPECT_EQ(none.waves.trains, 60);
+    EXPECT_FALSE(none.waves.shortest_m || none.waves.longest_m);
+    expect_refused("[waves]\nmodel = \"trochoid\"\ntrains = 1.5\n", "3:10: waves.trains = 1.5: is a",
+                   "an integer, 1 … 10000");
+    expect_refused("[waves]\nmodel = \"trochoid\"\nlongest_m = \"30\"\n",
+                   "3:13: waves.longest_m = \"30\": is a", "a number, 0.001 … 1000000");
+    expect_refused("[waves]\nmodel = \"trochoid\"\nshortest_m = 0\n",
+                   "3:14: waves.shortest_m = 0: is outside the range", "0.001 … 1000000");
+    expect_refused("[waves]\nmodel = \"trochoid\"\nshortest_m = 3\nlongest_m = 2\n",
+                   "3:14: waves.shortest_m = 3: is not shorter than longest_m, 2", "below the longest");
+    expect_refused("[waves]\nlongest_m = 30\n", "2:13: waves.longest_m = 30: speaks of wave trains",
+                   "model = \"trochoid\"");
+    expect_refused("[waves]\nmodel = \"trochoid\"\n[output]\nmaps = [\"normal\"]\ncascade_tiles = true\n",
+                   "5:17: output.cascade_tiles = true: asks for the tiles of cascades", "waves.cascades");
+}
+
 TEST(Shot, WhatIsNotBuiltYetIsRefused) {
-    expect_refused("[waves]\nmodel = \"trochoid\"\n", "2:9: waves.model = \"trochoid\": is not built yet",
-                   "\"fft\"");
     expect_refused("[surface]\nkind = \"planet\"\n", "2:8: surface.kind = \"planet\": is not built yet",
                    "\"patch\"");
     expect_refused("[output]\nvolumes = [\"level-set\"]\n",
                    "2:12: output.volumes[0] = \"level-set\": is not built yet", "[]");
-    for (const auto& [table, key] : {std::pair{"waves", "trains"},
-                                     {"waves", "shortest_m"},
-                                     {"waves", "longest_m"},
-                                     {"surface", "cell_px"},
+    for (const auto& [table, key] : {std::pair{"surface", "cell_px"},
                                      {"surface", "earth_curvature"},
                                      {"surface", "cage_file"},
                                      {"surface", "cage_level"},
@@ -445,7 +465,8 @@ TEST(Shot, HelpNamesEveryKey) {
     const std::string help = describe_keys();
     for (const char* part :
          {"[shot]", "  shot.fps = 24\n", "[1/s]", "sea.swell[].period_s", "camera.keys[].frame",
-          "waves.cascades = \"auto\"", "not built yet: use model = \"fft\"", "0 … 80",
+          "waves.cascades = \"auto\"", "waves.trains = 60", "  waves.longest_m\n",
+          "not built yet: use kind = \"patch\"", "0 … 80",
           "output.attributes = [\"normal\", \"velocity\", \"slope-variance\", \"whitecaps\"]"}) {
         EXPECT_NE(help.find(part), std::string::npos) << part;
     }

@@ -1,4 +1,4 @@
-// The layers as text. That OpenUSD reads them is tested by usd.openusd_reads_stage; here is what it would not
+// The layers as text. That OpenUSD reads them is tested by usd.openusd_reads_usda; here is what it would not
 // notice.
 #include "plugin/usd/text.h"
 

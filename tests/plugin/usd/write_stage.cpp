@@ -1,6 +1,8 @@
-// Writes a small stage of known numbers for the OpenUSD reader: write_stage DIR. Beside the layers it leaves
-// DIR/expected.json, in the form that `read-stage.mjs --expect` takes. One frame of the shot is missing on
-// purpose.
+// Writes a small stage of known numbers for the readers: write_stage DIR usda|usdc. Beside the layers it
+// leaves DIR/expected.json, in the form that `read-stage.mjs --expect` takes. One frame of the shot is
+// missing on purpose. Of crates there is a twin in text for each, and DIR/hard holds more pairs: what is at
+// the ends of what a layer may be.
+//   write_stage LARGE.usdc      a single crate of 2049² vertices, value i of its points and coverage being i
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -12,8 +14,11 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "plugin/usd/crate.h"
 #include "plugin/usd/text.h"
 
 namespace {
@@ -169,9 +174,70 @@ usd::Stage stage_of(const std::string& name, const usd::AttributeSet& attributes
     return stage;
 }
 
-void write_stage(const std::filesystem::path& dir) {
+// Writes layers in one of the two ways, crates with their twins, of which it keeps a list.
+class Layers {
+  public:
+    Layers(std::filesystem::path dir, bool crates) : dir_(std::move(dir)), crates_(crates) {}
+
+    void frame(const std::string& stem, const usd::MeshSample& sample) {
+        if (crates_) pair(stem, usd::frame_crate(sample));
+        save(dir_ / (stem + ".usda"), usd::frame_text(sample));
+    }
+    void topology(const std::string& stem, const usd::Topology& topology) {
+        if (crates_) pair(stem, usd::topology_crate(topology));
+        save(dir_ / (stem + ".usda"), usd::topology_text(topology));
+    }
+    // A JSON array of [crate, text].
+    std::string twins() const { return "[" + twins_ + "]"; }
+
+  private:
+    void pair(const std::string& stem, const std::string& crate) {
+        save(dir_ / (stem + ".usdc"), crate);
+        twins_ += std::string(twins_.empty() ? "" : ", ") + "[\"" + stem + ".usdc\", \"" + stem + ".usda\"]";
+    }
+
+    std::filesystem::path dir_;
+    bool crates_;
+    std::string twins_;
+};
+
+std::string without_extension(const std::string& file) {
+    return file.substr(0, file.rfind('.'));
+}
+
+void write_hard_layers(Layers& layers) {
+    const usd::GridFaces quad = usd::grid_faces(1);
+    const usd::Topology bare{.face_vertex_counts = quad.counts, .face_vertex_indices = quad.indices};
+    layers.topology("hard/bare-quad", bare);
+    layers.topology("hard/no-faces", {.fps = 1e-3});
+    usd::Topology cage = bare;
+    cage.fps = 1.0 / 3.0;
+    cage.scheme = usd::SubdivisionScheme::CatmullClark;
+    cage.st = quad.st;
+    cage.attributes = {
+        .normals = true, .velocities = true, .slope_variance = true, .whitecap_coverage = true};
+    layers.topology("hard/cage", cage);
+
+    const std::vector<glm::vec3> points(4,
+                                        glm::vec3(-0.0f, std::numeric_limits<float>::denorm_min(), -1e-40f));
+    const std::vector<float> coverage(4, -0.0f);
+    const std::string fingerprint(10000, 'f');
+    layers.frame("hard/only-points.12345", {.frame = 12345, .fps = 1000.0 / 1001.0, .points = points});
+    layers.frame("hard/no-points.0000", {.frame = 0});
+    layers.frame("hard/last.2147483647", {.frame = std::numeric_limits<int>::max(),
+                                          .fingerprint = "0123456789abcdef",
+                                          .points = points,
+                                          .whitecap_coverage = coverage});
+    layers.frame("hard/first.-2147483648", {.frame = std::numeric_limits<int>::min(),
+                                            .fingerprint = fingerprint,
+                                            .points = std::span(points).first(1),
+                                            .velocities = std::span(points).first(1)});
+}
+
+void write_stage(const std::filesystem::path& dir, const std::string& extension) {
     const std::string name = "3-days-out";
-    std::filesystem::remove_all(dir / "mesh");  // of an earlier run
+    std::filesystem::remove_all(dir);  // of an earlier run
+    Layers layers(dir, extension == "usdc");
     const usd::GridFaces faces = usd::grid_faces(kQuads);
     std::string frames;
     usd::AttributeSet attributes;
@@ -179,35 +245,60 @@ void write_stage(const std::filesystem::path& dir) {
         const Mesh mesh = random_mesh(frame);
         const usd::MeshSample sample{.frame = frame,
                                      .fps = 23.976,
+                                     .fingerprint = "1234abcd",
                                      .points = mesh.points,
                                      .normals = mesh.normals,
                                      .velocities = mesh.velocities,
                                      .slope_variance = mesh.slope_variance,
                                      .whitecap_coverage = mesh.whitecap_coverage};
         attributes = sample.attributes();
-        save(dir / usd::frame_file(name, frame, "usda"), usd::frame_text(sample));
+        layers.frame(without_extension(usd::frame_file(name, frame, extension)), sample);
         frames += (frames.empty() ? "\"" : ",\n\"") + std::to_string(frame) +
                   "\": " + expected_frame(mesh, faces.st);
     }
-    save(dir / usd::topology_file(name, "usda"), usd::topology_text({.fps = 23.976,
-                                                                     .face_vertex_counts = faces.counts,
-                                                                     .face_vertex_indices = faces.indices,
-                                                                     .st = faces.st,
-                                                                     .attributes = attributes}));
+    layers.topology(without_extension(usd::topology_file(name, extension)),
+                    {.fps = 23.976,
+                     .face_vertex_counts = faces.counts,
+                     .face_vertex_indices = faces.indices,
+                     .st = faces.st,
+                     .attributes = attributes});
+    if (extension == "usdc") write_hard_layers(layers);
     save(dir / usd::manifest_file(name), usd::manifest_text({.fps = 23.976, .attributes = attributes}));
-    save(dir / usd::root_file(name), usd::root_text(stage_of(name, attributes)));
+    usd::Stage stage = stage_of(name, attributes);
+    stage.frame_extension = stage.topology_extension = extension;
+    save(dir / usd::root_file(name), usd::root_text(stage));
 
-    save(dir / "expected.json", "{" + expected_rest(faces) + ",\n\"frames\": {" + frames + "}}\n");
+    save(dir / "expected.json", "{" + expected_rest(faces) + ",\n\"sameLayers\": " + layers.twins() +
+                                    ",\n\"frames\": {" + frames + "}}\n");
+}
+
+void write_large(const std::filesystem::path& file) {
+    constexpr std::size_t kLarge = 2049 * 2049;
+    std::vector<glm::vec3> points(kLarge);
+    std::vector<float> coverage(kLarge);
+    // Whole numbers below 2^24, all of them floats.
+    for (std::size_t i = 0; i < 3 * kLarge; ++i)
+        points[i / 3][static_cast<int>(i % 3)] = static_cast<float>(i);
+    for (std::size_t i = 0; i < kLarge; ++i) coverage[i] = static_cast<float>(i);
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream out(file, std::ios::binary);
+    usd::write_frame_crate({.frame = 12345, .points = points, .whitecap_coverage = coverage},
+                           [&](std::string_view part) { out << part; });
+    if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-    if (argc != 2) {
-        std::fprintf(stderr, "usage: write_stage DIR\n");
+    const std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.size() == 1) {
+        write_large(words[0]);
+    } else if (words.size() == 2 && (words[1] == "usda" || words[1] == "usdc")) {
+        write_stage(words[0], words[1]);
+    } else {
+        std::fprintf(stderr, "usage: write_stage DIR usda|usdc, or write_stage LARGE.usdc\n");
         return 2;
     }
-    write_stage(argv[1]);
     return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "write_stage: %s\n", error.what());

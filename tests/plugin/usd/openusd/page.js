@@ -126,8 +126,23 @@ function parseFlattened(text) {
     return { prims, samples };
 }
 
+// Where two layers differ when OpenUSD writes each as text, a line for each pair that does.
+function differencesOfLayers(usd, folder, pairs) {
+    const linesOf = (file) =>
+        usd.UsdStage.Open(`${folder}/${file}`).GetRootLayer().ExportToString().split('\n');
+    return pairs.flatMap(([one, other]) => {
+        const lines = linesOf(one);
+        const others = linesOf(other);
+        const at = Array.from({ length: Math.max(lines.length, others.length) }, (_, i) => i)
+            .find((i) => lines[i] !== others[i]);
+        if (at === undefined) return [];
+        const shown = (line) => JSON.stringify(line?.slice(0, 200));
+        return [`${one}: line ${at + 1} is ${shown(lines[at])}, and in ${other} ${shown(others[at])}`];
+    });
+}
+
 // Called by read-stage.mjs. Resolves to what is not an array.
-async function readStage({ rootFile, layers, frames }) { // eslint-disable-line no-unused-vars
+async function readStage({ rootFile, layers, frames, pairs }) { // eslint-disable-line no-unused-vars
     const folder = '/stage';
     const usd = await getUsdModule(undefined, '/openusd');
     usd.FS.mkdirTree(folder);
@@ -190,6 +205,7 @@ async function readStage({ rootFile, layers, frames }) { // eslint-disable-line 
 
     return {
         openMs,
+        layerDifferences: differencesOfLayers(usd, folder, pairs),
         rootLayer: stage.GetRootLayer().ExportToString(),
         flattened,
         prims,

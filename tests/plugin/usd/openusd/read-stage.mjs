@@ -15,7 +15,8 @@ OpenUSD hands over. All layers below DIR (.usda .usdc .usd) are given to it.
   --expect FILE      compare with FILE, of the same form: every array, prim, mesh and stage value that it names must
                      have been read with the very same float32 values; "flattened" and "root" list lines that must
                      stand in the flattened stage, and in the root layer as OpenUSD writes it again (spaces at
-                     either end aside)
+                     either end aside); "sameLayers" lists pairs of layers, [A, B], that must be the same when
+                     OpenUSD opens each and writes it as text
   --binary FOLDER    write the arrays into FOLDER, little-endian, and { "file", "type", "count" } into the JSON
                      instead of the values; --expect reads such entries too, relative to its own place
   --flatten FILE     write the composed stage as OpenUSD flattens it, without the arrays that Hydra handed over
@@ -204,7 +205,7 @@ async function launchBrowser(options) {
     }
 }
 
-async function read(options) {
+async function read(options, pairs) {
     const arrays = new Arrays();
     const lines = [];
     const browser = await launchBrowser(options);
@@ -219,7 +220,7 @@ async function read(options) {
         const work = async () => {
             await page.goto(`http://127.0.0.1:${server.address().port}/`);
             return page.evaluate((task) => readStage(task), // eslint-disable-line no-undef
-                { rootFile: options.root, layers, frames: options.frames });
+                { rootFile: options.root, layers, frames: options.frames, pairs });
         };
         const outOfTime = new Promise((_, reject) => {
             timer = setTimeout(() => reject(new CannotRun(`not done after ${options.timeoutS} s`)),
@@ -301,8 +302,7 @@ function writeJson(options, { complaints, knownLines, arrays, result }) {
 }
 
 // What differs from the expected values, a line each.
-function differences(options, arrays, result) {
-    const expected = JSON.parse(fs.readFileSync(options.expect, 'utf8'));
+function differences(options, expected, arrays, result) {
     const found = [];
     const load = (entry, Type) => {
         if (Array.isArray(entry)) return Type.from(entry);
@@ -352,18 +352,20 @@ function differences(options, arrays, result) {
     };
     compareLines('flattened stage', expected.flattened, result.flattened);
     compareLines('root layer', expected.root, result.rootLayer);
+    for (const difference of result.layerDifferences ?? []) found.push(difference);
     return found;
 }
 
 async function main() {
     const options = parseArguments(process.argv.slice(2));
-    const { lines, arrays, result } = await read(options);
+    const expected = options.expect ? JSON.parse(fs.readFileSync(options.expect, 'utf8')) : {};
+    const { lines, arrays, result } = await read(options, expected.sameLayers ?? []);
     const isKnown = (line) => known.some((pattern) => pattern.test(line));
     const complaints = lines.filter((line) => !isKnown(line));
     for (const line of complaints) console.error(`OpenUSD: ${line}`);
     if (options.json) writeJson(options, { complaints, knownLines: lines.filter(isKnown), arrays, result });
     if (options.flatten) fs.writeFileSync(options.flatten, result.flattened ?? '');
-    const found = options.expect ? differences(options, arrays, result) : [];
+    const found = options.expect ? differences(options, expected, arrays, result) : [];
     for (const line of found) console.error(`differs: ${line}`);
     console.log(`${options.frames.length} frames, ${Object.keys(result.meshes ?? {}).length} meshes, ` +
         `${Object.keys(result.prims ?? {}).length} prims; ${complaints.length} complaints` +

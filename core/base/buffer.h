@@ -1,0 +1,62 @@
+// Memory for numbers that vectors read: aligned to a cache line, zero at first, in huge pages where it is
+// large (a transform that walks down the columns of a large grid would otherwise miss the page table at every
+// step).
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+
+namespace pelagic {
+
+template <class T>
+class Buffer {
+  public:
+    // Vectors may read, and write, this many values beyond size(): a whole one of the longest.
+    static constexpr std::size_t kSlack = 64 / sizeof(T);
+
+    Buffer() = default;
+    explicit Buffer(std::size_t count) : size_(count) {  // throws std::bad_alloc
+        constexpr std::size_t kLine = 64, kHugePage = std::size_t(2) << 20;
+        std::size_t bytes = (count + kSlack) * sizeof(T);
+        const std::size_t alignment = bytes >= 2 * kHugePage ? kHugePage : kLine;
+        bytes = (bytes + alignment - 1) / alignment * alignment;
+        data_.reset(static_cast<T*>(std::aligned_alloc(alignment, bytes)));
+        if (!data_) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+        if (alignment == kHugePage) madvise(data_.get(), bytes, MADV_HUGEPAGE);  // a wish: refused is fine
+#endif
+        std::memset(data_.get(), 0, bytes);
+    }
+    T* data() {
+        return data_.get();
+    }
+    const T* data() const {
+        return data_.get();
+    }
+    std::size_t size() const {
+        return size_;
+    }
+    bool empty() const {
+        return size_ == 0;
+    }
+    T& operator[](std::size_t i) {
+        return data_.get()[i];
+    }
+    const T& operator[](std::size_t i) const {
+        return data_.get()[i];
+    }
+
+  private:
+    struct Free {
+        void operator()(T* p) const { std::free(p); }
+    };
+    std::unique_ptr<T, Free> data_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace pelagic

@@ -1,0 +1,309 @@
+#include "core/evaluate/kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/evaluate/kernels.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target first: it includes this file once for each instruction set.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/pack-inl.h"
+#include "core/plan/grid_layout.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelagic {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {  // names are this file's own
+
+#include "core/waves/spline.inl"
+#include "core/waves/whitecaps.inl"
+
+// A point's place in a grid: the node at or below it, and the rest, 0 … 1.
+template <class T>
+struct Places {
+    using Index = hwy::MakeSigned<T>;
+    alignas(64) std::array<Index, Chunk<T>::kPoints> node;
+    alignas(64) std::array<T, Chunk<T>::kPoints> rest;
+};
+
+// A few doubles as numbers of T's own width.
+template <class DD, class V>
+HWY_INLINE auto Index(DD, V v, float /*width*/) {
+    return hn::DemoteTo(hn::Rebind<std::int32_t, DD>(), v);
+}
+template <class DD, class V>
+HWY_INLINE auto Index(DD, V v, double /*width*/) {
+    return hn::ConvertTo(hn::RebindToSigned<DD>(), v);
+}
+template <class DD, class V>
+HWY_INLINE auto Narrow(DD, V v, float /*width*/) {
+    return hn::DemoteTo(hn::Rebind<float, DD>(), v);
+}
+template <class DD, class V>
+HWY_INLINE V Narrow(DD, V v, double /*width*/) {
+    return v;
+}
+template <class DD>
+HWY_INLINE auto Widen(DD dd, const float* from) {
+    return hn::PromoteTo(dd, hn::LoadU(hn::Rebind<float, DD>(), from));
+}
+template <class DD>
+HWY_INLINE auto Widen(DD dd, const double* from) {
+    return hn::LoadU(dd, from);
+}
+
+// Along one axis, in double: exact wherever in the world the origin is. A place that is no number, or so far
+// that nothing of it is left, becomes 0.
+template <class T>
+void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, std::size_t count,
+            Places<T>& places) {
+    const hn::ScalableTag<double> dd;
+    using Wide = decltype(dd);
+    const hn::Rebind<T, Wide> narrow;
+    const hn::Rebind<hwy::MakeSigned<T>, Wide> index;
+    const auto n = hn::Set(dd, args.n), per_n = hn::Set(dd, 1.0 / args.n);
+    const auto scale = hn::Set(dd, args.nodes_per_m), origin = hn::Set(dd, origin_nodes);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(dd)) {
+        const auto nodes = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
+        auto inside = hn::NegMulAdd(hn::Floor(hn::Mul(nodes, per_n)), n, nodes);
+        // −1e-20 is rounded up to n itself, and the quotient may be off by a unit in its last place.
+        inside = hn::IfThenElse(hn::Lt(inside, hn::Zero(dd)), hn::Add(inside, n), inside);
+        inside = hn::IfThenElse(hn::Ge(inside, n), hn::Sub(inside, n), inside);
+        inside = hn::IfThenElseZero(hn::And(hn::Ge(inside, hn::Zero(dd)), hn::Lt(inside, n)), inside);
+        auto node = args.sampling == Sampling::Nodes ? hn::Round(inside) : hn::Floor(inside);
+        const auto rest = hn::Sub(inside, node);
+        node = hn::IfThenElse(hn::Lt(node, n), node, hn::Zero(dd));
+        hn::StoreU(Index(dd, node, T()), index, places.node.data() + i);
+        hn::StoreU(Narrow(dd, rest, T()), narrow, places.rest.data() + i);
+    }
+}
+
+// Weight and place in the sums of each wanted field.
+template <class T>
+HWY_INLINE const T* WeightOf(const GridArgs<T>& args, std::size_t field) {
+    return args.cell_group[field] ? args.cell_weight : args.pixel_weight;
+}
+
+template <class T>
+void AddNodes(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, const Places<T>& y) {
+    const hn::ScalableTag<T> d;
+    const hn::RebindToSigned<decltype(d)> di;
+    const auto stride = hn::Set(di, static_cast<hwy::MakeSigned<T>>(line_stride<T>(args.n)));
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t i = 0; i < chunk.count; i += lanes) {
+        const auto first = hn::LoadU(di, x.node.data() + i);
+        // Of the columns behind the last, which repeat the first, a run across the seam makes no use: it is
+        // rare.
+        const auto at = hn::Add(hn::Mul(hn::LoadU(di, y.node.data() + i), stride), first);
+        const auto begin = hn::GetLane(at);
+        const bool run = hn::AllTrue(di, hn::Eq(at, hn::Add(hn::Set(di, begin), hn::Iota(di, 0))));
+        for (std::size_t f = 0; f < kFieldCount; ++f) {
+            if (!args.samples[f]) continue;
+            auto value =
+                run ? hn::LoadU(d, args.samples[f] + begin) : hn::GatherIndex(d, args.samples[f], at);
+            if (const T* weight = WeightOf(args, f)) value = hn::Mul(value, hn::LoadU(d, weight + i));
+            T* sum = chunk.sums[f].data() + i;
+            hn::StoreU(hn::Add(hn::LoadU(d, sum), value), d, sum);
+        }
+    }
+}
+
+// Points of one run have the same y and lie close together in x, as those of a patch do: the rows that they
+// need are added up once, and what is left is a sum along x. A run may be a single point.
+template <int P, class T>
+void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, const Places<T>& y) {
+    constexpr std::size_t kTaps = P <= 4 ? 4 : 8;  // with zeros behind the last
+    const hn::CappedTag<T, kTaps> taps;
+    const hn::ScalableTag<T> d;
+    const hn::CappedTag<T, 1> one;
+    const std::size_t lanes = hn::Lanes(d), stride = line_stride<T>(args.n);
+    const int n = args.n;
+
+    // Each point's weights along x, side by side.
+    alignas(64) T weights[Chunk<T>::kPoints][kTaps];
+    for (std::size_t i = 0; i < chunk.count; i += lanes) {
+        Pack<decltype(d)> w[P];
+        bspline_weights<P>(Pack<decltype(d)>(hn::LoadU(d, x.rest.data() + i)), w);
+        alignas(64) T column[P][64 / sizeof(T)];
+        for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, column[p]);
+        for (std::size_t j = 0; j < std::min(lanes, Chunk<T>::kPoints - i); ++j)
+            for (std::size_t p = 0; p < kTaps; ++p) weights[i + j][p] = p < P ? column[p][j] : T(0);
+    }
+    const auto first_column = [&](std::size_t i) {
+        const int column = static_cast<int>(x.node[i]) - P / 2 + 1;
+        return column < 0 ? column + n : column;
+    };
+
+    // A run pays for the columns that it spans, and saves P − 1 rows of its points: beyond a few columns a
+    // point, or across the seam of the period, the next one begins.
+    constexpr int kColumnsPerPoint = 4;
+    constexpr std::size_t kColumns = kColumnsPerPoint * Chunk<T>::kPoints + 2 * kTaps + 64 / sizeof(T);
+    alignas(64) T columns[kColumns];
+    for (std::size_t begin = 0, end; begin < chunk.count; begin = end) {
+        int low = first_column(begin), high = low;
+        for (end = begin + 1; end < chunk.count; ++end) {
+            if (y.node[end] != y.node[begin] || y.rest[end] != y.rest[begin]) break;
+            const int column = first_column(end);
+            const int lower = std::min(low, column), upper = std::max(high, column);
+            if (upper - lower > kColumnsPerPoint * static_cast<int>(end - begin + 1)) break;
+            low = lower;
+            high = upper;
+        }
+        Pack<decltype(one)> row_weight[P];
+        bspline_weights<P>(Pack<decltype(one)>(hn::Set(one, y.rest[begin])), row_weight);
+        std::size_t row[P];
+        for (int p = 0; p < P; ++p) {
+            const int at = static_cast<int>(y.node[begin]) - P / 2 + 1 + p;
+            // n may be smaller than the number of taps.
+            row[p] = static_cast<std::size_t>(((at % n) + n) % n) * stride + low;
+        }
+        const std::size_t span = static_cast<std::size_t>(high - low) + kTaps;
+        for (std::size_t f = 0; f < kFieldCount; ++f) {
+            const T* samples = args.samples[f];
+            if (!samples) continue;
+            for (std::size_t k = 0; k < span; k += lanes) {
+                auto sum =
+                    hn::Mul(hn::Set(d, hn::GetLane(row_weight[0].v)), hn::LoadU(d, samples + row[0] + k));
+                for (int p = 1; p < P; ++p)
+                    sum = hn::MulAdd(hn::Set(d, hn::GetLane(row_weight[p].v)),
+                                     hn::LoadU(d, samples + row[p] + k), sum);
+                hn::StoreU(sum, d, columns + k);
+            }
+            const T* weight = WeightOf(args, f);
+            for (std::size_t i = begin; i < end; ++i) {
+                const T* from = columns + (first_column(i) - low);
+                auto sum = hn::Zero(taps);
+                for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps))
+                    sum = hn::MulAdd(hn::LoadU(taps, from + k), hn::Load(taps, weights[i] + k), sum);
+                const T value = hn::GetLane(hn::SumOfLanes(taps, sum));
+                chunk.sums[f][i] += weight ? weight[i] * value : value;
+            }
+        }
+    }
+}
+
+template <class T>
+void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
+    Places<T> x, y;
+    constexpr std::size_t kLongest = 64 / sizeof(T);  // a vector's last lanes are somewhere in the grid, too
+    const std::size_t count = (chunk.count + kLongest - 1) / kLongest * kLongest;
+    Locate(args, args.origin_nodes_x, chunk.rest_x.data(), count, x);
+    Locate(args, args.origin_nodes_y, chunk.rest_y.data(), count, y);
+    if (args.sampling == Sampling::Nodes)
+        AddNodes(args, chunk, x, y);
+    else if (args.taps == 6)
+        AddSpline<6>(args, chunk, x, y);
+    else
+        AddSpline<4>(args, chunk, x, y);
+}
+
+// Of a vector of points, those that there are.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void Put(D d, const Strided<glm::vec<3, T>>& out, std::size_t i, std::size_t count,
+                    const std::array<Pack<D>, 3>& value) {
+    const std::size_t lanes = hn::Lanes(d);
+    if (out.stride_bytes == 3 * sizeof(T) && i + lanes <= count) {
+        hn::StoreInterleaved3(value[0].v, value[1].v, value[2].v, d, &out[i].x);
+        return;
+    }
+    alignas(64) T axis[3][64 / sizeof(T)];
+    for (int a = 0; a < 3; ++a) hn::Store(value[a].v, d, axis[a]);
+    for (std::size_t j = 0; j < std::min(lanes, count - i); ++j)
+        out[i + j] = glm::vec<3, T>(axis[0][j], axis[1][j], axis[2][j]);
+}
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void Put(D d, const Strided<T>& out, std::size_t i, std::size_t count, Pack<D> value) {
+    const std::size_t lanes = hn::Lanes(d);
+    if (out.stride_bytes == sizeof(T) && i + lanes <= count) {
+        hn::StoreU(value.v, d, &out[i]);
+        return;
+    }
+    alignas(64) T values[64 / sizeof(T)];
+    hn::Store(value.v, d, values);
+    for (std::size_t j = 0; j < std::min(lanes, count - i); ++j) out[i + j] = values[j];
+}
+
+// T_x × T_y of T_x = (1 + Dxx, Dxy, ηx), T_y = (Dxy, 1 + Dyy, ηy), of length 1: its z has the sign of J, and
+// it is finite however J vanishes. Both tangents parallel: no normal exists; up is as good as any.
+template <class N>
+HWY_INLINE std::array<N, 3> Normal(N slope_x, N slope_y, N dxx, N dyy, N dxy) {
+    const N one(1);
+    const N x = dxy * slope_y - slope_x * (one + dyy), y = slope_x * dxy - slope_y * (one + dxx);
+    const N z = (one + dxx) * (one + dyy) - dxy * dxy;
+    const N length = square_root(x * x + y * y + z * z);
+    const auto exists = length > N(0);
+    const N by = one / select(exists, length, one);
+    return {select(exists, x * by, N(0)), select(exists, y * by, N(0)), select(exists, z * by, one)};
+}
+
+template <class T>
+void Derive(const DeriveArgs<T>& args) {
+    using D = hn::ScalableTag<T>;
+    using N = Pack<D>;
+    const D d;
+    const Chunk<T>& chunk = *args.chunk;
+    const Results<T>& results = args.results;
+    for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
+        const auto at = [&](Field field)
+                            HWY_ATTR { return N(hn::LoadU(d, chunk.sums[index(field)].data() + i)); };
+        const auto put = [&](const auto& out, const auto& value)
+                             HWY_ATTR { Put(d, out, i, chunk.count, value); };
+        using Vector = std::array<N, 3>;
+        if (results.displacement)
+            put(results.displacement, Vector{at(Field::Dx), at(Field::Dy), at(Field::Height)});
+        if (results.position)
+            put(results.position,
+                Vector{at(Field::Dx) + N(hn::LoadU(d, chunk.rest_x.data() + i)),
+                       at(Field::Dy) + N(hn::LoadU(d, chunk.rest_y.data() + i)), at(Field::Height)});
+        if (results.velocity)
+            put(results.velocity, Vector{at(Field::VelocityX), at(Field::VelocityY), at(Field::VelocityZ)});
+        if (results.normal)
+            put(results.normal,
+                Normal(at(Field::SlopeX), at(Field::SlopeY), at(Field::Dxx), at(Field::Dyy), at(Field::Dxy)));
+        const auto hidden = [&](std::size_t moment) HWY_ATTR {
+            return args.hidden_of ? N(hn::LoadU(d, args.hidden_of->moments[moment].data() + i))
+                                  : N(args.hidden[moment]);
+        };
+        if (results.slope_variance) put(results.slope_variance, Vector{hidden(0), hidden(2), hidden(1)});
+        if (!results.jacobian && !results.coverage) continue;
+        const HiddenStrain<N> strain{hidden(kHiddenSlopes), hidden(kHiddenSlopes + 1),
+                                     hidden(kHiddenSlopes + 2), hidden(kHiddenSlopes + 3),
+                                     hidden(kHiddenSlopes + 4)};
+        const JacobianMoments<N> j = jacobian_moments(at(Field::Dxx), at(Field::Dyy), at(Field::Dxy), strain);
+        if (results.jacobian) put(results.jacobian, Vector{j.mean, j.variance, j.third});
+        if (results.coverage)
+            put(results.coverage, coverage(j, N(args.whitecap_threshold), args.third_moment));
+    }
+}
+
+EvaluateKernels<float> TableOfFloat() {
+    return {&AddGrid<float>, &Derive<float>};
+}
+EvaluateKernels<double> TableOfDouble() {
+    return {&AddGrid<double>, &Derive<double>};
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace pelagic
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pelagic {
+HWY_EXPORT(TableOfFloat);
+HWY_EXPORT(TableOfDouble);
+
+template <>
+EvaluateKernels<float> evaluate_kernels() {
+    return HWY_DYNAMIC_DISPATCH(TableOfFloat)();
+}
+template <>
+EvaluateKernels<double> evaluate_kernels() {
+    return HWY_DYNAMIC_DISPATCH(TableOfDouble)();
+}
+
+}  // namespace pelagic
+#endif

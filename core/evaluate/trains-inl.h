@@ -1,0 +1,287 @@
+// The trains' fields at a chunk's points, in Highway's vectors: Bruneton, Neyret, Holzschuch 2010, Eqs. 2 and
+// 3, and what the pixels hide of Eq. 4 (§7.1). Formulas and signs: core/waves/trains.h.
+//
+// Included once per instruction set by files that use Highway's foreach_target (its own pattern of guards).
+#if defined(PELAGIC_CORE_EVALUATE_TRAINS_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef PELAGIC_CORE_EVALUATE_TRAINS_INL_H_
+#undef PELAGIC_CORE_EVALUATE_TRAINS_INL_H_
+#else
+#define PELAGIC_CORE_EVALUATE_TRAINS_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <type_traits>
+
+#include "core/base/sincos-inl.h"
+#include "core/evaluate/trains.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelagic {
+namespace HWY_NAMESPACE {
+namespace trains_detail {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// A vector of points, kept in double to form phases with.
+template <class Wide>
+struct DoublePoints {
+    hn::Vec<Wide> x, y;
+
+    // (start − κ·x) of one train, reduced.
+    HWY_INLINE hn::Vec<Wide> cycles(Wide d, double start, double kx, double ky) const {
+        const auto all =
+            hn::NegMulAdd(hn::Set(d, ky), y, hn::NegMulAdd(hn::Set(d, kx), x, hn::Set(d, start)));
+        return hn::Sub(all, hn::Round(all));
+    }
+};
+
+// The phases of T's points: reduced in double, then rounded to T.
+template <class D, class Enable = void>
+class Phases {  // single: two vectors of double to one of T
+    using Half = hn::Half<D>;
+    using Wide = hn::Rebind<double, Half>;
+
+  public:
+    HWY_INLINE Phases(D, hn::Vec<D> x, hn::Vec<D> y)
+        : low_{hn::PromoteTo(Wide(), hn::LowerHalf(Half(), x)),
+               hn::PromoteTo(Wide(), hn::LowerHalf(Half(), y))}
+#if HWY_TARGET != HWY_SCALAR
+          ,
+          high_{hn::PromoteTo(Wide(), hn::UpperHalf(Half(), x)),
+                hn::PromoteTo(Wide(), hn::UpperHalf(Half(), y))}
+#endif
+    {
+    }
+    HWY_INLINE hn::Vec<D> operator()(double start, double kx, double ky) const {
+        const auto low = hn::DemoteTo(Half(), low_.cycles(Wide(), start, kx, ky));
+#if HWY_TARGET == HWY_SCALAR
+        return low;  // a vector of one point has no upper half
+#else
+        return hn::Combine(D(), hn::DemoteTo(Half(), high_.cycles(Wide(), start, kx, ky)), low);
+#endif
+    }
+
+  private:
+    DoublePoints<Wide> low_;
+#if HWY_TARGET != HWY_SCALAR
+    DoublePoints<Wide> high_;
+#endif
+};
+
+template <class D>
+class Phases<D, std::enable_if_t<sizeof(hn::TFromD<D>) == 8>> {
+  public:
+    HWY_INLINE Phases(D, hn::Vec<D> x, hn::Vec<D> y) : points_{x, y} {}
+    HWY_INLINE hn::Vec<D> operator()(double start, double kx, double ky) const {
+        return points_.cycles(D(), start, kx, ky);
+    }
+
+  private:
+    DoublePoints<D> points_;
+};
+
+// Which trains pass a footprint: [0, full) for every point of a vector whole, from `any` on for none.
+// Neighbouring vectors differ by a train or so: the search starts where the last one ended.
+template <class T>
+class Zone {
+  public:
+    Zone(const Trains<T>& trains, const FootprintFilter& filter)
+        : wavelength_(trains.wavelength.data()),
+          count_(trains.count()),
+          // Footprints that let a wave pass whole or not at all, over its wavelength.
+          whole_(static_cast<T>(1.0 / filter.n_max)),
+          none_(static_cast<T>(1.0 / filter.n_min)),
+          n_min_(static_cast<T>(filter.n_min)),
+          per_range_(static_cast<T>(1.0 / (filter.n_max - filter.n_min))) {}
+
+    std::size_t full() const { return full_; }
+    std::size_t any() const { return any_; }
+
+    void nothing_passes() { full_ = any_ = 0; }
+    void move_to(T smallest_m, T largest_m) {
+        walk(full_, [&](std::size_t i) { return largest_m <= wavelength_[i] * whole_; });
+        walk(any_, [&](std::size_t i) { return smallest_m < wavelength_[i] * none_; });
+    }
+    // The first train of which nothing passes, near a guess.
+    std::size_t end_of(T footprint_m, std::size_t guess) const {
+        walk(guess, [&](std::size_t i) { return footprint_m < wavelength_[i] * none_; });
+        return guess;
+    }
+
+    // The weight of train i. Exactly 1 and 0 outside the blend, whatever rounding does to the cubic, so that
+    // a point doesn't depend on its neighbours in the vector.
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE V weight(D d, std::size_t i, V footprint_m) const {
+        const V one = hn::Set(d, T(1));
+        const V samples = hn::Div(hn::Set(d, wavelength_[i]), footprint_m);
+        const V x = hn::Mul(hn::Sub(samples, hn::Set(d, n_min_)), hn::Set(d, per_range_));
+        const V smooth = hn::Mul(hn::Mul(x, x), hn::NegMulAdd(hn::Set(d, T(2)), x, hn::Set(d, T(3))));
+        const V between = hn::IfThenElse(hn::Le(footprint_m, hn::Set(d, wavelength_[i] * whole_)), one,
+                                         hn::Min(smooth, one));
+        return hn::IfThenElseZero(passes(d, i, footprint_m), between);
+    }
+    template <class D, class V = hn::Vec<D>>
+    HWY_INLINE hn::Mask<D> passes(D d, std::size_t i, V footprint_m) const {
+        return hn::Lt(footprint_m, hn::Set(d, wavelength_[i] * none_));
+    }
+
+  private:
+    template <class Passes>
+    void walk(std::size_t& i, Passes&& passes_whole) const {
+        while (i < count_ && passes_whole(i)) ++i;
+        while (i > 0 && !passes_whole(i - 1)) --i;
+    }
+
+    const T* wavelength_;
+    std::size_t count_;
+    T whole_, none_, n_min_, per_range_;
+    std::size_t full_ = 0, any_ = 0;
+};
+
+// What the footprints hide, for the points of one vector. Each point's trains beyond its own end come as one
+// sum, looked up, and those of the blend one by one.
+template <class T, class D, class V = hn::Vec<D>>
+HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, const V footprint_m,
+                         HiddenChunk<T>& hidden, std::size_t base) {
+    V sum[kHiddenMoments.size()];
+    const std::size_t longest_end = zone.end_of(hn::GetLane(hn::MaxOfLanes(d, footprint_m)), zone.any());
+    if (longest_end == zone.any()) {  // the rule, and cheaper: all points end with the same train
+        for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
+            sum[m] = hn::Set(d, trains.hidden_from[zone.any()][m]);
+    } else {
+        HWY_ALIGN T each_m[hn::MaxLanes(d)];
+        hn::Store(footprint_m, d, each_m);
+        HWY_ALIGN T looked_up[kHiddenMoments.size()][hn::MaxLanes(d)];
+        std::size_t end = zone.any();
+        for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+            end = zone.end_of(each_m[lane], end);
+            for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
+                looked_up[m][lane] = trains.hidden_from[end][m];
+        }
+        for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) sum[m] = hn::LoadU(d, looked_up[m]);
+    }
+    const V one = hn::Set(d, T(1));
+    for (std::size_t i = zone.full(); i < zone.any(); ++i) {
+        const V w = zone.weight(d, i, footprint_m), w2 = hn::Mul(w, w);
+        // Of the train's variances, this part is hidden: 1 − w², and for slopes 1 − w² (1 + √(1 − q²))/(1 +
+        // √(1 − w²q²)).
+        const V strain = hn::Mul(hn::Sub(one, w), hn::Add(one, w));
+        const V q2 = hn::Set(d, trains.steepness2[i]);
+        const V whole = hn::Add(one, hn::Sqrt(hn::Sub(one, q2)));
+        const V part = hn::Add(one, hn::Sqrt(hn::NegMulAdd(w2, q2, one)));
+        const V slope = hn::Max(hn::Sub(one, hn::Div(hn::Mul(w2, whole), part)), hn::Zero(d));
+        const auto blends = zone.passes(d, i, footprint_m);  // else it is in the looked-up sum
+        const V slope_part = hn::IfThenElseZero(blends, slope),
+                strain_part = hn::IfThenElseZero(blends, strain);
+        for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
+            sum[m] = hn::MulAdd(m < kHiddenSlopes ? slope_part : strain_part,
+                                hn::Set(d, trains.hidden_alone[i][m]), sum[m]);
+    }
+    for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) hn::Store(sum[m], d, &hidden.moments[m][base]);
+}
+
+}  // namespace trains_detail
+
+// See add_trains() in core/evaluate/trains.h.
+template <class T>
+std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
+    namespace hn = hwy::HWY_NAMESPACE;
+    const hn::ScalableTag<T> d;
+    using V = hn::Vec<decltype(d)>;
+    const std::size_t lanes = hn::Lanes(d);
+    const Trains<T>& trains = *args.trains;
+
+    // Fields that share a weight and a product are taken together.
+    const auto wants = [&](auto... field) { return (args.wanted[index(field)] || ...); };
+    const bool height = wants(Field::Height), horizontal = wants(Field::Dx, Field::Dy);
+    const bool rise = wants(Field::VelocityZ), drift = wants(Field::VelocityX, Field::VelocityY);
+    const bool slope = wants(Field::SlopeX, Field::SlopeY),
+               strain = wants(Field::Dxx, Field::Dyy, Field::Dxy);
+    const bool cell_wanted = height || horizontal || rise || drift, pixel_wanted = slope || strain;
+
+    trains_detail::Zone<T> cell(trains, args.filter), pixel(trains, args.filter);
+    std::size_t evaluated = 0;
+    for (std::size_t base = 0; base < chunk.count; base += lanes) {
+        const std::size_t points = std::min(lanes, chunk.count - base);
+        const auto valid = hn::FirstN(d, points);
+        const auto footprint = [&](const T* of, T uniform_m) {
+            return of ? hn::IfThenElse(valid, hn::LoadU(d, of + base), hn::Set(d, of[base]))
+                      : hn::Set(d, uniform_m);
+        };
+        const auto smallest = [&](V v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
+        const auto largest = [&](V v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
+        const V cell_m = footprint(args.cell_of, args.cell_m),
+                pixel_m = footprint(args.pixel_of, args.pixel_m);
+        if (cell_wanted) cell.move_to(smallest(cell_m), largest(cell_m));
+        if (pixel_wanted || args.hidden) pixel.move_to(smallest(pixel_m), largest(pixel_m));
+        if (args.hidden) trains_detail::HiddenOf(d, trains, pixel, pixel_m, *args.hidden, base);
+
+        const std::size_t cell_end = cell_wanted ? cell.any() : 0, pixel_end = pixel_wanted ? pixel.any() : 0;
+        const std::size_t end = std::max(cell_end, pixel_end);
+        if (end == 0) continue;
+        evaluated += end * points;
+
+        const trains_detail::Phases<decltype(d)> phases(d, hn::Load(d, &chunk.rest_x[base]),
+                                                        hn::Load(d, &chunk.rest_y[base]));
+        V sum[kFieldCount];
+        for (std::size_t f = 0; f < kFieldCount; ++f) sum[f] = hn::Zero(d);
+        for (std::size_t i = 0; i < end; ++i) {
+            V sine, cosine;
+            SinCosCycles(d,
+                         phases(args.start_cycles[i], trains.kx_cycles_per_m[i], trains.ky_cycles_per_m[i]),
+                         sine, cosine);
+            const auto add = [&](Field field, V wave) {
+                V& of = sum[index(field)];
+                of = hn::MulAdd(hn::Set(d, trains.amplitude[index(field)][i]), wave, of);
+            };
+            if (i < cell_end) {
+                V s = sine, c = cosine;
+                if (i >= cell.full()) {
+                    const V w = cell.weight(d, i, cell_m);
+                    s = hn::Mul(w, s);
+                    c = hn::Mul(w, c);
+                }
+                if (height) add(Field::Height, c);
+                if (horizontal) {
+                    add(Field::Dx, s);
+                    add(Field::Dy, s);
+                }
+                if (drift) {
+                    add(Field::VelocityX, c);
+                    add(Field::VelocityY, c);
+                }
+                if (rise) add(Field::VelocityZ, s);
+            }
+            if (i < pixel_end) {
+                V s = sine, c = cosine;
+                if (i >= pixel.full()) {
+                    const V w = pixel.weight(d, i, pixel_m);
+                    s = hn::Mul(w, s);
+                    c = hn::Mul(w, c);
+                }
+                if (slope) {
+                    add(Field::SlopeX, s);
+                    add(Field::SlopeY, s);
+                }
+                if (strain) {
+                    add(Field::Dxx, c);
+                    add(Field::Dyy, c);
+                    add(Field::Dxy, c);
+                }
+            }
+        }
+        for (std::size_t f = 0; f < kFieldCount; ++f) {
+            if (!args.wanted[f]) continue;
+            T* const out = &chunk.sums[f][base];
+            hn::Store(hn::Add(hn::Load(d, out), sum[f]), d, out);
+        }
+    }
+    return evaluated;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace pelagic
+HWY_AFTER_NAMESPACE();
+
+#endif

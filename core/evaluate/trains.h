@@ -1,0 +1,39 @@
+// The trains' part of the query: their fields at a chunk's points.
+#pragma once
+
+#include <cstddef>
+
+#include "core/evaluate/chunk.h"
+#include "core/plan/filter.h"
+#include "core/waves/trains.h"
+
+namespace pelagic {
+
+// What the points' pixels hide, by point; rows parallel to kHiddenMoments.
+template <class T>
+struct HiddenChunk {
+    alignas(64) std::array<typename Chunk<T>::Values, kHiddenMoments.size()> moments;
+};
+
+template <class T>
+struct TrainArgs {
+    const Trains<T>* trains = nullptr;
+    const double* start_cycles = nullptr;  // phases_at() the chunk's origin and the frame's time
+    FootprintFilter filter{};
+    FieldSet wanted{};
+    // Footprints [m] of all points, or of each in the chunk's order, where there is an array. Cells filter
+    // positions and velocities, pixels the derivatives.
+    T cell_m = T(0), pixel_m = T(0);
+    const T* cell_of = nullptr;   // kPoints long; values beyond the chunk's count are not used
+    const T* pixel_of = nullptr;  // the same
+    // Where given: what pixel_of (or pixel_m) hides.
+    HiddenChunk<T>* hidden = nullptr;
+};
+
+// Adds the wanted fields to chunk.sums, and says how many times a train was evaluated at a point: those of
+// which something passes, and no others. A point's result depends on nothing but the point (and the
+// instruction set). In vectors, by the best instructions of this CPU.
+template <class T>
+std::size_t add_trains(const TrainArgs<T>& args, Chunk<T>& chunk);
+
+}  // namespace pelagic

@@ -1,0 +1,82 @@
+// Which wave trains a scene has. See trains.h.
+#include "core/plan/trains.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/constants.h"
+#include "core/plan/filter.h"
+#include "core/scene/cascade_bands.h"
+#include "core/spectrum/directional_spectrum.h"
+#include "core/spectrum/gauss.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kPaperShortest_m = 0.02;  // Bruneton et al. 2010, §7.3
+constexpr int kBelowPixel = 10;            // §3.2: fewer don't add up to a Gaussian
+constexpr double kLongerShare = 1e-3;      // of m0, left beyond the longest train
+constexpr double kLeastRange = 10.0;       // longest over shortest, where one of them is ours to choose
+
+// The wavelength beyond which there is at most kLongerShare of m0: one of the spectrum's panels (12 % apart).
+double longest_with_energy_m(const DirectionalSpectrum& spectrum) {
+    const auto panels = spectrum.panels();
+    if (panels.empty()) return kTwoPi / DirectionalSpectrum::kCalmPeakWavenumber;
+    double sum = 0.0;
+    std::size_t i = 0;
+    for (; i + 2 < panels.size(); ++i) {
+        sum += GaussLegendre<8>::rule().integrate(panels[i], panels[i + 1],
+                                                  [&](double k) { return spectrum.omnidirectional(k); });
+        if (sum > kLongerShare * spectrum.m0()) break;
+    }
+    return kTwoPi / panels[i];
+}
+
+// The shortest edge with which exactly the last `below` bins lie below nyquist_m: the edge between them and
+// the others, longest (shortest/longest)^((count − below)/count), is nyquist_m itself.
+double shortest_for_m(const TrainsPlan& plan, int below, double nyquist_m) {
+    if (!(nyquist_m < plan.longest_m)) return plan.longest_m;
+    return plan.longest_m *
+           std::pow(nyquist_m / plan.longest_m, plan.count / static_cast<double>(plan.count - below));
+}
+
+}  // namespace
+
+double TrainsPlan::edge_m(int i) const {
+    if (i == count) return shortest_m;
+    return longest_m * std::pow(shortest_m / longest_m, i / static_cast<double>(count));
+}
+
+double TrainsPlan::wavelength_m(int i) const {
+    return longest_m * std::pow(shortest_m / longest_m, (i + 0.5) / static_cast<double>(count));
+}
+
+TrainsPlan resolve_trains(const Scene& scene, double finest_footprint_m) {
+    const Waves& waves = scene.waves;
+    const DirectionalSpectrum spectrum(scene.sea);
+    const double nyquist_m = FootprintFilter{}.n_min * finest_footprint_m;
+    TrainsPlan plan{.count = waves.trains};
+    plan.longest_m = waves.longest_m.value_or(longest_with_energy_m(spectrum));
+    if (waves.shortest_m) {
+        plan.shortest_m = *waves.shortest_m;
+        if (!waves.longest_m) plan.longest_m = std::max(plan.longest_m, kLeastRange * plan.shortest_m);
+    } else {
+        if (!waves.cascades.empty()) {
+            plan.shortest_m = waves.cascades.front().size_m / kBandModes;
+        } else {
+            plan.shortest_m = kPaperShortest_m;
+            if (nyquist_m > 0.0) {
+                // No further than there are waves: beyond is nothing to keep as variance either.
+                const double end_m = spectrum.empty() ? kPaperShortest_m : kTwoPi / spectrum.panels().back();
+                const int below = std::min(kBelowPixel, plan.count / 2);
+                plan.shortest_m =
+                    std::min(plan.shortest_m, std::max(shortest_for_m(plan, below, nyquist_m), end_m));
+            }
+        }
+        plan.shortest_m = std::min(plan.shortest_m, plan.longest_m / kLeastRange);
+    }
+    for (int i = 0; i < plan.count; ++i) plan.below_pixel += plan.wavelength_m(i) < nyquist_m;
+    return plan;
+}
+
+}  // namespace pelagic

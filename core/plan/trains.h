@@ -1,0 +1,35 @@
+// Which wave trains a scene has: how many, and between which wavelengths.
+//
+// The trains' wavelengths are a geometric progression (Bruneton, Neyret, Holzschuch 2010, §7.1): the range
+// from longest_m down to shortest_m is cut into `count` bins of equal ratio, one train in the middle of each.
+// What the spectrum holds outside the range is not sampled: it is integrated and kept as variance
+// (core/waves/trains.h), so that nothing is missing, however the range is chosen.
+#pragma once
+
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+struct TrainsPlan {
+    int count = 0;
+    double longest_m = 0.0, shortest_m = 0.0;  // the bins' outer edges
+    int below_pixel = 0;  // trains too short for the finest footprint: they are never shown
+
+    // Bin i, 0 … count − 1, longest first: its longer edge (edge_m(count) is shortest_m), and its train.
+    double edge_m(int i) const;
+    double wavelength_m(int i) const;
+};
+
+// The scene's own range, or the spectrum's where it says nothing:
+//   longest   all but 0.1 % of m0 is shorter;
+//   shortest  2 cm, the paper's, or shorter so that ten trains (half of them, where there are fewer than
+//   twenty) are
+//             below the finest pixel's Nyquist wavelength: the fewest whose slopes add up to a Gaussian
+//             (§3.2). With explicit cascades, which hold everything shorter: the longest wave of the largest
+//             tile's grid.
+// A scene that gives one end keeps it, and the other stays a factor of ten away. A given range may leave
+// fewer than ten trains, or none, below the pixel: then what a pixel hides is mostly the integrated
+// remainder. finest_footprint_m ≥ 0, of all queries; 0 (nothing is filtered) or infinite: nobody looks, 2 cm.
+TrainsPlan resolve_trains(const Scene& scene, double finest_footprint_m);
+
+}  // namespace pelagic

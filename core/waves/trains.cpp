@@ -1,0 +1,276 @@
+// Trochoid wave trains. See trains.h.
+#include "core/waves/trains.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/base/constants.h"
+#include "core/base/random.h"
+#include "core/spectrum/gauss.h"
+#include "core/waves/loop.h"
+
+namespace pelagic {
+namespace {
+
+// The last word of the random counter: 0 for the cascades' modes, "TRAN" for trains.
+constexpr std::uint32_t kTrainStream = 0x5452414Eu;
+
+// A bin of the spectrum, k_lo ≤ k < k_hi: its energy, and where in it a share of the energy is reached.
+class Bin {
+  public:
+    Bin(const DirectionalSpectrum& spectrum, double k_lo, double k_hi) {
+        const auto panels = spectrum.panels();
+        if (panels.empty()) return;
+        const double first = std::max(k_lo, panels.front()), last = std::min(k_hi, panels.back());
+        if (!(last > first)) return;
+        const auto& rule = GaussLegendre<8>::rule();
+        auto next = std::upper_bound(panels.begin(), panels.end(), first);
+        for (double from = first; from < last;) {
+            const double to = next != panels.end() ? std::min(*next++, last) : last;
+            const double half = 0.5 * (to - from), middle = 0.5 * (to + from);
+            for (std::size_t i = 0; i < rule.node.size(); ++i) {
+                const double k = middle + half * rule.node[i];
+                energy_ += half * rule.weight[i] * spectrum.omnidirectional(k);
+                nodes_.push_back({k, energy_});
+            }
+            from = to;
+        }
+    }
+    double energy() const { return energy_; }
+    // A node of the integral, each as likely as its part of the energy; share in [0, 1). Only where there is
+    // energy.
+    double wavenumber(double share) const {
+        const auto at = std::upper_bound(nodes_.begin(), nodes_.end(), share * energy_,
+                                         [](double sum, const Node& node) { return sum < node.sum; });
+        return at != nodes_.end() ? at->k : nodes_.back().k;
+    }
+
+  private:
+    struct Node {
+        double k, sum;
+    };
+    double energy_ = 0.0;
+    std::vector<Node> nodes_;
+};
+
+// The direction below which (from −π) a share of the energy at wavenumber k travels.
+double direction(const DirectionalSpectrum& spectrum, double k, double share) {
+    const double wanted = share * spectrum.arc(k, -kPi, kPi);
+    double low = -kPi, high = kPi;
+    for (int i = 0; i < 60; ++i) {  // to the last bit of an angle
+        const double middle = 0.5 * (low + high);
+        (spectrum.arc(k, -kPi, middle) <= wanted ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+// Uniform in [0, 1), from the random bits' first two words; and from one word alone.
+double uniform(std::uint32_t high, std::uint32_t low) {
+    return static_cast<double>(((std::uint64_t{high} << 32) | low) >> 11) * 0x1p-53;
+}
+double uniform(std::uint32_t word) {
+    return static_cast<double>(word) * 0x1p-32;
+}
+
+template <class T>
+double steepness(const Trains<T>& trains, std::size_t i) {
+    return kTwoPi / trains.wavelength_m[i] * trains.horizontal_m[i];
+}
+
+// Slope variance of a trochoid over that of the sinusoid with its amplitude (appendix A): wh and wH at weight
+// w.
+double trochoid_factor(double steepness) {
+    return 2.0 / (1.0 + std::sqrt(std::max(1.0 - steepness * steepness, 0.0)));
+}
+
+// A train's moments with amplitudes times `weight`.
+template <class T>
+SpectralMoments weighted(const Trains<T>& trains, std::size_t i, double weight) {
+    const double q = steepness(trains, i);
+    SpectralMoments moments = trains.alone[i];
+    moments *= weight * weight;
+    const double slopes = trochoid_factor(weight * q) / trochoid_factor(q);
+    for (double* slope : {&moments.xx, &moments.xy, &moments.yy}) *slope *= slopes;
+    return moments;
+}
+
+// Trains [0, full) have weight 1, [full, any) a weight between, the others 0.
+struct Passing {
+    std::size_t full, any;
+};
+template <class T>
+Passing passing(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m) {
+    const auto first_shorter = [&](double wavelength_m) {
+        return static_cast<std::size_t>(
+            std::partition_point(trains.wavelength_m.begin(), trains.wavelength_m.end(),
+                                 [&](double own_m) { return own_m > wavelength_m; }) -
+            trains.wavelength_m.begin());
+    };
+    if (!(footprint_m > 0.0)) return {trains.count(), trains.count()};
+    return {first_shorter(filter.n_max * footprint_m), first_shorter(filter.n_min * footprint_m)};
+}
+
+template <class T>
+HiddenMoments<T> hidden_moments(const SpectralMoments& moments) {
+    HiddenMoments<T> out;
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<T>(moments.*kHiddenMoments[i]);
+    return out;
+}
+
+// cycles per unit × units, less the nearest whole number, without the product's rounding.
+double fraction_of_product(double a, double b) {
+    const double product = a * b;
+    return (product - std::round(product)) + std::fma(a, b, -product);
+}
+
+}  // namespace
+
+template <class T>
+Trains<T> make_trains(const Scene& scene, const TrainsPlan& plan, const DirectionalSpectrum& spectrum) {
+    const double choppiness = scene.waves.choppiness, loop_s = scene.shot.exact_loop_s();
+    const Dispersion& dispersion = spectrum.dispersion();
+    Trains<T> trains;
+    for (int i = 0; i < plan.count; ++i) {
+        const Bin bin(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1));
+        const double wavelength_m = plan.wavelength_m(i), k = kTwoPi / wavelength_m;
+        const auto bits = philox({static_cast<std::uint32_t>(i), 0, 0, kTrainStream}, scene.shot.seed);
+        const double theta = bin.energy() > 0.0 ? direction(spectrum, bin.wavenumber(uniform(bits[2])),
+                                                            uniform(bits[0], bits[1]))
+                                                : 0.0;
+        const double height_m = std::sqrt(2.0 * bin.energy());
+        const double horizontal_m = std::min(choppiness * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
+        const double x = std::cos(theta), y = std::sin(theta);
+        const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
+
+        trains.wavelength_m.push_back(wavelength_m);
+        trains.kx_cycles_per_m.push_back(x / wavelength_m);
+        trains.ky_cycles_per_m.push_back(y / wavelength_m);
+        trains.cycles_per_s.push_back(cycles_per_s);
+        trains.start_cycles.push_back(uniform(bits[3]));
+        trains.height_m.push_back(height_m);
+        trains.horizontal_m.push_back(horizontal_m);
+
+        const auto factor = [&](Field field, double value) {
+            trains.amplitude[index(field)].push_back(static_cast<T>(value));
+        };
+        const double omega = kTwoPi * cycles_per_s, q = k * horizontal_m;
+        factor(Field::Height, height_m);
+        factor(Field::Dx, x * horizontal_m);
+        factor(Field::Dy, y * horizontal_m);
+        factor(Field::SlopeX, k * x * height_m);
+        factor(Field::SlopeY, k * y * height_m);
+        factor(Field::Dxx, -q * x * x);
+        factor(Field::Dyy, -q * y * y);
+        factor(Field::Dxy, -q * x * y);
+        factor(Field::VelocityX, omega * x * horizontal_m);
+        factor(Field::VelocityY, omega * y * horizontal_m);
+        factor(Field::VelocityZ, -omega * height_m);
+
+        SpectralMoments alone = moments_of({.k = {k * x, k * y},
+                                            .energy = bin.energy(),
+                                            .omega = dispersion.omega(k),
+                                            .chop = height_m > 0.0 ? horizontal_m / (k * height_m) : 0.0});
+        for (double* slope : {&alone.xx, &alone.xy, &alone.yy}) *slope *= trochoid_factor(q);
+        trains.alone.push_back(alone);
+        trains.wavelength.push_back(static_cast<T>(wavelength_m));
+        trains.steepness2.push_back(std::min(static_cast<T>(q * q), T(1)));
+        trains.hidden_alone.push_back(hidden_moments<T>(alone));
+    }
+
+    trains.outside = moments(spectrum, 0.0, kTwoPi / plan.longest_m);
+    trains.outside += moments(spectrum, kTwoPi / plan.shortest_m, std::numeric_limits<double>::infinity());
+    trains.outside.scale_strain(choppiness * choppiness);
+    trains.before.resize(trains.count() + 1);
+    for (std::size_t i = 0; i < trains.count(); ++i)
+        (trains.before[i + 1] = trains.before[i]) += trains.alone[i];
+    trains.from.resize(trains.count() + 1);
+    trains.from.back() = trains.outside;
+    for (std::size_t i = trains.count(); i-- > 0;) (trains.from[i] = trains.from[i + 1]) += trains.alone[i];
+    for (const SpectralMoments& moments : trains.from)
+        trains.hidden_from.push_back(hidden_moments<T>(moments));
+    return trains;
+}
+
+template <class T>
+SpectralMoments total(const Trains<T>& trains) {
+    return trains.from.front();
+}
+
+template <class T>
+SpectralMoments resolved(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m) {
+    const Passing pass = passing(trains, filter, footprint_m);
+    SpectralMoments sum = trains.before[pass.full];
+    for (std::size_t i = pass.full; i < pass.any; ++i)
+        sum += weighted(trains, i, filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m));
+    return sum;
+}
+
+template <class T>
+SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m) {
+    const Passing pass = passing(trains, filter, footprint_m);
+    SpectralMoments sum = trains.from[pass.any];
+    for (std::size_t i = pass.full; i < pass.any; ++i) {
+        const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
+        const double q = steepness(trains, i);
+        // 1 − w² without cancellation; the trochoid's slope variance falls faster with w than that.
+        const double energy = (1.0 - w) * (1.0 + w);
+        const double slopes = std::max(1.0 - w * w * trochoid_factor(w * q) / trochoid_factor(q), 0.0);
+        SpectralMoments part = trains.alone[i];
+        part *= energy;
+        part.xx = slopes * trains.alone[i].xx;
+        part.xy = slopes * trains.alone[i].xy;
+        part.yy = slopes * trains.alone[i].yy;
+        sum += part;
+    }
+    return sum;
+}
+
+template <class T>
+Realisation realisation(const Trains<T>& trains, const FootprintFilter& filter,
+                        const Footprints& footprints) {
+    Realisation sum;
+    for (std::size_t i = 0; i < trains.count(); ++i) {
+        const double k = kTwoPi / trains.wavelength_m[i];
+        const double cell = filter.weight(k, footprints.cell_m), pixel = filter.weight(k, footprints.pixel_m);
+        if (cell == 0.0 && pixel == 0.0) break;
+        // A train is the modes ±k with |h| = h/2 each; the one that travels has |h0|² = h²/4.
+        const double height2 = 0.5 * trains.height_m[i] * trains.height_m[i];
+        sum.m0 += cell * cell * height2;
+        sum.m_minus1 += cell * cell * height2 / (kTwoPi * trains.cycles_per_s[i]);
+        sum.mss += pixel * pixel * k * k * height2;
+        sum.east += 0.5 * cell * cell * height2 * trains.kx_cycles_per_m[i] * trains.wavelength_m[i];
+        sum.north += 0.5 * cell * cell * height2 * trains.ky_cycles_per_m[i] * trains.wavelength_m[i];
+    }
+    return sum;
+}
+
+template <class T>
+std::vector<double> phases_at(const Trains<T>& trains, glm::dvec2 origin_m, double reduced_time_s) {
+    std::vector<double> cycles(trains.count());
+    for (std::size_t i = 0; i < trains.count(); ++i) {
+        const double phase = trains.start_cycles[i] +
+                             fraction_of_product(trains.cycles_per_s[i], reduced_time_s) -
+                             fraction_of_product(trains.kx_cycles_per_m[i], origin_m.x) -
+                             fraction_of_product(trains.ky_cycles_per_m[i], origin_m.y);
+        cycles[i] = phase - std::round(phase);
+    }
+    return cycles;
+}
+
+template Trains<float> make_trains(const Scene&, const TrainsPlan&, const DirectionalSpectrum&);
+template Trains<double> make_trains(const Scene&, const TrainsPlan&, const DirectionalSpectrum&);
+template SpectralMoments total(const Trains<float>&);
+template SpectralMoments total(const Trains<double>&);
+template SpectralMoments resolved(const Trains<float>&, const FootprintFilter&, double);
+template SpectralMoments resolved(const Trains<double>&, const FootprintFilter&, double);
+template SpectralMoments hidden(const Trains<float>&, const FootprintFilter&, double);
+template SpectralMoments hidden(const Trains<double>&, const FootprintFilter&, double);
+template Realisation realisation(const Trains<float>&, const FootprintFilter&, const Footprints&);
+template Realisation realisation(const Trains<double>&, const FootprintFilter&, const Footprints&);
+template std::vector<double> phases_at(const Trains<float>&, glm::dvec2, double);
+template std::vector<double> phases_at(const Trains<double>&, glm::dvec2, double);
+
+}  // namespace pelagic

@@ -1,0 +1,363 @@
+// Wave trains: the energy of their range, what a footprint hides of them, directions, phases.
+#include "core/waves/trains.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "core/base/constants.h"
+#include "core/waves/loop.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Scene trochoid() {
+    Scene scene;
+    scene.waves.model = WaveModel::Trochoid;
+    return scene;
+}
+
+Trains<double> trains_of(const Scene& scene, double footprint_m = 0.0) {
+    return make_trains<double>(scene, resolve_trains(scene, footprint_m), DirectionalSpectrum(scene.sea));
+}
+
+// One train of a given steepness kh, 10 m long, from a swell whose whole spectrum lies in the range.
+Scene one_train(double kh, double choppiness) {
+    Scene scene = trochoid();
+    scene.sea.wind_speed_mps = 0.0;
+    const double wavelength_m = 10.0, omega = Dispersion{}.omega(kTwoPi / wavelength_m);
+    const double h = kh * wavelength_m / kTwoPi;
+    scene.sea.swell = {
+        {.height_m = 4.0 * h / std::sqrt(2.0), .period_s = kTwoPi / omega, .direction_deg = 30.0}};
+    scene.waves.trains = 1;
+    scene.waves.longest_m = 1e3;
+    scene.waves.shortest_m = 0.1;
+    scene.waves.choppiness = choppiness;
+    return scene;
+}
+
+std::vector<Scene> many_seas() {
+    std::vector<Scene> scenes;
+    for (const SpectrumKind kind : {SpectrumKind::PiersonMoskowitz, SpectrumKind::Jonswap, SpectrumKind::Tma,
+                                    SpectrumKind::Elfouhaily, SpectrumKind::Omega2, SpectrumKind::Phillips})
+        for (const double wind_mps : {1.0, 10.0, 40.0})
+            for (const double depth_m : {3.0, kInfinity}) {
+                Scene scene = trochoid();
+                scene.sea.spectrum = kind;
+                scene.sea.wind_speed_mps = wind_mps;
+                scene.sea.depth_m = depth_m;
+                scenes.push_back(scene);
+            }
+    scenes.push_back(trochoid());
+    scenes.back().sea.swell = {{.height_m = 1.5, .period_s = 11.0, .direction_deg = 80.0}};
+    scenes.push_back(trochoid());
+    scenes.back().sea.fetch_m = 1.0;
+    return scenes;
+}
+
+TEST(TrainsPlan, DefaultRangeHoldsTheSea) {
+    for (const Scene& scene : many_seas()) {
+        const TrainsPlan plan = resolve_trains(scene, 0.0);
+        EXPECT_EQ(plan.count, 60);
+        EXPECT_LE(plan.shortest_m, 0.02);
+        const DirectionalSpectrum spectrum(scene.sea);
+        // 0.1 % is longer by design; of what is shorter than 2 cm a light wind's sea has the most.
+        EXPECT_GE(moments(spectrum, kTwoPi / plan.longest_m, kTwoPi / plan.shortest_m).m0,
+                  0.99 * spectrum.m0());
+    }
+}
+
+TEST(TrainsPlan, TenTrainsAreBelowThePixel) {
+    const Scene scene = trochoid();
+    for (const double footprint_m : {0.005, 0.02, 0.1, 1.0, 30.0, 1000.0}) {
+        const TrainsPlan plan = resolve_trains(scene, footprint_m);
+        EXPECT_GE(plan.below_pixel, 10) << footprint_m;
+        EXPECT_LE(plan.shortest_m, 0.02);
+        int below = 0;
+        for (const double wavelength_m : trains_of(scene, footprint_m).wavelength_m)
+            below += wavelength_m < 2.0 * footprint_m;
+        EXPECT_EQ(below, plan.below_pixel);
+    }
+    EXPECT_LT(resolve_trains(scene, 0.005).shortest_m, 0.01);  // longer ones alone would all be visible
+    Scene few = scene;
+    few.waves.trains = 8;
+    EXPECT_GE(resolve_trains(few, 0.5).below_pixel, 4);
+}
+
+TEST(TrainsPlan, AGivenRangeIsKept) {
+    Scene scene = trochoid();
+    scene.waves.longest_m = 30.0;
+    scene.waves.shortest_m = 0.02;
+    TrainsPlan plan = resolve_trains(scene, 1e-3);
+    EXPECT_EQ(plan.longest_m, 30.0);
+    EXPECT_EQ(plan.shortest_m, 0.02);
+    EXPECT_EQ(plan.below_pixel, 0);
+    scene.waves.longest_m.reset();
+    scene.waves.shortest_m = 5000.0;  // longer than any wave of this sea
+    plan = resolve_trains(scene, 1.0);
+    EXPECT_EQ(plan.shortest_m, 5000.0);
+    EXPECT_EQ(plan.longest_m, 50000.0);
+    scene.waves.longest_m = 0.005;
+    scene.waves.shortest_m.reset();
+    EXPECT_EQ(resolve_trains(scene, 1.0).shortest_m, 0.0005);
+}
+
+TEST(TrainsPlan, CascadesTakeOverWhereTheirLargestTileCan) {
+    Scene scene = trochoid();
+    scene.waves.cascades = {{80.0, 256}, {20.0, 256}};
+    EXPECT_EQ(resolve_trains(scene, 0.1).shortest_m, 10.0);  // eight of them fit into the tile
+}
+
+TEST(Trains, AreAGeometricProgression) {
+    const Scene scene = trochoid();
+    const TrainsPlan plan = resolve_trains(scene, 0.5);
+    const auto trains = trains_of(scene, 0.5);
+    ASSERT_EQ(trains.count(), 60u);
+    const double ratio = std::pow(plan.longest_m / plan.shortest_m, 1.0 / 60.0);
+    for (std::size_t i = 1; i < trains.count(); ++i)
+        EXPECT_NEAR(trains.wavelength_m[i - 1] / trains.wavelength_m[i], ratio, 1e-12);
+    EXPECT_NEAR(plan.longest_m / trains.wavelength_m.front(), std::sqrt(ratio), 1e-12);
+    EXPECT_NEAR(trains.wavelength_m.back() / plan.shortest_m, std::sqrt(ratio), 1e-12);
+}
+
+// The bins' integrals and the band's are cut at other places: both are good to 1e-7.
+TEST(Trains, HoldTheEnergyOfTheirRange) {
+    for (const Scene& scene : many_seas())
+        for (const int count : {1, 7, 60, 1000}) {
+            Scene with = scene;
+            with.waves.trains = count;
+            const TrainsPlan plan = resolve_trains(with, 0.0);
+            const double m0 =
+                moments(DirectionalSpectrum(with.sea), kTwoPi / plan.longest_m, kTwoPi / plan.shortest_m).m0;
+            double sum = 0.0;
+            for (const double h : trains_of(with).height_m) sum += 0.5 * h * h;
+            EXPECT_NEAR(sum, m0, 1e-6 * m0) << count;
+        }
+}
+
+TEST(Trains, OfACalmSeaAreFlat) {
+    Scene scene = trochoid();
+    scene.sea.wind_speed_mps = 0.0;
+    const auto trains = trains_of(scene, 1.0);
+    ASSERT_EQ(trains.count(), 60u);
+    for (std::size_t i = 0; i < trains.count(); ++i) {
+        EXPECT_EQ(trains.height_m[i], 0.0);
+        EXPECT_EQ(trains.horizontal_m[i], 0.0);
+        EXPECT_TRUE(std::isfinite(trains.cycles_per_s[i]));
+    }
+    for (const auto m : kSpectralMoments) EXPECT_EQ(total(trains).*m, 0.0);
+}
+
+// Appendix A: 1 − √(1 − k²h²) along the train's direction, for every steepness that doesn't loop; k²h²/2 for
+// small ones, where the printed form has no digits left.
+TEST(TrainVariance, OfOneTrochoidIsTheClosedForm) {
+    for (const double kh : {0.9, 0.3, 0.01}) {
+        const auto trains = trains_of(one_train(kh, 1.0));
+        const double k = kTwoPi / trains.wavelength_m[0], q = k * trains.height_m[0];
+        ASSERT_NEAR(q, kh, 1e-3 * kh);  // the swell's spectrum within the range
+        const SpectralMoments& own = trains.alone[0];
+        const double closed = 1.0 - std::sqrt(1.0 - q * q);
+        EXPECT_NEAR(own.mss(), closed, 1e-12);
+        const double x = trains.kx_cycles_per_m[0] * trains.wavelength_m[0];
+        const double y = trains.ky_cycles_per_m[0] * trains.wavelength_m[0];
+        EXPECT_NEAR(own.xx, closed * x * x, 1e-12);
+        EXPECT_NEAR(own.xy, closed * x * y, 1e-12);
+        EXPECT_NEAR(own.yy, closed * y * y, 1e-12);
+    }
+    const auto gentle = trains_of(one_train(1e-7, 1.0));
+    const double q = kTwoPi / gentle.wavelength_m[0] * gentle.height_m[0];
+    EXPECT_NEAR(gentle.alone[0].mss(), 0.5 * q * q, 1e-12 * q * q);
+}
+
+// The mean over the displaced surface of slope², (1/λ) ∫ (dz/ds)² / (dx/ds) ds: periodic, so that the
+// midpoint rule converges like its largest harmonic, (q/(1 + √(1 − q²)))^1000.
+TEST(TrainVariance, IsTheMeanSquareSlopeOfTheDisplacedSurface) {
+    for (const double choppiness : {0.0, 0.5, 1.0})
+        for (const double weight_footprint_m : {0.0, 3.0}) {
+            const auto trains = trains_of(one_train(0.8, choppiness));
+            const FootprintFilter filter;
+            const double k = kTwoPi / trains.wavelength_m[0], w = filter.weight(k, weight_footprint_m);
+            const double kh = w * k * trains.height_m[0], kH = w * k * trains.horizontal_m[0];
+            constexpr int kSteps = 1000;
+            double sum = 0.0;
+            for (int i = 0; i < kSteps; ++i) {
+                const double s = kTwoPi * (i + 0.5) / kSteps;
+                const double rise = kh * std::sin(s);
+                sum += rise * rise / (1.0 - kH * std::cos(s)) / kSteps;
+            }
+            EXPECT_NEAR(resolved(trains, filter, weight_footprint_m).mss(), sum, 1e-12) << choppiness;
+        }
+}
+
+TEST(Trains, ThatWouldLoopAreLimited) {
+    for (const double choppiness : {1.0, 10.0}) {
+        const auto trains = trains_of(one_train(5.0, choppiness));
+        const double k = kTwoPi / trains.wavelength_m[0];
+        EXPECT_NEAR(k * trains.height_m[0], 5.0, 0.01);  // the energy stays
+        EXPECT_LE(k * trains.horizontal_m[0], 1.0 + 1e-15);
+        EXPECT_NEAR(trains.alone[0].mss(), 25.0, 0.1);  // (kh)²/(1 + 0)
+        for (const double footprint_m : {0.0, 2.7, 3.0, 4.0, 1e3})
+            for (const auto m : kSpectralMoments) {
+                EXPECT_TRUE(std::isfinite(resolved(trains, {}, footprint_m).*m));
+                EXPECT_TRUE(std::isfinite(hidden(trains, {}, footprint_m).*m));
+            }
+    }
+}
+
+// Nothing is lost between what a pixel shows and what it hides, whatever its size.
+TEST(TrainVariance, ResolvedAndHiddenAreTheWhole) {
+    for (const Scene& scene : many_seas()) {
+        const auto trains = trains_of(scene);
+        const SpectralMoments all = total(trains);
+        const FootprintFilter filter;
+        for (double footprint_m = 1e-3; footprint_m < 1e4; footprint_m *= 1.3) {
+            SpectralMoments both = resolved(trains, filter, footprint_m);
+            const SpectralMoments rest = hidden(trains, filter, footprint_m);
+            both += rest;
+            // Sums of at most 70 terms of any sign.
+            for (const auto m : kSpectralMoments)
+                EXPECT_NEAR(both.*m, all.*m,
+                            1e-14 * (all.xx + all.yy + all.xxxx + all.yyyy + all.m0 + all.m_minus1));
+            for (const auto m : {&SpectralMoments::m0, &SpectralMoments::m_minus1, &SpectralMoments::xx,
+                                 &SpectralMoments::yy, &SpectralMoments::xxxx, &SpectralMoments::xxyy,
+                                 &SpectralMoments::yyyy})
+                EXPECT_GE(rest.*m, 0.0);
+            EXPECT_LE(rest.xy * rest.xy, rest.xx * rest.yy * (1.0 + 1e-12));
+        }
+        for (const auto m : kSpectralMoments) {
+            EXPECT_EQ(hidden(trains, filter, 0.0).*m, trains.outside.*m);
+            EXPECT_EQ(resolved(trains, filter, 1e9).*m, 0.0);
+            EXPECT_EQ(hidden(trains, filter, 1e9).*m, all.*m);
+        }
+    }
+}
+
+// The trains' own moments are those of the spectrum, within what the trochoid's form and 60 wavelengths
+// change: the slopes of a train of steepness q are steeper by 2/(1 + √(1 − q²)) ≤ 1 + q²/2, here below 1 %,
+// and a bin's slope differs from that at its middle by its width squared, (ln 1.17)²/24 of a factor of up
+// to 4.
+TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
+    for (const double choppiness : {0.0, 0.8}) {
+        Scene scene = trochoid();
+        scene.waves.choppiness = choppiness;
+        const SpectralMoments all = total(trains_of(scene));
+        SpectralMoments wanted = moments(DirectionalSpectrum(scene.sea), 0.0, kInfinity);
+        wanted.scale_strain(choppiness * choppiness);
+        EXPECT_NEAR(all.m0, wanted.m0, 1e-6 * wanted.m0);
+        EXPECT_NEAR(all.mss(), wanted.mss(), 0.02 * wanted.mss());
+        EXPECT_NEAR(all.xxxx + 2.0 * all.xxyy + all.yyyy, wanted.xxxx + 2.0 * wanted.xxyy + wanted.yyyy,
+                    0.02 * wanted.mss());
+    }
+}
+
+// Over seeds, the energy-weighted mean of k̂ and of its square are the spectrum's. Of 400 seeds the standard
+// error is √(Σh⁴)/(Σh² √400), some 0.02 (a dozen trains hold the energy); three of them.
+TEST(Trains, DirectionsFollowTheSpectrum) {
+    Scene scene = trochoid();
+    scene.sea.wind_direction_deg = 130.0;
+    const SpectralMoments wanted = moments(DirectionalSpectrum(scene.sea), 0.0, kInfinity);
+    SpectralMoments mean;
+    constexpr int kSeeds = 400;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+        scene.shot.seed = static_cast<std::uint64_t>(seed);
+        mean += total(trains_of(scene));
+    }
+    mean *= 1.0 / kSeeds;
+    EXPECT_NEAR(mean.east, wanted.east, 0.06 * wanted.m0);
+    EXPECT_NEAR(mean.north, wanted.north, 0.06 * wanted.m0);
+    EXPECT_NEAR(mean.mean_direction(), 130.0 * kPi / 180.0, 0.06);
+    EXPECT_NEAR(mean.xx / mean.mss(), wanted.xx / wanted.mss(), 0.06);
+    EXPECT_NEAR(mean.xy / mean.mss(), wanted.xy / wanted.mss(), 0.06);
+}
+
+TEST(Trains, AreTheSeedsOwn) {
+    Scene scene = trochoid();
+    const auto first = trains_of(scene), again = trains_of(scene);
+    EXPECT_EQ(first.start_cycles, again.start_cycles);
+    EXPECT_EQ(first.kx_cycles_per_m, again.kx_cycles_per_m);
+    scene.shot.seed = 2;
+    const auto other = trains_of(scene);
+    for (std::size_t i = 0; i < first.count(); ++i) {
+        EXPECT_NE(first.start_cycles[i], other.start_cycles[i]);
+        EXPECT_EQ(first.height_m[i], other.height_m[i]);
+    }
+}
+
+// Uniform phases: the mean of e^{iφ} over n has standard error √(1/2n) in each part; three of them.
+TEST(Trains, PhasesAreUniform) {
+    Scene scene = trochoid();
+    scene.waves.trains = 1000;
+    std::complex<double> mean = 0.0;
+    constexpr int kSeeds = 100;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+        scene.shot.seed = static_cast<std::uint64_t>(seed);
+        const TrainsPlan plan = resolve_trains(scene, 0.0);
+        Scene calm = scene;  // without energy there are no directions to find
+        calm.sea.wind_speed_mps = 0.0;
+        for (const double cycles :
+             make_trains<double>(calm, plan, DirectionalSpectrum(calm.sea)).start_cycles)
+            mean += std::polar(1.0 / (1000.0 * kSeeds), kTwoPi * cycles);
+    }
+    EXPECT_LT(std::abs(mean.real()), 3.0 * std::sqrt(0.5 / (1000.0 * kSeeds)));
+    EXPECT_LT(std::abs(mean.imag()), 3.0 * std::sqrt(0.5 / (1000.0 * kSeeds)));
+}
+
+TEST(Trains, LoopExactly) {
+    Scene scene = trochoid();
+    scene.shot.loop_s = 5.0;
+    const auto trains = trains_of(scene);
+    for (const double cycles_per_s : trains.cycles_per_s) {
+        EXPECT_NEAR(cycles_per_s * 5.0, std::round(cycles_per_s * 5.0), 1e-12);
+        EXPECT_GE(cycles_per_s * 5.0, 1.0 - 1e-12);
+    }
+    const auto at = [&](double t_s) { return phases_at(trains, {3.0, -4.0}, time_within_loop_s(t_s, 5.0)); };
+    EXPECT_EQ(at(0.0), at(5.0));
+    EXPECT_EQ(at(0.5), at(5.5));
+    // Thousands of loops later, at a time that is no double: 40 Hz of the time's own rounding.
+    const auto soon = at(1.0 / 24.0), late = at(1.0 / 24.0 + 5.0 * 4096);
+    for (std::size_t i = 0; i < soon.size(); ++i) EXPECT_NEAR(soon[i], late[i], 40.0 * 4e-12);
+    EXPECT_EQ(time_within_loop_s(5.0 - 1e-16, 5.0), 0.0);
+    EXPECT_EQ(time_within_loop_s(7.25, 0.0), 7.25);
+}
+
+// Against 64 bits of mantissa: the products' own rounding there is 4e8 cycles · 2⁻⁶⁴ = 2e-11.
+TEST(Trains, PhasesAreExactFarAwayAndLate) {
+    const auto trains = trains_of(trochoid(), 0.01);
+    const glm::dvec2 origin_m(1e6 + 0.3, -987654.321);
+    const double t_s = 1e7 + 1.0 / 24.0;
+    const auto phases = phases_at(trains, origin_m, t_s);
+    for (std::size_t i = 0; i < trains.count(); ++i) {
+        const long double exact = static_cast<long double>(trains.start_cycles[i]) +
+                                  static_cast<long double>(trains.cycles_per_s[i]) * t_s -
+                                  static_cast<long double>(trains.kx_cycles_per_m[i]) * origin_m.x -
+                                  static_cast<long double>(trains.ky_cycles_per_m[i]) * origin_m.y;
+        const long double off = exact - static_cast<long double>(phases[i]);
+        EXPECT_LT(std::abs(static_cast<double>(off - std::round(off))), 1e-10);
+        EXPECT_LE(std::abs(phases[i]), 0.5);
+    }
+}
+
+TEST(TrainRealisation, IsThatOfTheTrains) {
+    const auto trains = trains_of(trochoid());
+    const Realisation all = realisation(trains, {}, {});
+    double m0 = 0.0, mss = 0.0;
+    for (std::size_t i = 0; i < trains.count(); ++i) {
+        m0 += trains.alone[i].m0;
+        mss += std::pow(kTwoPi / trains.wavelength_m[i], 2) * trains.alone[i].m0;
+    }
+    EXPECT_NEAR(all.m0, m0, 1e-12 * m0);
+    EXPECT_NEAR(all.mss, mss, 1e-12 * mss);
+    EXPECT_NEAR(std::atan2(all.north, all.east), 0.0, 0.5);  // down the wind, of one seed
+    const Realisation coarse = realisation(trains, {}, {.cell_m = 10.0, .pixel_m = 1.0});
+    EXPECT_NEAR(coarse.m0, resolved(trains, {}, 10.0).m0, 1e-12 * m0);
+    EXPECT_NEAR(coarse.m_minus1, resolved(trains, {}, 10.0).m_minus1, 1e-12 * all.m_minus1);
+    EXPECT_LT(coarse.mss, 0.5 * mss);
+    EXPECT_EQ(realisation(trains, {}, {.cell_m = 1e6, .pixel_m = 1e6}).m0, 0.0);
+}
+
+}  // namespace
+}  // namespace pelagic

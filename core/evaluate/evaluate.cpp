@@ -136,11 +136,19 @@ class Evaluation {
 
     void run(std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const {
         chunk.count = std::min(Chunk<T>::kPoints, points_.count - first);
-        for (std::size_t i = 0; i < Chunk<T>::kPoints; ++i) {
-            const glm::vec<2, T> rest = i < chunk.count ? points_.rest_m[first + i] : glm::vec<2, T>(T(0));
-            chunk.rest_x[i] = rest.x;
-            chunk.rest_y[i] = rest.y;
-        }
+        const auto take = [&](const auto& rest_m) {
+            for (std::size_t i = 0; i < chunk.count; ++i) {
+                const glm::vec<2, T> rest = rest_m[i];
+                chunk.rest_x[i] = rest.x;
+                chunk.rest_y[i] = rest.y;
+            }
+        };
+        if (points_.rest_m.stride_bytes == sizeof(glm::vec<2, T>))
+            take(&points_.rest_m[first]);  // side by side: in vectors
+        else
+            take(from_point(points_.rest_m, first));
+        std::fill(chunk.rest_x.begin() + chunk.count, chunk.rest_x.end(), T(0));
+        std::fill(chunk.rest_y.begin() + chunk.count, chunk.rest_y.end(), T(0));
         // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
         for (typename Chunk<T>::Values& sum : chunk.sums) sum.fill(T(0));
         if (ladder_)

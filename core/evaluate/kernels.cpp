@@ -239,6 +239,68 @@ HWY_INLINE std::array<N, 3> Normal(N slope_x, N slope_y, N dxx, N dyy, N dxy) {
     return {select(exists, x * by, N(0)), select(exists, y * by, N(0)), select(exists, z * by, one)};
 }
 
+// What a chunk's pixels hide, as vectors: by point, or the same for all.
+template <class T>
+class Hidden {
+  public:
+    using D = hn::ScalableTag<T>;
+    using N = Pack<D>;
+    HWY_INLINE explicit Hidden(const DeriveArgs<T>& args) : args_(args) {
+        if (args.hidden_of) return;
+        const HiddenStrain<N> strain = strain_at(0);
+        const StrainTraces<N> traces = strain_traces(strain);
+        hn::Store(traces.second.v, D(), second_);
+        hn::Store(traces.third.v, D(), third_);
+    }
+    HWY_INLINE N moment_at(std::size_t moment, std::size_t i) const {
+        return args_.hidden_of ? N(hn::LoadU(D(), args_.hidden_of->moments[moment].data() + i))
+                               : N(args_.hidden[moment]);
+    }
+    HWY_INLINE HiddenStrain<N> strain_at(std::size_t i) const {
+        return {moment_at(kHiddenSlopes, i), moment_at(kHiddenSlopes + 1, i), moment_at(kHiddenSlopes + 2, i),
+                moment_at(kHiddenSlopes + 3, i), moment_at(kHiddenSlopes + 4, i)};
+    }
+    HWY_INLINE StrainTraces<N> traces_of(const HiddenStrain<N>& strain) const {
+        if (args_.hidden_of) return strain_traces(strain);
+        return {N(hn::Load(D(), second_)), N(hn::Load(D(), third_))};
+    }
+
+  private:
+    const DeriveArgs<T>& args_;
+    alignas(64) T second_[64 / sizeof(T)], third_[64 / sizeof(T)];
+};
+
+// J in a chunk's pixels, and the coverage that follows: two loops, because the second is one long chain of
+// operations, of which a CPU has more under way at once when they stand alone.
+template <class T>
+void DeriveWhitecaps(const DeriveArgs<T>& args) {
+    using D = hn::ScalableTag<T>;
+    using N = Pack<D>;
+    const D d;
+    const Chunk<T>& chunk = *args.chunk;
+    const Hidden<T> hidden(args);
+    alignas(64) typename Chunk<T>::Values mean, variance, third;
+    for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
+        const auto at = [&](Field field)
+                            HWY_ATTR { return N(hn::LoadU(d, chunk.sums[index(field)].data() + i)); };
+        const HiddenStrain<N> strain = hidden.strain_at(i);
+        const JacobianMoments<N> j = jacobian_moments(at(Field::Dxx), at(Field::Dyy), at(Field::Dxy), strain,
+                                                      hidden.traces_of(strain));
+        if (args.results.jacobian)
+            Put(d, args.results.jacobian, i, chunk.count, std::array<N, 3>{j.mean, j.variance, j.third});
+        hn::StoreU(j.mean.v, d, mean.data() + i);
+        hn::StoreU(j.variance.v, d, variance.data() + i);
+        hn::StoreU(j.third.v, d, third.data() + i);
+    }
+    if (!args.results.coverage) return;
+    for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
+        const JacobianMoments<N> j{N(hn::LoadU(d, mean.data() + i)), N(hn::LoadU(d, variance.data() + i)),
+                                   N(hn::LoadU(d, third.data() + i))};
+        Put(d, args.results.coverage, i, chunk.count,
+            coverage(j, N(args.whitecap_threshold), args.third_moment));
+    }
+}
+
 template <class T>
 void Derive(const DeriveArgs<T>& args) {
     using D = hn::ScalableTag<T>;
@@ -246,37 +308,33 @@ void Derive(const DeriveArgs<T>& args) {
     const D d;
     const Chunk<T>& chunk = *args.chunk;
     const Results<T>& results = args.results;
-    for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
-        const auto at = [&](Field field)
-                            HWY_ATTR { return N(hn::LoadU(d, chunk.sums[index(field)].data() + i)); };
-        const auto put = [&](const auto& out, const auto& value)
-                             HWY_ATTR { Put(d, out, i, chunk.count, value); };
-        using Vector = std::array<N, 3>;
-        if (results.displacement)
-            put(results.displacement, Vector{at(Field::Dx), at(Field::Dy), at(Field::Height)});
-        if (results.position)
-            put(results.position,
-                Vector{at(Field::Dx) + N(hn::LoadU(d, chunk.rest_x.data() + i)),
-                       at(Field::Dy) + N(hn::LoadU(d, chunk.rest_y.data() + i)), at(Field::Height)});
-        if (results.velocity)
-            put(results.velocity, Vector{at(Field::VelocityX), at(Field::VelocityY), at(Field::VelocityZ)});
-        if (results.normal)
-            put(results.normal,
-                Normal(at(Field::SlopeX), at(Field::SlopeY), at(Field::Dxx), at(Field::Dyy), at(Field::Dxy)));
-        const auto hidden = [&](std::size_t moment) HWY_ATTR {
-            return args.hidden_of ? N(hn::LoadU(d, args.hidden_of->moments[moment].data() + i))
-                                  : N(args.hidden[moment]);
-        };
-        if (results.slope_variance) put(results.slope_variance, Vector{hidden(0), hidden(2), hidden(1)});
-        if (!results.jacobian && !results.coverage) continue;
-        const HiddenStrain<N> strain{hidden(kHiddenSlopes), hidden(kHiddenSlopes + 1),
-                                     hidden(kHiddenSlopes + 2), hidden(kHiddenSlopes + 3),
-                                     hidden(kHiddenSlopes + 4)};
-        const JacobianMoments<N> j = jacobian_moments(at(Field::Dxx), at(Field::Dyy), at(Field::Dxy), strain);
-        if (results.jacobian) put(results.jacobian, Vector{j.mean, j.variance, j.third});
-        if (results.coverage)
-            put(results.coverage, coverage(j, N(args.whitecap_threshold), args.third_moment));
-    }
+    const std::size_t count = chunk.count;
+    const auto at = [&](Field field, std::size_t i)
+                        HWY_ATTR { return N(hn::LoadU(d, chunk.sums[index(field)].data() + i)); };
+    using Vector = std::array<N, 3>;
+    const auto each = [&](const Strided<glm::vec<3, T>>& out, const auto& value) HWY_ATTR {
+        if (!out) return;
+        for (std::size_t i = 0; i < count; i += hn::Lanes(d)) Put(d, out, i, count, value(i));
+    };
+    each(results.displacement, [&](std::size_t i) HWY_ATTR {
+        return Vector{at(Field::Dx, i), at(Field::Dy, i), at(Field::Height, i)};
+    });
+    each(results.position, [&](std::size_t i) HWY_ATTR {
+        return Vector{at(Field::Dx, i) + N(hn::LoadU(d, chunk.rest_x.data() + i)),
+                      at(Field::Dy, i) + N(hn::LoadU(d, chunk.rest_y.data() + i)), at(Field::Height, i)};
+    });
+    each(results.velocity, [&](std::size_t i) HWY_ATTR {
+        return Vector{at(Field::VelocityX, i), at(Field::VelocityY, i), at(Field::VelocityZ, i)};
+    });
+    each(results.normal, [&](std::size_t i) HWY_ATTR {
+        return Normal(at(Field::SlopeX, i), at(Field::SlopeY, i), at(Field::Dxx, i), at(Field::Dyy, i),
+                      at(Field::Dxy, i));
+    });
+    const Hidden<T> hidden(args);
+    each(results.slope_variance, [&](std::size_t i) HWY_ATTR {
+        return Vector{hidden.moment_at(0, i), hidden.moment_at(2, i), hidden.moment_at(1, i)};
+    });
+    if (results.jacobian || results.coverage) DeriveWhitecaps(args);
 }
 
 EvaluateKernels<float> TableOfFloat() {

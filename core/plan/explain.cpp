@@ -53,6 +53,41 @@ std::string footprint_text(const std::vector<double>& footprints_m, double n_min
     return text;
 }
 
+// The second wave model: which trains there are, and which of them each output adds up.
+std::string trains_text(const Plan& plan) {
+    const TrainsPlan& trains = *plan.trains;
+    const auto shown = [&](double footprint_m) {
+        int count = 0;
+        for (int i = 0; i < trains.count; ++i)
+            count += plan.filter.weight(kTwoPi / trains.wavelength_m(i), footprint_m) > 0.0;
+        return count;
+    };
+    std::string page = format(
+        "  %d, of waves from %.4g m down to %.4g m; %s\n"
+        "  summed at each point: nothing is transformed, no grid is held\n",
+        trains.count, trains.longest_m, trains.shortest_m,
+        bytes_text(trains.sea_bytes(plan.knobs.double_precision)).c_str());
+    for (const PlannedQuery& planned : plan.queries) {
+        const Query& query = planned.query;
+        page += "  " + query.name + ": ";
+        const FieldSet needed = fields_of(query.products) & ~plan.dropped;
+        const int pixel = shown(query.pixel_m.front());
+        if (query.only_cascade) {
+            page += "none, it is a cascade's own\n";
+            continue;
+        }
+        if (needed.none())
+            page += "none is summed";
+        else if (const int cell = shown(query.cell_m.front()); cell == pixel)
+            page += format("the %d longest are summed", cell);
+        else
+            page +=
+                format("the %d longest are summed in positions, the %d longest in derivatives", cell, pixel);
+        page += format("; %d are below the pixel: kept as variance\n", trains.count - pixel);
+    }
+    return page;
+}
+
 }  // namespace
 
 std::string explain(const Scene& scene, const Plan& plan) {
@@ -95,7 +130,10 @@ std::string explain(const Scene& scene, const Plan& plan) {
                      : std::string("  whitecaps: on, but no output asks for them: nothing is computed\n");
     }
 
+    if (plan.trains) page += "\nWave trains\n" + trains_text(plan);
+
     page += "\nCascades and their transforms\n";
+    if (plan.cascades.empty()) page += "  none: the trains are the whole sea\n";
     std::size_t cascade_number = 0;
     for (const CascadePlan& cascade : plan.cascades) {
         page += format("  %zu  %.6g m, resolution %d, waves of ", cascade_number++, cascade.size_m,

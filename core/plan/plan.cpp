@@ -215,6 +215,14 @@ std::vector<double> mip_footprints(double size_m, int n) {
     return footprints_m;
 }
 
+// What the effects that are off take away from meshes and maps.
+ProductSet outputs_gone(const Scene& scene) {
+    ProductSet gone;
+    for (const EffectRow& row : kEffectTable)
+        if (!row.is_on(scene)) gone |= row.outputs_gone();
+    return gone;
+}
+
 // The queries of one square of texels for each map asked for.
 void add_map_queries(std::vector<Query>& queries, const Scene& scene, double size_m, int n,
                      std::optional<int> cascade) {
@@ -224,13 +232,12 @@ void add_map_queries(std::vector<Query>& queries, const Scene& scene, double siz
             Query query;
             query.name =
                 (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) + row.name;
-            query.products = row.needs();
+            query.products = row.needs() & ~outputs_gone(scene);
             query.map = map;
             query.points = static_cast<std::size_t>(n) * n;
             query.lattice = Lattice{-0.5 * size_m, size_m / n};
             query.only_cascade = cascade;
-            query.pixel_m =
-                map == MapKind::SlopeVariance ? mip_footprints(size_m, n) : std::vector{size_m / n};
+            query.pixel_m = row.asks_each_level ? mip_footprints(size_m, n) : std::vector{size_m / n};
             // A tile's nodes carry each of its modes: there is nothing to filter out.
             if (cascade) query.pixel_m.front() = 0.0;
             query.cell_m = {query.pixel_m.front()};
@@ -252,8 +259,8 @@ std::vector<Query> bake_queries(const Scene& scene) {
         mesh.products = products(Product::Position);
         for (const MeshAttribute attribute : output.attributes)
             for (const AttributeRow& row : kAttributeTable)
-                if (row.attribute == attribute && (!row.of_whitecaps || scene.effects.whitecaps))
-                    mesh.products.set(index(row.product));
+                if (row.attribute == attribute) mesh.products.set(index(row.product));
+        mesh.products &= ~outputs_gone(scene);
         mesh.cell_m = mesh.pixel_m = {spacing_m};
         mesh.points = (surface.resolution + std::size_t(1)) * (surface.resolution + std::size_t(1));
         mesh.lattice = Lattice{-0.5 * surface.size_m, spacing_m};
@@ -298,9 +305,11 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
         plan.queries.push_back(std::move(planned));
     }
 
-    if (!(scene.waves.choppiness > 0.0)) plan.dropped = horizontal_fields();
-    if (plan.dropped.any()) plan.closure.push_back({"no horizontal displacement", "waves.choppiness is 0"});
-    if (!scene.effects.whitecaps) plan.closure.push_back({"no whitecaps", "effects.whitecaps is false"});
+    for (const EffectRow& row : kEffectTable) {
+        if (row.is_on(scene)) continue;
+        plan.dropped |= row.fields_gone();
+        plan.closure.push_back({std::string("no ") + row.name, row.why_off});
+    }
     const double finest_footprint_m = std::isfinite(finest_m) ? finest_m : 0.0;
     if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(scene, finest_footprint_m);
     const auto sizes = resolve_cascades(scene, finest_footprint_m);
@@ -354,7 +363,7 @@ long Plan::lines_per_frame() const {
 }
 
 std::size_t Plan::sea_bytes() const {
-    std::size_t bytes = 0;
+    std::size_t bytes = trains ? trains->sea_bytes(knobs.double_precision) : 0;
     for (const CascadePlan& cascade : cascades)
         bytes += lattice_modes(cascade.grid_radius()) *
                  sea_bytes_per_mode(knobs.double_precision, choppiness > 0.0);
@@ -370,22 +379,23 @@ std::size_t Plan::frame_bytes() const {
 }
 
 std::size_t Plan::output_bytes() const {
-    const std::size_t scalar = knobs.double_precision ? sizeof(double) : sizeof(float);
     std::size_t bytes = 0;
     for (const ProductRow& row : kProductTable) {
-        std::size_t most = 0;  // one array a product, as long as the longest query needs
-        for (const PlannedQuery& planned : queries)
-            if (planned.query.products[index(row.product)]) most = std::max(most, planned.query.points);
-        bytes += most * row.scalars * (sizeof(float) + (knobs.double_precision ? sizeof(double) : 0));
+        std::size_t most = 0;
+        for (const PlannedQuery& planned : queries) {
+            if (!planned.query.products[index(row.product)]) continue;
+            bytes += planned.query.points * row.scalars * sizeof(float);
+            most = std::max(most, planned.query.points);
+        }
+        if (knobs.double_precision) bytes += most * row.scalars * sizeof(double);
     }
-    std::vector<std::pair<std::size_t, double>>
-        squares;  // points at rest, shared by queries over the same square
+    std::vector<std::pair<std::size_t, double>> squares;
     for (const PlannedQuery& planned : queries) {
         const std::pair square(planned.query.points,
                                planned.query.lattice ? planned.query.lattice->spacing_m : 0.0);
         if (std::find(squares.begin(), squares.end(), square) != squares.end()) continue;
         squares.push_back(square);
-        bytes += square.first * 2 * scalar;
+        bytes += square.first * 2 * (knobs.double_precision ? sizeof(double) : sizeof(float));
     }
     return bytes;
 }

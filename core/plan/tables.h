@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "core/plan/fields.h"
 #include "core/scene/scene.h"
@@ -38,27 +39,50 @@ inline const std::array<ProductRow, kProductCount> kProductTable{{
 struct AttributeRow {
     MeshAttribute attribute;
     Product product;
-    bool of_whitecaps;  // dropped where the effect is off
 };
 
 inline constexpr std::array<AttributeRow, 4> kAttributeTable{{
-    {MeshAttribute::Normal, Product::Normal, false},
-    {MeshAttribute::Velocity, Product::Velocity, false},
-    {MeshAttribute::SlopeVariance, Product::SlopeVariance, false},
-    {MeshAttribute::Whitecaps, Product::Coverage, true},
+    {MeshAttribute::Normal, Product::Normal},
+    {MeshAttribute::Velocity, Product::Velocity},
+    {MeshAttribute::SlopeVariance, Product::SlopeVariance},
+    {MeshAttribute::Whitecaps, Product::Coverage},
 }};
 
 struct MapRow {
     MapKind map;
     const char* name;
     ProductSet (*needs)();
+    bool asks_each_level;  // each level of its mip pyramid has a footprint of its own
 };
 
 inline const std::array<MapRow, 4> kMapTable{{
-    {MapKind::Displacement, "displacement", [] { return products(Product::Displacement); }},
-    {MapKind::Normal, "normal", [] { return products(Product::Normal); }},
-    {MapKind::SlopeVariance, "slope-variance", [] { return products(Product::SlopeVariance); }},
-    {MapKind::Whitecaps, "whitecaps", [] { return products(Product::JacobianMoments, Product::Coverage); }},
+    {MapKind::Displacement, "displacement", [] { return products(Product::Displacement); }, false},
+    {MapKind::Normal, "normal", [] { return products(Product::Normal); }, false},
+    {MapKind::SlopeVariance, "slope-variance", [] { return products(Product::SlopeVariance); }, true},
+    {MapKind::Whitecaps, "whitecaps", [] { return products(Product::JacobianMoments, Product::Coverage); },
+     false},
+}};
+
+// What a scene can do without, and what then falls away.
+struct EffectRow {
+    const char* name;
+    bool (*is_on)(const Scene&);
+    const char* why_off;           // where it isn't
+    void (*turn_off)(Scene&);      // leaves a valid scene
+    FieldSet (*fields_gone)();     // zero without it, whoever asks: never computed
+    ProductSet (*outputs_gone)();  // not written to meshes and maps
+};
+
+inline const std::array<EffectRow, 2> kEffectTable{{
+    {"horizontal displacement", [](const Scene& scene) { return scene.waves.choppiness > 0.0; },
+     "waves.choppiness is 0", [](Scene& scene) { scene.waves.choppiness = 0.0; }, horizontal_fields,
+     [] { return ProductSet(); }},
+    {"whitecaps", [](const Scene& scene) { return scene.effects.whitecaps; }, "effects.whitecaps is false",
+     [](Scene& scene) {
+         scene.effects.whitecaps = false;
+         std::erase(scene.output.maps, MapKind::Whitecaps);  // would be a contradiction
+     },
+     [] { return FieldSet(); }, [] { return products(Product::JacobianMoments, Product::Coverage); }},
 }};
 
 // The fields that a point's cell filters (positions and velocities); its pixel filters the others.

@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/plan/fields.h"
 #include "core/plan/filter.h"
 #include "core/scene/cascade_bands.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/gauss.h"
+#include "core/spectrum/spectral_moments.h"
 
 namespace pelagic {
 namespace {
@@ -49,6 +51,17 @@ double TrainsPlan::edge_m(int i) const {
 
 double TrainsPlan::wavelength_m(int i) const {
     return longest_m * std::pow(shortest_m / longest_m, (i + 0.5) / static_cast<double>(count));
+}
+
+std::size_t TrainsPlan::sea_bytes(bool double_precision) const {
+    const std::size_t scalar = double_precision ? sizeof(double) : sizeof(float);
+    // Of each: wavevector, frequency, phase, two amplitudes, wavelength; a factor a field, wavelength and
+    // steepness; its moments alone and in both running sums, and the eight that a pixel hides, alone and in
+    // one sum. A sum has one entry more than there are trains.
+    constexpr std::size_t kHidden = 8;
+    const auto trains = static_cast<std::size_t>(count);
+    return trains * (7 * sizeof(double) + (kFieldCount + 2) * scalar) +
+           (3 * trains + 2) * sizeof(SpectralMoments) + (2 * trains + 1) * kHidden * scalar;
 }
 
 TrainsPlan resolve_trains(const Scene& scene, double finest_footprint_m) {

@@ -6,6 +6,8 @@
 // (core/waves/trains.h), so that nothing is missing, however the range is chosen.
 #pragma once
 
+#include <cstddef>
+
 #include "core/scene/scene.h"
 
 namespace pelagic {
@@ -18,6 +20,9 @@ struct TrainsPlan {
     // Bin i, 0 … count − 1, longest first: its longer edge (edge_m(count) is shortest_m), and its train.
     double edge_m(int i) const;
     double wavelength_m(int i) const;
+
+    // What a Sea holds of them (Trains<T>, core/waves/trains.h).
+    std::size_t sea_bytes(bool double_precision) const;
 };
 
 // The scene's own range, or the spectrum's where it says nothing:

@@ -229,6 +229,15 @@ long Frame<T>::transform_rows(const Rows& rows) {
 }
 
 template <class T>
+std::size_t Frame<T>::held_bytes() const {
+    std::size_t samples = 0;
+    for (const std::vector<GridState>& grids : grids_)
+        for (const GridState& grid : grids)
+            for (const Buffer<T>& plane : grid.planes) samples += plane.size();
+    return samples * sizeof(T);
+}
+
+template <class T>
 Realisation Frame<T>::realisation(int query) const {
     const Plan& plan = sea_->plan();
     const Query& asked = plan.queries.at(query).query;

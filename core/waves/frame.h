@@ -46,6 +46,8 @@ class Frame {
     // made: set() calls × plan().transforms_per_frame(), × plan().lines_per_frame().
     long executed_transforms() const { return executed_transforms_; }
     long executed_lines() const { return executed_lines_; }
+    // What the fields' samples take: plan().frame_bytes().
+    std::size_t held_bytes() const;
 
     // Sums over the modes at this time, filtered as `query` filters its finest positions and normals.
     Realisation realisation(int query) const;

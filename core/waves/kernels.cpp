@@ -195,13 +195,15 @@ HWY_INLINE void Turn(const double* from, std::size_t from_stride, double* to, st
 
 template <class T>
 void Scatter(const ScatterArgs<T>& args) {
-    constexpr int kSide = 16 / sizeof(T);
+    constexpr int kSide = 16 / sizeof(T), kAhead = 32;
     const std::size_t stride = line_stride<T>(args.n), from_stride = 2 * stride;
     for (int part = 0; part < 2; ++part) {
         const T* from = args.lines + part * stride;
         T* to = args.rows + part * (stride / 2) + args.first_column;
         int row = 0;
         for (; row + kSide <= args.n; row += kSide) {
+            // Each row lies in another page, where no CPU looks ahead by itself.
+            for (int i = 0; i < kSide; ++i) __builtin_prefetch(to + (row + kAhead + i) * stride, 1);
             int column = 0;
             for (; column + kSide <= args.columns; column += kSide)
                 Turn(from + column * from_stride + row, from_stride, to + row * stride + column, stride);

@@ -25,6 +25,12 @@ struct Cascade {
     Buffer<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
 
     std::size_t modes() const { return cycles_per_s.size(); }
+    std::size_t held_bytes() const {
+        return (forward_re.size() + forward_im.size() + backward_re.size() + backward_im.size() +
+                chop.size()) *
+                   sizeof(T) +
+               cycles_per_s.size() * sizeof(double);
+    }
     // Where (mx, my = 0) stands.
     std::size_t middle(int mx) const { return (columns[mx] + columns[mx + 1]) / 2; }
 };

@@ -13,27 +13,43 @@ struct HiddenStrain {
     T xxxx, xxxy, xxyy, xyyy, yyyy;
 };
 
-// J's cumulants given the shown derivatives of the displacement. Variance ≥ 0; exactly 0 where nothing is
-// hidden.
+// tr(AVAV) and tr(AVAVAV): what J's cumulants take from V alone.
 template <class T>
-inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, const HiddenStrain<T>& v) {
-    const T gx = T(1) + dyy, gy = T(1) + dxx, gs = T(-2) * dxy;
-    // Vg, AV and then the traces; A has ½ off the diagonal (xx, yy) and −1 at (xy, xy).
-    const T vg_x = v.xxxx * gx + v.xxyy * gy + v.xxxy * gs;
-    const T vg_y = v.xxyy * gx + v.yyyy * gy + v.xyyy * gs;
-    const T vg_s = v.xxxy * gx + v.xyyy * gy + v.xxyy * gs;
+struct StrainTraces {
+    T second, third;
+};
+
+template <class T>
+inline StrainTraces<T> strain_traces(const HiddenStrain<T>& v) {
+    // AV; A has ½ off the diagonal (xx, yy) and −1 at (xy, xy).
     const T h = T(0.5);
     const T m[3][3] = {{h * v.xxyy, h * v.yyyy, h * v.xyyy},
                        {h * v.xxxx, h * v.xxyy, h * v.xxxy},
                        {-v.xxxy, -v.xyyy, -v.xxyy}};
-    T trace2 = T(0), trace3 = T(0);
+    StrainTraces<T> traces{T(0), T(0)};
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
-            trace2 += m[i][j] * m[j][i];
-            for (int k = 0; k < 3; ++k) trace3 += m[i][j] * m[j][k] * m[k][i];
+            traces.second += m[i][j] * m[j][i];
+            for (int k = 0; k < 3; ++k) traces.third += m[i][j] * m[j][k] * m[k][i];
         }
-    return {gx * gy - dxy * dxy, maximum(gx * vg_x + gy * vg_y + gs * vg_s + T(2) * trace2, T(0)),
-            T(6) * (vg_x * vg_y - vg_s * vg_s) + T(8) * trace3};
+    return traces;
+}
+
+// J's cumulants given the shown derivatives of the displacement. Variance ≥ 0; exactly 0 where nothing is
+// hidden.
+template <class T>
+inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, const HiddenStrain<T>& v,
+                                           const StrainTraces<T>& traces) {
+    const T gx = T(1) + dyy, gy = T(1) + dxx, gs = T(-2) * dxy;
+    const T vg_x = v.xxxx * gx + v.xxyy * gy + v.xxxy * gs;
+    const T vg_y = v.xxyy * gx + v.yyyy * gy + v.xyyy * gs;
+    const T vg_s = v.xxxy * gx + v.xyyy * gy + v.xxyy * gs;
+    return {gx * gy - dxy * dxy, maximum(gx * vg_x + gy * vg_y + gs * vg_s + T(2) * traces.second, T(0)),
+            T(6) * (vg_x * vg_y - vg_s * vg_s) + T(8) * traces.third};
+}
+template <class T>
+inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, const HiddenStrain<T>& v) {
+    return jacobian_moments(dxx, dyy, dxy, v, strain_traces(v));
 }
 
 namespace whitecaps_detail {

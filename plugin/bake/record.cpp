@@ -113,10 +113,18 @@ Record Record::load(const std::filesystem::path& file) {
     Record record;
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return record;
+    // Frame after frame, so that never more than one of them is in memory as JSON.
+    constexpr int kSection = 1, kFrame = 2;  // depths
+    std::string section, frame;
+    const auto take = [&](int depth, Json::parse_event_t event, const Json& parsed) {
+        if (event == Json::parse_event_t::key && depth == kSection) section = parsed;
+        if (event == Json::parse_event_t::key && depth == kFrame) frame = parsed;
+        if (event != Json::parse_event_t::object_end || depth != kFrame || section != "frames") return true;
+        record.frames_[std::stoi(frame)] = from_json(parsed);
+        return false;
+    };
     try {
-        const Json json = Json::parse(stream);
-        for (const auto& [frame, entry] : json.at("frames").items())
-            record.frames_[std::stoi(frame)] = from_json(entry);
+        [[maybe_unused]] const Json rest = Json::parse(stream, take);
     } catch (const std::exception&) {
         record.frames_.clear();
     }
@@ -184,15 +192,28 @@ void Record::save(const std::filesystem::path& file) {
     const files::FolderLock lock(file.parent_path());
     for (const auto& [frame, entry] : load(file).frames_)
         if (!own_.contains(frame)) frames_[frame] = entry;
-    files::write_atomically(file, text());
+    files::write_atomically(file, [this](const files::ByteSink& sink) { write(sink); });
 }
 
-std::string Record::text() const {
-    Json json = shot_;
-    json["frames"] = Json::object();
-    for (const auto& [number_of_frame, frame] : frames_)
-        json["frames"][std::to_string(number_of_frame)] = to_json(frame);
-    return json.dump(2) + "\n";
+// As one JSON object would be printed, but frame after frame, for the same reason as in load().
+void Record::write(const std::function<void(std::string_view)>& sink) const {
+    constexpr std::size_t kPiece = 1 << 16;  // bytes: a piece is a call of the system
+    const auto inside = [](const Json& object, const std::string& indent) {
+        std::istringstream lines(object.dump(2));
+        std::string text;
+        for (std::string line; std::getline(lines, line);)
+            if (line != "{" && line != "}") text += "\n" + indent + line;
+        return text;
+    };
+    std::string piece = "{" + inside(shot_, "") + ",\n  \"frames\": {";
+    for (const auto& [number_of_frame, frame] : frames_) {
+        if (number_of_frame != frames_.begin()->first) piece += ',';
+        piece += inside({{std::to_string(number_of_frame), to_json(frame)}}, "  ");
+        if (piece.size() < kPiece) continue;
+        sink(piece);
+        piece.clear();
+    }
+    sink(piece + (frames_.empty() ? "}\n}\n" : "\n  }\n}\n"));
 }
 
 }  // namespace pelagic

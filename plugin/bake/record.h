@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
@@ -62,7 +64,7 @@ class Record {
     void save(const std::filesystem::path& file);
 
   private:
-    std::string text() const;
+    void write(const std::function<void(std::string_view)>& sink) const;
 
     nlohmann::ordered_json shot_;
     std::set<int> own_;  // frames of this run

@@ -7,11 +7,12 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
 install_packages
-build release pelagic bench_stages bench_sampling bench_conservation bench_crate >/dev/null
+build release pelagic bench_stages bench_sampling bench_conservation bench_trains bench_crate >/dev/null
 bin=$PELAGIC_ROOT/build/release
 "$bin/bench/bench_stages"
 "$bin/bench/bench_sampling"
 "$bin/bench/bench_conservation"
+"$bin/bench/bench_trains"
 "$bin/bench/bench_crate"
 
 scratch=$(mktemp -d)

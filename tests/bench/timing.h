@@ -22,6 +22,7 @@ struct Timed {
         std::sort(sorted.begin(), sorted.end());
         return sorted[sorted.size() / 2];
     }
+    double least() const { return *std::min_element(ms.begin(), ms.end()); }
 };
 
 // Runs each once to warm up, then all in turn, `repeats` times.

@@ -5,10 +5,13 @@
 // pixel's (a cell's) footprint is its longer side there, δ d²/height at distance d. Two workloads: all fields
 // at the cells' corners, and the paper's: positions at the corners, normals and what is hidden at each pixel.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -103,9 +106,11 @@ void table() {
                          }});
     interleave(timed, 15);
 
-    std::printf("%d trains, %.3g m ... %.3g m, one thread, medians of 15 interleaved repeats\n", plan.count,
-                plan.shortest_m, plan.longest_m);
-    std::printf("  %-58s %8s %10s %14s %9s\n", "", "ms", "ns/point", "trains/point", "4 m / it");
+    std::printf(
+        "\nWave trains, %d of them, %.3g m ... %.3g m, one thread, medians of 15 interleaved repeats\n"
+        "(in the paper a whole frame, shading included, takes 2.5 times as long at 4 m as at 8000 m)\n",
+        plan.count, plan.shortest_m, plan.longest_m);
+    std::printf("  %-58s %8s %10s %14s %9s\n", "", "ms", "ns/point", "trains/point", "4 m : it");
     for (std::size_t i = 0; i < rows.size(); ++i) {
         std::size_t points = 0, evaluated = 0;
         for (const Load& load : rows[i].second) {

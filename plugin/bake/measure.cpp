@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <optional>
 
 #include "core/plan/tables.h"
 #include "core/scene/names.h"

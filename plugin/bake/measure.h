@@ -41,15 +41,15 @@ struct Milliseconds {
 
 struct Measured {
     std::string name;
-    PlanCost cost;
+    PlanCost cost{};
     // As a bake does it: the sea set to the frame's time, all points, the sums of the record; and its files'
     // bytes, but for a crate, which has none but the values.
-    Milliseconds compute, encode;
+    Milliseconds compute{}, encode{};
     int pairs = 0;  // of frames; 0: nothing changes, and nothing was measured
 };
 
 struct MeasureProgress {
-    std::string name;  // of the item at hand
+    std::string name{};  // of the item at hand
     int item = 0, items = 0;
     double seconds_left = 0.0;  // about
 };

@@ -1,11 +1,6 @@
 // pelagic bake SHOT.toml
 #include "plugin/bake/bake.h"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/task_arena.h>
-
-#include <charconv>
 #include <iostream>
 #include <new>
 #include <optional>
@@ -18,34 +13,19 @@
 #include "plugin/cli/progress.h"
 #include "plugin/cli/stop.h"
 #include "plugin/cli/text.h"
+#include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
 namespace {
 
-constexpr int kMostThreads = 256;  // beyond, a frame's work is too small to be shared
-
 struct Arguments {
     std::string shot;
     std::optional<std::string> out;
     std::optional<std::string> frames;
-    std::string threads;  // empty: all cores of the process's affinity mask
+    std::string threads;
 };
-
-// Empty where it is a number of threads, else what is wrong with it.
-std::string refuse_threads(const std::string& text) {
-    int number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc() && end == text.data() + text.size() && number >= 1 && number <= kMostThreads)
-        return {};
-    return text + " is not a number of threads; accepted: 1 … " + std::to_string(kMostThreads) +
-           ", or no --threads for all cores";
-}
-
-int thread_count(const Arguments& arguments) {
-    return arguments.threads.empty() ? tbb::info::default_concurrency() : std::stoi(arguments.threads);
-}
 
 void print_done(const BakeReport& report, const std::string& out) {
     if (!report.root.empty()) std::cout << "stage:  " << report.root.string() << '\n';
@@ -113,14 +93,10 @@ int run(const Arguments& arguments) {
         progress.show(now);
     };
 
-    // The first bounds the threads of the process, the second asks for that many, also beyond the cores.
-    const int threads = thread_count(arguments);
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(threads));
-    tbb::task_arena arena(threads);
+    Threads threads(arguments.threads);
     BakeReport report;
     try {
-        report = arena.execute([&] { return bake(scene, options); });
+        report = threads.execute([&] { return bake(scene, options); });
     } catch (const std::bad_alloc&) {
         progress.clear();
         std::cerr << out_of_memory(scene);
@@ -148,9 +124,7 @@ Verb add_bake(CLI::App& program) {
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
-    command->add_option("--threads", arguments->threads, help::kThreads)
-        ->type_name("N")
-        ->check(CLI::Validator(refuse_threads, ""));
+    add_threads(*command, arguments->threads, help::kThreads);
     return {command, [arguments] { return run(*arguments); }};
 }
 

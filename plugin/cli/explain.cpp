@@ -1,24 +1,131 @@
 // pelagic explain SHOT.toml
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <iostream>
+#include <limits>
+#include <memory>
+#include <new>
+#include <string>
 
 #include "core/plan/plan.h"
+#include "plugin/bake/measure.h"
+#include "plugin/bake/record.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/progress.h"
+#include "plugin/cli/text.h"
+#include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
+namespace {
+
+struct Arguments {
+    std::string shot;
+    bool measure = false;
+    std::string threads;
+};
+
+// What the system could give this process without swapping; the largest number where it doesn't tell.
+std::size_t free_bytes() {
+    std::ifstream memory("/proc/meminfo");
+    for (std::string key, rest; memory >> key; std::getline(memory, rest)) {
+        std::size_t kib = 0;
+        if (key == "MemAvailable:" && memory >> kib) return kib * 1024;
+    }
+    return std::numeric_limits<std::size_t>::max();
+}
+
+std::string signed_bytes(std::int64_t bytes) {
+    return (bytes < 0 ? "-" : "") + bytes_text(static_cast<std::size_t>(std::abs(bytes)));
+}
+
+std::string milliseconds_text(const Milliseconds& ms) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "%.2f (%.2f)", ms.median, ms.spread);
+    return text.data();
+}
+
+// Columns of fixed width, so that a row can be printed as soon as it is known.
+void print_row(const std::array<std::string, 8>& cells) {
+    constexpr std::array<int, 8> kWidths{-23, 10, 8, 10, 10, 10, 17, 17};
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto width = static_cast<std::size_t>(std::abs(kWidths[i]));
+        const std::string space(width - std::min(width, cells[i].size()), ' ');
+        std::cout << (i > 0 ? " " : "") << (kWidths[i] < 0 ? cells[i] + space : space + cells[i]);
+    }
+    std::cout << std::endl;  // flushed: a row that took seconds is not lost
+}
+
+void print_measured(const Measured& measured) {
+    const PlanCost& cost = measured.cost;
+    print_row({measured.name, std::to_string(cost.transforms), std::to_string(cost.lines),
+               signed_bytes(cost.sea_bytes), signed_bytes(cost.frame_bytes), signed_bytes(cost.output_bytes),
+               milliseconds_text(measured.compute), milliseconds_text(measured.encode)});
+}
+
+int refuse_memory(std::size_t needed, const std::string& there) {
+    std::cerr
+        << "pelagic: measuring holds the sea twice, with and without an item: about " << bytes_text(needed)
+        << there
+        << "; lower surface.resolution, output.map_resolution or the cascades' resolutions, or run explain "
+           "without --measure\n";
+    return kRefused;
+}
+
+int print_prices(const Scene& scene, const Arguments& arguments) {
+    const std::size_t needed = measure_bytes(scene);
+    if (const std::size_t there = free_bytes(); needed > there)
+        return refuse_memory(needed, ", and " + bytes_text(there) + " are free");
+    Threads threads(arguments.threads);
+    std::cout << "\nPrices: a frame with the item less a frame without it, on "
+              << count_text(threads.count(), "thread", "threads") << ", " << instruction_set()
+              << ".\nBytes: held by the sea, by a frame, and by points and results. Milliseconds: median "
+                 "(half of what "
+                 "holds\nthe middle half); computing as a bake does it, and encoding its files.\n\n";
+    print_row({"", "transforms", "lines", "sea", "frame", "output", "compute, ms", "encode, ms"});
+    Progress progress;
+    MeasureOptions options;
+    options.progress = [&](const MeasureProgress& now) {
+        std::string line = "measuring " + now.name;
+        if (now.seconds_left > 0.0)
+            line += ", " + std::to_string(now.item + 1) + " of " + std::to_string(now.items) + ", about " +
+                    duration_text(now.seconds_left) + " left";
+        progress.show(line);
+    };
+    options.measured = [&](const Measured& measured) {
+        progress.clear();
+        print_measured(measured);
+    };
+    try {
+        const Measured whole = threads.execute([&] { return measure(scene, options); });
+        progress.clear();
+        print_measured(whole);
+    } catch (const std::bad_alloc&) {
+        progress.clear();
+        return refuse_memory(needed, ", which this process doesn't get");
+    }
+    return kDone;
+}
+
+}  // namespace
 
 Verb add_explain(CLI::App& program) {
     CLI::App* command = program.add_subcommand("explain", help::kExplain);
     command->group(help::kVerbs);
     command->footer(help::kExplainFooter);
-    auto file = std::make_shared<std::string>();
-    command->add_option("SHOT.toml", *file, help::kShot)->required()->type_name("");
-    return {command, [file] {
-                const Scene scene = load_shot(*file);
+    auto arguments = std::make_shared<Arguments>();
+    command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
+    CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);
+    add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
+    return {command, [arguments] {
+                const Scene scene = load_shot(arguments->shot);
                 std::cout << explain(scene, make_plan(scene)) << std::flush;
-                return kDone;
+                return arguments->measure ? print_prices(scene, *arguments) : int{kDone};
             }};
 }
 

@@ -19,6 +19,8 @@ extern const char* const kThreads;
 
 extern const char* const kExplain;
 extern const char* const kExplainFooter;
+extern const char* const kMeasure;
+extern const char* const kMeasureThreads;
 
 extern const char* const kValidate;
 extern const char* const kValidateFooter;

@@ -1,4 +1,4 @@
-// What a running bake shows. See progress.h.
+// What running work shows. See progress.h.
 #include "plugin/cli/progress.h"
 
 #include <sys/ioctl.h>
@@ -111,6 +111,15 @@ void Progress::show(const BakeProgress& progress) {
     last_ = now;
     if (terminal_) return write_over(progress_bar(progress, terminal_columns()));
     print(progress_line(progress) + '\n');
+}
+
+void Progress::show(const std::string& line) {
+    const Clock::time_point now = Clock::now();
+    if (frame_said_ && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery)) return;
+    frame_said_ = true;
+    last_ = now;
+    if (terminal_) return write_over(line.substr(0, static_cast<std::size_t>(terminal_columns()) - 1));
+    print(line + '\n');
 }
 
 void Progress::clear() {

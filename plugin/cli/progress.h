@@ -1,4 +1,4 @@
-// What a running bake shows on stderr: on a terminal one line that is written over and over, elsewhere plain
+// What running work shows on stderr: on a terminal one line that is written over and over, elsewhere plain
 // lines that come seldom enough for a log.
 #pragma once
 
@@ -17,7 +17,8 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     void show(const BakeProgress& progress);
-    void clear();  // takes the line away, so that a message can follow
+    void show(const std::string& line);  // work that is no bake, in the caller's words
+    void clear();                        // takes the line away, so that a message can follow
 
   private:
     using Clock = std::chrono::steady_clock;

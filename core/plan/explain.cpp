@@ -47,8 +47,9 @@ std::string field_list(FieldSet set) {
 }
 
 std::string footprint_text(const std::vector<double>& footprints_m, double n_min) {
-    if (footprints_m.size() == 1 && footprints_m.front() == 0.0) return "nothing filtered";
-    std::string text = format("waves from %.4g m up", n_min * footprints_m.front());
+    std::string text = footprints_m.front() > 0.0
+                           ? format("waves from %.4g m up", n_min * footprints_m.front())
+                           : std::string("nothing filtered");
     if (footprints_m.size() > 1) text += format(" … %.4g m", n_min * footprints_m.back());
     return text;
 }

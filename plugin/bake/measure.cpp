@@ -17,10 +17,6 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-struct FrameTimes {
-    double compute_ms = 0.0, encode_ms = 0.0;
-};
-
 // Frames of a shot; none, and no time, where it asks for nothing.
 class Runner {
   public:
@@ -29,17 +25,24 @@ class Runner {
         if (!plan.queries.empty()) sequence_ = make_sequence(scene, plan);
         build_s_ = seconds_since(start);
     }
-    FrameTimes run(int frame) {
-        if (!sequence_) return {};
-        const auto start = Clock::now();
-        sequence_->compute(frame, slot_);
-        const double compute_s = seconds_since(start);
-        sequence_->encode(slot_);
-        return {1e3 * compute_s, 1e3 * (seconds_since(start) - compute_s)};
+    double compute_ms(int frame) {
+        return timed_ms([&] { sequence_->compute(frame, slot_); });
+    }
+    // Of the frame that was computed last.
+    double encode_ms() {
+        return timed_ms([&] { sequence_->encode(slot_); });
     }
     double build_s() const { return build_s_; }
 
   private:
+    template <class Work>
+    double timed_ms(const Work& work) {
+        if (!sequence_) return 0.0;
+        const auto start = Clock::now();
+        work();
+        return 1e3 * seconds_since(start);
+    }
+
     std::unique_ptr<Sequence> sequence_;
     FrameSlot slot_;
     double build_s_ = 0.0;
@@ -55,14 +58,6 @@ Milliseconds summary(std::vector<double> ms) {
     std::sort(ms.begin(), ms.end());
     return {quantile(ms, 0.5), 0.5 * (quantile(ms, 0.75) - quantile(ms, 0.25))};
 }
-
-struct Samples {
-    std::vector<double> compute_ms, encode_ms;
-    void add(const FrameTimes& times) {
-        compute_ms.push_back(times.compute_ms);
-        encode_ms.push_back(times.encode_ms);
-    }
-};
 
 // Whether both plans compute the same numbers in the same way.
 bool same_work(const Plan& a, const Plan& b) {
@@ -148,42 +143,54 @@ Measured measure(const Scene& scene, const MeasureOptions& options) {
     };
     tell("the whole", 0.0);
     Runner whole(scene, plan);
-    const FrameTimes first = whole.run(scene.shot.first_frame);  // which also allocates
-    const double pair_s = 2e-3 * (first.compute_ms + first.encode_ms);
-    const auto bounded = [&](double pairs) {
-        return std::clamp(pairs, 1.0 * options.least_pairs, 1.0 * options.most_pairs);
+    // Which also allocates.
+    const double compute_s = 1e-3 * whole.compute_ms(scene.shot.first_frame);
+    const double encode_s = 1e-3 * whole.encode_ms();
+    // Half of an item's time for either.
+    const double half_s = 0.5 * options.seconds_an_item;
+    const auto expected_s = [&](double once_s) {
+        return 2.0 * once_s *
+               std::clamp(half_s / (2.0 * once_s), 1.0 * options.least_pairs, 1.0 * options.most_pairs);
     };
-    const double item_s = whole.build_s() + pair_s * (1.0 + bounded(options.seconds_an_item / pair_s));
+    const double item_s =
+        whole.build_s() + compute_s + encode_s + expected_s(compute_s) + expected_s(encode_s);
 
-    Samples of_whole;
-    const auto frame_of = [&](int i) {
-        const long count = long{scene.shot.last_frame} - scene.shot.first_frame + 1;
-        return static_cast<int>(scene.shot.first_frame + i % count);
-    };
+    std::vector<double> whole_compute_ms, whole_encode_ms;
     const auto measure_item = [&](const MeasureItem& item) {
         const Plan planned = make_plan(item.without);
         Measured result{.name = item.name, .cost = cost_of(plan) - cost_of(planned)};
         if (same_work(plan, planned)) return result;
+        const auto begin = Clock::now();
         Runner without(item.without, planned);
-        without.run(scene.shot.first_frame);
-        Samples difference;
-        const auto start = Clock::now();
-        for (; result.pairs < options.most_pairs; ++result.pairs) {
-            if (result.pairs >= options.least_pairs && seconds_since(start) > options.seconds_an_item) break;
-            // Each of the two goes first every other time: whoever comes second finds the caches as the first
-            // left them.
-            const int frame = frame_of(result.pairs);
-            FrameTimes with, less;
-            if (result.pairs % 2 == 0) with = whole.run(frame);
-            less = without.run(frame);
-            if (result.pairs % 2 == 1) with = whole.run(frame);
-            of_whole.add(with);
-            difference.add({with.compute_ms - less.compute_ms, with.encode_ms - less.encode_ms});
-            tell(item.name, std::max(item_s - seconds_since(start), 0.0) +
-                                item_s * (progress.items - progress.item - 1));
-        }
-        result.compute = summary(std::move(difference.compute_ms));
-        result.encode = summary(std::move(difference.encode_ms));
+        without.compute_ms(scene.shot.first_frame);
+        without.encode_ms();
+        // Differences of pairs. Each of the two goes first every other time: whoever comes second finds the
+        // caches as the first left them.
+        const auto differences = [&](const auto& once_ms, std::vector<double>& of_whole) {
+            std::vector<double> ms;
+            const auto start = Clock::now();
+            for (int i = 0; i < options.most_pairs; ++i) {
+                if (i >= options.least_pairs && seconds_since(start) > half_s) break;
+                double with = 0.0;
+                if (i % 2 == 0) with = once_ms(whole, i);
+                const double less = once_ms(without, i);
+                if (i % 2 == 1) with = once_ms(whole, i);
+                of_whole.push_back(with);
+                ms.push_back(with - less);
+                tell(item.name, std::max(item_s - seconds_since(begin), 0.0) +
+                                    item_s * (progress.items - progress.item - 1));
+            }
+            return ms;
+        };
+        const long frames = long{scene.shot.last_frame} - scene.shot.first_frame + 1;
+        const auto compute = [&](Runner& runner, int i) {
+            return runner.compute_ms(static_cast<int>(scene.shot.first_frame + i % frames));
+        };
+        const auto compute_ms = differences(compute, whole_compute_ms);
+        result.pairs = static_cast<int>(compute_ms.size());
+        result.compute = summary(compute_ms);
+        result.encode =
+            summary(differences([](Runner& runner, int) { return runner.encode_ms(); }, whole_encode_ms));
         return result;
     };
     for (; progress.item < progress.items; ++progress.item) {
@@ -193,9 +200,9 @@ Measured measure(const Scene& scene, const MeasureOptions& options) {
     }
     return {.name = "the whole",
             .cost = cost_of(plan),
-            .compute = summary(of_whole.compute_ms),
-            .encode = summary(of_whole.encode_ms),
-            .pairs = static_cast<int>(of_whole.compute_ms.size())};
+            .compute = summary(whole_compute_ms),
+            .encode = summary(whole_encode_ms),
+            .pairs = static_cast<int>(whole_compute_ms.size())};
 }
 
 }  // namespace pelagic

@@ -45,7 +45,7 @@ struct Measured {
     // As a bake does it: the sea set to the frame's time, all points, the sums of the record; and its files'
     // bytes, but for a crate, which has none but the values.
     Milliseconds compute{}, encode{};
-    int pairs = 0;  // of frames; 0: nothing changes, and nothing was measured
+    int pairs = 0;  // of computed frames; 0: nothing changes, and nothing was measured
 };
 
 struct MeasureProgress {
@@ -55,7 +55,9 @@ struct MeasureProgress {
 };
 
 struct MeasureOptions {
-    double seconds_an_item = 2.0;  // of frames, if there are enough by then; building the sea comes on top
+    // Half for computing and half for encoding, if there are enough pairs by then; building the sea comes on
+    // top.
+    double seconds_an_item = 2.0;
     int least_pairs = 3, most_pairs = 25;
     std::function<void(const MeasureProgress&)> progress;  // may be empty
     std::function<void(const Measured&)> measured;         // each item as soon as it is known; may be empty

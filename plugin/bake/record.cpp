@@ -99,16 +99,6 @@ FrameRecord from_json(const Json& json) {
 
 }  // namespace
 
-std::string instruction_set() {
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) return "avx2";
-    if (__builtin_cpu_supports("avx")) return "avx";
-    return "sse2";
-#else
-    return "baseline";
-#endif
-}
-
 Record Record::load(const std::filesystem::path& file) {
     Record record;
     std::ifstream stream(file, std::ios::binary);

@@ -12,15 +12,12 @@
 #include <string>
 #include <string_view>
 
+#include "core/base/instruction_set.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/spectrum/spectral_moments.h"
 
 namespace pelagic {
-
-// The widest vector instructions that the running CPU offers to FFTW: "avx2", "avx", "sse2" or "baseline".
-// Frames of two kinds of machine agree to 1e-5 of Hs; on one kind they are the same bits.
-std::string instruction_set();
 
 // Of the waves of one moment, over their whole period: sums over the modes that the outputs show.
 struct WaveRecord {

@@ -10,9 +10,9 @@
 #include <new>
 #include <string>
 
+#include "core/base/instruction_set.h"
 #include "core/plan/plan.h"
 #include "plugin/bake/measure.h"
-#include "plugin/bake/record.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/progress.h"
@@ -41,6 +41,7 @@ std::size_t free_bytes() {
 }
 
 std::string signed_bytes(std::int64_t bytes) {
+    if (bytes == 0) return "0";
     return (bytes < 0 ? "-" : "") + bytes_text(static_cast<std::size_t>(std::abs(bytes)));
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 #include <stdexcept>
 
 #include "core/plan/grid_layout.h"
@@ -12,7 +13,7 @@ namespace pelagic::bench {
 namespace {
 
 constexpr int kPadding = 16;  // complex values: two cache lines, against strides that are powers of two
-constexpr double kMeasure_s = 8.0;  // at most, for each plan
+constexpr double kPatience_s = 30.0;  // at most, for each plan
 
 struct Initialised {
     Initialised() { fftwf_init_threads(); }
@@ -35,9 +36,9 @@ BareFftw::BareFftw(int n, int fields)
     static const Initialised once;
 }
 
-BareFftw::Handle BareFftw::planned(const Arrangement& a, int threads, unsigned flag, double limit_s) {
+BareFftw::Handle BareFftw::planned(const Arrangement& a, int threads, unsigned flag) {
     fftwf_plan_with_nthreads(a.split ? threads : 1);
-    fftwf_set_timelimit(limit_s);
+    fftwf_set_timelimit(kPatience_s);
     const int size[2] = {n_, n_};
     auto* from = reinterpret_cast<fftwf_complex*>(from_.data());
     float* to = a.in_place ? from_.data() : to_.data();
@@ -56,7 +57,7 @@ BareFftw::Handle BareFftw::planned(const Arrangement& a, int threads, unsigned f
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     // FFTW plans with rising patience and keeps the last that it finished in time.
     std::string planning = flag == FFTW_PATIENT ? "PATIENT" : "MEASURE";
-    if (spent.count() >= limit_s) planning += " for " + std::to_string(static_cast<int>(limit_s)) + " s";
+    if (spent.count() >= kPatience_s) planning += " until stopped";
     return Handle(new Planned{a, planning, plan}, Destroy());
 }
 
@@ -87,32 +88,39 @@ Timed BareFftw::timed(const Handle& handle) {
     return {handle->arrangement.name() + "; " + handle->planning, [this, handle] { run(*handle); }};
 }
 
-std::vector<Timed> BareFftw::fastest(int threads, double patience_s) {
-    for (const bool split : {false, true}) {
-        const auto known = [&](const Handle& h) { return h->arrangement.split == split; };
-        if ((split && threads == 1) || std::any_of(measured_.begin(), measured_.end(), known)) continue;
+std::vector<Timed> BareFftw::fastest(int threads) {
+    const auto is_known = [&](const Arrangement& a) {
+        return std::any_of(measured_.begin(), measured_.end(),
+                           [&](const Handle& h) { return h->arrangement == a; });
+    };
+    for (const bool split : {false, true})
         for (const bool two_in_one : {true, false})
             for (const bool in_place : {true, false})
-                for (const int padding : {0, kPadding})
-                    measured_.push_back(
-                        planned({two_in_one, in_place, padding, split}, threads, FFTW_MEASURE, kMeasure_s));
-    }
+                for (const int padding : {0, kPadding}) {
+                    const Arrangement a{two_in_one, in_place, padding, split};
+                    if ((split && threads == 1) || (n_ > 1024 && padding == 0) ||
+                        (n_ > 2048 && (split || !in_place)) || is_known(a))
+                        continue;
+                    measured_.push_back(planned(a, threads, FFTW_MEASURE));
+                }
     std::vector<Handle> usable;
+    for (const Handle& handle : measured_)
+        if (!handle->arrangement.split || threads > 1) usable.push_back(handle);
     std::vector<Timed> contest;
-    for (const Handle& handle : measured_) {
-        if (handle->arrangement.split && threads == 1) continue;
-        usable.push_back(handle);
-        contest.push_back(timed(handle));
-    }
+    for (const Handle& handle : usable) contest.push_back(timed(handle));
     interleave(contest, 5);
     std::vector<std::size_t> order(contest.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::iota(order.begin(), order.end(), std::size_t(0));
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return contest[a].least() < contest[b].least(); });
-    std::vector<Timed> best;
-    for (std::size_t i = 0; i < 2; ++i) {
-        best.push_back(timed(usable[order[i]]));
-        best.push_back(timed(planned(usable[order[i]]->arrangement, threads, FFTW_PATIENT, patience_s)));
+    std::vector<Timed> best{timed(usable[order[0]]), timed(usable[order[1]])};
+    if (n_ <= 1024) {
+        const Arrangement& first = usable[order[0]]->arrangement;
+        auto found = std::find_if(patient_.begin(), patient_.end(),
+                                  [&](const Handle& h) { return h->arrangement == first; });
+        if (found == patient_.end())
+            found = patient_.insert(patient_.end(), planned(first, threads, FFTW_PATIENT));
+        best.push_back(timed(*found));
     }
     fftwf_set_timelimit(FFTW_NO_TIMELIMIT);
     fftwf_plan_with_nthreads(1);

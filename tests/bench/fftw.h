@@ -17,9 +17,10 @@ namespace pelagic::bench {
 struct Arrangement {
     bool two_in_one = true;  // two real fields in a complex transform; else a complex-to-real one each
     bool in_place = true;
-    int padding = 0;   // complex values behind each row
+    int padding = 0;     // complex values behind each row
     bool split = false;  // each transform by all threads; else several side by side, one thread each
     std::string name() const;
+    bool operator==(const Arrangement&) const = default;
 };
 
 // The bare transforms of `fields` (even) fields of n × n. They share memory: huge pages where there are any.
@@ -27,11 +28,11 @@ class BareFftw {
   public:
     BareFftw(int n, int fields);
 
-    // Every arrangement that `threads` threads can use, planned by FFTW_MEASURE, and the two fastest of them
-    // again by FFTW_PATIENT, each plan for at most `patience_s` seconds; the fastest of each planning, ready
-    // to be timed beside something else. Called within a tbb::global_control of as many threads; leaves no
-    // wisdom behind.
-    std::vector<Timed> fastest(int threads, double patience_s);
+    // The two fastest arrangements for that many threads, planned by FFTW_MEASURE, and the first of them by
+    // FFTW_PATIENT, ready to be timed beside something else. Called within a tbb::global_control of as many
+    // threads; leaves no wisdom behind. All arrangements compete up to 1024², rows padded only and no
+    // FFTW_PATIENT above (half an hour of planning; padded rows always win there), in place only above 2048².
+    std::vector<Timed> fastest(int threads);
 
   private:
     struct Planned {
@@ -47,14 +48,14 @@ class BareFftw {
     };
     using Handle = std::shared_ptr<const Planned>;
 
-    Handle planned(const Arrangement&, int threads, unsigned flag, double limit_s);
+    Handle planned(const Arrangement&, int threads, unsigned flag);
     Timed timed(const Handle&);
     void run(const Planned&);
 
     int n_, fields_;
     std::size_t slot_;  // floats of two fields, padding included
     Buffer<float> from_, to_;
-    std::vector<Handle> measured_;  // kept from one number of threads to the next
+    std::vector<Handle> measured_, patient_;  // kept from one number of threads to the next
 };
 
 // Lines of n values, as core/waves/transform lays them out, planned for long: what FFTW knows afterwards

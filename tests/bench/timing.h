@@ -37,6 +37,10 @@ inline void interleave(std::vector<Timed>& timed, int repeats) {
         }
 }
 
+inline const char* verdict(bool met) {
+    return met ? "met" : "missed";
+}
+
 // Largest resident memory of this process, or of the children that it has waited for, so far [MiB].
 inline double peak_mib(int who = RUSAGE_SELF) {
     rusage usage{};

@@ -51,7 +51,7 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
 TEST_F(Cli, HelpOfEachVerbNamesEachOption) {
     const std::vector<std::pair<std::string, std::vector<std::string>>> verbs{
         {"bake", {"SHOT.toml", "--out", "--frames", "--threads", "--help", "folder in the working folder"}},
-        {"explain", {"SHOT.toml", "--help"}},
+        {"explain", {"SHOT.toml", "--measure", "--threads", "--help"}},
         {"validate", {"SHOT.toml", "--help"}},
         {"keys", {"--help"}}};
     for (const auto& [verb, options] : verbs) {

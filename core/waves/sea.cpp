@@ -145,6 +145,15 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
     }
 }
 
+template <class T>
+SpectralMoments Sea<T>::shown(int query) const {
+    const Query& asked = plan_.queries.at(query).query;
+    SpectralMoments moments = statistics(query).resolved.front();
+    if (plan_.trains && !asked.only_cascade)
+        moments += resolved(trains_, plan_.filter, asked.pixel_m.front());
+    return moments;
+}
+
 template class Sea<float>;
 template class Sea<double>;
 

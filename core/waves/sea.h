@@ -57,6 +57,8 @@ class Sea {
     // The whole sea, capillary tail included; Jacobian moments times choppiness².
     const SpectralMoments& total() const { return total_; }
     const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
+    // What a query's finest pixels show of total(), cascades and trains.
+    SpectralMoments shown(int query) const;
     // J below this is foam (core/waves/whitecaps.h).
     double whitecap_threshold() const { return whitecap_threshold_; }
     // Σ over this cascade's modes of E|h|² [m²]: its band's m0.

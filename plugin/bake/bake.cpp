@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <map>
 
 #include "core/scene/validate.h"
 #include "plugin/bake/record.h"
@@ -70,15 +71,19 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     BakeReport report;
     report.total = progress.total;
     report.record = options.out / (scene.shot.name + ".json");
-    Record record = Record::load(report.record);
     std::vector<int> missing;
-    for (const int frame : frames)
-        if (!record.is_whole(frame, fingerprint, options.out)) missing.push_back(frame);
+    {
+        const std::map<int, FrameRecord> recorded = recorded_frames(report.record);
+        for (const int frame : frames)
+            if (const auto found = recorded.find(frame);
+                found == recorded.end() || !is_whole(found->second, fingerprint, options.out))
+                missing.push_back(frame);
+        for (const auto& [frame, entry] : recorded)
+            if (entry.fingerprint != fingerprint && frame >= scene.shot.first_frame &&
+                frame <= scene.shot.last_frame && !std::binary_search(frames.begin(), frames.end(), frame))
+                report.stale.push_back(frame);
+    }
     progress.kept = report.kept = static_cast<int>(frames.size() - missing.size());
-    for (const auto& [frame, entry] : record.frames())
-        if (entry.fingerprint != fingerprint && frame >= scene.shot.first_frame &&
-            frame <= scene.shot.last_frame && !std::binary_search(frames.begin(), frames.end(), frame))
-            report.stale.push_back(frame);
 
     report_progress(BakeStage::Building);
     const auto start = std::chrono::steady_clock::now();
@@ -90,6 +95,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         stop_if_cancelled();
         const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan);
         report_progress(BakeStage::Frames);
+        Record record;
         record.describe(scene, plan, sequence->total(), sequence->whitecap_threshold());
         sequence->write_static(write);
         if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");

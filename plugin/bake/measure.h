@@ -58,7 +58,7 @@ struct MeasureOptions {
     // Half for computing and half for encoding, if there are enough pairs by then; building the sea comes on
     // top.
     double seconds_an_item = 2.0;
-    int least_pairs = 3, most_pairs = 25;
+    int least_pairs = 4, most_pairs = 24;
     std::function<void(const MeasureProgress&)> progress;  // may be empty
     std::function<void(const Measured&)> measured;         // each item as soon as it is known; may be empty
 };

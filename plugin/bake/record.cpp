@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include "core/base/constants.h"
@@ -97,28 +98,45 @@ FrameRecord from_json(const Json& json) {
     return frame;
 }
 
-}  // namespace
-
-Record Record::load(const std::filesystem::path& file) {
-    Record record;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return record;
-    // Frame after frame, so that never more than one of them is in memory as JSON.
+// Each frame of a record in turn, so that never more than one of them is in memory; whether it could be read
+// to its end.
+bool read_frames(const std::filesystem::path& file, const std::function<void(int, FrameRecord)>& take) {
     constexpr int kSection = 1, kFrame = 2;  // depths
     std::string section, frame;
-    const auto take = [&](int depth, Json::parse_event_t event, const Json& parsed) {
+    const auto at_event = [&](int depth, Json::parse_event_t event, const Json& parsed) {
         if (event == Json::parse_event_t::key && depth == kSection) section = parsed;
         if (event == Json::parse_event_t::key && depth == kFrame) frame = parsed;
         if (event != Json::parse_event_t::object_end || depth != kFrame || section != "frames") return true;
-        record.frames_[std::stoi(frame)] = from_json(parsed);
+        take(std::stoi(frame), from_json(parsed));
         return false;
     };
+    std::ifstream stream(file, std::ios::binary);
     try {
-        [[maybe_unused]] const Json rest = Json::parse(stream, take);
+        [[maybe_unused]] const Json rest = Json::parse(stream, at_event);
+    } catch (const files::FileError&) {
+        throw;  // of who takes the frames
     } catch (const std::exception&) {
-        record.frames_.clear();
+        return false;
     }
-    return record;
+    return true;
+}
+
+// The object's lines without its own brackets, each after a line's end and `indent`.
+std::string lines_inside(const Json& object, const std::string& indent) {
+    std::istringstream lines(object.dump(2));
+    std::string text;
+    for (std::string line; std::getline(lines, line);)
+        if (line != "{" && line != "}") text += "\n" + indent + line;
+    return text;
+}
+
+}  // namespace
+
+std::map<int, FrameRecord> recorded_frames(const std::filesystem::path& file) {
+    std::map<int, FrameRecord> frames;
+    if (!read_frames(file, [&](int number, FrameRecord frame) { frames[number] = std::move(frame); }))
+        frames.clear();
+    return frames;
 }
 
 void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoments& total,
@@ -161,6 +179,10 @@ void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoment
     planned["sea_bytes"] = plan.sea_bytes();
     planned["frame_bytes"] = plan.frame_bytes();
     planned["output_bytes"] = plan.output_bytes();
+    if (plan.trains)
+        planned["trains"] = {{"count", plan.trains->count},
+                             {"longest_m", plan.trains->longest_m},
+                             {"shortest_m", plan.trains->shortest_m}};
     planned["cascades"] = Json::array();
     for (const CascadePlan& cascade : plan.cascades)
         planned["cascades"].push_back({{"size_m", cascade.size_m},
@@ -170,40 +192,45 @@ void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoment
                                        {"modes", lattice_modes(cascade.grid_radius())}});
 }
 
-bool Record::is_whole(int frame, const std::string& fingerprint, const std::filesystem::path& folder) const {
-    const auto found = frames_.find(frame);
-    if (found == frames_.end() || found->second.fingerprint != fingerprint) return false;
-    for (const auto& [path, size] : found->second.files)
+bool is_whole(const FrameRecord& frame, const std::string& fingerprint, const std::filesystem::path& folder) {
+    if (frame.fingerprint != fingerprint) return false;
+    for (const auto& [path, size] : frame.files)
         if (files::file_size(folder / path) != size || !carries(folder / path, fingerprint)) return false;
     return true;
 }
 
 void Record::save(const std::filesystem::path& file) {
     const files::FolderLock lock(file.parent_path());
-    for (const auto& [frame, entry] : load(file).frames_)
-        if (!own_.contains(frame)) frames_[frame] = entry;
-    files::write_atomically(file, [this](const files::ByteSink& sink) { write(sink); });
+    files::write_atomically(file, [&](const files::ByteSink& sink) { write(file, sink); });
+    unsaved_.clear();
 }
 
-// As one JSON object would be printed, but frame after frame, for the same reason as in load().
-void Record::write(const std::function<void(std::string_view)>& sink) const {
+// As one JSON object would be printed, frames by rising number, those of `former` merged with ours.
+void Record::write(const std::filesystem::path& former,
+                   const std::function<void(std::string_view)>& sink) const {
     constexpr std::size_t kPiece = 1 << 16;  // bytes: a piece is a call of the system
-    const auto inside = [](const Json& object, const std::string& indent) {
-        std::istringstream lines(object.dump(2));
-        std::string text;
-        for (std::string line; std::getline(lines, line);)
-            if (line != "{" && line != "}") text += "\n" + indent + line;
-        return text;
-    };
-    std::string piece = "{" + inside(shot_, "") + ",\n  \"frames\": {";
-    for (const auto& [number_of_frame, frame] : frames_) {
-        if (number_of_frame != frames_.begin()->first) piece += ',';
-        piece += inside({{std::to_string(number_of_frame), to_json(frame)}}, "  ");
-        if (piece.size() < kPiece) continue;
+    std::string piece = "{" + lines_inside(shot_, "") + ",\n  \"frames\": {";
+    std::optional<int> last;
+    const auto add = [&](int number, const FrameRecord& frame) {
+        if (last && number <= *last) return;  // ours have taken its place, or somebody has mixed them up
+        if (last) piece += ',';
+        last = number;
+        piece += lines_inside({{std::to_string(number), to_json(frame)}}, "  ");
+        if (piece.size() < kPiece) return;
         sink(piece);
         piece.clear();
-    }
-    sink(piece + (frames_.empty() ? "}\n}\n" : "\n  }\n}\n"));
+    };
+    auto ours = unsaved_.begin();
+    const auto add_ours_up_to = [&](int number) {
+        for (; ours != unsaved_.end() && ours->first <= number; ++ours) add(ours->first, ours->second);
+    };
+    // Where the former one can't be read any further, ours goes on without it.
+    read_frames(former, [&](int number, const FrameRecord& frame) {
+        add_ours_up_to(number);
+        add(number, frame);
+    });
+    add_ours_up_to(std::numeric_limits<int>::max());
+    sink(piece + (last ? "\n  }\n}\n" : "}\n}\n"));
 }
 
 }  // namespace pelagic

@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 
@@ -36,36 +35,33 @@ struct FrameRecord {
     std::optional<double> coverage;                   // mean over the mesh, or over the map without one
 };
 
+// The frames that the record at `file` holds; none where there is no record, or one that can't be read as
+// ours: its frames are baked again.
+std::map<int, FrameRecord> recorded_frames(const std::filesystem::path& file);
+
+// Every file of the frame is there, has its recorded size and says that it is of this fingerprint: the record
+// alone would vouch for a file that another shot has replaced since.
+bool is_whole(const FrameRecord& frame, const std::string& fingerprint, const std::filesystem::path& folder);
+
+// What a run adds to the record of its shot.
 class Record {
   public:
-    // What stands in DIR already, or an empty record where there is none. One that can't be read as ours
-    // counts as none: its frames are baked again.
-    static Record load(const std::filesystem::path& file);
-
     // The part that belongs to the shot and not to a frame.
     void describe(const Scene& scene, const Plan& plan, const SpectralMoments& total,
                   double whitecap_threshold);
 
-    const std::map<int, FrameRecord>& frames() const { return frames_; }
-    void set(int frame, FrameRecord record) {
-        frames_[frame] = std::move(record);
-        own_.insert(frame);
-    }
+    void set(int frame, FrameRecord record) { unsaved_[frame] = std::move(record); }
 
-    // Every file of the frame is there, has its recorded size and says that it is of this
-    // fingerprint: the record alone would vouch for a file that another shot has replaced since.
-    bool is_whole(int frame, const std::string& fingerprint, const std::filesystem::path& folder) const;
-
-    // Writes the record to `file`, with the frames that other runs have recorded there meanwhile. Throws
-    // files::FileError.
+    // Writes the record to `file`, with the frames that are there already, of this run and of others. Holds
+    // one of those at a time: memory doesn't grow with the shot. Throws files::FileError; then what was set
+    // is kept for the next time.
     void save(const std::filesystem::path& file);
 
   private:
-    void write(const std::function<void(std::string_view)>& sink) const;
+    void write(const std::filesystem::path& former, const std::function<void(std::string_view)>& sink) const;
 
     nlohmann::ordered_json shot_;
-    std::set<int> own_;  // frames of this run
-    std::map<int, FrameRecord> frames_;
+    std::map<int, FrameRecord> unsaved_;
 };
 
 }  // namespace pelagic

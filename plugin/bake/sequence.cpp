@@ -243,7 +243,7 @@ class SequenceOf final : public Sequence {
     }
 
     double hidden_mss(int query) const {
-        return std::max(sea_->total().mss() - sea_->statistics(query).resolved.front().mss(), 0.0);
+        return std::max(sea_->total().mss() - sea_->shown(query).mss(), 0.0);
     }
 
     MapJob<T> map_job(int q) {
@@ -269,8 +269,9 @@ class SequenceOf final : public Sequence {
         return job;
     }
 
-    // Only if the patch is a common period of every cascade that shows in it.
+    // Only if the patch is a common period of every cascade that shows in it; trains have none.
     bool patch_is_periodic() const {
+        if (sea_->plan().trains) return false;
         for (const CascadePlan& cascade : sea_->plan().cascades) {
             const double periods = scene_.surface.size_m / cascade.size_m;
             const bool whole = std::round(periods) >= 1.0 && std::abs(periods - std::round(periods)) < 1e-9;
@@ -282,7 +283,8 @@ class SequenceOf final : public Sequence {
     void describe_waves(FrameRecord& record) const {
         record.mss_residual = hidden_mss(0);
         const bool calm = !(sea_->total().m0 > 0.0);
-        if (sea_->plan().transforms_per_frame() == 0 && !calm) return;  // no wave was computed
+        const Plan& plan = sea_->plan();
+        if (plan.transforms_per_frame() == 0 && !plan.trains && !calm) return;  // no wave was computed
         const Realisation sum = frame_.realisation(0);
         WaveRecord waves;
         waves.significant_height_m = 4.0 * std::sqrt(sum.m0);

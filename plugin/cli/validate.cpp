@@ -33,7 +33,9 @@ std::string summary(const Scene& scene, const Plan& plan) {
         text += std::string(word_of(scene.sea.spectrum)) + " at " + number_text(scene.sea.wind_speed_mps) +
                 " m/s";
     }
-    return text + ": " + count_text(plan.transforms_per_frame(), "transform", "transforms") + " a frame, " +
+    text += ": ";
+    if (plan.trains) text += count_text(plan.trains->count, "wave train, ", "wave trains, ");
+    return text + count_text(plan.transforms_per_frame(), "transform", "transforms") + " a frame, " +
            bytes_text(plan.sea_bytes() + plan.frame_bytes() + plan.output_bytes());
 }
 

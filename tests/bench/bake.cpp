@@ -67,9 +67,9 @@ void packing_table(Sequence& sequence) {
         exr::Image picture{.width = n, .height = n, .channels = {}};
         for (int c = 0; c < 3; ++c)
             picture.channels.push_back({.name = std::string(1, "RGB"[c]),
-                                      .data = &texels.data()->x + c,
-                                      .pixel_stride_bytes = sizeof(glm::vec3),
-                                      .type = type});
+                                        .data = &texels.data()->x + c,
+                                        .pixel_stride_bytes = sizeof(glm::vec3),
+                                        .type = type});
         return picture;
     };
     std::vector<exr::Image> levels;
@@ -93,10 +93,11 @@ void packing_table(Sequence& sequence) {
                                                       image(kN, displacement, exr::PixelType::Float))
                                      .size();
                          }});
-        timed.push_back({row.name, [&] {
-                             row.normal_bytes =
-                                 exr::encode_mipmapped({.attributes = {}, .compression = row.compression}, levels).size();
-                         }});
+        timed.push_back(
+            {row.name, [&] {
+                 row.normal_bytes =
+                     exr::encode_mipmapped({.attributes = {}, .compression = row.compression}, levels).size();
+             }});
     }
     interleave(timed, 5);
     std::printf(

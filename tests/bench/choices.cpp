@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <string>
 
 #include "core/waves/kernels.h"
@@ -20,72 +21,75 @@ namespace {
 
 // ---- Rows: half a spectrum in, N real values out
 
-constexpr int kRows = 64;  // with N = 1024 and a result's place for each, half a megabyte: level 2
+constexpr int kValues = 1 << 16;  // in rows and as many in their results: half a megabyte, level 2
 
-// From a half spectrum to one real row, planned by FFTW_PATIENT. The input is kept, as ours is.
+// From half a spectrum to one real row, planned by FFTW_PATIENT; its parts apart, as ours, or side by side.
 class RealLine {
   public:
-    explicit RealLine(int n) : stride_(line_stride<float>(n)) {
-        Buffer<float> from(2 * stride_), to(stride_);
+    RealLine(int n, bool apart) : half_(line_stride<float>(n) / 2), apart_(apart) {
+        Buffer<float> from(2 * half_), to(2 * half_);
         const fftwf_iodim line{n, 1, 1};
-        plan_ = fftwf_plan_guru_split_dft_c2r(1, &line, 0, nullptr, from.data(), from.data() + stride_ / 2,
-                                              to.data(), FFTW_PATIENT | FFTW_PRESERVE_INPUT);
+        plan_ = apart ? fftwf_plan_guru_split_dft_c2r(1, &line, 0, nullptr, from.data(), from.data() + half_,
+                                                      to.data(), FFTW_PATIENT)
+                      : fftwf_plan_dft_c2r_1d(n, reinterpret_cast<fftwf_complex*>(from.data()), to.data(),
+                                              FFTW_PATIENT);
         fftwf_forget_wisdom();
     }
     RealLine(const RealLine&) = delete;
     RealLine& operator=(const RealLine&) = delete;
     ~RealLine() { fftwf_destroy_plan(plan_); }
     void execute(float* from, float* to) const {
-        fftwf_execute_split_dft_c2r(plan_, from, from + stride_ / 2, to);
+        if (apart_)
+            fftwf_execute_split_dft_c2r(plan_, from, from + half_, to);
+        else
+            fftwf_execute_dft_c2r(plan_, reinterpret_cast<fftwf_complex*>(from), to);
     }
 
   private:
-    std::size_t stride_;
+    std::size_t half_;
+    bool apart_;
     fftwf_plan plan_;
 };
 
 void rows_table() {
     std::printf(
-        "\nRows, one thread: two in one complex transform (estimated plan, as in a frame) against a "
-        "complex-to-real one each (FFTW_PATIENT)\n  %-8s %16s %16s %16s %8s\n",
-        "", "one each, ns/row", "two in one", "with pairing", "ratio");
+        "Rows, one thread, ns a row: two in one complex transform (estimated plan, as in a frame) against a\n"
+        "complex-to-real one each (FFTW_PATIENT; parts apart or side by side, whichever is faster)\n"
+        "  %-8s %12s %12s %14s %8s\n",
+        "", "one each", "two in one", "with pairing", "ratio");
     const Kernels<float> kernel = kernels<float>();
     for (const int n : {256, 512, 1024, 2048, 4096}) {
         const std::size_t stride = line_stride<float>(n);
-        Buffer<float> spectra(kRows * stride), rows(kRows * stride), line(2 * stride);
+        const int rows = kValues / n;
+        Buffer<float> spectra(rows * stride), results(rows * stride), line(2 * stride);
         const LineTransform<float> two_in_one(n);
-        const RealLine one_each(n);
-        const int rounds = 8 * 4096 / n;
-        const auto repeat = [&](auto work) {
-            return [=] {
-                for (int i = 0; i < rounds; ++i) work();
-            };
+        const RealLine apart(n, true), side_by_side(n, false);
+        constexpr int kRounds = 8;
+        const auto over_rows = [&](int step, const std::function<void(float*, float*)>& work) {
+            for (int i = 0; i < kRounds; ++i)
+                for (int row = 0; row < rows; row += step)
+                    work(spectra.data() + row * stride, results.data() + row * stride);
         };
-        float* const from = spectra.data();
-        float* const to = rows.data();
-        float* const whole = line.data();
-        std::vector<Timed> timed{{"one each", repeat([&, from, to, stride] {
-                                      for (int i = 0; i < kRows; ++i)
-                                          one_each.execute(from + i * stride, to + i * stride);
-                                  })},
-                                 {"two in one", repeat([&, from, to, stride] {
-                                      for (int i = 0; i < kRows; i += 2)
-                                          two_in_one.execute(from + i * stride, to + i * stride);
-                                  })},
-                                 {"with pairing", repeat([&, from, to, whole, stride] {
-                                      for (int i = 0; i < kRows; i += 2) {
-                                          kernel.pair({.first = from + i * stride,
-                                                       .second = from + (i + 1) * stride,
-                                                       .radius = n / 2 - 1,
-                                                       .n = n,
-                                                       .line_re = whole,
-                                                       .line_im = whole + stride});
-                                          two_in_one.execute(whole, to + i * stride);
-                                      }
-                                  })}};
+        const auto paired = [&](float* from, float* to) {
+            kernel.pair({.first = from,
+                         .second = from + stride,
+                         .radius = n / 2 - 1,
+                         .n = n,
+                         .line_re = line.data(),
+                         .line_im = line.data() + stride});
+            two_in_one.execute(line.data(), to);
+        };
+        std::vector<Timed> timed{
+            {"apart", [&] { over_rows(1, [&](float* from, float* to) { apart.execute(from, to); }); }},
+            {"side by side",
+             [&] { over_rows(1, [&](float* from, float* to) { side_by_side.execute(from, to); }); }},
+            {"two in one",
+             [&] { over_rows(2, [&](float* from, float* to) { two_in_one.execute(from, to); }); }},
+            {"with pairing", [&] { over_rows(2, paired); }}};
         interleave(timed, 21);
-        const auto ns = [&](std::size_t i) { return 1e6 * timed[i].median() / (rounds * kRows); };
-        std::printf("  %6d %18.0f %16.0f %16.0f %8.2f\n", n, ns(0), ns(1), ns(2), ns(2) / ns(0));
+        const auto ns = [&](std::size_t i) { return 1e6 * timed[i].median() / (kRounds * rows); };
+        const double each = std::min(ns(0), ns(1));
+        std::printf("  %6d %14.0f %12.0f %14.0f %8.2f\n", n, each, ns(2), ns(3), ns(3) / each);
     }
 }
 
@@ -148,15 +152,18 @@ void derive(const Frame<float>& frame, int n, Planes& planes) {
 void derivatives_table() {
     constexpr int kN = 1024;
     std::printf(
-        "\nDerivatives of a %d^2 frame: five transforms (a frame of eight fields less one of three) against "
-        "differences on the grid\n  %-26s %8s %14s %14s %16s %16s\n",
-        kN, "waves end at", "threads", "transforms ms", "differences ms", "slope rms error", "Jacobian's");
+        "\nSlopes and Jacobian's derivatives of a %d^2 frame: five transforms (a frame of eight fields less "
+        "one "
+        "of three) against differences on the grid; errors are rms, relative\n"
+        "  %-13s %8s %14s %12s %16s %12s\n",
+        kN, "waves end at", "threads", "transforms ms", "error", "differences ms", "error");
     for (const int part : {1, 2, 4, 8}) {
         // A footprint's filter passes nothing shorter than two of it: of `part` spacings, an n-th of Nyquist.
         const double footprint_m = part == 1 ? 0.0 : part * kSize_m / kN;
         Frame<float> three(
             sea_on_own_grids({.products = products(Product::Displacement), .footprint_m = footprint_m}));
         Frame<float> eight(sea_on_own_grids({.footprint_m = footprint_m}));
+        Frame<double> exact(sea_on_own_grids<double>({.footprint_m = footprint_m}));
         Planes planes;
         for (Buffer<float>& plane : planes) plane = Buffer<float>(grid_samples<float>(kN));
         for (const int threads : {1, 2}) {
@@ -166,23 +173,25 @@ void derivatives_table() {
                                      {"eight", [&] { eight.set(t); }},
                                      {"differences", [&] { derive(eight, kN, planes); }}};
             interleave(timed, 21);
-            // Relative to the exact field's own rms; slopes together, strains together.
-            double error[2] = {}, whole[2] = {};
+            exact.set(t);
+            // Of differences and of transforms, relative to the exact fields' own rms.
+            double differences2 = 0.0, transforms2 = 0.0, whole = 0.0;
             for (std::size_t d = 0; d < std::size(kDerived); ++d) {
-                const float* exact = eight.samples(0, 0, kDerived[d].field);
+                const double* truth = exact.samples(0, 0, kDerived[d].field);
+                const float* transformed = eight.samples(0, 0, kDerived[d].field);
                 for (int y = 0; y < kN; ++y)
                     for (int x = 0; x < kN; ++x) {
+                        const double value = truth[y * line_stride<double>(kN) + x];
                         const std::size_t at = y * line_stride<float>(kN) + x;
-                        const double value = static_cast<double>(exact[at]),
-                                     off = static_cast<double>(planes[d][at]) - value;
-                        error[d < 2 ? 0 : 1] += off * off;
-                        whole[d < 2 ? 0 : 1] += value * value;
+                        differences2 += std::pow(static_cast<double>(planes[d][at]) - value, 2);
+                        transforms2 += std::pow(static_cast<double>(transformed[at]) - value, 2);
+                        whole += value * value;
                     }
             }
-            std::printf("  Nyquist%-19s %8d %14.2f %14.2f %16.1e %16.1e\n",
+            std::printf("  Nyquist%-6s %8d %14.2f %12.1e %16.2f %12.1e\n",
                         part == 1 ? "" : (" / " + std::to_string(part)).c_str(), threads,
-                        timed[1].median() - timed[0].median(), timed[2].median(),
-                        std::sqrt(error[0] / whole[0]), std::sqrt(error[1] / whole[1]));
+                        timed[1].median() - timed[0].median(), std::sqrt(transforms2 / whole),
+                        timed[2].median(), std::sqrt(differences2 / whole));
         }
     }
 }

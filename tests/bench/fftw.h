@@ -30,8 +30,9 @@ class BareFftw {
 
     // The two fastest arrangements for that many threads, planned by FFTW_MEASURE, and the first of them by
     // FFTW_PATIENT, ready to be timed beside something else. Called within a tbb::global_control of as many
-    // threads; leaves no wisdom behind. All arrangements compete up to 1024², rows padded only and no
-    // FFTW_PATIENT above (half an hour of planning; padded rows always win there), in place only above 2048².
+    // threads; leaves no wisdom behind. All arrangements compete up to 1024²; above, to save half an hour of
+    // planning, padded rows only (without padding none was faster) and no FFTW_PATIENT; above 2048² in place
+    // only.
     std::vector<Timed> fastest(int threads);
 
   private:

@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +22,9 @@ namespace pelagic::bench {
 namespace {
 
 constexpr int kThreads[] = {1, 2};
+
+// Periods so far apart that each of four cascades of 256² holds all its modes.
+constexpr double kWideRatio = 16.0;
 
 class Threads {
   public:
@@ -42,8 +46,15 @@ Frame<float> unaided_frame(std::shared_ptr<const Sea<float>> sea) {
 }
 
 struct Row {
-    int n, cascades;
-    std::optional<double> target[2];  // by kThreads: our time over FFTW's
+    int n = 1024, cascades = 1;
+    double ratio = kUsualRatio;                     // of the cascades' periods
+    std::array<std::optional<double>, 2> target{};  // by kThreads: our time over FFTW's
+
+    std::string name() const {
+        const std::string square = std::to_string(n) + "^2";
+        if (cascades == 1) return square;
+        return std::to_string(cascades) + " x " + square + (ratio == kWideRatio ? " full" : "");
+    }
 };
 struct PerSample {
     double ours_ns, fftw_ns;
@@ -63,7 +74,8 @@ void lines_alone(const LineTransform<float>& transform, long lines) {
 
 // Prints a row for each number of threads.
 void against_fftw(const Row& row, std::map<int, PerSample> (&per_sample)[2]) {
-    Frame<float> frame = unaided_frame(sea_on_own_grids({.n = row.n, .cascades = row.cascades}));
+    Frame<float> frame =
+        unaided_frame(sea_on_own_grids({.n = row.n, .cascades = row.cascades, .ratio = row.ratio}));
     const Plan& plan = frame.sea().plan();
     const int fields = plan.transforms_per_frame();
     const LineTransform<float> line(row.n);
@@ -87,10 +99,9 @@ void against_fftw(const Row& row, std::map<int, PerSample> (&per_sample)[2]) {
         if (row.target[i])
             std::snprintf(target, sizeof target, "<= %.1f %s", *row.target[i],
                           verdict(ratio <= *row.target[i]));
-        std::printf("  %d x %4d^2, %2d fields %7d %9.2f %9.2f %7.2f  %-13s %8.2f   %s\n", row.cascades, row.n,
-                    fields, kThreads[i], ours_ms, fftw->median(), ratio, target, lines_ms / ours_ms,
+        std::printf("  %-13s %2d fields %7d %9.2f %9.2f %7.2f  %-13s %7.2f  %s\n", row.name().c_str(), fields,
+                    kThreads[i], ours_ms, fftw->median(), ratio, target, lines_ms / ours_ms,
                     fftw->name.c_str());
-        std::fflush(stdout);
     }
 }
 
@@ -154,7 +165,7 @@ void same_every_time() {
         "  %-8s %8s %10s %10s %8s  %-13s %s\n",
         "", "threads", "ours ms", "free ms", "ratio", "<= 1.10",
         "same bits: again, another frame, 1 and 2 threads");
-    for (const int n : {256, 512, 1024, 2048}) {
+    for (const int n : {256, 512, 1024, 2048, 4096}) {
         const auto sea = sea_on_own_grids({.n = n});
         Frame<float> ours = unaided_frame(sea), other = unaided_frame(sea);
         learn_lines(n);
@@ -187,14 +198,25 @@ void same_every_time() {
 
 int main(int argc, char** argv) {
     using namespace pelagic::bench;
-    std::vector<Row> rows{{1024, 1, {1.6, 1.5}}, {512, 1, {1.6, 1.6}}, {256, 4, {1.6, 1.6}},
-                          {2048, 1, {1.5, 1.5}}, {256, 1, {}},         {4096, 1, {}}};
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a row takes a while
+    std::vector<Row> rows{
+        {.n = 1024, .target = {1.6, 1.5}},
+        {.n = 512, .target = {1.6, 1.6}},
+        {.n = 256, .cascades = 4, .target = {1.6, 1.6}},
+        {.n = 256, .cascades = 4, .ratio = kWideRatio, .target = {1.6, 1.6}},
+        {.n = 2048, .target = {1.5, 1.5}},
+        {.n = 256},
+        {.n = 4096},
+    };
     if (argc > 1) rows.clear();
-    for (int i = 1; i < argc; ++i) rows.push_back({std::atoi(argv[i]), 1, {}});
+    for (int i = 1; i < argc; ++i) rows.push_back({.n = std::atoi(argv[i])});
     std::printf(
-        "A frame against the transforms of its fields by FFTW alone, best arrangement and planning\n"
-        "(medians of interleaved repeats; lines: our transforms alone, in cache, as part of our time)\n"
-        "  %-22s %7s %9s %9s %7s  %-13s %8s   %s\n",
+        "A frame against the transforms of its fields by FFTW alone, best arrangement and planning; medians "
+        "of\n"
+        "interleaved repeats. lines: our transforms alone, in cache, over our time; full: cascades whose "
+        "bands\n"
+        "fill their squares, as bands of cascades of usual sizes don't\n"
+        "  %-23s %7s %9s %9s %7s  %-13s %7s  %s\n",
         "", "threads", "ours ms", "FFTW ms", "ratio", "target", "lines", "FFTW's best");
     std::map<int, PerSample> per_sample[2];
     for (const Row& row : rows) against_fftw(row, per_sample);

@@ -15,19 +15,23 @@ inline constexpr double kSize_m = 400.0;
 inline const ProductSet kEightFields = products(Product::Position, Product::Normal, Product::SlopeVariance,
                                                 Product::Coverage);  // displacement, slopes, derivatives
 
+inline constexpr double kUsualRatio = 4.23606797749979;  // the golden ratio cubed: that of "auto" cascades
+
 struct OwnGrids {
     int n = 1024, cascades = 1;
     ProductSet products = kEightFields;
     double footprint_m = 0.0;
+    double ratio = kUsualRatio;  // of a cascade's period to the next one's
 };
 
 // Each cascade (n × n, a period of 400 m, the next ones smaller by the golden ratio cubed) on its own
 // lattice.
-inline std::shared_ptr<const Sea<float>> sea_on_own_grids(const OwnGrids& wanted) {
+template <class T = float>
+std::shared_ptr<const Sea<T>> sea_on_own_grids(const OwnGrids& wanted) {
     Scene scene;
     std::vector<Query> queries;
     double size_m = kSize_m;
-    for (int c = 0; c < wanted.cascades; ++c, size_m /= 4.23606797749979) {
+    for (int c = 0; c < wanted.cascades; ++c, size_m /= wanted.ratio) {
         scene.waves.cascades.push_back({.size_m = size_m, .resolution = wanted.n});
         Query query;
         query.name = "cascade";
@@ -38,7 +42,7 @@ inline std::shared_ptr<const Sea<float>> sea_on_own_grids(const OwnGrids& wanted
         query.only_cascade = c;
         queries.push_back(std::move(query));
     }
-    return std::make_shared<const Sea<float>>(scene, make_plan(scene, queries));
+    return std::make_shared<const Sea<T>>(scene, make_plan(scene, queries));
 }
 
 }  // namespace pelagic::bench

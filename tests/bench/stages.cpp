@@ -1,8 +1,6 @@
-// Where a frame's time goes: each stage in ms and as a ratio to the same number of bare FFTW transforms run
-// beside it.
+// What is done with a frame's transforms: each stage in ms and as a ratio to the transforms.
 //   stages [RESOLUTION…]      default 512 1024
 
-#include <fftw3.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
@@ -37,33 +35,6 @@ struct VertexArrays {
     }
 };
 
-// That many single-precision complex transforms, one thread each, side by side: nothing but FFTW, planned by
-// timing.
-class BareTransforms {
-  public:
-    BareTransforms(int n, int count) {
-        for (int i = 0; i < count; ++i)
-            buffers_.push_back(fftwf_alloc_complex(static_cast<std::size_t>(n) * n));
-        plan_ = fftwf_plan_dft_2d(n, n, buffers_[0], buffers_[0], FFTW_BACKWARD, FFTW_MEASURE);
-        fftwf_forget_wisdom();  // our own plans must not profit from what was measured here
-        for (fftwf_complex* buffer : buffers_)
-            for (std::size_t i = 0; i < static_cast<std::size_t>(n) * n; ++i)
-                buffer[i][0] = buffer[i][1] = 0.0f;
-    }
-    ~BareTransforms() {
-        fftwf_destroy_plan(plan_);
-        for (fftwf_complex* buffer : buffers_) fftwf_free(buffer);
-    }
-    void run() const {
-        tbb::parallel_for(std::size_t(0), buffers_.size(),
-                          [&](std::size_t i) { fftwf_execute_dft(plan_, buffers_[i], buffers_[i]); });
-    }
-
-  private:
-    std::vector<fftwf_complex*> buffers_;
-    fftwf_plan plan_;
-};
-
 void table(int n) {
     Scene scene;
     scene.surface = {.size_m = 400.0, .resolution = n};
@@ -79,9 +50,6 @@ void table(int n) {
     const auto points = rest_points<float>({.per_side = n + 1, .spacing_m = 400.0 / n, .first_m = -200.0});
     const Points<float> rest{.count = points.size(), .rest_m = {points.data()}};
     VertexArrays out(points.size());
-    const int node_transforms = node_frame.sea().plan().transforms_per_frame();
-    const int spline_n = spline_frame.sea().plan().cascades[0].grids[0].resolution;
-    const BareTransforms bare(n, node_transforms), bare_spline(spline_n, node_transforms);
 
     double t = 0.0;
     const auto text = [&] {
@@ -103,11 +71,8 @@ void table(int n) {
         exr::encode_scanline({}, image);
     };
     std::vector<Timed> stages{
-        {"bare FFTW, " + std::to_string(node_transforms) + " transforms of " + std::to_string(n) + "^2",
-         [&] { bare.run(); }},
         {"set: spectrum and transforms", [&] { node_frame.set(t += 0.04); }},
         {"evaluate every vertex at its node", [&] { evaluate(node_frame, 0, rest, out.views()); }},
-        {"bare FFTW, the same of " + std::to_string(spline_n) + "^2", [&] { bare_spline.run(); }},
         {"set, oversampled for the spline", [&] { spline_frame.set(t += 0.04); }},
         {"evaluate every vertex by spline", [&] { evaluate(spline_frame, 0, rest, out.views()); }},
         {"USD text of the mesh, one thread", text},
@@ -115,7 +80,7 @@ void table(int n) {
     };
     interleave(stages, 7);
     std::printf("\n%d^2, every attribute, %zu vertices\n  %-46s %9s  %s\n", n, points.size(), "stage", "ms",
-                "ratio to bare FFTW");
+                "ratio");
     for (const Timed& stage : stages)
         std::printf("  %-46s %9.2f  %.2f\n", stage.name.c_str(), stage.median(),
                     stage.median() / stages[0].median());

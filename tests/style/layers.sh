@@ -6,7 +6,7 @@ bad=0
 # allow ROOM "WHAT IT MAY INCLUDE": every include of the project's own from ROOM must begin with one of these.
 allow() {
     local found
-    found=$(grep -rnoE '#include "(core|plugin|tests)/[a-z]+/' "$1" --include='*.h' --include='*.cpp' |
+    found=$(grep -rnoE '#include "(core|plugin|tests)/[a-z]+/' "$1" --include='*.h' --include='*.cpp' --include='*.inl' |
         grep -vE "\"($(echo "$1 $2" | tr ' ' '|'))/" || true)
     [ -z "$found" ] || { echo "$found: not below $1"; bad=1; }
 }

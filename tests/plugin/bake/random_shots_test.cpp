@@ -49,6 +49,11 @@ class RandomShot {
                  << " }" << (chance(0.3) ? ", { height_m = 1.0, period_s = 7.0, direction_deg = 45.0 }" : "")
                  << " ]\n";
         shot << "[waves]\nchoppiness = " << pick({0.0, 0.5, 1.0, 1.0, 3.0, 10.0}) << "\n";
+        if (chance(0.25)) {
+            shot << "model = \"trochoid\"\ntrains = " << pick({1, 7, 60, 200}) << "\n";
+            if (chance(0.4)) shot << "shortest_m = " << pick({0.02, 1.0, 30.0, 1000.0}) << "\n";
+            if (chance(0.4)) shot << "longest_m = " << pick({0.5, 40.0, 1e4}) << "\n";
+        }
         // "auto" goes as fine as somebody looks: a patch of half a metre would cost a grid of 2048² and more.
         const bool own_cascades = chance(0.6);
         if (own_cascades) {
@@ -64,7 +69,7 @@ class RandomShot {
              << "\nresolution = " << pick({1, 2, 3, 7, 8, 16}) << "\n";
         shot << "[effects]\nwhitecaps = " << (chance(0.8) ? "true" : "false") << "\n";
         shot << "[quality]\nlevel = \"" << pick({"draft", "preview", "final", "reference"}) << "\"\n";
-        shot << "[output]\nmesh = \"" << pick({"usda", "usda", "usda", "none"}) << "\"\nattributes = ["
+        shot << "[output]\nmesh = \"" << pick({"usda", "usda", "usdc", "none"}) << "\"\nattributes = ["
              << subset({"normal", "velocity", "slope-variance", "whitecaps"}) << "]\nmaps = ["
              << subset({"displacement", "normal", "slope-variance", "whitecaps"})
              << "]\nmap_resolution = " << pick({1, 2, 5, 8, 16}) << "\n";

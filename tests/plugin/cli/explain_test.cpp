@@ -52,7 +52,9 @@ class Explain : public ::testing::Test {
         std::smatch promised;
         EXPECT_TRUE(
             std::regex_search(ended.out, promised, std::regex(R"(Each frame: (\d+) real transforms)")));
-        if (!found.empty()) EXPECT_EQ(std::to_string(found.back().transforms), promised[1]);
+        if (!found.empty()) {
+            EXPECT_EQ(std::to_string(found.back().transforms), promised[1]);
+        }
         return found;
     }
     static std::vector<std::string> names(const std::vector<Price>& prices) {

@@ -1,0 +1,87 @@
+// The bytes of points and results that a plan promises are those that a bake's frame holds.
+#include "plugin/bake/measure.h"
+
+#include <gtest/gtest.h>
+
+#include "plugin/bake/sequence.h"
+
+namespace pelagic {
+namespace {
+
+std::size_t bytes_of(const Values& values) {
+    const auto of = [](const auto&... list) { return ((list.size() * sizeof(list[0])) + ...); };
+    return of(values.position, values.displacement, values.normal, values.velocity, values.slope_variance,
+              values.jacobian, values.coverage);
+}
+
+Scene small() {
+    Scene scene;
+    scene.waves.cascades = {{40.0, 32}};
+    scene.surface.size_m = 40.0;
+    scene.surface.resolution = 32;
+    scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
+    scene.output.map_resolution = 16;
+    return scene;
+}
+
+// 33² vertices and 16² texels, two numbers each, once; the mesh's 13 numbers a vertex, the maps' 3 and 4 a
+// texel.
+TEST(Measure, PromisesTheBytesThatAFrameHolds) {
+    const Scene scene = small();
+    const Plan plan = make_plan(scene);
+    FrameSlot slot;
+    make_sequence(scene, plan)->compute(1, slot);
+    std::size_t results = bytes_of(slot.mesh);
+    for (const FrameSlot::Map& map : slot.maps) results += bytes_of(map.values);
+    const std::size_t vertices = 33 * 33, texels = 16 * 16;
+    EXPECT_EQ(results, 4 * (vertices * 13 + texels * (3 + 4)));
+    EXPECT_EQ(plan.output_bytes(), results + 4 * 2 * (vertices + texels));
+}
+
+TEST(Measure, TakesAwayOneThingAtATime) {
+    Scene scene = small();
+    scene.output.cascade_tiles = true;
+    const std::int64_t whole = cost_of(make_plan(scene)).transforms;
+    for (const MeasureItem& item : measure_items(scene)) {
+        const Plan without = make_plan(item.without);
+        EXPECT_LE(without.transforms_per_frame(), whole) << item.name;
+        EXPECT_NE(without.fingerprint, make_plan(scene).fingerprint) << item.name;
+    }
+    scene.output.maps = {MapKind::Whitecaps};
+    for (const MeasureItem& item : measure_items(scene))
+        if (item.name == "whitecaps") {
+            EXPECT_TRUE(item.without.output.maps.empty());
+            EXPECT_FALSE(item.without.output.cascade_tiles);
+        }
+}
+
+// Each item is measured, within its pairs; what changes nothing isn't.
+TEST(Measure, MeasuresEachItemOnce) {
+    Scene scene = small();
+    scene.output.attributes = {MeshAttribute::Normal};
+    scene.output.maps = {};
+    std::vector<Measured> rows;
+    int last = -1;
+    MeasureOptions options{
+        .seconds_an_item = 0.0, .least_pairs = 2, .most_pairs = 4, .progress = {}, .measured = {}};
+    options.progress = [&](const MeasureProgress& now) {
+        EXPECT_GE(now.item, last);
+        EXPECT_EQ(now.items, 4);
+        EXPECT_GE(now.seconds_left, 0.0);
+        last = now.item;
+    };
+    options.measured = [&](const Measured& row) { rows.push_back(row); };
+    const Measured whole = measure(scene, options);
+    ASSERT_EQ(rows.size(), 4u);
+    EXPECT_EQ(rows[0].name, "mesh");
+    EXPECT_EQ(rows[1].name, "mesh normal");
+    EXPECT_EQ(rows[2].name, "horizontal displacement");
+    EXPECT_EQ(rows[3].name, "whitecaps");
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(rows[i].pairs, 2) << rows[i].name;
+    EXPECT_EQ(rows[3].pairs, 0) << "on, but nothing asks for them";
+    EXPECT_EQ(whole.pairs, 6);
+    EXPECT_GT(whole.compute.median, 0.0);
+}
+
+}  // namespace
+}  // namespace pelagic

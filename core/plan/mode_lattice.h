@@ -1,4 +1,4 @@
-// The modes that a cascade generates: wavevectors (mx, my)·2π/L with 0 < mx² + my² ≤ R². The sea is real, so
+// The modes that a cascade generates: wavevectors (mx, my)·2π/L with 0 < mx² + my² < R². The sea is real, so
 // h(−k) is h(k)'s conjugate and the half mx ≥ 0 is kept: columns of rising mx, my rising from −H to H in
 // each. In column 0 a mode and its mirror image both stand (a transform along y wants the whole column), with
 // (0, 0), which is no wave, between them.
@@ -10,9 +10,9 @@
 
 namespace pelagic {
 
-// H, the largest my with mx² + my² ≤ radius²; 0 ≤ mx ≤ radius.
+// H, the largest my with mx² + my² < radius²; 0 ≤ mx < radius.
 inline int half_height(int radius, int mx) {
-    const auto square = static_cast<std::int64_t>(radius) * radius - static_cast<std::int64_t>(mx) * mx;
+    const auto square = static_cast<std::int64_t>(radius) * radius - static_cast<std::int64_t>(mx) * mx - 1;
     auto height = static_cast<std::int64_t>(std::sqrt(static_cast<double>(square)));
     while (height * height > square) --height;
     while ((height + 1) * (height + 1) <= square) ++height;
@@ -26,7 +26,7 @@ inline std::size_t column_length(int radius, int mx) {
 // How many stand in the lattice, (0, 0) and column 0's mirror images included; 0 for radius 0.
 inline std::size_t lattice_modes(int radius) {
     std::size_t count = 0;
-    for (int mx = 0; radius > 0 && mx <= radius; ++mx) count += column_length(radius, mx);
+    for (int mx = 0; mx < radius; ++mx) count += column_length(radius, mx);
     return count;
 }
 

@@ -106,14 +106,20 @@ bool hides(const Plan& plan, int level) {
 
 void add_grids(Plan& plan, int cascade_index) {
     CascadePlan& cascade = plan.cascades[cascade_index];
-    const int last_mode = cascade.resolution / 2 - 1;
+    constexpr double kRounding = 1.0 - 1e-12;  // a mode that ends the filter exactly is not below its end
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
         if (at.only_cascade && *at.only_cascade != cascade_index) continue;
         const FieldSet wanted = fields_at(plan, level);
         const double cutoff = std::min(plan.filter.cutoff(at.footprint_m), cascade.k_upper);
-        const int radius = std::min(last_mode, modes_within(cascade.size_m, cutoff));
-        if (cutoff <= cascade.k_lower || radius < 1) continue;
+        // A band is of cells and ends with their corners; a footprint weighs the modes themselves, and the
+        // one that ends it weighs nothing: a mesh on every second node of a tile shows half of its modes, not
+        // one more.
+        const double filter_modes =
+            std::ceil(plan.filter.cutoff(at.footprint_m) * cascade.size_m / kTwoPi * kRounding);
+        const int radius = static_cast<int>(std::min(
+            {0.5 * cascade.resolution, filter_modes, modes_within(cascade.size_m, cascade.k_upper) + 1.0}));
+        if (cutoff <= cascade.k_lower || radius < 2) continue;
         // What is hidden is the spectrum less what these modes hold, whether they are also asked for fields
         // or not.
         if (hides(plan, level)) cascade.mode_radius = std::max(cascade.mode_radius, radius);
@@ -124,9 +130,9 @@ void add_grids(Plan& plan, int cascade_index) {
         grid.fields = wanted;
         grid.radius = radius;
         grid.resolution =
-            transform_size(static_cast<int>(std::ceil(plan.knobs.oversampling * (2.0 * radius + 1.0))));
+            transform_size(static_cast<int>(std::ceil(plan.knobs.oversampling * (2.0 * radius - 1.0))));
         if (const auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
-            nodes && *nodes >= 2 * radius + 1 &&
+            nodes && *nodes >= 2 * radius - 1 &&
             (at.only_cascade || (*nodes <= 2 * grid.resolution && *nodes == transform_size(*nodes)))) {
             // Up to four times the samples of the spline's grid are cheaper than the spline, and without its
             // error.

@@ -50,21 +50,21 @@ struct Grid {
     int level = 0;
     int resolution = 0;  // N
     Sampling sampling = Sampling::Spline;
-    int radius = 0;   // modes with mx² + my² ≤ radius² pass, 2 radius < N
+    int radius = 0;   // modes with mx² + my² < radius² pass, 2 radius ≤ N + 1
     FieldSet fields;  // each is one real N × N transform
 
     // One-dimensional complex transforms of N points that a frame takes for each field: a column for each mx
-    // from 0 to radius, and two real rows at a time.
-    int lines_per_field() const { return radius + 1 + (resolution + 1) / 2; }
+    // below radius, and two real rows at a time.
+    int lines_per_field() const { return radius + (resolution + 1) / 2; }
 };
 
 struct CascadePlan {
     double size_m = 0.0;
     int resolution = 0;
     // The band [rad/m]: lower ≤ |k| < upper, from the sizes alone. The finest cascade's upper edge is
-    // infinite: it ends with its last mode, mode_radius.
+    // infinite: it ends with its last mode, below mode_radius.
     double k_lower = 0.0, k_upper = 0.0;
-    // Modes with mx² + my² ≤ mode_radius² are counted in what is resolved.
+    // Modes with mx² + my² < mode_radius² are counted in what is resolved.
     int mode_radius = 0;
     std::vector<Grid> grids;         // only those through which something passes
     std::vector<int> grid_of_level;  // index into grids, −1: nothing of this cascade passes

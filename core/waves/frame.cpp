@@ -58,9 +58,9 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)), kerne
             const int n = grid.resolution;
             GridState made{transform_of(transforms, n), {}, {}};
             if (grid.sampling == Sampling::Spline) {
-                made.prefilter = Buffer<T>(2 * static_cast<std::size_t>(grid.radius) + 1);
-                for (int m = -grid.radius; m <= grid.radius; ++m)
-                    made.prefilter[m + grid.radius] =
+                made.prefilter = Buffer<T>(2 * static_cast<std::size_t>(grid.radius) - 1);
+                for (int m = 1 - grid.radius; m < grid.radius; ++m)
+                    made.prefilter[m + grid.radius - 1] =
                         static_cast<T>(bspline_prefilter(m, n, plan.knobs.spline_taps));
             }
             for (std::size_t f = 0; f < kFieldCount; ++f) {
@@ -73,8 +73,8 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)), kerne
             grids.push_back(std::move(made));
         }
         grids_.push_back(std::move(grids));
-        for (int mx = 0; cascade.radius > 0 && mx <= cascade.radius; mx += kBlockColumns) {
-            const Block block{c, mx, std::min(kBlockColumns, cascade.radius + 1 - mx)};
+        for (int mx = 0; mx < cascade.radius; mx += kBlockColumns) {
+            const Block block{c, mx, std::min(kBlockColumns, cascade.radius - mx)};
             block_modes_ = std::max(block_modes_, cascade.columns[mx + block.columns] - cascade.columns[mx]);
             blocks_.push_back(block);
         }
@@ -150,14 +150,14 @@ long Frame<T>::transform_columns(const Block& block) {
     for (std::size_t g = 0; g < planned.grids.size(); ++g) {
         const Grid& grid = planned.grids[g];
         GridState& state = grids_[block.cascade][g];
-        const int columns = std::min(block.columns, grid.radius + 1 - block.first_mx);
+        const int columns = std::min(block.columns, grid.radius - block.first_mx);
         // Where a column's my = 0 stands in the scratch.
         const auto middle = [&](int column) {
             return cascade.middle(block.first_mx + column) - cascade.columns[block.first_mx];
         };
         for (int column = 0; column < columns; ++column) {
             const int mx = block.first_mx + column;
-            const T* prefilter = state.prefilter.empty() ? nullptr : state.prefilter.data() + grid.radius;
+            const T* prefilter = state.prefilter.empty() ? nullptr : state.prefilter.data() + grid.radius - 1;
             kernels_.through(
                 {.half_height = half_height(grid.radius, mx),
                  .kx = static_cast<T>(mx) * step,

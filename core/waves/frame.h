@@ -55,7 +55,8 @@ class Frame {
   private:
     struct GridState {
         LineTransform<T> transform;
-        Buffer<T> prefilter;  // by my from −radius to radius; empty where the grid is read at its nodes
+        Buffer<T>
+            prefilter;  // by my from 1 − radius to radius − 1; empty where the grid is read at its nodes
         std::array<Buffer<T>, kFieldCount> planes;
     };
     // A few of a cascade's columns: what is done at once, so that the spectrum never leaves the cache.

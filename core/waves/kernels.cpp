@@ -238,11 +238,11 @@ void Pair(const PairArgs<T>& args) {
     const hn::CappedTag<T, 1> one;
     const int lanes = static_cast<int>(hn::Lanes(d));
     int m = 0;
-    for (; m + lanes <= args.radius + 1; m += lanes) put(d, m);
-    for (; m <= args.radius; ++m) put(one, m);
-    const std::size_t gap = static_cast<std::size_t>(args.n - 2 * args.radius - 1) * sizeof(T);
-    std::memset(args.line_re + args.radius + 1, 0, gap);
-    std::memset(args.line_im + args.radius + 1, 0, gap);
+    for (; m + lanes <= args.radius; m += lanes) put(d, m);
+    for (; m < args.radius; ++m) put(one, m);
+    const std::size_t gap = static_cast<std::size_t>(args.n - 2 * args.radius + 1) * sizeof(T);
+    std::memset(args.line_re + args.radius, 0, gap);
+    std::memset(args.line_im + args.radius, 0, gap);
 }
 
 // Single precision read as double.

@@ -54,8 +54,8 @@ struct ScatterArgs {
     T* rows;  // line_stride(n) apart
 };
 
-// Two rows' half spectra X and Y (modes 0 … radius), as the whole line X + iY that a transform along x takes;
-// its real part is then the first row and its imaginary part the second. `second` may be null: 0.
+// Two rows' half spectra X and Y (modes 0 … radius − 1), as the whole line X + iY that a transform along x
+// takes; its real part is then the first row and its imaginary part the second. `second` may be null: 0.
 template <class T>
 struct PairArgs {
     const T *first, *second;  // as scatter leaves them

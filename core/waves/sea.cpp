@@ -55,7 +55,7 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
         Cascade<T> cascade;
         cascade.size_m = planned.size_m;
         cascade.radius = planned.grid_radius();
-        for (int mx = 0; cascade.radius > 0 && mx <= cascade.radius; ++mx) {
+        for (int mx = 0; mx < cascade.radius; ++mx) {
             if (mx == 0) cascade.columns.push_back(0);
             cascade.columns.push_back(cascade.columns.back() + column_length(cascade.radius, mx));
         }
@@ -80,13 +80,13 @@ Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.s
 
         // Columns side by side; their sums are added up in their order, whoever computed them.
         const double step = kTwoPi / planned.size_m;
-        const int columns = planned.mode_radius > 0 ? planned.mode_radius + 1 : 0;
+        const int columns = planned.mode_radius;
         std::vector<double> column_m0(columns, 0.0);
         std::vector<std::vector<SpectralMoments>> column_sums(columns,
                                                               std::vector<SpectralMoments>(pairs.size()));
         tbb::parallel_for(0, columns, [&](int mx) {
             // Beyond the grids' radius modes are only counted: what they hold of the hidden statistics.
-            const int generated = mx <= cascade.radius ? half_height(cascade.radius, mx) : -1;
+            const int generated = mx < cascade.radius ? half_height(cascade.radius, mx) : -1;
             const int counted = half_height(planned.mode_radius, mx);
             for (int my = -counted; my <= counted; ++my) {
                 if (mx == 0 && my == 0) continue;

@@ -1,9 +1,9 @@
 // Fourier transforms of single lines: the one place that knows FFTW.
 //
-// A field is real and its spectrum lives in a disc of modes, so a square of N × N samples takes R + 1
-// transforms along y (R: the disc's radius; mx ≥ 0 only) and N/2 along x (two real rows ride in one complex
-// line). That is the arithmetic of half a complex square, less for the empty columns, whichever fields are
-// asked for. core/waves/frame puts the lines together.
+// A field is real and its spectrum lives in a disc of modes, so a square of N × N samples takes R
+// transforms along y (R: the disc's radius; 0 ≤ mx < R only) and N/2 along x (two real rows ride in one
+// complex line). That is the arithmetic of half a complex square, less for the empty columns, whichever
+// fields are asked for. core/waves/frame puts the lines together.
 #pragma once
 
 #include <memory>

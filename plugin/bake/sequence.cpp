@@ -372,10 +372,11 @@ class SequenceOf final : public Sequence {
                 return encode_levels(header, levels, {"R", "G", "B"}, exr::PixelType::Half);
             }
             case MapKind::SlopeVariance: {
-                const exr::Header header = header_of(
+                exr::Header header = header_of(
                     job, frame,
                     {"slope variance of the waves that a texel hides", "1", map.values.slope_variance});
-                // The same all over a level.
+                // The same all over a level: packed, nearly nothing.
+                header.compression = exr::Compression::Zip;
                 std::vector<std::vector<glm::vec3>> texels;
                 std::vector<Level> levels;
                 for (const glm::vec3& hidden : map.hidden) {

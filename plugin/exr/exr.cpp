@@ -1,13 +1,16 @@
 // OpenEXR through the library's own writers, onto a string.
 //
-// The compression, measured on one core with a choppy JONSWAP sea (10 m/s) on 200 m and 1024² pixels; size
-// against the samples' own, time against None:
+// The compression, measured by tests/bench/bake.cpp on one core with a choppy JONSWAP sea (10 m/s) and 1024²
+// pixels; size against the samples' own, time against None:
 //                             None       RLE        ZIPS       ZIP        PIZ
-//     displacement, Float   1.00, 1×   1.00, 2×   1.00, 11×  0.96, 15×  0.90, 22×
-//     normal, Half          1.00, 1×   0.86, 4×   0.77, 13×  0.75, 12×  0.78, 12×
-// The low bits of a Float map are noise: ZIP spends fifteen times the time to save 4 % (PIZ 12 % to 22 %
-// where the map is four times finer than its shortest wave), and a renderer pays again each time it reads. So
-// Float goes in as it is, and Half, of which ZIP saves a quarter to a third, by ZIP.
+//     displacement, Float   1.00, 1×   1.00, 3×   1.00, 14×  0.96, 18×  0.93, 27×
+//     normal, Half          1.00, 1×   0.87, 2×   0.77, 6×   0.77, 6×   1.00, 16×
+//     whitecaps, Float      1.00, 1×   1.00, 5×   0.99, 24×  0.99, 25×  1.00, 58×
+//     the same everywhere   1.00, 1×   1.00, 5×   0.01, 3×   0.01, 3×   0.10, 13×
+// The low bits of a sea are noise. The best case of a map that varies, a quarter of the normals by ZIP, takes
+// longer than to compute all of the frame, and would gain time only where a disk takes less than some
+// 10 MB/s; a renderer pays again each time it reads. So Auto is None, and who knows that a map is the same
+// everywhere asks for Zip.
 #include "plugin/exr/exr.h"
 
 #include <ImfChannelList.h>
@@ -88,13 +91,9 @@ void check_image(const Image& image) {
     }
 }
 
-Imf::Compression imf_compression(Compression compression, const Image& image) {
+Imf::Compression imf_compression(Compression compression) {
     switch (compression) {
-        case Compression::Auto: {
-            const bool any_half = std::any_of(image.channels.begin(), image.channels.end(),
-                                              [](const Channel& c) { return c.type == PixelType::Half; });
-            return any_half ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
-        }
+        case Compression::Auto:
         case Compression::None:
             return Imf::NO_COMPRESSION;
         case Compression::Rle:
@@ -134,7 +133,7 @@ void insert(Imf::Header& header, const Attribute& attribute) {
 
 Imf::Header imf_header(const Header& header, const Image& image) {
     Imf::Header result(image.width, image.height);
-    result.compression() = imf_compression(header.compression, image);
+    result.compression() = imf_compression(header.compression);
     result.zipCompressionLevel() = kZipLevel;
     for (const Channel& channel : image.channels)
         result.channels().insert(channel.name, Imf::Channel(imf_type(channel.type)));

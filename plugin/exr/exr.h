@@ -45,8 +45,7 @@ struct Image {
     std::vector<Channel> channels;
 };
 
-// All lossless. Auto: Zip where there is a Half channel, None where all are Float; exr.cpp has the
-// measurement.
+// All lossless. Auto is what suits a map of a sea: None; exr.cpp has the measurement.
 enum class Compression { Auto, None, Rle, Zips, Zip, Piz };
 
 // A 32-bit integer is all that the format has: longer ones (seeds) go in as text.

@@ -73,7 +73,7 @@ void rows_table() {
         const auto paired = [&](float* from, float* to) {
             kernel.pair({.first = from,
                          .second = from + stride,
-                         .radius = n / 2 - 1,
+                         .radius = n / 2,
                          .n = n,
                          .line_re = line.data(),
                          .line_im = line.data() + stride});

@@ -106,7 +106,7 @@ double error_of_reference_m(const Level<double>& reference) {
         glm::dvec3 position(x.x, x.y, 0.0);
         for (const Cascade<double>& cascade : sea.cascades()) {
             const double step = kTwoPi / cascade.size_m;
-            for (int mx = 0; cascade.radius > 0 && mx <= cascade.radius; ++mx)
+            for (int mx = 0; mx < cascade.radius; ++mx)
                 for (int my = -half_height(cascade.radius, mx); my <= half_height(cascade.radius, mx); ++my) {
                     if (!counts_as_wave(mx, my)) continue;
                     const std::size_t mode = cascade.middle(mx) + my;

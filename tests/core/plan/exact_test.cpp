@@ -4,9 +4,10 @@
 //
 // The hand's arithmetic. A mode (mx, my) of a tile of L metres passes where its footprint s lets it: the
 // filter ends at two samples a wave, L/(2s) modes from the middle, and the disc's radius R is the next whole
-// number above that and √½ (a mode's cell reaches so far beyond it); at most N/2 − 1 of the cascade's N. A
-// grid is read at its nodes where the points lie on them and there are at least 2R + 1; otherwise by a spline
-// from 2 (2R + 1) nodes, rounded up to a size without a prime factor above 7.
+// number from there on: modes nearer than R pass. It is at most N/2 of the cascade's N, and where the next
+// cascade's band begins, one more than the last mode whose cell reaches there with its corner, √½ away. A
+// grid is read at its nodes where the points lie on them and there are at least 2R − 1; otherwise by a spline
+// from 2 (2R − 1) nodes, rounded up to a size without a prime factor above 7.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,13 +32,13 @@ constexpr std::size_t kMesh = 65 * 65, kMap = 64 * 64;  // points
 // By hand: the half disc 0 ≤ mx, its first column whole.
 std::size_t modes(int radius) {
     std::size_t count = 0;
-    for (int mx = 0; mx <= radius; ++mx)
-        for (int my = -radius; my <= radius; ++my) count += mx * mx + my * my <= radius * radius;
+    for (int mx = 0; mx < radius; ++mx)
+        for (int my = -radius; my <= radius; ++my) count += mx * mx + my * my < radius * radius;
     return count;
 }
 // A column of the disc for each mx, then two rows at a time.
 long lines(int n, int radius) {
-    return radius + 1 + n / 2;
+    return radius + n / 2;
 }
 // N rows (all sizes here are even) of N values and 16 that repeat the first, up to a whole cache line of 64
 // bytes; none here is half a page, 2048 bytes, long, which would take a line more.
@@ -67,8 +68,8 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
     return out << c.name;
 }
 
-// 64² quads over 200 m, the nodes of one cascade: cell 3.125 m, 32 modes to the filter's end, but the
-// cascade's own last mode is the 31st. Positions only.
+// 64² quads over 200 m, the nodes of one cascade: cell 3.125 m, 32 modes to the filter's end.
+// Positions only.
 Scene scene() {
     Scene scene;
     scene.waves.cascades = {{200.0, 64}};
@@ -115,7 +116,7 @@ Query query(ProductSet wanted, double cell_m, double pixel_m, bool on_nodes) {
 std::vector<Case> cases() {
     using enum MeshAttribute;
     const auto nothing = [](Scene&) {};
-    const auto one = [](FieldSet fields) { return std::vector<std::vector<GridByHand>>{{{64, 31, fields}}}; };
+    const auto one = [](FieldSet fields) { return std::vector<std::vector<GridByHand>>{{{64, 32, fields}}}; };
     return {
         {"MeshPositions", mesh({}), one(kPosition), kMesh * (8 + 12)},
         {"MeshNormals", mesh({Normal}), one(kPosition | kSlopes | kStrain), kMesh * (8 + 24)},
@@ -161,21 +162,21 @@ std::vector<Case> cases() {
              s.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
          },
          one(kPosition | kMotion | kStrain), kMesh * (8 + 24) + kMap * (8 + 12 + 16)},
-        // 6.25 m texels: 16 modes, R = 17, 32 nodes are too few: 2 · 35 = 70.
+        // 6.25 m texels: 16 modes, every second node.
         {"MapCoarserThanTheMesh",
          [](Scene& s) {
              s.output.maps = {MapKind::Normal};
              s.output.map_resolution = 32;
          },
-         {{{64, 31, kPosition}, {70, 17, kSlopes | kStrain}}},
+         {{{64, 32, kPosition}, {32, 16, kSlopes | kStrain}}},
          kMesh * (8 + 12) + 32 * 32 * (8 + 12)},
-        // 1.5625 m texels: 64 modes, of which the cascade has 31, at every node of 128.
+        // 1.5625 m texels: 64 modes, of which the cascade has 32, at every node of 128.
         {"MapFinerThanTheMesh",
          [](Scene& s) {
              s.output.maps = {MapKind::Displacement};
              s.output.map_resolution = 128;
          },
-         {{{64, 31, kPosition}, {128, 31, kPosition}}},
+         {{{64, 32, kPosition}, {128, 32, kPosition}}},
          kMesh * (8 + 12) + 128 * 128 * (8 + 12)},
         // The tile is unfiltered: a grid of its own. Its points are the map's.
         {"MapAndTile",
@@ -183,24 +184,24 @@ std::vector<Case> cases() {
              maps({MapKind::Displacement})(s);
              s.output.cascade_tiles = true;
          },
-         {{{64, 31, kPosition}, {64, 31, kPosition}}},
+         {{{64, 32, kPosition}, {64, 32, kPosition}}},
          kMap * (8 + 12 + 12)},
-        // Bands meet at 8 waves across the 50 m: the 32nd mode of the 200 m, R = 33. Cells of 1.5625 m end at
-        // 16 modes of the 50 m: R = 17, by spline, 32 nodes being too few.
+        // Bands meet at 8 waves across the 50 m: 32 modes of the 200 m and a corner, R = 34. Cells of 1.5625
+        // m end at 16 modes of the 50 m, of which the mesh has every node of 32.
         {"TwoCascades",
          [](Scene& s) {
              s.waves.cascades = {{200.0, 128}, {50.0, 64}};
              s.surface.resolution = 128;
          },
-         {{{128, 33, kPosition}}, {{70, 17, kPosition}}},
+         {{{128, 34, kPosition}}, {{32, 16, kPosition}}},
          129 * 129 * (8 + 12)},
-        // The second cascade's waves are all too short for the mesh. The first one's end between its 32nd and
-        // 33rd mode, and 67 nodes are more than the mesh has: by spline from 2 · 67, rounded up to 140.
+        // The second cascade's waves are all too short for the mesh, which lies on every second node of the
+        // first.
         {"TwoCascadesOneTooFine",
          [](Scene& s) {
              s.waves.cascades = {{200.0, 128}, {50.0, 64}};
          },
-         {{{140, 33, kPosition}}, {}},
+         {{{64, 32, kPosition}}, {}},
          kMesh * (8 + 12)},
         {"NoWind", [](Scene& s) { s.sea.wind_speed_mps = 0.0; }, {{}}, kMesh * (8 + 12)},
         {"TwoQueriesShareAGrid",
@@ -212,14 +213,14 @@ std::vector<Case> cases() {
         // Off the nodes a spline needs 2 · 63 of them: its own grid, though the cells are as large.
         {"TwoQueriesOneOffTheNodes",
          nothing,
-         {{{64, 31, kPosition}, {126, 31, kMotion}}},
+         {{{64, 32, kPosition}, {126, 32, kMotion}}},
          kMap * (8 + 12) + kMap * (8 + 12),
          {query(products(Product::Position), 3.125, 3.125, true),
           query(products(Product::Velocity), 3.125, 3.125, false)}},
         // Positions by their cell, normals by their pixel, each grid with its own fields only.
         {"PixelsCoarserThanCells",
          nothing,
-         {{{126, 31, kPosition}, {70, 17, kSlopes | kStrain}}},
+         {{{126, 32, kPosition}, {64, 16, kSlopes | kStrain}}},
          kMap * (8 + 24),
          {query(products(Product::Position, Product::Normal), 3.125, 6.25, false)}},
         {"VariancesOnly",

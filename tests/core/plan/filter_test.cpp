@@ -44,7 +44,7 @@ TEST(ModeLattice, HoldsEachWaveOfTheDiscOnce) {
     for (int radius : {1, 2, 5, 13, 50}) {
         std::set<std::pair<int, int>> seen;
         std::size_t count = 0;
-        for (int mx = 0; mx <= radius; ++mx) {
+        for (int mx = 0; mx < radius; ++mx) {
             const int height = half_height(radius, mx);
             EXPECT_EQ(column_length(radius, mx), 2u * height + 1u);
             for (int my = -height; my <= height; ++my, ++count) {
@@ -57,12 +57,12 @@ TEST(ModeLattice, HoldsEachWaveOfTheDiscOnce) {
         std::size_t disc = 0;
         for (int y = -radius; y <= radius; ++y)
             for (int x = -radius; x <= radius; ++x)
-                if (x * x + y * y > 0 && x * x + y * y <= radius * radius) {
+                if (x * x + y * y > 0 && x * x + y * y < radius * radius) {
                     ++disc;
                     EXPECT_TRUE(seen.contains({x, y})) << radius << ' ' << x << ' ' << y;
                 }
         EXPECT_EQ(seen.size(), disc);
-        EXPECT_EQ(count, disc / 2 + radius + 1);  // column 0's lower half and (0, 0)
+        EXPECT_EQ(count, disc / 2 + radius);  // column 0's lower half and (0, 0)
     }
     EXPECT_EQ(lattice_modes(0), 0u);
 }

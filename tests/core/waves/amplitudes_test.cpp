@@ -90,7 +90,7 @@ TEST_P(Amplitudes, HoldTheirBandOfTheSpectrum) {
                          outer = (cascade.mode_radius + 0.7072) * step;
             upper = inner;
             expected = energy_near_modes(spectrum, cascade.size_m, inner, outer, [&](long mx, long my) {
-                return mx * mx + my * my <= static_cast<long>(cascade.mode_radius) * cascade.mode_radius;
+                return mx * mx + my * my < static_cast<long>(cascade.mode_radius) * cascade.mode_radius;
             });
             lost += moments(spectrum, inner, kInfinity).m0 - expected;
         }

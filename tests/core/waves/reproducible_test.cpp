@@ -104,7 +104,7 @@ TEST_P(TransformCount, IsTheMinimumAndIsWhatRuns) {
     EXPECT_EQ(plan.transforms_per_frame(), c.fields);
     // A column for each mx of the disc, two rows at a time.
     const Grid& grid = plan.cascades[0].grids[0];
-    EXPECT_EQ(plan.lines_per_frame(), c.fields * (grid.radius + 1 + grid.resolution / 2));
+    EXPECT_EQ(plan.lines_per_frame(), c.fields * (grid.radius + grid.resolution / 2));
     Frame<float> frame(std::make_shared<const Sea<float>>(scene, plan));
     EXPECT_EQ(frame.executed_transforms(), 0);
     for (int i = 1; i <= 3; ++i) {

@@ -142,7 +142,7 @@ template <class T>
 std::vector<Mode> modes_of(const Sea<T>& sea, int cascade, double t_s) {
     const Cascade<T>& waves = sea.cascades()[cascade];
     std::vector<Mode> modes;
-    for (int mx = 0; waves.radius > 0 && mx <= waves.radius; ++mx)
+    for (int mx = 0; mx < waves.radius; ++mx)
         for (int my = -half_height(waves.radius, mx); my <= half_height(waves.radius, mx); ++my) {
             if (!counts_as_wave(mx, my)) continue;
             const std::size_t at = waves.middle(mx) + my;

@@ -5,11 +5,17 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "core/base/constants.h"
 #include "plugin/shot/ndbc.h"
@@ -150,6 +156,125 @@ TEST_F(Bakes, MapsThatAnotherShotHasReplacedAreBakedAgain) {
     EXPECT_EQ(kept(one), 3);
     EXPECT_EQ(kept(two), 0);
     EXPECT_EQ(kept(one), 0);
+}
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<std::string> frames_in(const fs::path& record) {
+    std::ifstream stream(record);
+    std::vector<std::string> frames;
+    for (const auto& [frame, entry] : nlohmann::json::parse(stream).at("frames").items())
+        frames.push_back(frame);
+    return frames;
+}
+
+TEST_F(Bakes, MeshesAreInTheFormatThatIsAskedForAndThePagesAreText) {
+    for (const auto& [format, extension, begin] :
+         {std::tuple{MeshFormat::Usdc, ".usdc", "PXR-USDC"}, {MeshFormat::Usda, ".usda", "#usda 1.0"}}) {
+        Scene scene = small_scene();
+        scene.output.mesh = format;
+        const auto record = bake_and_read(scene);
+        for (const char* name : {"mesh/sea.topology", "mesh/sea.0001", "mesh/sea.0003"})
+            EXPECT_TRUE(bytes_of(folder_ / (std::string(name) + extension)).starts_with(begin)) << name;
+        for (const char* name : {"sea.usda", "mesh/sea.manifest.usda"})
+            EXPECT_TRUE(bytes_of(folder_ / name).starts_with("#usda 1.0")) << name;
+        const std::string root = bytes_of(folder_ / "sea.usda");
+        EXPECT_NE(root.find("./mesh/sea.####" + std::string(extension)), std::string::npos);
+        EXPECT_NE(root.find("./mesh/sea.topology" + std::string(extension)), std::string::npos);
+        const auto files = record.at("frames").at("2").at("files");
+        EXPECT_EQ(files.size(), 1u);
+        const std::string file = "mesh/sea.0002" + std::string(extension);
+        EXPECT_EQ(files.at(file).get<std::uintmax_t>(), fs::file_size(folder_ / file));
+        EXPECT_EQ(bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept, 3);
+    }
+}
+
+// What a run leaves that was killed before it recorded its frames: crates of the same name and size.
+TEST_F(Bakes, CratesThatAnUnrecordedRunHasReplacedAreBakedAgain) {
+    Scene scene = small_scene();
+    scene.output.mesh = MeshFormat::Usdc;
+    bake_and_read(scene);
+    const std::string first = bytes_of(folder_ / "mesh/sea.0002.usdc");
+    fs::copy_file(folder_ / "sea.json", folder_ / "kept.json");
+    scene.shot.seed = 2;
+    bake_and_read(scene);
+    ASSERT_EQ(bytes_of(folder_ / "mesh/sea.0002.usdc").size(), first.size());
+    ASSERT_NE(bytes_of(folder_ / "mesh/sea.0002.usdc"), first);
+    fs::rename(folder_ / "kept.json", folder_ / "sea.json");
+    scene.shot.seed = 1;
+    EXPECT_EQ(bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept, 0);
+    EXPECT_EQ(bytes_of(folder_ / "mesh/sea.0002.usdc"), first);
+}
+
+TEST_F(Bakes, CancelledInTheMiddleTheRecordHoldsWhatIsWholeAndTheNextRunTheRest) {
+    Scene scene = small_scene();
+    scene.shot.last_frame = 40;
+    scene.output.maps = {MapKind::Displacement};
+    scene.output.map_resolution = 8;
+    std::atomic<bool> cancel{false};
+    int told = 0;
+    const auto stop_at_seven = [&](const BakeProgress& progress) {
+        told = progress.done;
+        if (progress.done == 7) cancel = true;
+    };
+    const BakeReport report =
+        bake(scene, {.out = folder_, .frames = {}, .progress = stop_at_seven, .cancel = &cancel});
+    EXPECT_TRUE(report.cancelled);
+    EXPECT_EQ(report.done, told);
+    EXPECT_GE(report.done, 7);
+    EXPECT_LE(report.done, 7 + kFramesInFlight) << "nothing new is begun";
+    const std::vector<std::string> recorded = frames_in(report.record);
+    ASSERT_EQ(static_cast<int>(recorded.size()), report.done);
+    for (int frame = 1; frame <= report.done; ++frame)
+        EXPECT_EQ(std::count(recorded.begin(), recorded.end(), std::to_string(frame)), 1) << frame;
+    EXPECT_EQ(time_text(report), "") << "of frames that nobody waited for there is nothing to say";
+    const BakeReport rest = bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
+    EXPECT_EQ(rest.kept, report.done);
+    EXPECT_EQ(frames_in(rest.record).size(), 40u);
+}
+
+TEST_F(Bakes, AFileThatCantBeWrittenEndsTheBakeWithAllBeforeItRecordedAndNothingBehind) {
+    Scene scene = small_scene();
+    scene.shot.last_frame = 20;
+    scene.output.mesh = MeshFormat::Usdc;
+    scene.output.maps = {MapKind::Displacement, MapKind::Normal};
+    scene.output.map_resolution = 8;
+    const fs::path in_the_way = folder_ / "maps/normal.0006.exr";
+    fs::create_directories(in_the_way);
+    const BakeOptions options{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
+    try {
+        bake(scene, options);
+        ADD_FAILURE() << "no error";
+    } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find("normal.0006.exr"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(frames_in(folder_ / "sea.json"), (std::vector<std::string>{"1", "2", "3", "4", "5"}));
+    EXPECT_FALSE(fs::exists(folder_ / "mesh/sea.0007.usdc"));
+    fs::remove(in_the_way);
+    EXPECT_EQ(bake(scene, options).kept, 5);
+    EXPECT_EQ(frames_in(folder_ / "sea.json").size(), 20u);
+}
+
+TEST(TimeText, SaysWhichStageWasBusyAndWhoWasWaitedFor) {
+    BakeReport report;
+    EXPECT_EQ(time_text(report), "");
+    report.done = 3;
+    report.times = {.wall_s = 10.0,
+                    .compute_busy_s = 4.1,
+                    .encode_busy_s = 2.2,
+                    .write_busy_s = 9.7,
+                    .waiting_for_write_s = 3.0,
+                    .waiting_for_encode_s = 0.3};
+    const std::string busy = "compute 41 %, encode 22 %, write 97 % of the time busy; ";
+    EXPECT_EQ(time_text(report), busy + "the disk was the bottleneck");
+    report.times.waiting_for_encode_s = 5.0;
+    EXPECT_EQ(time_text(report), busy + "computing was the bottleneck");
+    report.times.encode_busy_s = 8.0;
+    EXPECT_EQ(time_text(report),
+              "compute 41 %, encode 80 %, write 97 % of the time busy; encoding was the bottleneck");
 }
 
 // One run bakes frames 2 and 3 while another is between its frame and its end: neither forgets the other's.

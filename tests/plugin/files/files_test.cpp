@@ -17,6 +17,7 @@
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -114,6 +115,25 @@ TEST_F(Files, AFileIsWrittenAndReplacedAndNothingElseIsLeft) {
 
 // A name without a folder lies in the working folder, and a name as long as the file system takes leaves room
 // for the hidden one beside it.
+TEST_F(Files, PiecesMakeOneFileAndAnErrorBetweenThemLeavesTheOldOne) {
+    const fs::path target = folder_ / "a";
+    const std::string large(100000, 'x');
+    EXPECT_EQ(write_atomically(target,
+                               [&](const ByteSink& sink) {
+                                   for (const std::string& piece : {std::string("one"), large, std::string()})
+                                       sink(piece);
+                               }),
+              100003u);
+    EXPECT_EQ(contents(target), "one" + large);
+    const auto torn = [](const ByteSink& sink) {
+        sink("half");
+        throw std::domain_error("no more");
+    };
+    EXPECT_THROW(write_atomically(target, torn), std::domain_error);
+    EXPECT_EQ(contents(target), "one" + large);
+    EXPECT_EQ(names_in(folder_), std::vector<std::string>{"a"});
+}
+
 TEST_F(Files, BareNamesAndLongestNamesAreFine) {
     const fs::path before = fs::current_path();
     fs::current_path(folder_);

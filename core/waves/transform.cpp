@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/buffer.h"
+#include "core/waves/wisdom.h"
 
 namespace pelagic {
 namespace {
@@ -27,6 +28,8 @@ struct Fftw<float> {
     static constexpr auto execute = fftwf_execute_split_dft;
     static constexpr auto destroy_plan = fftwf_destroy_plan;
     using Dimension = fftwf_iodim;
+    // Merged with what FFTW knows already; nothing where another build of FFTW refuses it.
+    static void remember() { fftwf_import_wisdom_from_string(kSingleLineWisdom); }
 };
 template <>
 struct Fftw<double> {
@@ -35,6 +38,7 @@ struct Fftw<double> {
     static constexpr auto execute = fftw_execute_split_dft;
     static constexpr auto destroy_plan = fftw_destroy_plan;
     using Dimension = fftw_iodim;
+    static void remember() {}  // only the reference is computed in double
 };
 
 }  // namespace
@@ -61,9 +65,10 @@ LineTransform<T>::LineTransform(int n) : n_(n) {
     auto plan = std::make_shared<Plan>();
     {
         const std::lock_guard lock(planner());
-        // One line from one place to another is what FFTW's estimate is good at: within a fifth of what its
-        // longest search finds, while its estimates for squares, columns and in place are up to ten times
-        // slower.
+        // Each time: somebody may have made FFTW forget. Of lengths that aren't recorded, one line from one
+        // place to another is what FFTW's estimate is good at: within a fifth of what its longest search
+        // finds, while its estimates for squares, columns and in place are up to ten times slower.
+        Fftw<T>::remember();
         plan->handle = Fftw<T>::plan(1, &line, 0, nullptr, from.data() + stride, from.data(),
                                      to.data() + stride, to.data(), FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
     }

@@ -14,8 +14,9 @@ namespace pelagic {
 
 // f(j) = Σ F(m) exp(+2πi m j/N), m and j from 0 to N − 1, one thread, unnormalised, from one place to
 // another; real parts at the pointer, imaginary parts line_stride(N) behind it, both aligned to 64 bytes. The
-// input is kept. Planned by FFTW's estimate and never by timing, so that every run takes the same path (where
-// the host has not given FFTW wisdom of its own). execute() may be called from several threads at once.
+// input is kept. Planned from recorded wisdom or by FFTW's estimate and never by timing, so that every run
+// takes the same path (where the host has not given FFTW wisdom of its own). execute() may be called from
+// several threads at once.
 template <class T>
 class LineTransform {
   public:

@@ -165,8 +165,9 @@ std::string bytes_of(const fs::path& file) {
 
 std::vector<std::string> frames_in(const fs::path& record) {
     std::ifstream stream(record);
+    const nlohmann::json json = nlohmann::json::parse(stream);
     std::vector<std::string> frames;
-    for (const auto& [frame, entry] : nlohmann::json::parse(stream).at("frames").items())
+    for (const auto& [frame, entry] : json.at("frames").items())
         frames.push_back(frame);
     return frames;
 }

@@ -54,7 +54,7 @@ TEST(BakeMemory, OfAThousandFramesIsThatOfTen) {
     write_file(shot,
                "[shot]\nname = \"small\"\nframes = [1, 1000]\n"
                "[waves]\ncascades = [ { size_m = 60.0, resolution = 512 } ]\n"
-               "[surface]\nsize_m = 40\nresolution = 64\n"
+               "[surface]\nsize_m = 6\nresolution = 64\n"
                "[output]\nmesh = \"usdc\"\nmaps = [\"displacement\", \"normal\", \"whitecaps\"]\n"
                "map_resolution = 64\n");
     rusage own{};

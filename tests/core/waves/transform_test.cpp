@@ -1,0 +1,63 @@
+// Lines against the sum that they are, and the recorded plans.
+#include "core/waves/transform.h"
+
+#include <fftw3.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "core/base/buffer.h"
+#include "core/base/random.h"
+#include "core/waves/wisdom.h"
+
+namespace pelagic {
+namespace {
+
+// Rounding of log2(N) stages, each of half a unit in the last place of sums that grow as √N.
+template <class T>
+void expect_the_sum(int n) {
+    const std::size_t stride = line_stride<T>(n);
+    Buffer<T> from(2 * stride), to(2 * stride);
+    for (int m = 0; m < n; ++m) {
+        const auto z = normal_pair({static_cast<std::uint32_t>(m), 0, 0, 0}, 3);
+        from[m] = static_cast<T>(z[0]);
+        from[stride + m] = static_cast<T>(z[1]);
+    }
+    LineTransform<T>(n).execute(from.data(), to.data());
+    const double tolerance = 4.0 * std::numeric_limits<T>::epsilon() * std::sqrt(n) * (1.0 + std::log2(n));
+    for (int j = 0; j < n; j += 1 + n / 16) {
+        std::complex<double> sum = 0.0;
+        for (int m = 0; m < n; ++m)
+            sum += std::complex<double>(from[m], from[stride + m]) *
+                   std::polar(1.0, 2.0 * std::numbers::pi * static_cast<double>(std::int64_t(m) * j % n) / n);
+        ASSERT_NEAR(to[j], sum.real(), tolerance) << n << ' ' << j;
+        ASSERT_NEAR(to[stride + j], sum.imag(), tolerance) << n << ' ' << j;
+    }
+}
+
+TEST(LineTransform, IsTheSumWithAPositiveExponent) {
+    for (int n : {1, 2, 3, 5, 7, 16, 30, 81, 256, 540, 1024, 4096}) {
+        expect_the_sum<float>(n);
+        expect_the_sum<double>(n);
+    }
+}
+
+// Another FFTW than Debian's may know nothing of them: then this fails, and only speed is lost.
+TEST(LineTransform, RecordedPlansAreThoseOfThisFftw) {
+    EXPECT_EQ(fftwf_import_wisdom_from_string(kSingleLineWisdom), 1);
+}
+
+TEST(GridLayout, KeepsRowsApartAndAligned) {
+    for (int n = 1; n < 5000; ++n) {
+        EXPECT_GE(line_stride<float>(n), n + kRowSkirt);
+        EXPECT_EQ(line_stride<float>(n) * sizeof(float) % 64, 0u);
+        EXPECT_NE(line_stride<float>(n) * sizeof(float) % 2048, 0u);
+        EXPECT_NE(line_stride<double>(n) * sizeof(double) % 2048, 0u);
+        EXPECT_EQ(grid_samples<float>(n) % (2 * line_stride<float>(n)), 0u);
+    }
+}
+
+}  // namespace
+}  // namespace pelagic

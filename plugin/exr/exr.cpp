@@ -3,10 +3,10 @@
 // The compression, measured by tests/bench/bake.cpp on one core with a choppy JONSWAP sea (10 m/s) and 1024²
 // pixels; size against the samples' own, time against None:
 //                             None       RLE        ZIPS       ZIP        PIZ
-//     displacement, Float   1.00, 1×   1.00, 3×   1.00, 14×  0.96, 18×  0.93, 27×
-//     normal, Half          1.00, 1×   0.87, 2×   0.77, 6×   0.77, 6×   1.00, 16×
-//     whitecaps, Float      1.00, 1×   1.00, 5×   0.99, 24×  0.99, 25×  1.00, 58×
-//     the same everywhere   1.00, 1×   1.00, 5×   0.01, 3×   0.01, 3×   0.10, 13×
+//     displacement, Float   1.00, 1×   1.00, 4×   1.00, 27×  0.96, 39×  0.93, 61×
+//     normal, Half          1.00, 1×   0.87, 3×   0.77, 12×  0.77, 11×  1.00, 31×
+//     whitecaps, Float      1.00, 1×   1.00, 4×   0.99, 30×  0.99, 34×  1.00, 74×
+//     the same everywhere   1.00, 1×   1.00, 4×   0.01, 3×   0.01, 3×   0.11, 10×
 // The low bits of a sea are noise. The best case of a map that varies, a quarter of the normals by ZIP, takes
 // longer than to compute all of the frame, and would gain time only where a disk takes less than some
 // 10 MB/s; a renderer pays again each time it reads. So Auto is None, and who knows that a map is the same

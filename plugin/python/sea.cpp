@@ -1,5 +1,9 @@
 // pelagic.Sea and pelagic.Frame: one query over one scene, in single precision, on numpy arrays.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <pybind11/stl.h>
+#include <algorithm>
 
 #include <array>
 #include <cmath>
@@ -214,15 +218,29 @@ class PythonFrame {
 
     void run(const Points<float>& points, const Results<float>& results) const {
         const py::gil_scoped_release others_may_run;
-        for (std::size_t i = 0; i < points.count; ++i) {
-            const glm::vec2 rest = points.rest_m[i];
-            if (!kRest_m.holds(rest.x) || !kRest_m.holds(rest.y))
-                throw std::invalid_argument("rest: point " + std::to_string(i) +
-                                            " is no place on the sea; accepted: " + text_of(kRest_m) + " m");
-        }
+        const std::size_t bad = first_off_the_sea(points);
+        if (bad < points.count)
+            throw std::invalid_argument("rest: point " + std::to_string(bad) +
+                                        " is no place on the sea; accepted: " + text_of(kRest_m) + " m");
         const std::shared_lock reading(mutex_);
         if (!is_set_) throw std::invalid_argument("the frame has no time yet: call set(t) first");
         pelagic::evaluate(frame_, 0, points, results);
+    }
+
+    // The count, where all are on it. On all threads: of a million points it would be a tenth of their
+    // evaluation.
+    static std::size_t first_off_the_sea(const Points<float>& points) {
+        using Range = tbb::blocked_range<std::size_t>;
+        return tbb::parallel_reduce(
+            Range(0, points.count, 16384), points.count,
+            [&](const Range& range, std::size_t first) {
+                for (std::size_t i = range.begin(); i < std::min(range.end(), first); ++i) {
+                    const glm::vec2 rest = points.rest_m[i];
+                    if (!kRest_m.holds(rest.x) || !kRest_m.holds(rest.y)) return i;
+                }
+                return first;
+            },
+            [](std::size_t a, std::size_t b) { return std::min(a, b); });
     }
 
     SharedSea sea_;

@@ -167,8 +167,7 @@ std::vector<std::string> frames_in(const fs::path& record) {
     std::ifstream stream(record);
     const nlohmann::json json = nlohmann::json::parse(stream);
     std::vector<std::string> frames;
-    for (const auto& [frame, entry] : json.at("frames").items())
-        frames.push_back(frame);
+    for (const auto& [frame, entry] : json.at("frames").items()) frames.push_back(frame);
     return frames;
 }
 

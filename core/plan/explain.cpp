@@ -137,14 +137,14 @@ std::string explain(const Scene& scene, const Plan& plan) {
     if (plan.cascades.empty()) page += "  none: the trains are the whole sea\n";
     std::size_t cascade_number = 0;
     for (const CascadePlan& cascade : plan.cascades) {
-        page += format("  %zu  %.6g m, resolution %d, waves of ", cascade_number++, cascade.size_m,
-                       cascade.resolution);
         page +=
-            cascade.k_lower > 0.0 ? format("%.4g m", kTwoPi / cascade.k_lower) : std::string("any length");
-        page += std::isfinite(cascade.k_upper)
-                    ? format(" down to %.4g m", kTwoPi / cascade.k_upper)
-                    : format(" down to %.4g m", cascade.size_m / (cascade.resolution / 2 - 1));
-        page += "\n";
+            format("  %zu  %.6g m, resolution %d, ", cascade_number++, cascade.size_m, cascade.resolution);
+        const double longest_m = cascade.k_lower > 0.0 ? kTwoPi / cascade.k_lower : cascade.size_m;
+        const double shortest_m = std::isfinite(cascade.k_upper)
+                                      ? kTwoPi / cascade.k_upper
+                                      : cascade.size_m / (cascade.resolution / 2 - 1);
+        page += shortest_m < longest_m ? format("waves of %.4g m down to %.4g m\n", longest_m, shortest_m)
+                                       : std::string("too coarse for any wave of its band\n");
         if (cascade.grids.empty()) {
             page += "     nothing runs: " + cascade.why_empty + "\n";
             continue;

@@ -210,6 +210,20 @@ void check_trains(Checker& check, const Waves& waves) {
                       "is not shorter than longest_m, " + number_text(*waves.longest_m),
                       "a shortest train below the longest"});
     }
+    if (!all_good || !waves.shortest_m || waves.cascades.empty()) return;
+    // The cascades take over where the trains end: without a gap, and with something left to carry.
+    const CascadeSize &largest = waves.cascades.front(), &finest = waves.cascades.back();
+    const double longest_wave_m = largest.size_m / kBandModes;
+    const double finest_wave_m = 2.0 * finest.size_m / std::max(finest.resolution, 1);
+    if (*waves.shortest_m > longest_wave_m)
+        check.refuse(
+            {"waves.shortest_m", number_text(*waves.shortest_m),
+             "leaves out waves: the largest cascade begins at " + number_text(longest_wave_m) + " m",
+             "at most " + number_text(longest_wave_m) + " m, an eighth of the tile, or a larger tile"});
+    else if (!(*waves.shortest_m > finest_wave_m))
+        check.refuse({"waves.shortest_m", number_text(*waves.shortest_m),
+                      "leaves the cascades no waves: theirs end at " + number_text(finest_wave_m) + " m",
+                      "more than " + number_text(finest_wave_m) + " m, or finer cascades"});
 }
 
 void check_no_trains(Checker& check, const Waves& waves) {

@@ -110,7 +110,10 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             sequence->compute(missing[item], slots[place]);
             report.executed_transforms = sequence->executed_transforms();
         };
-        stages.encode = [&](int, int place) { sequence->encode(slots[place]); };
+        stages.encode = [&](int, int place) {
+            stop_if_cancelled();
+            sequence->encode(slots[place]);
+        };
         stages.write = [&](int item, int place) {
             sequence->write(slots[place], write);
             record.set(missing[item], slots[place].record);
@@ -132,11 +135,11 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         try {
             report.times = run_pipeline(static_cast<int>(missing.size()), kFramesInFlight, stages);
         } catch (...) {
-            // What was finished stays recorded; if even that can't be written, the first reason is the one to
+            // What was finished stays recorded; if even that can't be done, the first reason is the one to
             // tell.
             try {
                 record.save(report.record);
-            } catch (const files::FileError&) {
+            } catch (...) {
             }
             throw;
         }
@@ -154,8 +157,15 @@ std::string time_text(const BakeReport& report) {
     const auto percent = [&](double busy_s) {
         return std::to_string(std::lround(100.0 * busy_s / times.wall_s)) + " %";
     };
-    const char* bottleneck = times.compute_busy_s >= times.encode_busy_s ? "computing" : "encoding";
-    if (times.waiting_for_write_s >= times.waiting_for_encode_s) bottleneck = "the disk";
+    std::string bottleneck = times.compute_busy_s >= times.encode_busy_s ? "computing" : "encoding";
+    double busiest_s = std::max(times.compute_busy_s, times.encode_busy_s);
+    if (times.waiting_for_write_s > times.waiting_for_encode_s) {
+        bottleneck = "the disk";
+        busiest_s = times.write_busy_s;
+    }
+    // Stages share the cores: one that is busy for less is not what the others wait for.
+    constexpr double kMostOfTheTime = 0.6;
+    if (busiest_s < kMostOfTheTime * times.wall_s) bottleneck = "no stage alone";
     return "compute " + percent(times.compute_busy_s) + ", encode " + percent(times.encode_busy_s) +
            ", write " + percent(times.write_busy_s) + " of the time busy; " + bottleneck +
            " was the bottleneck";

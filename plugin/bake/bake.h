@@ -8,9 +8,11 @@
 // One frame is computed while others are encoded and written, kFramesInFlight at most together. Beside the
 // plan's sea and frame, each of these holds, whatever the shot's length,
 //   12 bytes a vertex for positions, normals, velocities and slope variances each, 4 for whitecaps, and with
-//      a mesh in text up to 18 bytes more for each of their numbers
-//   12 bytes a texel for each map and tile, and its file, which is no larger but for mip levels (a third)
-// and while it is encoded once more a map's mip levels.
+//      a mesh in text up to twice 18 bytes more for each of their numbers
+//   12 bytes a texel for each map and tile (whitecaps 16), and its file: as much again, with mip levels a
+//   third more
+// and while it is encoded once or twice more a map's texels with their mip levels. The faces of the mesh, 28
+// bytes a quad, are held while they are written, before the first frame.
 #pragma once
 
 #include <atomic>
@@ -33,7 +35,7 @@ enum class BakeStage { Planning, Building, Frames };
 struct BakeProgress {
     BakeStage stage = BakeStage::Planning;
     int frame = 0;         // the one that was finished last
-    int done = 0;          // frames computed by this run
+    int done = 0;          // frames written by this run
     int kept = 0;          // frames that were whole already
     int total = 0;         // frames asked for: done + kept + what is left
     double seconds = 0.0;  // since the first frame was begun
@@ -44,7 +46,7 @@ struct BakeOptions {
     std::vector<int> frames;    // rising, within the shot's range; empty: the whole shot
     std::function<void(const BakeProgress&)> progress;  // called from the baking thread; may be empty
     // Set from elsewhere (a signal handler, another thread): the bake stops as soon as the file at hand is
-    // whole and the frame at hand is computed.
+    // whole, the frame at hand is computed and the maps at hand are encoded.
     const std::atomic<bool>* cancel = nullptr;
 };
 

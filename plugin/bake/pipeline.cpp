@@ -35,7 +35,11 @@ class Stopwatch {
 class Pipeline {
   public:
     Pipeline(int items, int places, const PipelineStages& stages)
-        : items_(items), places_(places), stages_(stages), encoded_(static_cast<std::size_t>(places)) {}
+        : items_(items),
+          places_(places),
+          stages_(stages),
+          encoders_(static_cast<std::size_t>(places)),
+          encoded_(static_cast<std::size_t>(places)) {}
 
     PipelineTimes run() {
         const Clock::time_point start = Clock::now();
@@ -45,7 +49,7 @@ class Pipeline {
         } catch (...) {
             end(std::current_exception());
         }
-        encoders_.wait();
+        for (tbb::task_group& encoder : encoders_) encoder.wait();
         writer.join();
         if (error_) std::rethrow_exception(error_);
         times_.wall_s = seconds(Clock::now() - start);
@@ -85,7 +89,7 @@ class Pipeline {
                 set_encoded(item, std::current_exception());
                 break;
             }
-            encoders_.run([this, item] { encode(item); });
+            encoders_[static_cast<std::size_t>(item % places_)].run([this, item] { encode(item); });
         }
         wait_until_written(items_);
     }
@@ -93,9 +97,10 @@ class Pipeline {
     // Tells of what is written meanwhile. False when the pipeline has ended before.
     bool wait_until_written(int count) {
         std::unique_lock lock(mutex_);
+        // The last of them must be encoded first: this thread helps with that, and with nothing later.
         if (written_ < count && !error_) {
             lock.unlock();
-            encoders_.wait();
+            encoders_[static_cast<std::size_t>((count - 1) % places_)].wait();
             lock.lock();
         }
         for (;;) {
@@ -169,7 +174,7 @@ class Pipeline {
 
     const int items_, places_;
     const PipelineStages& stages_;
-    tbb::task_group encoders_;
+    std::vector<tbb::task_group> encoders_;  // by place
 
     std::mutex mutex_;
     std::condition_variable changed_;

@@ -30,7 +30,7 @@ struct PipelineTimes {
 
 // Item i is in place i mod `places` from its computing until it is written: no more items than places are
 // under way, and a place's memory is its item's alone. places ≥ 1; with one, nothing overlaps but an item's
-// own work. While a place is awaited the calling thread encodes, too; it sleeps only when all is encoded.
+// own work. While a place is awaited the calling thread encodes that place's item, too, and then sleeps.
 //
 // When a stage throws, the items before are still written, none after, and the exception passes through when
 // all threads have ended: always the one of the lowest item. What `written` throws passes through as well,

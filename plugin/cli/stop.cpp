@@ -22,7 +22,8 @@ std::atomic<bool> writing{false};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 std::array<struct sigaction, kStopping.size()> before{};
-struct sigaction pipe_before {};
+struct sigaction pipe_before {
+}, size_before{};
 
 void say(std::string_view text) {
     // Nobody can be told where stderr itself fails.
@@ -58,11 +59,13 @@ StopSignals::StopSignals() {
     }
     action.sa_handler = SIG_IGN;
     sigaction(SIGPIPE, &action, &pipe_before);
+    sigaction(SIGXFSZ, &action, &size_before);  // a file beyond the allowed size is then an error with words
 }
 
 StopSignals::~StopSignals() {
     for (std::size_t i = 0; i < kStopping.size(); ++i) sigaction(kStopping[i], &before[i], nullptr);
     sigaction(SIGPIPE, &pipe_before, nullptr);
+    sigaction(SIGXFSZ, &size_before, nullptr);
 }
 
 const std::atomic<bool>& StopSignals::cancelled() const {

@@ -52,7 +52,7 @@ constexpr float kHalfOverflow = 65520.0f;
 // What the library writes into, instead of a file.
 class StringStream : public Imf::OStream {
   public:
-    StringStream() : OStream("memory") {}
+    explicit StringStream(std::size_t expected_bytes) : OStream("memory") { bytes_.reserve(expected_bytes); }
 
     void write(const char bytes[], int count) override {
         const auto n = static_cast<std::size_t>(count);
@@ -74,6 +74,15 @@ class StringStream : public Imf::OStream {
     std::string bytes_;
     std::size_t position_ = 0;
 };
+
+// What a file of an image takes without compression, and some room for its header: memory is asked for once.
+std::size_t raw_bytes(const Image& image) {
+    constexpr std::size_t kHeader = 1 << 16;
+    std::size_t bytes_a_pixel = 0;
+    for (const Channel& channel : image.channels) bytes_a_pixel += channel.type == PixelType::Half ? 2 : 4;
+    return kHeader +
+           bytes_a_pixel * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+}
 
 void check_image(const Image& image) {
     if (image.width <= 0 || image.height <= 0)
@@ -263,7 +272,7 @@ void check_levels(std::span<const Image> levels) {
 
 std::string encode_scanline(const Header& header, const Image& image) {
     check_image(image);
-    StringStream stream;
+    StringStream stream(raw_bytes(image));
     {
         // No threads: callers encode several files side by side. The table of offsets is written when this is
         // gone.
@@ -293,7 +302,7 @@ std::string encode_mipmapped(const Header& header, std::span<const Image> levels
     Imf::Header with_tiles = imf_header(header, full);
     with_tiles.setTileDescription(
         Imf::TileDescription(kTileSize, kTileSize, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
-    StringStream stream;
+    StringStream stream(raw_bytes(levels.front()) * 4 / 3);
     {
         Imf::TiledOutputFile file(stream, with_tiles, 0);
         Scratch scratch(full, std::min(kTileSize, full.width), std::min(kTileSize, full.height));

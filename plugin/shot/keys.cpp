@@ -617,12 +617,14 @@ const std::vector<Key<Waves>>& keys_of() {
                .help =
                    "with trochoid: the shortest train; what is shorter counts as variance, or is left to the "
                    "cascades if there are any. Without it: 2 cm, or shorter so that ten trains are below a "
-                   "pixel",
+                   "pixel; with cascades an eighth of the largest tile; at most a tenth of longest_m",
                .unit = "m",
                .range = text_of(limits::kTrain_m)}),
         value(&Waves::longest_m,
               {.name = "longest_m",
-               .help = "with trochoid: the longest train. Without it: all but 0.1 % of the energy is shorter",
+               .help = "with trochoid: the longest train; what is longer is not on the surface and counts as "
+                       "variance. "
+                       "Without it: all but 0.1 % of the energy is shorter; at least ten times shortest_m",
                .unit = "m",
                .range = text_of(limits::kTrain_m)}),
     };

@@ -181,7 +181,7 @@ TEST(Pipeline, StagesOverlapAndTheTimesSaySo) {
     EXPECT_LT(times.wall_s, times.compute_busy_s + times.encode_busy_s + times.write_busy_s);
     EXPECT_GE(times.write_busy_s, 0.240);
     EXPECT_GE(times.compute_busy_s, 0.080);
-    EXPECT_GE(times.encode_busy_s, 0.080);
+    EXPECT_GE(times.encode_busy_s, 0.040);  // on two threads; two at once count once
     EXPECT_LE(times.write_busy_s, times.wall_s);
     EXPECT_GT(times.waiting_for_write_s, times.waiting_for_encode_s) << "the slowest is waited for";
 

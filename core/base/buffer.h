@@ -16,19 +16,22 @@ namespace pelagic {
 template <class T>
 class Buffer {
   public:
-    // Vectors may read, and write, this many values beyond size(): a whole one of the longest.
-    static constexpr std::size_t kSlack = 64 / sizeof(T);
+    // Loops may read, and write, this many values beyond size(): as many as the longest vector has floats,
+    // whatever T is (doubles are read beside floats, lane by lane).
+    static constexpr std::size_t kSlack = 64 / sizeof(float);
 
     Buffer() = default;
     explicit Buffer(std::size_t count) : size_(count) {  // throws std::bad_alloc
         constexpr std::size_t kLine = 64, kHugePage = std::size_t(2) << 20;
-        std::size_t bytes = (count + kSlack) * sizeof(T);
+        const std::size_t bytes = (count + kSlack) * sizeof(T);
         const std::size_t alignment = bytes >= 2 * kHugePage ? kHugePage : kLine;
-        bytes = (bytes + alignment - 1) / alignment * alignment;
-        data_.reset(static_cast<T*>(std::aligned_alloc(alignment, bytes)));
-        if (!data_) throw std::bad_alloc();
+        void* memory = nullptr;
+        if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
+        data_.reset(static_cast<T*>(memory));
 #ifdef MADV_HUGEPAGE
-        if (alignment == kHugePage) madvise(data_.get(), bytes, MADV_HUGEPAGE);  // a wish: refused is fine
+        // A wish: refused is fine. The last, partial page stays as it is: it would be memory that nobody has
+        // counted.
+        if (alignment == kHugePage) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
 #endif
         std::memset(data_.get(), 0, bytes);
     }

@@ -206,8 +206,12 @@ class Evaluation {
     void add_grids(const std::vector<GridArgs<T>>& grids, const Share& share, Chunk<T>& chunk) const {
         if (share.fields.none()) return;
         for (GridArgs<T> args : grids) {
-            for (std::size_t f = 0; f < kFieldCount; ++f)
+            bool any = false;
+            for (std::size_t f = 0; f < kFieldCount; ++f) {
                 if (!share.fields[f]) args.samples[f] = nullptr;
+                any = any || args.samples[f];
+            }
+            if (!any) continue;
             args.cell_weight = share.cell_weight;
             args.pixel_weight = share.pixel_weight;
             kernels_.add_grid(args, chunk);
@@ -315,7 +319,7 @@ void evaluate(const Frame<T>& frame, int query_index, const Points<T>& points, c
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (points.count + kPoints - 1) / kPoints),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                           Chunk<T> chunk;
-                          HiddenChunk<T> hidden_of;
+                          HiddenChunk<T> hidden_of{};
                           for (std::size_t c = range.begin(); c < range.end(); ++c)
                               evaluation.run(c * kPoints, chunk, hidden_of);
                       });

@@ -17,7 +17,8 @@ struct Points {
     glm::dvec2 origin_m{0.0};
     std::size_t count = 0;
     Strided<const glm::vec<2, T>> rest_m{};
-    // Each point's footprints [m]; empty: the query's first one for all. Held within the query's ladder.
+    // Each point's footprints [m]; empty: the query's first one for all. Cascades hold them within the
+    // query's ladder; trains follow them from its first rung on, however large.
     Strided<const T> cell_m{}, pixel_m{};
 };
 

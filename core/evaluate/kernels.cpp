@@ -81,7 +81,7 @@ void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, std::
     }
 }
 
-// Weight and place in the sums of each wanted field.
+// The points' weights in a field; null: 1.
 template <class T>
 HWY_INLINE const T* WeightOf(const GridArgs<T>& args, std::size_t field) {
     return args.cell_group[field] ? args.cell_weight : args.pixel_weight;

@@ -98,7 +98,6 @@ class Zone {
     std::size_t full() const { return full_; }
     std::size_t any() const { return any_; }
 
-    void nothing_passes() { full_ = any_ = 0; }
     void move_to(T smallest_m, T largest_m) {
         walk(full_, [&](std::size_t i) { return largest_m <= wavelength_[i] * whole_; });
         walk(any_, [&](std::size_t i) { return smallest_m < wavelength_[i] * none_; });

@@ -80,7 +80,7 @@ int level_index(Plan& plan, const Level& level) {
     return static_cast<int>(plan.levels.size()) - 1;
 }
 
-// Fields that a grid of this cascade and level must hold for all queries together.
+// Fields that the grids of this level must hold for all queries together.
 FieldSet fields_at(const Plan& plan, int level) {
     FieldSet wanted;
     for (const PlannedQuery& planned : plan.queries) {

@@ -1,11 +1,10 @@
 // The plan: what a scene's outputs need, as pure data, before a byte is allocated.
 //
-// A closure over small tables (plan.cpp): outputs → products → fields → inverse transforms. Nothing else in
+// A closure over small tables (tables.h): outputs → products → fields → inverse transforms. Nothing else in
 // the code decides whether an effect is computed: Sea, Frame and evaluate() read the plan and do what stands
 // there. It knows no FFTW and allocates no buffers, so that explain() answers at once for an 8192² sea.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -114,7 +113,8 @@ struct Plan {
     int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid
     long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
     std::size_t sea_bytes() const;     // held once, shared
-    std::size_t frame_bytes() const;   // held by each Frame, a few hundred kilobytes a thread aside
+    std::size_t frame_bytes() const;   // held by each Frame, beside what a thread works on: some 70 N numbers
+                                      // of its largest grid
     // Points at rest, shared by queries over the same square, and one frame's results: each query's own, in
     // single precision as files hold them; in double, besides, an array a product as long as its longest.
     std::size_t output_bytes() const;

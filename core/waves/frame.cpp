@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <stdexcept>
 
@@ -26,6 +27,12 @@ template <class T>
 LineTransform<T> transform_of(std::map<int, LineTransform<T>>& known, int n) {
     const auto found = known.find(n);
     return found != known.end() ? found->second : known.emplace(n, LineTransform<T>(n)).first->second;
+}
+
+// Null for a buffer that this sea has no use for.
+template <class T>
+T* from(Buffer<T>& buffer, std::size_t at) {
+    return buffer.empty() ? nullptr : buffer.data() + at;
 }
 
 // Work on each item, one at a time to whoever is free; the sum of what it returns.
@@ -95,6 +102,7 @@ template <class T>
 void Frame<T>::set(double t_s) {
     if (!(std::abs(t_s) <= kLatest_s))
         throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
+    is_set_ = false;  // until everything is done
     time_s_ = t_s;
     time_within_loop_s_ = pelagic::time_within_loop_s(t_s, sea_->loop_s());
     executed_lines_ += sum_of_each(blocks_, [this](const Block& block) { return transform_columns(block); });
@@ -108,11 +116,17 @@ template <class T>
 typename Frame<T>::Scratch& Frame<T>::scratch() const {
     Scratch& scratch = scratches_.local();
     if (scratch.line.empty()) {
-        for (Buffer<T>* modes : {&scratch.height_re, &scratch.height_im, &scratch.rate_re, &scratch.rate_im,
-                                 &scratch.through, &scratch.chop_through})
-            *modes = Buffer<T>(block_modes_);
-        scratch.line = Buffer<T>(line_values_);
-        scratch.lines = Buffer<T>(kBlockColumns * line_values_);
+        const Plan& plan = sea_->plan();
+        const auto want = [&](std::initializer_list<Buffer<T>*> buffers, std::size_t count) {
+            for (Buffer<T>* buffer : buffers) *buffer = Buffer<T>(count);
+        };
+        want({&scratch.height_re, &scratch.height_im, &scratch.through}, block_modes_);
+        if (plan.choppiness > 0.0) want({&scratch.chop_through}, block_modes_);
+        if (std::any_of(plan.cascades.begin(), plan.cascades.end(),
+                        [](const CascadePlan& cascade) { return cascade.moves(); }))
+            want({&scratch.rate_re, &scratch.rate_im}, block_modes_);
+        want({&scratch.lines}, kBlockColumns * line_values_);
+        want({&scratch.line}, line_values_);  // the last: it says that all are there
     }
     return scratch;
 }
@@ -169,7 +183,7 @@ long Frame<T>::transform_columns(const Block& block) {
                  .prefilter_x = prefilter ? prefilter[mx] : T(1),
                  .chop = cascade.chop.empty() ? nullptr : cascade.chop.data() + cascade.middle(mx),
                  .through = at.through.data() + middle(column),
-                 .chop_through = at.chop_through.data() + middle(column)});
+                 .chop_through = from(at.chop_through, middle(column))});
         }
         const std::size_t stride = line_stride<T>(grid.resolution);
         for (std::size_t f = 0; f < kFieldCount && columns > 0; ++f) {
@@ -184,10 +198,10 @@ long Frame<T>::transform_columns(const Block& block) {
                                .step = step,
                                .height_re = at.height_re.data() + m,
                                .height_im = at.height_im.data() + m,
-                               .rate_re = at.rate_re.data() + m,
-                               .rate_im = at.rate_im.data() + m,
+                               .rate_re = from(at.rate_re, m),
+                               .rate_im = from(at.rate_im, m),
                                .through = at.through.data() + m,
-                               .chop_through = at.chop_through.data() + m,
+                               .chop_through = from(at.chop_through, m),
                                .line_re = at.line.data(),
                                .line_im = at.line.data() + stride});
                 state.transform.execute(at.line.data(), at.lines.data() + 2 * stride * column);

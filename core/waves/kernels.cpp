@@ -17,12 +17,13 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {  // names are this file's own
 
-// ωt in cycles, reduced in double before it is rounded: as exact after ten weeks as at 0. And ω.
+// ωt in cycles, reduced in double before it is rounded: as exact after ten weeks as at 0 (where the CPU
+// multiplies and subtracts in one, without the product's own rounding, at any time). And ω.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void PhaseAndOmega(D d, const double* cycles_per_s, double time_s, V& phase, V& omega) {
     if constexpr (sizeof(hn::TFromD<D>) == sizeof(double)) {
-        const V cycles = hn::LoadU(d, cycles_per_s), at = hn::Mul(cycles, hn::Set(d, time_s));
-        phase = hn::Sub(at, hn::Round(at));
+        const V cycles = hn::LoadU(d, cycles_per_s), time = hn::Set(d, time_s);
+        phase = hn::MulSub(cycles, time, hn::Round(hn::Mul(cycles, time)));
         omega = hn::Mul(cycles, hn::Set(d, kTwoPi));
     } else {
         const hn::Half<D> half;
@@ -30,9 +31,9 @@ HWY_INLINE void PhaseAndOmega(D d, const double* cycles_per_s, double time_s, V&
         const auto time = hn::Set(wide, time_s), two_pi = hn::Set(wide, kTwoPi);
         const auto low = hn::LoadU(wide, cycles_per_s);
         const auto high = hn::LoadU(wide, cycles_per_s + hn::Lanes(wide));
-        const auto low_at = hn::Mul(low, time), high_at = hn::Mul(high, time);
-        phase = hn::Combine(d, hn::DemoteTo(half, hn::Sub(high_at, hn::Round(high_at))),
-                            hn::DemoteTo(half, hn::Sub(low_at, hn::Round(low_at))));
+        const auto high_rest = hn::MulSub(high, time, hn::Round(hn::Mul(high, time)));
+        const auto low_rest = hn::MulSub(low, time, hn::Round(hn::Mul(low, time)));
+        phase = hn::Combine(d, hn::DemoteTo(half, high_rest), hn::DemoteTo(half, low_rest));
         omega = hn::Combine(d, hn::DemoteTo(half, hn::Mul(high, two_pi)),
                             hn::DemoteTo(half, hn::Mul(low, two_pi)));
     }

@@ -63,7 +63,7 @@ struct PairArgs {
     T *line_re, *line_im;
 };
 
-// Sums over a column's modes, doubled for their mirror images: see Realisation in core/waves/frame.h.
+// Sums over a column's modes, doubled for their mirror images: see core/waves/realisation.h.
 template <class T>
 struct RealiseArgs {
     const T *height_re, *height_im, *forward_re, *forward_im, *backward_re, *backward_im;

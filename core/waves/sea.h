@@ -61,7 +61,8 @@ class Sea {
     SpectralMoments shown(int query) const;
     // J below this is foam (core/waves/whitecaps.h).
     double whitecap_threshold() const { return whitecap_threshold_; }
-    // Σ over this cascade's modes of E|h|² [m²]: its band's m0.
+    // Σ over this cascade's modes within the plan's mode_radius of E|h|² [m²]: its band's m0 where that
+    // reaches the band's end.
     double expected_m0(int cascade) const { return expected_m0_.at(cascade); }
 
   private:

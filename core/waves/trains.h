@@ -39,7 +39,7 @@ struct Trains {
     std::vector<double> height_m, horizontal_m;            // h and H
     std::vector<double> wavelength_m;
 
-    // Each field's factor on cos θ (height, horizontal velocity, strain) or on sin θ (the others): is_sine().
+    // Each field's factor on cos θ (height, horizontal velocity, strain) or on sin θ (the others).
     std::array<std::vector<T>, kFieldCount> amplitude;
 
     // Moments of each train at weight 1, of trains 0 … i − 1, and of trains i … with what is outside the
@@ -53,12 +53,6 @@ struct Trains {
 
     std::size_t count() const { return height_m.size(); }
 };
-
-// Whether a field of a train goes by sin θ or by cos θ.
-constexpr bool is_sine(Field field) {
-    return field == Field::Dx || field == Field::Dy || field == Field::SlopeX || field == Field::SlopeY ||
-           field == Field::VelocityZ;
-}
 
 // The plan must be the scene's (resolve_trains), the spectrum that of scene.sea. Σh²/2 is m0 of the range to
 // 1e-6. The same scene gives the same trains, to the bit.

@@ -68,7 +68,8 @@ struct BakeReport {
 BakeReport bake(const Scene& scene, const BakeOptions& options);
 
 // Where the time of a finished bake went: "compute 41 %, encode 22 %, write 97 % of the time busy; the disk
-// was the bottleneck". Empty where no frame was baked.
+// was the bottleneck"; "no stage alone", where none was busy for most of the time. Empty where no frame was
+// baked.
 std::string time_text(const BakeReport& report);
 
 // "--frames": "1-48", "7", "1-48x5" (every fifth), with negative numbers as in "-3--1": any part of the

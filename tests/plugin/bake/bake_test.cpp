@@ -271,10 +271,13 @@ TEST(TimeText, SaysWhichStageWasBusyAndWhoWasWaitedFor) {
     const std::string busy = "compute 41 %, encode 22 %, write 97 % of the time busy; ";
     EXPECT_EQ(time_text(report), busy + "the disk was the bottleneck");
     report.times.waiting_for_encode_s = 5.0;
-    EXPECT_EQ(time_text(report), busy + "computing was the bottleneck");
+    EXPECT_EQ(time_text(report), busy + "no stage alone was the bottleneck");
+    report.times.compute_busy_s = 7.1;
+    EXPECT_EQ(time_text(report),
+              "compute 71 %, encode 22 %, write 97 % of the time busy; computing was the bottleneck");
     report.times.encode_busy_s = 8.0;
     EXPECT_EQ(time_text(report),
-              "compute 41 %, encode 80 %, write 97 % of the time busy; encoding was the bottleneck");
+              "compute 71 %, encode 80 %, write 97 % of the time busy; encoding was the bottleneck");
 }
 
 // One run bakes frames 2 and 3 while another is between its frame and its end: neither forgets the other's.

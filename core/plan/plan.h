@@ -114,7 +114,7 @@ struct Plan {
     long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
     std::size_t sea_bytes() const;     // held once, shared
     std::size_t frame_bytes() const;   // held by each Frame, beside what a thread works on: some 70 N numbers
-                                      // of its largest grid
+                                       // of its largest grid
     // Points at rest, shared by queries over the same square, and one frame's results: each query's own, in
     // single precision as files hold them; in double, besides, an array a product as long as its longest.
     std::size_t output_bytes() const;

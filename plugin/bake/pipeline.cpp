@@ -3,6 +3,7 @@
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -78,7 +79,9 @@ class Pipeline {
     }
 
     void compute_all() {
-        for (int item = 0; item < items_; ++item) {
+        int begun = 0;
+        while (begun < items_) {
+            const int item = begun++;
             if (!wait_until_written(item - places_ + 1)) return;
             try {
                 const Stopwatch watch(times_.compute_busy_s);
@@ -91,7 +94,9 @@ class Pipeline {
             }
             encoders_[static_cast<std::size_t>(item % places_)].run([this, item] { encode(item); });
         }
-        wait_until_written(items_);
+        // One after another: where there is no other thread, this one encodes them.
+        for (int count = std::max(1, begun - places_ + 1); count <= begun; ++count)
+            if (!wait_until_written(count)) return;
     }
 
     // Tells of what is written meanwhile. False when the pipeline has ended before.

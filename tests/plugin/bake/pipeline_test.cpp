@@ -165,6 +165,31 @@ TEST(Pipeline, AnErrorOfWhoIsToldEndsIt) {
     EXPECT_LE(factory.written, 5 + kPlaces) << "nothing more is begun";
 }
 
+// Where no other thread takes an encoding, the caller must get to each: also to the last ones, and to those
+// before one that throws.
+TEST(Pipeline, OneThreadFinishesEveryItem) {
+    for (int items = 0; items <= 2 * kPlaces + 1; ++items)
+        for (int failing = -1; failing < items; ++failing) {
+            std::vector<int> written;
+            const PipelineStages stages{.compute =
+                                            [&](int item, int) {
+                                                if (item == failing) throw std::runtime_error("no");
+                                            },
+                                        .encode = [](int, int) {},
+                                        .write = [&](int item, int) { written.push_back(item); }};
+            tbb::task_arena(1).execute([&] {
+                // One thread in the whole process: the arena alone would still be given a second one to wait
+                // on.
+                const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+                if (failing < 0)
+                    run_pipeline(items, kPlaces, stages);
+                else
+                    EXPECT_THROW(run_pipeline(items, kPlaces, stages), std::runtime_error);
+            });
+            EXPECT_EQ(written.size(), static_cast<std::size_t>(failing < 0 ? items : failing));
+        }
+}
+
 // Three stages of sleep, which need no core: together they take as long as the slowest, not as the sum.
 TEST(Pipeline, StagesOverlapAndTheTimesSaySo) {
     using std::chrono::milliseconds;

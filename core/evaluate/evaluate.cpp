@@ -63,12 +63,6 @@ HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& run
     return result;
 }
 
-HiddenMoments<double> hidden_part(const SpectralMoments& moments) {
-    HiddenMoments<double> part;
-    for (std::size_t m = 0; m < part.size(); ++m) part[m] = moments.*kHiddenMoments[m];
-    return part;
-}
-
 template <class T>
 ProductSet given_by(const Results<T>& results) {
     ProductSet given;
@@ -128,10 +122,11 @@ class Evaluation {
         uniform_hidden_ =
             !(has_trains_ && points.pixel_m) && !(points.pixel_m && planned_.pixel_levels.size() > 1);
         if (hidden_wanted_ && uniform_hidden_)
-            hidden_ = hidden_at<T>(statistics_, {},
-                                   hidden_part(has_trains_ ? hidden(frame.sea().trains(), plan_.filter,
-                                                                    planned_.query.pixel_m.front())
-                                                           : statistics_.whole));
+            hidden_ =
+                hidden_at<T>(statistics_, {},
+                             hidden_moments<double>(has_trains_ ? hidden(frame.sea().trains(), plan_.filter,
+                                                                         planned_.query.pixel_m.front())
+                                                                : statistics_.whole));
     }
 
     void run(std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const {
@@ -244,7 +239,7 @@ class Evaluation {
             add_grids(grids_[l], {fields, cell_weight.data(), pixel_weight.data()}, chunk);
         }
         if (!hidden_wanted_ || uniform_hidden_ || has_trains_) return;
-        const HiddenMoments<double> whole = hidden_part(statistics_.whole);
+        const HiddenMoments<double> whole = hidden_moments<double>(statistics_.whole);
         for (std::size_t i = 0; i < chunk.count; ++i) {
             const HiddenMoments<T> left = hidden_at<T>(statistics_, pixel[i], whole);
             for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];

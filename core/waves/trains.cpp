@@ -113,13 +113,6 @@ Passing passing(const Trains<T>& trains, const FootprintFilter& filter, double f
     return {first_shorter(filter.n_max * footprint_m), first_shorter(filter.n_min * footprint_m)};
 }
 
-template <class T>
-HiddenMoments<T> hidden_moments(const SpectralMoments& moments) {
-    HiddenMoments<T> out;
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<T>(moments.*kHiddenMoments[i]);
-    return out;
-}
-
 // cycles per unit × units, less the nearest whole number, without the product's rounding.
 double fraction_of_product(double a, double b) {
     const double product = a * b;

@@ -30,6 +30,13 @@ inline constexpr std::array<double SpectralMoments::*, 8> kHiddenMoments{
 template <class T>
 using HiddenMoments = std::array<T, kHiddenMoments.size()>;  // parallel to kHiddenMoments
 
+template <class T>
+HiddenMoments<T> hidden_moments(const SpectralMoments& moments) {
+    HiddenMoments<T> out;
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<T>(moments.*kHiddenMoments[i]);
+    return out;
+}
+
 // Immutable; each array by train, longest first.
 template <class T>
 struct Trains {

@@ -354,6 +354,17 @@ TEST(Validate, Trains) {
     expect_good(range(0.02, 30.0));
     expect_refused(range(30.0, 0.02), {"waves.shortest_m", "30", "below the longest"});
     expect_refused(range(30.0, 30.0), {"waves.shortest_m", "30", "below the longest"});
+    // Cascades beside them begin at an eighth of the largest, 5 m here, and end at 1.25 m: no gap, and not
+    // nothing.
+    const auto above_cascades = [](double shortest_m) {
+        return of_trains([=](Scene& s) {
+            s.waves.cascades = {{.size_m = 40.0, .resolution = 64}};
+            s.waves.shortest_m = shortest_m;
+        });
+    };
+    for (const double good : {5.0, 1.26}) expect_good(above_cascades(good));
+    expect_refused(above_cascades(5.01), {"waves.shortest_m", "5.01", "at most 5 m"});
+    expect_refused(above_cascades(1.25), {"waves.shortest_m", "1.25", "more than 1.25 m"});
     // Without trains, nothing that speaks of them.
     expect_refused([](Scene& s) { s.waves.trains = 59; }, {"waves.trains", "59", "model = \"trochoid\""});
     expect_refused([](Scene& s) { s.waves.shortest_m = 0.02; },

@@ -115,10 +115,11 @@ void write(Writer& out, const Waves& waves) {
 }
 
 void write(Writer& out, const Surface& surface) {
-    const auto& [kind, size, resolution] = surface;
+    const auto& [kind, size, resolution, cell] = surface;
     out.line("surface.kind", kind);
     out.line("surface.size_m", size);
     out.line("surface.resolution", resolution);
+    out.line("surface.cell_px", cell);
 }
 
 void write(Writer& out, const Camera& camera) {

@@ -50,6 +50,7 @@ inline constexpr Range kTrain_m{1e-3,
 
 inline constexpr Range kSurfaceSize_m{0.01, 1e6};
 inline constexpr Range kSurfaceResolution{1, 8192};
+inline constexpr Range kCell_px{1.0, 256.0};
 
 inline constexpr Range kCameraCoordinate_m{-1e9, 1e9};  // beyond any orbit we draw
 inline constexpr double kOnTarget_m = 1e-6;  // nearer than this, rounding decides where a camera looks
@@ -57,6 +58,8 @@ inline constexpr Range kFov_deg{1.0, 179.0};
 inline constexpr Range kImageResolution{1, 65536};
 
 inline constexpr Range kSunElevation_deg{-90.0, 90.0};
+inline constexpr Range kTurbidity{1.7, 10.0};            // from the clearest air that there is to haze
+inline constexpr Range kChlorophyll_mg_m3{0.01, 100.0};  // from the clearest gyres to a bloom
 inline constexpr Range kMapResolution{1, 8192};
 
 }  // namespace limits

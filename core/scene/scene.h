@@ -100,6 +100,7 @@ struct Surface {
     SurfaceKind kind = SurfaceKind::Patch;
     double size_m = 200.0;  // > 0
     int resolution = 256;   // quads a side, 1 … 8192; (N+1)² vertices
+    double cell_px = 8.0;   // of the projected grid, which pictures of the sea always use: a cell's side
 };
 
 struct CameraKey {
@@ -121,14 +122,15 @@ struct Camera {
 struct Light {
     double sun_elevation_deg = 20.0;  // −90 … 90
     double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
+    // "daylight", or the path of a lat-long picture, as the host that loaded the scene finds it.
     std::string sky = "daylight";
-    double turbidity = 3.0;
+    double turbidity = 3.0;  // of the daylight: 1.7 … 10, haze
 };
 
 // [water]
 struct Water {
     WaterType type = WaterType::Ocean;
-    double chlorophyll_mg_m3 = 0.1;
+    double chlorophyll_mg_m3 = 0.1;  // 0.01 … 100
 };
 
 // [effects]

@@ -272,11 +272,12 @@ void check_waves(Checker& check, const Waves& waves) {
 }
 
 void check_surface(Checker& check, const Surface& surface) {
-    if (surface.kind != SurfaceKind::Patch) {
-        check.not_built("surface.kind", choice_text(surface.kind), "\"patch\"");
+    if (surface.kind != SurfaceKind::Patch && surface.kind != SurfaceKind::ProjectedGrid) {
+        check.not_built("surface.kind", choice_text(surface.kind), "\"patch\" or \"projected-grid\"");
     }
     check.in_range("surface.size_m", surface.size_m, limits::kSurfaceSize_m);
     check.in_range("surface.resolution", surface.resolution, limits::kSurfaceResolution);
+    check.in_range("surface.cell_px", surface.cell_px, limits::kCell_px);
 }
 
 bool check_point(Checker& check, const std::string& key, const glm::dvec3& point_m) {
@@ -361,15 +362,18 @@ void check_unused_number(Checker& check, const std::string& key,
 void check_light_and_water(Checker& check, const Light& light, const Water& water) {
     check.in_range("light.sun_elevation_deg", light.sun_elevation_deg, limits::kSunElevation_deg);
     check.in_range("light.sun_azimuth_deg", light.sun_azimuth_deg, limits::kAngle_deg);
-    if (light.sky != Light{}.sky) {
-        check.not_built("light.sky", quoted_text(light.sky), quoted_text(Light{}.sky));
+    const auto is_exr = [](std::string_view path) {
+        constexpr std::string_view kExr = ".exr";
+        return path.size() > kExr.size() &&
+               std::equal(kExr.begin(), kExr.end(), path.end() - static_cast<std::ptrdiff_t>(kExr.size()),
+                          [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+    };
+    if (light.sky != Light{}.sky && !is_exr(light.sky)) {
+        check.refuse({"light.sky", quoted_text(light.sky), "is neither a sky's name nor a picture",
+                      "\"daylight\", or the path of a lat-long picture, an .exr"});
     }
-    check_unused_number(check, "light.turbidity", {light.turbidity, Light{}.turbidity});
-    if (water.type != WaterType::Ocean) {
-        check.not_built("water.type", choice_text(water.type), "\"ocean\"");
-    }
-    check_unused_number(check, "water.chlorophyll_mg_m3",
-                        {water.chlorophyll_mg_m3, Water{}.chlorophyll_mg_m3});
+    check.in_range("light.turbidity", light.turbidity, limits::kTurbidity);
+    check.in_range("water.chlorophyll_mg_m3", water.chlorophyll_mg_m3, limits::kChlorophyll_mg_m3);
 }
 
 void check_tiles(Checker& check, const Output& output, const Waves& waves) {

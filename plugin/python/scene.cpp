@@ -214,7 +214,8 @@ void add_tables(py::module_& module) {
     Binder<Surface>(module, "Surface", "surface")
         .key("kind", &Surface::kind)
         .key("size_m", &Surface::size_m)
-        .key("resolution", &Surface::resolution);
+        .key("resolution", &Surface::resolution)
+        .key("cell_px", &Surface::cell_px);
     Binder<Camera>(module, "Camera", "camera")
         .key("position_m", &Camera::position_m)
         .key("look_at_m", &Camera::look_at_m)

@@ -634,17 +634,20 @@ const std::vector<Key<Waves>>& keys_of() {
 template <>
 const std::vector<Key<Surface>>& keys_of() {
     static const std::vector<Key<Surface>> keys{
-        value(&Surface::kind, {.name = "kind", .help = "only the patch is built yet"}),
+        value(&Surface::kind, {.name = "kind",
+                               .help = "what is baked: a square patch, or the projected grid of the camera. "
+                                       "Pictures show the sea to the horizon, whatever stands here. "
+                                       "The other kinds are not built yet"}),
         value(&Surface::size_m, {.name = "size_m",
                                  .help = "side of the patch, centred on the origin",
                                  .unit = "m",
                                  .range = text_of(limits::kSurfaceSize_m)}),
         value(&Surface::resolution,
               {.name = "resolution", .help = "quads a side", .range = text_of(limits::kSurfaceResolution)}),
-        not_built<Surface>({.name = "cell_px",
-                            .help = "cells of the projected grid",
-                            .unit = "pixels",
-                            .accepted = "use kind = \"patch\""}),
+        value(&Surface::cell_px, {.name = "cell_px",
+                                  .help = "side of the projected grid's cells, in pictures and bakes",
+                                  .unit = "pixels",
+                                  .range = text_of(limits::kCell_px)}),
         not_built<Surface>({.name = "earth_curvature",
                             .help = "whether the far sea bends away",
                             .accepted = "use kind = \"patch\""}),
@@ -702,9 +705,14 @@ const std::vector<Key<Light>>& keys_of() {
                                         .help = "towards the sun, counter-clockwise from +x",
                                         .unit = "degrees",
                                         .range = text_of(limits::kAngle_deg)}),
-        value(&Light::sky, {.name = "sky", .help = "only \"daylight\" is built yet"}),
-        value(&Light::turbidity,
-              {.name = "turbidity", .help = "haze of the air; only the default is built yet"}),
+        value(&Light::sky,
+              {.name = "sky",
+               .help = "clear daylight, or a picture of a sky: lat-long, middle column +x, azimuth "
+                       "growing to the left, top row the zenith; its sun is found in it",
+               .accepted = "\"daylight\", or the path of an .exr, from the shot file's folder"}),
+        value(&Light::turbidity, {.name = "turbidity",
+                                  .help = "haze of the daylight's air; 2 is very clear, 6 is hazy",
+                                  .range = text_of(limits::kTurbidity)}),
     };
     return keys;
 }
@@ -712,10 +720,13 @@ const std::vector<Key<Light>>& keys_of() {
 template <>
 const std::vector<Key<Water>>& keys_of() {
     static const std::vector<Key<Water>> keys{
-        value(&Water::type, {.name = "type", .help = "only \"ocean\" is built yet"}),
+        value(&Water::type,
+              {.name = "type",
+               .help = "what the water holds besides plankton: nothing, some silt, much of it"}),
         value(&Water::chlorophyll_mg_m3, {.name = "chlorophyll_mg_m3",
-                                          .help = "greens the water; only the default is built yet",
-                                          .unit = "mg/m³"}),
+                                          .help = "plankton: greens the water",
+                                          .unit = "mg/m³",
+                                          .range = text_of(limits::kChlorophyll_mg_m3)}),
     };
     return keys;
 }

@@ -55,6 +55,20 @@ void load_measured(Reader& reader, const std::filesystem::path& folder, SeaState
     }
 }
 
+// A picture of a sky is data of the hosts that make pictures: here only its place is found.
+void find_sky(Reader& reader, const std::filesystem::path& folder, Light& light) {
+    if (light.sky == Light{}.sky || reader.has_failed("light.sky")) return;
+    const std::filesystem::path file = folder / light.sky;
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) {
+        reader.refuse({"light.sky", quoted_text(light.sky),
+                       "is no file in " + quoted_text(folder.empty() ? "." : folder.string()),
+                       "\"daylight\", or the path of an .exr, from the shot file's folder"});
+        reader.mark_failed("light.sky");
+    }
+    light.sky = file.string();
+}
+
 }  // namespace
 
 Scene parse_shot(std::string_view text, const std::filesystem::path& file) {
@@ -71,6 +85,7 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file) {
     Scene scene;
     read_scene(reader, root, scene);
     load_measured(reader, file.parent_path(), scene.sea);
+    find_sky(reader, file.parent_path(), scene.light);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
     if (reader.problem_count() > 0) throw ShotError(reader.report());
     return scene;

@@ -6,7 +6,7 @@ bad=0
 # allow ROOM "WHAT IT MAY INCLUDE": every include of the project's own from ROOM must begin with one of these.
 allow() {
     local found
-    found=$(grep -rnoE '#include "(core|plugin|tests)/[a-z]+/' "$1" --include='*.h' --include='*.cpp' --include='*.inl' |
+    found=$(grep -rnoE '#include "(core|plugin|tests)/[a-z]+/' "$1" --include='*.h' --include='*.cpp' --include='*.inl' --include='*.glsl' |
         grep -vE "\"($(echo "$1 $2" | tr ' ' '|'))/" || true)
     [ -z "$found" ] || { echo "$found: not below $1"; bad=1; }
 }
@@ -16,12 +16,16 @@ allow core/spectrum "core/base core/scene"
 allow core/plan "core/base core/scene core/spectrum"
 allow core/waves "core/base core/scene core/spectrum core/plan"
 allow core/surface "core/base core/scene"
+allow core/lighting "core/base"
 allow core/evaluate "core/base core/scene core/spectrum core/plan core/waves core/surface"
 allow plugin/files ""
 allow plugin/exr ""
+allow plugin/png ""
 allow plugin/usd ""
 allow plugin/shot "core/base core/scene"
 allow plugin/bake "core/[a-z]+ plugin/files plugin/exr plugin/usd"
-allow plugin/cli "core/[a-z]+ plugin/files plugin/shot plugin/bake"
+allow plugin/render "core/[a-z]+ plugin/files plugin/exr plugin/png"
+allow plugin/preview "core/[a-z]+ plugin/files plugin/exr plugin/png plugin/render"
+allow plugin/cli "core/[a-z]+ plugin/files plugin/shot plugin/bake plugin/render plugin/preview"
 allow plugin/python "core/[a-z]+ plugin/shot"
 exit $bad

@@ -70,6 +70,7 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.surface.kind = SurfaceKind::Planet; },
         [](Scene& s) { s.surface.size_m = 201.0; },
         [](Scene& s) { s.surface.resolution = 255; },
+        [](Scene& s) { s.surface.cell_px = 4.0; },
         [](Scene& s) { s.camera.position_m.x = 1.0; },
         [](Scene& s) { s.camera.position_m.y = 1.0; },
         [](Scene& s) { s.camera.position_m.z = 1.0; },

@@ -326,13 +326,29 @@ TEST(Shot, Trains) {
                    "5:17: output.cascade_tiles = true: asks for the tiles of cascades", "waves.cascades");
 }
 
+TEST(Shot, APictureOfASkyIsFoundBesideTheShot) {
+    const TemporaryFolder temporary;
+    const std::filesystem::path folder = temporary.path();
+    temporary.write("noon.exr", "only its place matters here");
+    const Scene scene = parse_shot("[light]\nsky = \"noon.exr\"\n", folder / "shot.toml");
+    EXPECT_EQ(std::filesystem::path(scene.light.sky), folder / "noon.exr");
+    EXPECT_EQ(parse_shot("[light]\nsky = \"daylight\"\n", folder / "shot.toml").light.sky, "daylight");
+    try {
+        parse_shot("[light]\nsky = \"dusk.exr\"\n", folder / "shot.toml");
+        FAIL() << "a missing picture was accepted";
+    } catch (const ShotError& error) {
+        EXPECT_NE(std::string(error.what()).find(":2:7: light.sky = \"dusk.exr\": is no file in"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
 TEST(Shot, WhatIsNotBuiltYetIsRefused) {
     expect_refused("[surface]\nkind = \"planet\"\n", "2:8: surface.kind = \"planet\": is not built yet",
                    "\"patch\"");
     expect_refused("[output]\nvolumes = [\"level-set\"]\n",
                    "2:12: output.volumes[0] = \"level-set\": is not built yet", "[]");
-    for (const auto& [table, key] : {std::pair{"surface", "cell_px"},
-                                     {"surface", "earth_curvature"},
+    for (const auto& [table, key] : {std::pair{"surface", "earth_curvature"},
                                      {"surface", "cage_file"},
                                      {"surface", "cage_level"},
                                      {"quality", "max_error"},

@@ -55,6 +55,10 @@ HWY_INLINE Pack<D> magnitude(Pack<D> x) {
     return hn::Abs(x.v);
 }
 template <class D>
+HWY_INLINE Pack<D> minus_product(Pack<D> c, Pack<D> a, Pack<D> b) {
+    return hn::NegMulAdd(a.v, b.v, c.v);
+}
+template <class D>
 HWY_INLINE Pack<D> square_root(Pack<D> x) {
     return hn::Sqrt(x.v);
 }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/base/number.h"
 #include "core/evaluate/kernels.h"
 #include "core/evaluate/trains.h"
 #include "core/plan/tables.h"
@@ -34,33 +35,25 @@ Rung<T> rung_of(const std::vector<double>& ladder_m, const Strided<const T>& foo
     return {upper - 1, static_cast<T>((wanted - lower_m) / (upper_m - lower_m))};
 }
 
-// What a rung of pixels hides of `whole`: less what passes through the cascades, variances never negative.
+#include "core/evaluate/hidden.inl"
+
+// What a rung of pixels hides of `whole`: less what passes through the cascades.
 template <class T>
 HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& rung,
                            const HiddenMoments<double>& whole) {
     const double t = static_cast<double>(rung.t);
     const auto left = [&](std::size_t moment) {
         const auto m = kHiddenMoments[moment];
-        // ((1−t) w_a + t w_b)², expanded.
-        double resolved = (1.0 - t) * (1.0 - t) * (statistics.resolved[rung.lower].*m);
-        if (t > 0.0)
-            resolved += 2.0 * t * (1.0 - t) * (statistics.resolved_next[rung.lower].*m) +
-                        t * t * (statistics.resolved[rung.lower + 1].*m);
-        return whole[moment] - resolved;
+        const double here = statistics.resolved[rung.lower].*m;
+        if (!(t > 0.0)) return whole[moment] - here;  // there may be no next rung
+        return whole[moment] - blended_moment(here, statistics.resolved_next[rung.lower].*m,
+                                              statistics.resolved[rung.lower + 1].*m, t);
     };
-    const auto variance = [&](std::size_t moment) { return std::max(left(moment), 0.0); };
-    const auto covariance = [&](std::size_t moment, double a, double b) {
-        const double bound = std::sqrt(a * b);
-        return std::clamp(left(moment), -bound, bound);
-    };
-    const double xx = variance(0), yy = variance(2), xxxx = variance(3), yyyy = variance(7);
-    const double xxyy = std::min(variance(5), std::sqrt(xxxx * yyyy));
-    const std::array<double, kHiddenMoments.size()> hidden{
-        xx,   covariance(1, xx, yy),     yy,  xxxx, covariance(4, xxxx, xxyy),
-        xxyy, covariance(6, yyyy, xxyy), yyyy};
-    HiddenMoments<T> result;
-    std::transform(hidden.begin(), hidden.end(), result.begin(), [](double v) { return static_cast<T>(v); });
-    return result;
+    const auto hidden = possible_moments(
+        PixelMoments<double>(left(0), left(1), left(2), left(3), left(4), left(5), left(6), left(7)));
+    const auto narrow = [](double value) { return static_cast<T>(value); };
+    return {narrow(hidden.xx),   narrow(hidden.xy),   narrow(hidden.yy),   narrow(hidden.xxxx),
+            narrow(hidden.xxxy), narrow(hidden.xxyy), narrow(hidden.xyyy), narrow(hidden.yyyy)};
 }
 
 template <class T>

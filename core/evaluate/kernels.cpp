@@ -18,6 +18,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {  // names are this file's own
 
+#include "core/evaluate/surface.inl"
 #include "core/waves/spline.inl"
 #include "core/waves/whitecaps.inl"
 
@@ -226,19 +227,6 @@ HWY_INLINE void Put(D d, const Strided<T>& out, std::size_t i, std::size_t count
     for (std::size_t j = 0; j < std::min(lanes, count - i); ++j) out[i + j] = values[j];
 }
 
-// T_x × T_y of T_x = (1 + Dxx, Dxy, ηx), T_y = (Dxy, 1 + Dyy, ηy), of length 1: its z has the sign of J, and
-// it is finite however J vanishes. Both tangents parallel: no normal exists; up is as good as any.
-template <class N>
-HWY_INLINE std::array<N, 3> Normal(N slope_x, N slope_y, N dxx, N dyy, N dxy) {
-    const N one(1);
-    const N x = dxy * slope_y - slope_x * (one + dyy), y = slope_x * dxy - slope_y * (one + dxx);
-    const N z = (one + dxx) * (one + dyy) - dxy * dxy;
-    const N length = square_root(x * x + y * y + z * z);
-    const auto exists = length > N(0);
-    const N by = one / select(exists, length, one);
-    return {select(exists, x * by, N(0)), select(exists, y * by, N(0)), select(exists, z * by, one)};
-}
-
 // What a chunk's pixels hide, as vectors: by point, or the same for all.
 template <class T>
 class Hidden {
@@ -327,8 +315,10 @@ void Derive(const DeriveArgs<T>& args) {
         return Vector{at(Field::VelocityX, i), at(Field::VelocityY, i), at(Field::VelocityZ, i)};
     });
     each(results.normal, [&](std::size_t i) HWY_ATTR {
-        return Normal(at(Field::SlopeX, i), at(Field::SlopeY, i), at(Field::Dxx, i), at(Field::Dyy, i),
-                      at(Field::Dxy, i));
+        const SurfaceNormal<N> normal =
+            surface_normal(at(Field::SlopeX, i), at(Field::SlopeY, i), at(Field::Dxx, i), at(Field::Dyy, i),
+                           at(Field::Dxy, i));
+        return Vector{normal.x, normal.y, normal.z};
     });
     const Hidden<T> hidden(args);
     each(results.slope_variance, [&](std::size_t i) HWY_ATTR {

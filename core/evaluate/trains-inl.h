@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "core/base/pack-inl.h"
 #include "core/base/sincos-inl.h"
 #include "core/evaluate/trains.h"
 
@@ -22,6 +23,9 @@ namespace pelagic {
 namespace HWY_NAMESPACE {
 namespace trains_detail {
 namespace hn = hwy::HWY_NAMESPACE;
+
+#include "core/evaluate/hidden.inl"
+#include "core/plan/filter.inl"
 
 // A vector of points, kept in double to form phases with.
 template <class Wide>
@@ -115,7 +119,7 @@ class Zone {
         const V one = hn::Set(d, T(1));
         const V samples = hn::Div(hn::Set(d, wavelength_[i]), footprint_m);
         const V x = hn::Mul(hn::Sub(samples, hn::Set(d, n_min_)), hn::Set(d, per_range_));
-        const V smooth = hn::Mul(hn::Mul(x, x), hn::NegMulAdd(hn::Set(d, T(2)), x, hn::Set(d, T(3))));
+        const V smooth = smooth_rise(Pack<D>(x)).v;
         const V between = hn::IfThenElse(hn::Le(footprint_m, hn::Set(d, wavelength_[i] * whole_)), one,
                                          hn::Min(smooth, one));
         return hn::IfThenElseZero(passes(d, i, footprint_m), between);
@@ -160,16 +164,10 @@ HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, cons
         }
         for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) sum[m] = hn::LoadU(d, looked_up[m]);
     }
-    const V one = hn::Set(d, T(1));
     for (std::size_t i = zone.full(); i < zone.any(); ++i) {
-        const V w = zone.weight(d, i, footprint_m), w2 = hn::Mul(w, w);
-        // Of the train's variances, this part is hidden: 1 − w², and for slopes 1 − w² (1 + √(1 − q²))/(1 +
-        // √(1 − w²q²)).
-        const V strain = hn::Mul(hn::Sub(one, w), hn::Add(one, w));
-        const V q2 = hn::Set(d, trains.steepness2[i]);
-        const V whole = hn::Add(one, hn::Sqrt(hn::Sub(one, q2)));
-        const V part = hn::Add(one, hn::Sqrt(hn::NegMulAdd(w2, q2, one)));
-        const V slope = hn::Max(hn::Sub(one, hn::Div(hn::Mul(w2, whole), part)), hn::Zero(d));
+        const V w = zone.weight(d, i, footprint_m);
+        const V strain = hidden_strain_part(Pack<D>(w)).v;
+        const V slope = hidden_slope_part(Pack<D>(w), Pack<D>(hn::Set(d, trains.steepness2[i]))).v;
         const auto blends = zone.passes(d, i, footprint_m);  // else it is in the looked-up sum
         const V slope_part = hn::IfThenElseZero(blends, slope),
                 strain_part = hn::IfThenElseZero(blends, strain);

@@ -104,6 +104,14 @@ std::string explain(const Scene& scene, const Plan& plan) {
     for (const PlannedQuery& planned : plan.queries) {
         page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m, plan.filter.n_min) +
                 "\n";
+        if (!planned.query.map && scene.surface.kind == SurfaceKind::ProjectedGrid) {
+            const ProjectedGridSize size = projected_grid_needs(scene).size;
+            page += format(
+                "    what the camera sees: %d × %d cells of at most %g pixels, cast onto the sea at each "
+                "frame;\n"
+                "    %zu footprints, each point's cell between two of them\n",
+                size.columns, size.rows, scene.surface.cell_px, planned.query.pixel_m.size());
+        }
         for (const ProductRow& row : kProductTable)
             if (planned.query.products[index(row.product)])
                 page += format("    %-18s ← %s (%s)\n", row.name,

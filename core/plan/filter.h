@@ -8,6 +8,8 @@
 
 namespace pelagic {
 
+#include "core/plan/filter.inl"
+
 struct FootprintFilter {
     // In samples per wavelength. The paper uses 1 and 2.5 in practice and 2 by Nyquist; ours begins at
     // Nyquist, so that a mesh holds nothing that it cannot show, and keeps the paper's ratio of about two.
@@ -18,8 +20,7 @@ struct FootprintFilter {
     double weight(double k, double footprint_m) const {
         if (footprint_m <= 0.0) return 1.0;
         const double wavelength_m = kTwoPi / k;
-        const double x = std::clamp((wavelength_m / footprint_m - n_min) / (n_max - n_min), 0.0, 1.0);
-        return x * x * (3.0 - 2.0 * x);
+        return smooth_rise(std::clamp((wavelength_m / footprint_m - n_min) / (n_max - n_min), 0.0, 1.0));
     }
     // Waves with larger k have weight 0 [rad/m]; infinite for a footprint of 0.
     double cutoff(double footprint_m) const { return kTwoPi / (n_min * footprint_m); }

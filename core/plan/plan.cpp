@@ -1,5 +1,8 @@
 #include "core/plan/plan.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +12,7 @@
 #include <string_view>
 
 #include "core/base/constants.h"
+#include "core/plan/extent.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/tables.h"
@@ -104,6 +108,20 @@ bool hides(const Plan& plan, int level) {
     return false;
 }
 
+// A grid that this level may read as it is: both let every mode through whole, and neither has points of its
+// own to meet.
+std::optional<int> same_grid(const Plan& plan, const CascadePlan& cascade, const Level& at, int radius) {
+    const double shortest_m = cascade.size_m / radius;
+    const auto whole = [&](double footprint_m) { return plan.filter.n_max * footprint_m <= shortest_m; };
+    if (at.lattice || !whole(at.footprint_m)) return {};
+    for (std::size_t g = 0; g < cascade.grids.size(); ++g) {
+        const Level& other = plan.levels[cascade.grids[g].level];
+        if (!other.lattice && whole(other.footprint_m) && other.only_cascade == at.only_cascade)
+            return static_cast<int>(g);
+    }
+    return {};
+}
+
 void add_grids(Plan& plan, int cascade_index) {
     CascadePlan& cascade = plan.cascades[cascade_index];
     constexpr double kRounding = 1.0 - 1e-12;  // a mode that ends the filter exactly is not below its end
@@ -124,6 +142,12 @@ void add_grids(Plan& plan, int cascade_index) {
         // or not.
         if (hides(plan, level)) cascade.mode_radius = std::max(cascade.mode_radius, radius);
         if (wanted.none()) continue;
+        cascade.mode_radius = std::max(cascade.mode_radius, radius);
+        if (const auto same = same_grid(plan, cascade, at, radius)) {
+            cascade.grids[*same].fields |= wanted;
+            cascade.grid_of_level[level] = *same;
+            continue;
+        }
 
         Grid grid;
         grid.level = level;
@@ -139,7 +163,6 @@ void add_grids(Plan& plan, int cascade_index) {
             grid.resolution = *nodes;
             grid.sampling = Sampling::Nodes;
         }
-        cascade.mode_radius = std::max(cascade.mode_radius, radius);
         cascade.grid_of_level[level] = static_cast<int>(cascade.grids.size());
         cascade.grids.push_back(std::move(grid));
     }
@@ -154,12 +177,20 @@ std::uint64_t fnv1a(std::string_view text) {  // Fowler, Noll, Vo: 64-bit FNV-1a
 }
 
 // The scene's canonical text without what only the stage's root shows: a new lens or another sun leaves every
-// frame as it is.
+// frame as it is. Unless the mesh is the camera's own.
 std::string what_frames_hold(const Scene& scene) {
+    const bool camera_shapes_mesh =
+        scene.surface.kind == SurfaceKind::ProjectedGrid && scene.output.mesh != MeshFormat::None;
     std::istringstream lines(canonical(scene));
     std::string text = "pelagic " PELAGIC_VERSION " revision " + std::to_string(kRevision);
     for (std::string line; std::getline(lines, line);)
-        if (!line.starts_with("camera.") && !line.starts_with("light.")) text += "\n" + line;
+        if ((camera_shapes_mesh || !line.starts_with("camera.")) && !line.starts_with("light."))
+            text += "\n" + line;
+    // The grid is as large as the shot's widest frame asks for: the range decides, too.
+    if (camera_shapes_mesh) {
+        const ProjectedGridSize size = projected_grid_needs(scene).size;
+        text += "\n" + std::to_string(size.columns) + " × " + std::to_string(size.rows);
+    }
     return text;
 }
 
@@ -253,6 +284,62 @@ void add_map_queries(std::vector<Query>& queries, const Scene& scene, double siz
 
 }  // namespace
 
+Query view_query(const Scene& scene, const ViewQueryOptions& options) {
+    Query query;
+    query.name = "view";
+    query.products = options.products;
+    if (query.products.none()) {
+        query.products = products(Product::Position, Product::Normal, Product::SlopeVariance);
+        if (scene.effects.whitecaps) query.products.set(index(Product::Coverage));
+    }
+    query.points = options.points;
+    const FootprintFilter filter;
+    query.pixel_m = {options.finest_pixel_m};
+    const auto cascades = resolve_cascades(scene, options.finest_pixel_m);
+    if (!cascades.empty()) {
+        // Where the finest cascade's shortest wave is still whole; finer footprints change nothing.
+        const CascadeSize& finest = cascades.back();
+        const double whole_m = finest.size_m / (0.5 * finest.resolution) / filter.n_max;
+        const double none_m = cascades.front().size_m / filter.n_min;
+        double rung_m = std::max(options.finest_pixel_m, whole_m);
+        if (rung_m > options.finest_pixel_m) query.pixel_m.push_back(rung_m);
+        while (rung_m < none_m) query.pixel_m.push_back(rung_m *= 2.0);
+    }
+    const auto coarser = std::upper_bound(query.pixel_m.begin() + 1, query.pixel_m.end(),
+                                          std::max(options.finest_cell_m, options.finest_pixel_m));
+    query.cell_m.assign(coarser - 1, query.pixel_m.end());
+    // The trains see each point's own cell, and nothing finer than the first rung.
+    if (cascades.empty()) query.cell_m = {std::max(options.finest_cell_m, options.finest_pixel_m)};
+    return query;
+}
+
+ProjectedGridOptions projected_grid_options(const Scene& scene) {
+    const Extent extent = expected_extent(scene);
+    return {.cell_px = scene.surface.cell_px,
+            .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
+            .significant_height_m = extent.significant_height_m};
+}
+
+ProjectedGridNeeds projected_grid_needs(const Scene& scene) {
+    const ProjectedGridOptions options = projected_grid_options(scene);
+    const Camera& camera = scene.camera;
+    // Before its first key and after its last the camera stands still.
+    const auto last_key = [&](int frame) {
+        return camera.keys.empty() ? scene.shot.first_frame
+                                   : std::clamp(frame, camera.keys.front().frame, camera.keys.back().frame);
+    };
+    const int first = last_key(scene.shot.first_frame), last = last_key(scene.shot.last_frame);
+    const auto needs_at = [&](int frame) { return projected_grid_needs(view_at(camera, frame), options); };
+    return tbb::parallel_reduce(
+        tbb::blocked_range<int>(first, last + 1), needs_at(first),
+        [&](const tbb::blocked_range<int>& frames, ProjectedGridNeeds needs) {
+            for (int frame = frames.begin(); frame != frames.end(); ++frame)
+                needs = together(needs, needs_at(frame));
+            return needs;
+        },
+        together);
+}
+
 std::vector<Query> bake_queries(const Scene& scene) {
     const Output& output = scene.output;
     const Surface& surface = scene.surface;
@@ -267,11 +354,22 @@ std::vector<Query> bake_queries(const Scene& scene) {
             for (const AttributeRow& row : kAttributeTable)
                 if (row.attribute == attribute) mesh.products.set(index(row.product));
         mesh.products &= ~outputs_gone(scene);
-        mesh.cell_m = mesh.pixel_m = {spacing_m};
-        mesh.points = (surface.resolution + std::size_t(1)) * (surface.resolution + std::size_t(1));
-        mesh.lattice = Lattice{-0.5 * surface.size_m, spacing_m};
+        if (surface.kind == SurfaceKind::ProjectedGrid) {
+            // A file's vertices are its only samples: cells filter normals, too, as in a patch.
+            const ProjectedGridNeeds needs = projected_grid_needs(scene);
+            mesh = view_query(scene, {.products = mesh.products,
+                                      .finest_cell_m = needs.finest_cell_m,
+                                      .finest_pixel_m = needs.finest_cell_m,
+                                      .points = points_of(needs.size)});
+            mesh.name = "mesh";
+            finest_m = needs.finest_cell_m;
+        } else {
+            mesh.cell_m = mesh.pixel_m = {spacing_m};
+            mesh.points = (surface.resolution + std::size_t(1)) * (surface.resolution + std::size_t(1));
+            mesh.lattice = Lattice{-0.5 * surface.size_m, spacing_m};
+            finest_m = spacing_m;
+        }
         queries.push_back(std::move(mesh));
-        finest_m = spacing_m;
     }
     if (!output.maps.empty()) finest_m = std::min(finest_m, surface.size_m / output.map_resolution);
     add_map_queries(queries, scene, surface.size_m, output.map_resolution, std::nullopt);

@@ -14,6 +14,7 @@
 #include "core/plan/filter.h"
 #include "core/plan/trains.h"
 #include "core/scene/scene.h"
+#include "core/surface/projected_grid.h"
 
 namespace pelagic {
 
@@ -46,7 +47,7 @@ enum class Sampling {
 
 // One cascade seen through one footprint: an N × N periodic grid and the transforms that fill it.
 struct Grid {
-    int level = 0;
+    int level = 0;       // the first of those that read it: what they filter is the same
     int resolution = 0;  // N
     Sampling sampling = Sampling::Spline;
     int radius = 0;   // modes with mx² + my² < radius² pass, 2 radius ≤ N + 1
@@ -65,9 +66,11 @@ struct CascadePlan {
     double k_lower = 0.0, k_upper = 0.0;
     // Modes with mx² + my² < mode_radius² are counted in what is resolved.
     int mode_radius = 0;
-    std::vector<Grid> grids;         // only those through which something passes
-    std::vector<int> grid_of_level;  // index into grids, −1: nothing of this cascade passes
-    std::string why_empty;           // set when there are no grids
+    std::vector<Grid> grids;  // only those through which something passes
+    // Index into grids, −1: nothing of this cascade passes. Levels that let all of its modes through whole
+    // share one.
+    std::vector<int> grid_of_level;
+    std::string why_empty;  // set when there are no grids
 
     bool moves() const;       // whether somebody asks for velocities
     int grid_radius() const;  // the largest of its grids': modes within it have amplitudes; 0 without grids
@@ -123,6 +126,25 @@ struct Plan {
 
 // What baking this scene asks of the sea: the mesh and the maps, in the order of the shot file, tiles last.
 std::vector<Query> bake_queries(const Scene&);
+
+struct ViewQueryOptions {
+    // None: what a picture's light needs, that is positions, normals, what pixels hide of the slopes, and
+    // coverage where the scene has whitecaps.
+    ProductSet products{};
+    // No point's footprints will be finer [m] (ProjectedGridNeeds); 0: nothing may be filtered.
+    double finest_cell_m = 0.0, finest_pixel_m = 0.0;
+    std::size_t points = 0;
+};
+
+// A query for points at all distances from a camera: a ladder of footprints, each the double of the one
+// before, from the finest up to where no cascade has a wave to show. The ladder of the cells is a part of
+// that of the pixels, so that they share what they can. Named "view".
+Query view_query(const Scene&, const ViewQueryOptions& options = {});
+
+// The projected grid of the shot's camera.
+ProjectedGridOptions projected_grid_options(const Scene&);
+// What it needs at each of the shot's frames together.
+ProjectedGridNeeds projected_grid_needs(const Scene&);
 
 // The scene must be valid (core/scene/validate.h). Throws std::invalid_argument when a query is malformed.
 Plan make_plan(const Scene&, const std::vector<Query>&);

@@ -21,8 +21,9 @@ struct View {
     // The unit direction through picture point (x, y) in pixels: (0, 0) is the top left corner, pixel (i,
     // j)'s centre is (i + ½, j + ½).
     glm::dvec3 direction(glm::dvec2 pixel) const;
-    // Clip coordinates (OpenGL's) of points relative to origin_m [m], by an infinite projection: depth is
-    // near_m/distance-like and never clipped far away.
+    // Clip coordinates (OpenGL's, −w ≤ z ≤ w) of points relative to origin_m [m], by an infinite projection:
+    // z/w = 1 − 2 near_m/d at distance d along forward, never clipped far away. The nearer the origin to the
+    // camera, the less is lost when the matrix is rounded to single precision.
     glm::dmat4 clip_from(glm::dvec3 origin_m, double near_m) const;
 };
 

@@ -26,7 +26,8 @@ struct LevelPair {
 }  // namespace
 
 template <class T>
-Sea<T>::Sea(const Scene& scene, const Plan& plan) : plan_(plan), loop_s_(scene.shot.exact_loop_s()) {
+Sea<T>::Sea(const Scene& scene, const Plan& plan)
+    : plan_(plan), loop_s_(scene.shot.exact_loop_s()), extent_(expected_extent(scene)) {
     const DirectionalSpectrum spectrum(scene.sea);
     const double choppiness = scene.waves.choppiness;
     if (plan_.trains) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/buffer.h"
+#include "core/plan/extent.h"
 #include "core/plan/plan.h"
 #include "core/spectrum/spectral_moments.h"
 #include "core/waves/trains.h"
@@ -57,6 +58,8 @@ class Sea {
     // The whole sea, capillary tail included; Jacobian moments times choppiness².
     const SpectralMoments& total() const { return total_; }
     const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
+    // How far the surface goes from its rest, by expectation (core/plan/extent.h).
+    const Extent& extent() const { return extent_; }
     // What a query's finest pixels show of total(), cascades and trains.
     SpectralMoments shown(int query) const;
     // J below this is foam (core/waves/whitecaps.h).
@@ -68,6 +71,7 @@ class Sea {
   private:
     Plan plan_;
     double loop_s_;
+    Extent extent_;
     SpectralMoments total_;
     double whitecap_threshold_;
     std::vector<Cascade<T>> cascades_;

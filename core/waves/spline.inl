@@ -1,4 +1,5 @@
-// Weights of the uniform B-spline, for plain numbers and for vectors of them: see core/base/number.h.
+// Weights of the uniform B-spline, for plain numbers, for vectors of them and for GLSL: see
+// core/base/number.h.
 
 // The P weights of the uniform B-spline at fraction f ∈ [0, 1] after node i: for the nodes i − P/2 + 1 … i +
 // P/2. They sum to 1. (de Boor's recursion on integer knots.)

@@ -1,4 +1,4 @@
-// Whitecaps' formulas, for plain numbers and for vectors of them: see core/base/number.h, and
+// Whitecaps' formulas, for plain numbers, for vectors of them and for GLSL: see core/base/number.h, and
 // core/waves/whitecaps.h for what they mean.
 
 // Mean, variance and third cumulant of J in a footprint [-].
@@ -20,35 +20,42 @@ struct StrainTraces {
 };
 
 template <class T>
-inline StrainTraces<T> strain_traces(const HiddenStrain<T>& v) {
-    // AV; A has ½ off the diagonal (xx, yy) and −1 at (xy, xy).
+inline StrainTraces<T> strain_traces(HiddenStrain<T> v) {
+    // AV, row by row; A has ½ off the diagonal (xx, yy) and −1 at (xy, xy).
     const T h = T(0.5);
-    const T m[3][3] = {{h * v.xxyy, h * v.yyyy, h * v.xyyy},
-                       {h * v.xxxx, h * v.xxyy, h * v.xxxy},
-                       {-v.xxxy, -v.xyyy, -v.xxyy}};
-    StrainTraces<T> traces{T(0), T(0)};
+    T m[9];
+    m[0] = h * v.xxyy;
+    m[1] = h * v.yyyy;
+    m[2] = h * v.xyyy;
+    m[3] = h * v.xxxx;
+    m[4] = h * v.xxyy;
+    m[5] = h * v.xxxy;
+    m[6] = -v.xxxy;
+    m[7] = -v.xyyy;
+    m[8] = -v.xxyy;
+    T second = T(0), third = T(0);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
-            traces.second += m[i][j] * m[j][i];
-            for (int k = 0; k < 3; ++k) traces.third += m[i][j] * m[j][k] * m[k][i];
+            second += m[3 * i + j] * m[3 * j + i];
+            for (int k = 0; k < 3; ++k) third += m[3 * i + j] * m[3 * j + k] * m[3 * k + i];
         }
-    return traces;
+    return StrainTraces<T>(second, third);
 }
 
 // J's cumulants given the shown derivatives of the displacement. Variance ≥ 0; exactly 0 where nothing is
 // hidden.
 template <class T>
-inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, const HiddenStrain<T>& v,
-                                           const StrainTraces<T>& traces) {
+inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, HiddenStrain<T> v, StrainTraces<T> traces) {
     const T gx = T(1) + dyy, gy = T(1) + dxx, gs = T(-2) * dxy;
     const T vg_x = v.xxxx * gx + v.xxyy * gy + v.xxxy * gs;
     const T vg_y = v.xxyy * gx + v.yyyy * gy + v.xyyy * gs;
     const T vg_s = v.xxxy * gx + v.xyyy * gy + v.xxyy * gs;
-    return {gx * gy - dxy * dxy, maximum(gx * vg_x + gy * vg_y + gs * vg_s + T(2) * traces.second, T(0)),
-            T(6) * (vg_x * vg_y - vg_s * vg_s) + T(8) * traces.third};
+    return JacobianMoments<T>(gx * gy - dxy * dxy,
+                              maximum(gx * vg_x + gy * vg_y + gs * vg_s + T(2) * traces.second, T(0)),
+                              T(6) * (vg_x * vg_y - vg_s * vg_s) + T(8) * traces.third);
 }
 template <class T>
-inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, const HiddenStrain<T>& v) {
+inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, HiddenStrain<T> v) {
     return jacobian_moments(dxx, dyy, dxy, v, strain_traces(v));
 }
 
@@ -65,26 +72,27 @@ inline constexpr double kNoSkewness = 1e-4;  // below, the correction is smaller
 template <class T>
 inline T to_normal(T z, T skewness) {
     const T clamped = minimum(maximum(skewness, T(-kLargestSkewness)), T(kLargestSkewness));
-    const auto none = magnitude(clamped) < T(kNoSkewness);
-    const T s = select(none, T(1), clamped);
+    const T s = select(magnitude(clamped) < T(kNoSkewness), T(1), clamped);
     const T y = (T(6) / s) * (cube_root(T(1) + T(0.5) * s * z) - T(1)) + s * T(1.0 / 6.0);
-    return select(none, z, y);
+    return select(magnitude(clamped) < T(kNoSkewness), z, y);
 }
 
 }  // namespace whitecaps_detail
+
+// Standard deviations beyond which the coverage is all or nothing (−∞: never any foam).
+inline constexpr double kFarthestDeviate = 30.0;
 
 // The part of a footprint with J < threshold, 0 … 1. Two moments: ½(1 + erf((ε − μ)/(√2 σ))) (Dupuy and
 // Bruneton 2012, Eq. 6). The third makes J's distribution a shifted gamma: with a skewness of 0.24, the
 // Gaussian is off by +85 % at a coverage of 0.005. Variance 0: the step, without a division.
 template <class T>
-inline T coverage(const JacobianMoments<T>& j, T threshold, bool third_moment) {
-    constexpr double kFarthest = 30.0;  // standard deviations: beyond, all or nothing (−∞: never any foam)
-    const auto spread = j.variance > T(0);
-    const T sigma = square_root(select(spread, j.variance, T(1)));
+inline T coverage(JacobianMoments<T> j, T threshold, bool third_moment) {
+    const T sigma = square_root(select(j.variance > T(0), j.variance, T(1)));
     const T deviate = (threshold - j.mean) / sigma;
-    T z = minimum(maximum(deviate, T(-kFarthest)), T(kFarthest));
+    T z = minimum(maximum(deviate, T(-kFarthestDeviate)), T(kFarthestDeviate));
     if (third_moment) z = whitecaps_detail::to_normal(z, j.third / (sigma * sigma) / sigma);
     const T part = minimum(T(0.5) * complementary_error(z * T(-0.70710678118654752440)), T(1));
-    const T within = select(deviate < T(-kFarthest), T(0), select(deviate > T(kFarthest), T(1), part));
-    return select(spread, within, select(j.mean < threshold, T(1), T(0)));
+    const T within =
+        select(deviate < T(-kFarthestDeviate), T(0), select(deviate > T(kFarthestDeviate), T(1), part));
+    return select(j.variance > T(0), within, select(j.mean < threshold, T(1), T(0)));
 }

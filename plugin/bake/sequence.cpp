@@ -15,6 +15,7 @@
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "core/surface/patch.h"
+#include "core/surface/projected_grid.h"
 #include "plugin/bake/maps.h"
 #include "plugin/exr/exr.h"
 #include "plugin/usd/crate.h"
@@ -73,23 +74,56 @@ Square<T> square_of(int per_side, double size_m, int intervals) {
     return {lattice, rest_points<T>(lattice)};
 }
 
+// What a camera sees at one frame: the projected grid, in the precision of the sea. Its vertices are all that
+// the file has: what lies between them is hidden from normals as it is from positions.
+template <class T>
+struct SeenPoints {
+    glm::dvec2 origin_m{0.0};
+    std::vector<glm::vec<2, T>> rest;
+    std::vector<T> cell_m;
+
+    void take(const ProjectedGrid& grid) {
+        origin_m = grid.origin_m;
+        rest.assign(grid.rest_m.begin(), grid.rest_m.end());
+        cell_m.assign(grid.cell_m.begin(), grid.cell_m.end());
+    }
+    Points<T> points() const {
+        return {.origin_m = origin_m,
+                .count = rest.size(),
+                .rest_m = {rest.data()},
+                .cell_m = {cell_m.data()},
+                .pixel_m = {cell_m.data()}};
+    }
+};
+
+// Positions relative to an origin, put into the world.
+void move_by(std::vector<glm::vec3>& positions, glm::dvec2 origin_m) {
+    for (glm::vec3& p : positions) {
+        p.x = static_cast<float>(origin_m.x + static_cast<double>(p.x));
+        p.y = static_cast<float>(origin_m.y + static_cast<double>(p.y));
+    }
+}
+
 // Evaluates a query into single-precision arrays that are kept from frame to frame.
 template <class T>
 class QueryRunner {
   public:
-    void run(const Frame<T>& frame, int query_index, const std::vector<glm::vec<2, T>>& points, Values& out) {
+    void run(const Frame<T>& frame, int query_index, const std::vector<glm::vec<2, T>>& rest, Values& out) {
+        run(frame, query_index, Points<T>{.count = rest.size(), .rest_m = {rest.data()}}, out);
+    }
+    void run(const Frame<T>& frame, int query_index, const Points<T>& points, Values& out) {
         const Query& query = frame.sea().plan().queries.at(query_index).query;
         Results<T> results;
-        results.position = target(query, Product::Position, points.size(), out.position, position_);
+        results.position = target(query, Product::Position, points.count, out.position, position_);
         results.displacement =
-            target(query, Product::Displacement, points.size(), out.displacement, displacement_);
-        results.normal = target(query, Product::Normal, points.size(), out.normal, normal_);
-        results.velocity = target(query, Product::Velocity, points.size(), out.velocity, velocity_);
+            target(query, Product::Displacement, points.count, out.displacement, displacement_);
+        results.normal = target(query, Product::Normal, points.count, out.normal, normal_);
+        results.velocity = target(query, Product::Velocity, points.count, out.velocity, velocity_);
         results.slope_variance =
-            target(query, Product::SlopeVariance, points.size(), out.slope_variance, variance_);
-        results.jacobian = target(query, Product::JacobianMoments, points.size(), out.jacobian, jacobian_);
-        results.coverage = target(query, Product::Coverage, points.size(), out.coverage, coverage_);
-        evaluate(frame, query_index, Points<T>{.count = points.size(), .rest_m = {points.data()}}, results);
+            target(query, Product::SlopeVariance, points.count, out.slope_variance, variance_);
+        results.jacobian = target(query, Product::JacobianMoments, points.count, out.jacobian, jacobian_);
+        results.coverage = target(query, Product::Coverage, points.count, out.coverage, coverage_);
+        evaluate(frame, query_index, points, results);
         narrow(position_, out.position);
         narrow(displacement_, out.displacement);
         narrow(normal_, out.normal);
@@ -133,8 +167,13 @@ class SequenceOf final : public Sequence {
                 maps_.push_back(map_job(q));
             } else {
                 mesh_query_ = q;
-                mesh_square_ = square_of<T>(scene.surface.resolution + 1, scene.surface.size_m,
-                                            scene.surface.resolution);
+                if (follows_camera()) {
+                    grid_options_ = projected_grid_options(scene);
+                    grid_options_.size = projected_grid_needs(scene).size;
+                } else {
+                    mesh_square_ = square_of<T>(scene.surface.resolution + 1, scene.surface.size_m,
+                                                scene.surface.resolution);
+                }
             }
         }
     }
@@ -146,7 +185,7 @@ class SequenceOf final : public Sequence {
         slot.record.time_s = scene_.shot.time_s(frame);
         frame_.set(slot.record.time_s);
         describe_waves(slot.record);
-        if (mesh_query_ >= 0) runner_.run(frame_, mesh_query_, mesh_square_.points, slot.mesh);
+        if (mesh_query_ >= 0) compute_mesh(frame, slot.mesh);
         slot.maps.resize(maps_.size());
         for (std::size_t m = 0; m < maps_.size(); ++m) {
             runner_.run(frame_, maps_[m].query, maps_[m].square->points, slot.maps[m].values);
@@ -197,7 +236,9 @@ class SequenceOf final : public Sequence {
                                            .velocities = asks(query, Product::Velocity),
                                            .slope_variance = asks(query, Product::SlopeVariance),
                                            .whitecap_coverage = asks(query, Product::Coverage)};
-        const usd::GridFaces faces = usd::grid_faces(scene_.surface.resolution);
+        const usd::GridFaces faces =
+            follows_camera() ? usd::grid_faces(grid_options_.size.columns, grid_options_.size.rows)
+                             : usd::grid_faces(scene_.surface.resolution);
         const usd::Topology topology{.fps = shot.fps,
                                      .face_vertex_counts = faces.counts,
                                      .face_vertex_indices = faces.indices,
@@ -221,6 +262,20 @@ class SequenceOf final : public Sequence {
     long executed_transforms() const override { return frame_.executed_transforms(); }
 
   private:
+    bool follows_camera() const { return scene_.surface.kind == SurfaceKind::ProjectedGrid; }
+
+    // The patch, or what the camera sees at this frame, in the world. The points at rest follow the camera;
+    // velocities are the water's at each of them.
+    void compute_mesh(int frame, Values& mesh) {
+        if (!follows_camera()) {
+            runner_.run(frame_, mesh_query_, mesh_square_.points, mesh);
+            return;
+        }
+        seen_.take(projected_grid(view_at(scene_.camera, frame), grid_options_));
+        runner_.run(frame_, mesh_query_, seen_.points(), mesh);
+        move_by(mesh.position, seen_.origin_m);
+    }
+
     bool mesh_is_text() const { return scene_.output.mesh == MeshFormat::Usda; }
     std::string mesh_extension() const { return std::string(word_of(scene_.output.mesh)); }
 
@@ -236,7 +291,9 @@ class SequenceOf final : public Sequence {
     }
 
     void encode_mesh(FrameSlot& slot) const {
-        slot.record.mesh_significant_height_m = significant_height_of(slot.mesh.position);
+        // Of vertices that lie ever wider apart it says nothing about the sea.
+        if (!follows_camera())
+            slot.record.mesh_significant_height_m = significant_height_of(slot.mesh.position);
         if (!mesh_is_text()) return;
         slot.mesh_text.clear();
         usd::write_frame_text(mesh_sample(slot), [&](std::string_view part) { slot.mesh_text += part; });
@@ -507,7 +564,9 @@ class SequenceOf final : public Sequence {
     Frame<T> frame_;
     QueryRunner<T> runner_;
     int mesh_query_ = -1;
-    Square<T> mesh_square_;
+    Square<T> mesh_square_;              // of a patch
+    ProjectedGridOptions grid_options_;  // of a projected grid: one topology for the whole shot
+    SeenPoints<T> seen_;
     std::vector<MapJob<T>> maps_;
 };
 

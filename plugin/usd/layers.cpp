@@ -159,28 +159,28 @@ void check(const Topology& topology) {
     check_finite("primvars:st", floats(topology.st), 2);
 }
 
-GridFaces grid_faces(int quads_per_side) {
-    constexpr int kMaxQuads = 23169;  // 4 n² ≤ 2^31 − 1
-    if (quads_per_side < 1 || quads_per_side > kMaxQuads) {
-        throw std::invalid_argument("USD: a grid has 1 … " + std::to_string(kMaxQuads) +
-                                    " quads a side, not " + std::to_string(quads_per_side));
+GridFaces grid_faces(int columns, int rows) {
+    constexpr std::int64_t kMaxQuads = std::numeric_limits<std::int32_t>::max() / 4;
+    if (columns < 1 || rows < 1 || static_cast<std::int64_t>(columns) * rows > kMaxQuads) {
+        throw std::invalid_argument("USD: a grid has 1 … " + std::to_string(kMaxQuads) + " quads, not " +
+                                    std::to_string(columns) + " × " + std::to_string(rows));
     }
-    const auto n = static_cast<std::size_t>(quads_per_side);
-    const std::int32_t row = quads_per_side + 1;
+    const std::size_t quads = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    const std::int32_t row = columns + 1;
     GridFaces grid;
-    grid.counts.assign(n * n, 4);
-    grid.indices.reserve(4 * n * n);
-    for (std::int32_t j = 0; j < quads_per_side; ++j) {
-        for (std::int32_t i = 0; i < quads_per_side; ++i) {
+    grid.counts.assign(quads, 4);
+    grid.indices.reserve(4 * quads);
+    for (std::int32_t j = 0; j < rows; ++j) {
+        for (std::int32_t i = 0; i < columns; ++i) {
             const std::int32_t corner = j * row + i;
             grid.indices.insert(grid.indices.end(), {corner, corner + 1, corner + 1 + row, corner + row});
         }
     }
-    grid.st.reserve((n + 1) * (n + 1));
-    for (std::int32_t j = 0; j < row; ++j) {
-        for (std::int32_t i = 0; i < row; ++i) {
-            grid.st.emplace_back(static_cast<float>(static_cast<double>(i) / quads_per_side),
-                                 static_cast<float>(static_cast<double>(j) / quads_per_side));
+    grid.st.reserve((static_cast<std::size_t>(columns) + 1) * (static_cast<std::size_t>(rows) + 1));
+    for (std::int32_t j = 0; j <= rows; ++j) {
+        for (std::int32_t i = 0; i <= columns; ++i) {
+            grid.st.emplace_back(static_cast<float>(static_cast<double>(i) / columns),
+                                 static_cast<float>(static_cast<double>(j) / rows));
         }
     }
     return grid;

@@ -191,15 +191,19 @@ void check_rate(double fps);
 // match the counts, a negative index, an index without st where there is st, st that isn't finite.
 void check(const Topology& topology);
 
-// The faces and st of a square grid of quads_per_side² quads over (quads_per_side + 1)² vertices, x fastest,
-// y upwards: counter-clockwise seen from +z, st = (0, 0) at the lowest x and y, (1, 1) at the highest.
+// The faces and st of a grid of columns × rows quads over (columns + 1) × (rows + 1) vertices, columns
+// fastest: counter-clockwise seen from +z where columns run to the right and rows upwards, st = (0, 0) at the
+// first vertex, (1, 1) at the last.
 struct GridFaces {
     std::vector<std::int32_t> counts{};
     std::vector<std::int32_t> indices{};
     std::vector<glm::vec2> st{};
 };
-// Throws std::invalid_argument unless 1 ≤ quads_per_side ≤ 23169: beyond, an index array no longer fits its
-// int count.
-GridFaces grid_faces(int quads_per_side);
+// Throws std::invalid_argument without quads and beyond 2^29 − 1 of them, whose indices no longer fit an
+// array's int count.
+GridFaces grid_faces(int columns, int rows);
+inline GridFaces grid_faces(int quads_per_side) {
+    return grid_faces(quads_per_side, quads_per_side);
+}
 
 }  // namespace pelagic::usd

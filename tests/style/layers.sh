@@ -13,7 +13,7 @@ allow() {
 allow core/base ""
 allow core/scene "core/base"
 allow core/spectrum "core/base core/scene"
-allow core/plan "core/base core/scene core/spectrum"
+allow core/plan "core/base core/scene core/spectrum core/surface"
 allow core/waves "core/base core/scene core/spectrum core/plan"
 allow core/surface "core/base core/scene"
 allow core/lighting "core/base"

@@ -66,6 +66,33 @@ TEST(Plan, HasNothingToRunWithoutWindAndSwell) {
     for (const CascadePlan& cascade : plan.cascades) EXPECT_FALSE(cascade.why_empty.empty());
 }
 
+// The grid of the camera: its points are counted, its page says so, and its fingerprint knows the camera.
+TEST(Plan, AProjectedGridIsPlannedForTheCamerasOwnShot) {
+    Scene scene = scene_with({MeshAttribute::Normal});
+    const auto with_camera_at = [&](double height_m) {
+        scene.camera.position_m.z = height_m;
+        return make_plan(scene);
+    };
+    EXPECT_EQ(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
+    scene.surface.kind = SurfaceKind::ProjectedGrid;
+    EXPECT_NE(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
+    const Plan plan = make_plan(scene);
+    const ProjectedGridNeeds needs = projected_grid_needs(scene);
+    EXPECT_EQ(plan.queries[0].query.points, points_of(needs.size));
+    EXPECT_EQ(plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
+    EXPECT_FALSE(plan.queries[0].query.lattice);
+    EXPECT_NE(
+        explain(scene, plan)
+            .find(std::to_string(needs.size.columns) + " × " + std::to_string(needs.size.rows) + " cells"),
+        std::string::npos);
+    // Higher up the finest cell is larger: fewer waves are computed.
+    EXPECT_LT(with_camera_at(500.0).lines_per_frame(), plan.lines_per_frame());
+    // Without a mesh the camera is the root's alone.
+    scene.output.mesh = MeshFormat::None;
+    scene.output.maps = {MapKind::Normal};
+    EXPECT_EQ(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
+}
+
 TEST(Plan, SharesAGridBetweenQueriesOfOneFootprint) {
     Scene scene = scene_with({MeshAttribute::Normal});
     const int mesh_alone = make_plan(scene).transforms_per_frame();

@@ -18,6 +18,9 @@
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/evaluate/evaluate.h"
+#include "core/surface/projected_grid.h"
+#include "plugin/bake/sequence.h"
 #include "plugin/shot/ndbc.h"
 #include "plugin/shot/shot.h"
 
@@ -75,6 +78,93 @@ TEST_F(Bakes, FramesOfAnotherVersionAreReportedAsStale) {
     const BakeReport report = bake(scene, {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr});
     EXPECT_EQ(report.kept, 0);
     EXPECT_EQ(report.stale, (std::vector<int>{2, 3}));
+}
+
+Scene camera_scene() {
+    Scene scene;
+    scene.shot.last_frame = 2;
+    scene.surface.kind = SurfaceKind::ProjectedGrid;
+    scene.camera.resolution = {160, 90};
+    // The second frame looks steeply down: it needs more columns than the first.
+    scene.camera.keys = {{.frame = 1, .position_m = {2e3, -60.0, 9.0}, .look_at_m = {2e3, 0.0, 2.0}},
+                         {.frame = 2, .position_m = {2e3, -50.0, 30.0}, .look_at_m = {2e3, -45.0, 0.0}}};
+    scene.output.mesh = MeshFormat::Usda;
+    return scene;
+}
+
+// The mesh of each frame is the core's answer for that frame's grid, with the footprints of its points.
+TEST(ProjectedGridBake, IsWhatTheCameraSeesWithOneTopology) {
+    const Scene scene = camera_scene();
+    const Plan plan = make_plan(scene);
+    const auto sequence = make_sequence(scene, plan);
+    Frame<float> frame(std::make_shared<const Sea<float>>(scene, plan));
+    ProjectedGridOptions options = projected_grid_options(scene);
+    const auto alone = [&](int f) { return projected_grid_needs(view_at(scene.camera, f), options).size; };
+    ASSERT_FALSE(alone(1) == alone(2));
+    const ProjectedGridSize size = projected_grid_needs(scene).size;
+    EXPECT_EQ(size.columns, std::max(alone(1).columns, alone(2).columns));
+    EXPECT_EQ(size.rows, std::max(alone(1).rows, alone(2).rows));
+    EXPECT_EQ(plan.queries.front().query.points, points_of(size));
+    options.size = size;
+    FrameSlot slot;
+    for (const int f : {1, 2}) {
+        sequence->compute(f, slot);
+        const ProjectedGrid grid = projected_grid(view_at(scene.camera, f), options);
+        const std::size_t count = points_of(size);
+        ASSERT_EQ(grid.rest_m.size(), count);
+        for (const std::size_t got :
+             {slot.mesh.position.size(), slot.mesh.normal.size(), slot.mesh.velocity.size(),
+              slot.mesh.slope_variance.size(), slot.mesh.coverage.size()})
+            EXPECT_EQ(got, count);
+        std::vector<glm::vec3> position(count), normal(count), variance(count);
+        frame.set(scene.shot.time_s(f));
+        Results<float> results;
+        results.position = {position.data()};
+        results.normal = {normal.data()};
+        results.slope_variance = {variance.data()};
+        evaluate(frame, 0,
+                 Points<float>{.origin_m = grid.origin_m,
+                               .count = count,
+                               .rest_m = {grid.rest_m.data()},
+                               .cell_m = {grid.cell_m.data()},
+                               .pixel_m = {grid.cell_m.data()}},
+                 results);
+        float nearest_m = 1e9f;
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::vec3 p = slot.mesh.position[i], v = slot.mesh.velocity[i];
+            ASSERT_TRUE(std::isfinite(p.x + p.y + p.z + v.x + v.y + v.z + slot.mesh.coverage[i]));
+            // In the world: the camera's nadir away from where the grid has its origin; the sum is rounded
+            // once.
+            EXPECT_EQ(p, glm::vec3(static_cast<float>(grid.origin_m.x + static_cast<double>(position[i].x)),
+                                   static_cast<float>(grid.origin_m.y + static_cast<double>(position[i].y)),
+                                   position[i].z));
+            EXPECT_EQ(slot.mesh.normal[i], normal[i]);
+            EXPECT_EQ(slot.mesh.slope_variance[i], variance[i]);
+            nearest_m = std::min(nearest_m, std::hypot(p.x - 2e3f, p.y - (f == 1 ? -60.0f : -50.0f)));
+        }
+        EXPECT_LT(nearest_m, 60.0f);
+        // Far away everything is hidden, near by much is shown: footprints differ from point to point.
+        EXPECT_LT(slot.mesh.slope_variance.front().x, 0.9f * slot.mesh.slope_variance.back().x);
+    }
+}
+
+TEST_F(Bakes, AProjectedGridIsTheCamerasOwn) {
+    Scene scene = camera_scene();
+    auto record = bake_and_read(scene);
+    EXPECT_EQ(record.at("frames").size(), 2u);
+    EXPECT_FALSE(record.at("frames").at("1").contains("mesh_hs_m"));
+    for (const char* file :
+         {"mesh/sea.topology.usda", "mesh/sea.0001.usda", "mesh/sea.0002.usda", "sea.usda"})
+        EXPECT_TRUE(fs::exists(folder_ / file)) << file;
+    // Another pose is another mesh; to a patch it is nothing.
+    const BakeOptions again{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
+    EXPECT_EQ(bake(scene, again).kept, 2);
+    scene.camera.keys.back().position_m.z += 1.0;
+    EXPECT_EQ(bake(scene, again).kept, 0);
+    scene.surface = {.size_m = 100.0, .resolution = 8};
+    bake(scene, again);
+    scene.camera.keys.back().position_m.z += 1.0;
+    EXPECT_EQ(bake(scene, again).kept, 2);
 }
 
 TEST(ParseFrames, TakesFramesRangesAndSteps) {

@@ -1,0 +1,48 @@
+// What a pixel's footprint hides of the waves' variances, for plain numbers, for vectors of them and for
+// GLSL: see core/base/number.h.
+
+// A moment of what a point between two rungs of a ladder is shown: (1 − t) of the fields of one and t of the
+// next, ((1 − t) w_a + t w_b)² expanded. here, next: what the two rungs show or hide alone; both: their mixed
+// sum. What is hidden blends alike, for the three factors add up to 1.
+template <class T>
+inline T blended_moment(T here, T both, T next, T t) {
+    return (T(1) - t) * (T(1) - t) * here + (T(2) * t * (T(1) - t) * both + t * t * next);
+}
+
+// Second moments of slopes and of strains (times choppiness²) [-]: HiddenMoments by name.
+template <class T>
+struct PixelMoments {
+    T xx, xy, yy, xxxx, xxxy, xxyy, xyyy, yyyy;
+};
+
+template <class T>
+inline T possible_covariance(T value, T bound) {
+    return minimum(maximum(value, -bound), bound);
+}
+
+// Those that a difference of two sums stands for: variances never negative, covariances within their bounds.
+template <class T>
+inline PixelMoments<T> possible_moments(PixelMoments<T> m) {
+    const T xx = maximum(m.xx, T(0)), yy = maximum(m.yy, T(0));
+    const T xxxx = maximum(m.xxxx, T(0)), yyyy = maximum(m.yyyy, T(0));
+    const T xxyy = minimum(maximum(m.xxyy, T(0)), square_root(xxxx * yyyy));
+    return PixelMoments<T>(xx, possible_covariance(m.xy, square_root(xx * yy)), yy, xxxx,
+                           possible_covariance(m.xxxy, square_root(xxxx * xxyy)), xxyy,
+                           possible_covariance(m.xyyy, square_root(yyyy * xxyy)), yyyy);
+}
+
+// The part of a trochoid train's strain variance that is hidden where it is shown with weight w.
+template <class T>
+inline T hidden_strain_part(T w) {
+    return (T(1) - w) * (T(1) + w);
+}
+
+// The part of its slope variance: 1 − w² (1 + √(1 − q²))/(1 + √(1 − w²q²)), steepness2 = q² = (kH)²
+// (Bruneton, Neyret, Holzschuch 2010, appendix A, as core/waves/trains.h has it).
+template <class T>
+inline T hidden_slope_part(T w, T steepness2) {
+    const T w2 = w * w;
+    const T whole = T(1) + square_root(T(1) - steepness2);
+    const T shown = T(1) + square_root(minus_product(T(1), w2, steepness2));
+    return maximum(T(1) - w2 * whole / shown, T(0));
+}

@@ -1,0 +1,306 @@
+// What the projected grid promises: that it covers what may come into view, how large its cells are, and that
+// every pose gives a valid one.
+#include "core/surface/projected_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <random>
+#include <set>
+
+#include "core/base/constants.h"
+
+namespace pelagic {
+namespace {
+
+struct Shot {
+    double height_m = 4.0, pitch_deg = 0.0, azimuth_deg = 0.0, fov_deg = 50.0;
+    glm::ivec2 resolution{1280, 720};
+    glm::dvec2 at_m{0.0};
+};
+
+View view_of(const Shot& shot) {
+    Camera camera;
+    const double pitch = shot.pitch_deg * kPi / 180.0, azimuth = shot.azimuth_deg * kPi / 180.0;
+    camera.position_m = glm::dvec3(shot.at_m, shot.height_m);
+    // A right angle exactly: the cosine of 90° isn't 0.
+    const double level = std::abs(shot.pitch_deg) == 90.0 ? 0.0 : std::cos(pitch);
+    camera.look_at_m = camera.position_m + 100.0 * glm::dvec3(level * std::cos(azimuth),
+                                                              level * std::sin(azimuth), std::sin(pitch));
+    camera.fov_deg = shot.fov_deg;
+    camera.resolution = shot.resolution;
+    return view_at(camera, 1.0);
+}
+
+// Where the grid has a cell over p (relative to its origin): rows whose circles are near p are searched.
+bool covers(const ProjectedGrid& grid, glm::dvec2 p) {
+    const int stride = grid.columns + 1;
+    const auto at = [&](int row, int column) { return glm::dvec2(grid.rest_m[row * stride + column]); };
+    const auto side = [](glm::dvec2 a, glm::dvec2 b, glm::dvec2 q) {
+        const glm::dvec2 u = b - a, v = q - a;
+        // A point on the border of two cells is in both, rounding aside.
+        return u.x * v.y - u.y * v.x >= -1e-6 * (glm::length(u) * (glm::length(v) + glm::length(q)));
+    };
+    const double r = glm::length(p);
+    int first = 0;
+    while (first < grid.rows && glm::length(at(first + 1, 0)) < r * (1.0 - 1e-6)) ++first;
+    for (int row = first; row < std::min(first + 3, grid.rows); ++row)
+        for (int column = 0; column < grid.columns; ++column) {
+            const glm::dvec2 a = at(row, column), b = at(row, column + 1), c = at(row + 1, column + 1),
+                             d = at(row + 1, column);
+            if ((side(a, b, p) && side(b, c, p) && side(c, a, p)) ||
+                (side(a, c, p) && side(c, d, p) && side(d, a, p)))
+                return true;
+        }
+    return false;
+}
+
+std::vector<Shot> hard_shots() {
+    std::vector<Shot> shots;
+    for (const double height_m : {-30.0, -0.5, 0.0, 1e-9, 0.5, 2.0, 4.0, 60.0, 20e3, 1e5})
+        for (const double pitch_deg : {-90.0, -89.999, -70.0, -30.0, -8.0, 0.0, 8.0, 45.0, 90.0})
+            shots.push_back({.height_m = height_m, .pitch_deg = pitch_deg, .azimuth_deg = 33.0});
+    for (const double fov_deg : {1.0, 10.0, 90.0, 130.0, 179.0})
+        for (const double pitch_deg : {-90.0, -35.0, 0.0, 20.0})
+            shots.push_back({.height_m = 7.0, .pitch_deg = pitch_deg, .fov_deg = fov_deg});
+    shots.push_back({.resolution = {100, 1000}});
+    shots.push_back({.resolution = {2000, 20}});
+    shots.push_back({.pitch_deg = -40.0, .resolution = {1, 1}});
+    shots.push_back({.azimuth_deg = 200.0, .at_m = {1e6, -1e6}});
+    return shots;
+}
+
+std::string text_of(const Shot& shot) {
+    return "height " + std::to_string(shot.height_m) + " pitch " + std::to_string(shot.pitch_deg) + " fov " +
+           std::to_string(shot.fov_deg) + " " + std::to_string(shot.resolution.x) + " × " +
+           std::to_string(shot.resolution.y);
+}
+
+// Points at rest from which a displacement within the bounds leads into view, drawn backwards: a pixel, a
+// height within the slab on its ray, a displacement. Each must lie in a cell.
+TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::vector<Shot> shots = hard_shots();
+    for (int i = 0; i < 60; ++i)
+        shots.push_back({.height_m = std::pow(10.0, -1.0 + 5.0 * uniform(random)),
+                         .pitch_deg = -90.0 + 150.0 * uniform(random),
+                         .azimuth_deg = 360.0 * uniform(random),
+                         .fov_deg = 5.0 + 120.0 * uniform(random),
+                         .resolution = {200 + static_cast<int>(800 * uniform(random)), 400}});
+    int in_view = 0;
+    for (const Shot& shot : shots) {
+        const View view = view_of(shot);
+        const double height_m = uniform(random) < 0.2 ? 0.0 : 4.0 * uniform(random);
+        const double reach_m = uniform(random) < 0.2 ? 0.0 : 4.0 * uniform(random);
+        const ProjectedGrid grid = projected_grid(view, {.cell_px = 24.0,
+                                                         .bounds = {.height_m = height_m, .reach_m = reach_m},
+                                                         .significant_height_m = 2.0});
+        const double farthest_m = glm::length(glm::dvec2(grid.rest_m.back()));
+        for (int i = 0; i < 60; ++i) {
+            const glm::dvec2 pixel(uniform(random) * view.resolution.x, uniform(random) * view.resolution.y);
+            const glm::dvec3 d = view.direction(pixel);
+            // The faces of the slab as often as its inside: the extremes lie there.
+            const double z_m = height_m * std::clamp(3.0 * uniform(random) - 1.5, -1.0, 1.0);
+            const double way_m = (z_m - view.position_m.z) / d.z;
+            if (!(way_m >= 0.0) || !std::isfinite(way_m)) continue;
+            const double turn = 2.0 * kPi * uniform(random);
+            const double shift_m = reach_m * std::min(1.5 * uniform(random), 1.0);
+            const glm::dvec2 p = way_m * glm::dvec2(d) + shift_m * glm::dvec2(std::cos(turn), std::sin(turn));
+            if (glm::length(p) > farthest_m * 0.999) continue;  // under a twentieth of a pixel to the horizon
+            ++in_view;
+            EXPECT_TRUE(covers(grid, p))
+                << text_of(shot) << " bounds " << height_m << " " << reach_m << " at " << p.x << " " << p.y;
+        }
+    }
+    EXPECT_GT(in_view, 4000);
+}
+
+TEST(ProjectedGrid, EveryPoseGivesAValidGrid) {
+    for (const Shot& shot : hard_shots()) {
+        SCOPED_TRACE(text_of(shot));
+        for (const double height_m : {0.0, 3.0}) {
+            const ProjectedGridOptions options{.bounds = {.height_m = height_m, .reach_m = 2.0},
+                                               .significant_height_m = height_m};
+            const View view = view_of(shot);
+            const ProjectedGrid grid = projected_grid(view, options);
+            ASSERT_EQ((ProjectedGridSize{grid.columns, grid.rows}), projected_grid_needs(view, options).size);
+            ASSERT_GT(grid.columns, 0);
+            ASSERT_GT(grid.rows, 0);
+            const std::size_t count = (grid.columns + 1u) * (grid.rows + 1u);
+            ASSERT_EQ(grid.rest_m.size(), count);
+            ASSERT_EQ(grid.cell_m.size(), count);
+            ASSERT_EQ(grid.pixel_m.size(), count);
+            std::size_t bad = 0;
+            for (std::size_t i = 0; i < count; ++i)
+                bad += !(std::isfinite(grid.rest_m[i].x * grid.rest_m[i].x +
+                                       grid.rest_m[i].y * grid.rest_m[i].y) &&
+                         std::isfinite(grid.cell_m[i]) && grid.cell_m[i] > 0.0f &&
+                         std::isfinite(grid.pixel_m[i]) && grid.pixel_m[i] > 0.0f);
+            EXPECT_EQ(bad, 0u);
+            EXPECT_EQ(grid.origin_m, shot.at_m);
+        }
+    }
+}
+
+// The largest side of a cell on the screen, of the cells from nearest_m on whose corners are all in view,
+// over a sea at rest.
+double largest_cell_px(const View& view, const ProjectedGrid& grid, double nearest_m) {
+    const glm::dmat4 clip = view.clip_from(glm::dvec3(grid.origin_m, 0.0), 0.01);
+    const int stride = grid.columns + 1;
+    const auto pixel = [&](int row, int column, glm::dvec2& at) {
+        const glm::dvec4 c = clip * glm::dvec4(glm::dvec2(grid.rest_m[row * stride + column]), 0.0, 1.0);
+        at = 0.5 * glm::dvec2(c) / c.w * glm::dvec2(view.resolution);
+        return c.w > 0.0 && std::abs(c.x) <= c.w && std::abs(c.y) <= c.w;
+    };
+    double largest_px = 0.0;
+    for (int row = 0; row < grid.rows; ++row) {
+        if (glm::length(grid.rest_m[row * stride]) < nearest_m) continue;
+        for (int column = 0; column < grid.columns; ++column) {
+            glm::dvec2 a, b, c;
+            if (!pixel(row, column, a) || !pixel(row, column + 1, b) || !pixel(row + 1, column, c)) continue;
+            largest_px = std::max({largest_px, glm::length(b - a), glm::length(c - a)});
+        }
+    }
+    return largest_px;
+}
+
+TEST(ProjectedGrid, CellsAreNoLargerThanAsked) {
+    double largest_px = 0.0;
+    for (const double height_m : {0.5, 4.0, 200.0, 20e3})
+        for (const double pitch_deg : {-90.0, -60.0, -30.0, -5.0, 0.0, 10.0})
+            for (const double fov_deg : {20.0, 50.0, 90.0}) {
+                const Shot shot{.height_m = height_m, .pitch_deg = pitch_deg, .fov_deg = fov_deg};
+                const View view = view_of(shot);
+                // Waves much lower than the camera is high, and waves as high as that of the lowest.
+                const ProjectedGrid calm = projected_grid(
+                    view, {.bounds = {.height_m = 0.02 * height_m, .reach_m = 0.02 * height_m}});
+                const ProjectedGrid rough = projected_grid(
+                    view, {.bounds = {.height_m = 3.0, .reach_m = 3.0}, .significant_height_m = 2.4});
+                largest_px = std::max(largest_px, largest_cell_px(view, calm, 0.0));
+                EXPECT_LE(largest_cell_px(view, calm, 0.0), 8.0) << text_of(shot);
+                EXPECT_LE(largest_cell_px(view, rough, 6.0), 8.0) << text_of(shot);
+            }
+    // And are not much smaller: cells beyond need cost time.
+    EXPECT_GT(largest_px, 7.0);
+}
+
+// The gap between the last row and the horizon, in pixels up and down the picture.
+TEST(ProjectedGrid, EndsWithinATwentiethOfAPixelOfTheHorizon) {
+    for (const double height_m : {0.5, 4.0, 20e3, 1e5})
+        for (const double pitch_deg : {-10.0, 0.0, 10.0})
+            for (const double fov_deg : {20.0, 90.0}) {
+                const Shot shot{.height_m = height_m, .pitch_deg = pitch_deg, .fov_deg = fov_deg};
+                const View view = view_of(shot);
+                const ProjectedGrid grid =
+                    projected_grid(view, {.bounds = {.height_m = 1.0, .reach_m = 1.0}});
+                const auto row_of = [&](glm::dvec3 d) {
+                    return glm::dot(d, view.up) / glm::dot(d, view.forward) / view.pixel_tangent();
+                };
+                // Straight ahead: the middle column is the picture's.
+                const glm::dvec2 last(grid.rest_m[grid.rest_m.size() - 1 - grid.columns / 2]);
+                const double gap_px =
+                    row_of(glm::dvec3(glm::normalize(last), 0.0)) - row_of(glm::dvec3(last, -height_m));
+                if (std::abs(row_of(glm::dvec3(glm::normalize(last), 0.0))) > 0.5 * view.resolution.y)
+                    continue;  // not in view
+                EXPECT_GT(gap_px, 0.0) << text_of(shot);
+                EXPECT_LE(gap_px, 0.05) << text_of(shot);
+            }
+}
+
+// Seen from above, each triangle turns one way, and together they are the grid's area.
+TEST(ProjectedGrid, TrianglesFaceUpAndFillTheGrid) {
+    const View view = view_of({.height_m = 10.0, .pitch_deg = -30.0});
+    const ProjectedGrid grid = projected_grid(view, {.bounds = {.height_m = 1.0, .reach_m = 0.5}});
+    const auto triangles = projected_grid_triangles({.columns = grid.columns, .rows = grid.rows});
+    ASSERT_EQ(triangles.size(), 6u * grid.columns * grid.rows);
+    const auto area = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
+        const glm::dvec2 a(grid.rest_m[i]), u = glm::dvec2(grid.rest_m[j]) - a,
+                                            v = glm::dvec2(grid.rest_m[k]) - a;
+        return 0.5 * (u.x * v.y - u.y * v.x);
+    };
+    double sum = 0.0;
+    for (std::size_t t = 0; t < triangles.size(); t += 3) {
+        const double one = area(triangles[t], triangles[t + 1], triangles[t + 2]);
+        EXPECT_GT(one, 0.0);
+        sum += one;
+    }
+    // Each side is another triangle's, run through the other way, or the border's.
+    std::set<std::pair<std::uint32_t, std::uint32_t>> sides;
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        EXPECT_TRUE(sides.insert({triangles[t], triangles[t % 3 == 2 ? t - 2 : t + 1]}).second);
+    std::size_t alone = 0;
+    for (const auto& [from, to] : sides) alone += !sides.contains({to, from});
+    EXPECT_EQ(alone, 2u * (grid.columns + grid.rows));
+    // The border, as one polygon round the nadir (the shoelace formula).
+    std::vector<glm::dvec2> border;
+    const int stride = grid.columns + 1;
+    for (int c = 0; c < grid.columns; ++c) border.emplace_back(grid.rest_m[c]);
+    for (int r = 0; r < grid.rows; ++r) border.emplace_back(grid.rest_m[r * stride + grid.columns]);
+    for (int c = grid.columns; c > 0; --c) border.emplace_back(grid.rest_m[grid.rows * stride + c]);
+    for (int r = grid.rows; r > 0; --r) border.emplace_back(grid.rest_m[r * stride]);
+    double outline = 0.0;
+    for (std::size_t i = 0; i < border.size(); ++i) {
+        const glm::dvec2 a = border[i], b = border[(i + 1) % border.size()];
+        outline += 0.5 * (a.x * b.y - a.y * b.x);
+    }
+    EXPECT_NEAR(sum / outline, 1.0, 1e-9);
+}
+
+// The footprints are what neighbours and pixels are apart, measured on the grid itself and on the screen.
+TEST(ProjectedGrid, FootprintsAreDistancesAndPixels) {
+    const View view = view_of({.height_m = 6.0, .pitch_deg = -12.0});
+    const ProjectedGrid grid = projected_grid(view, {});
+    const int stride = grid.columns + 1;
+    const auto at = [&](int row, int column) { return glm::dvec2(grid.rest_m[row * stride + column]); };
+    for (int row = 1; row < grid.rows; row += 7)
+        for (int column = 1; column < grid.columns; column += 11) {
+            const glm::dvec2 p = at(row, column);
+            const double largest_m =
+                std::max({glm::length(at(row - 1, column) - p), glm::length(at(row + 1, column) - p),
+                          glm::length(at(row, column - 1) - p), glm::length(at(row, column + 1) - p)});
+            EXPECT_NEAR(grid.cell_m[row * stride + column] / largest_m, 1.0, 1e-4);
+            // Half a pixel's footprint outwards and inwards is a pixel on the screen, or less off the axis,
+            // and more than half of one within this lens.
+            const double half_m = 0.5 * static_cast<double>(grid.pixel_m[row * stride + column]);
+            const auto screen = [&](glm::dvec2 q) {
+                const glm::dvec3 d(q, -6.0);
+                return glm::dvec2(glm::dot(d, view.right), glm::dot(d, view.up)) /
+                       (glm::dot(d, view.forward) * view.pixel_tangent());
+            };
+            if (half_m > 0.1 * glm::length(p)) continue;
+            if (std::abs(screen(p).x) > 640.0 || std::abs(screen(p).y) > 360.0) continue;
+            const glm::dvec2 out = glm::normalize(p);
+            const double px = glm::length(screen(p + half_m * out) - screen(p - half_m * out));
+            EXPECT_GT(px, 0.95);
+            EXPECT_LT(px, 1.2);
+        }
+}
+
+// A shot's frames, each in the size that all together need.
+TEST(ProjectedGrid, TakesAGivenSizeInEveryPose) {
+    ProjectedGridOptions options{.bounds = {.height_m = 2.0, .reach_m = 2.0}, .significant_height_m = 2.0};
+    const View level = view_of({.pitch_deg = 0.0}), down = view_of({.pitch_deg = -80.0});
+    const ProjectedGridNeeds needs =
+        together(projected_grid_needs(level, options), projected_grid_needs(down, options));
+    options.size = needs.size;
+    for (const View& view : {level, down}) {
+        const ProjectedGrid grid = projected_grid(view, options);
+        EXPECT_EQ((ProjectedGridSize{grid.columns, grid.rows}), needs.size);
+        EXPECT_EQ(grid.rest_m.size(), points_of(needs.size));
+        // With its own size no footprint is finer than it said.
+        options.size = {};
+        const ProjectedGridNeeds own = projected_grid_needs(view, options);
+        const ProjectedGrid alone = projected_grid(view, options);
+        options.size = needs.size;
+        EXPECT_GE(*std::min_element(alone.cell_m.begin(), alone.cell_m.end()),
+                  own.finest_cell_m * (1.0 - 1e-5));
+        EXPECT_GE(*std::min_element(alone.pixel_m.begin(), alone.pixel_m.end()),
+                  own.finest_pixel_m * (1.0 - 1e-5));
+    }
+}
+
+}  // namespace
+}  // namespace pelagic

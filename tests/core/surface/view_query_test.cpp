@@ -1,0 +1,216 @@
+// The ladder of footprints that points at all distances ask for, and the projected grid's points on it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "core/evaluate/evaluate.h"
+#include "core/plan/plan.h"
+#include "core/plan/tables.h"
+#include "core/scene/validate.h"
+#include "core/surface/projected_grid.h"
+
+namespace pelagic {
+namespace {
+
+Scene scene_of_two_tiles() {
+    Scene scene;
+    scene.waves.cascades = {{.size_m = 400.0, .resolution = 128}, {.size_m = 80.0, .resolution = 128}};
+    scene.camera.resolution = {320, 180};
+    EXPECT_TRUE(validate(scene).empty());
+    return scene;
+}
+
+struct Answers {
+    std::vector<glm::vec3> position, normal, slope_variance;
+    std::vector<float> coverage;
+};
+
+template <class T>
+Answers ask(const Frame<T>& frame, const Points<T>& points) {
+    Answers a;
+    a.position.resize(points.count);
+    a.normal.resize(points.count);
+    a.slope_variance.resize(points.count);
+    a.coverage.resize(points.count);
+    Results<T> results;
+    results.position = {a.position.data()};
+    results.normal = {a.normal.data()};
+    results.slope_variance = {a.slope_variance.data()};
+    results.coverage = {a.coverage.data()};
+    evaluate(frame, 0, points, results);
+    return a;
+}
+
+Frame<float> frame_of(const Scene& scene, const Query& query) {
+    Frame<float> frame(std::make_shared<const Sea<float>>(scene, make_plan(scene, {query})));
+    frame.set(7.25);
+    return frame;
+}
+
+Points<float> points_of_grid(const ProjectedGrid& grid) {
+    return {.origin_m = grid.origin_m,
+            .count = grid.rest_m.size(),
+            .rest_m = {grid.rest_m.data()},
+            .cell_m = {grid.cell_m.data()},
+            .pixel_m = {grid.pixel_m.data()}};
+}
+
+TEST(ViewQuery, DoublesFromTheFinestUpToWhereNothingPasses) {
+    const Scene scene = scene_of_two_tiles();
+    for (const double finest_m : {0.0, 0.01, 0.7, 90.0}) {
+        const Query query = view_query(scene, {.finest_cell_m = 5.0 * finest_m, .finest_pixel_m = finest_m});
+        EXPECT_EQ(query.pixel_m.front(), finest_m);
+        const std::size_t doubled = query.pixel_m[0] > 0.3 ? 1 : 2;  // finer than 80/64/4 m nothing changes
+        for (std::size_t i = doubled; i < query.pixel_m.size(); ++i)
+            EXPECT_DOUBLE_EQ(query.pixel_m[i], 2.0 * query.pixel_m[i - 1]);
+        // Footprints that cells ask for lie between their first rung and the next.
+        EXPECT_LE(query.cell_m.front(), std::max(5.0 * finest_m, finest_m));
+        EXPECT_TRUE(std::equal(query.cell_m.rbegin(), query.cell_m.rend(), query.pixel_m.rbegin()));
+        const Plan plan = make_plan(scene, {query});
+        const std::vector<int>& levels = plan.queries[0].pixel_levels;
+        for (const CascadePlan& cascade : plan.cascades) EXPECT_EQ(cascade.grid_of_level[levels.back()], -1);
+        // One rung less, and something still passes.
+        EXPECT_GE(plan.cascades[0].grid_of_level[levels[levels.size() - 2]], 0);
+    }
+}
+
+// A footprint through which every mode of a cascade passes whole has no grid of its own.
+TEST(ViewQuery, RunsNoTransformTwice) {
+    const Scene scene = scene_of_two_tiles();
+    const Plan plan = make_plan(scene, {view_query(scene)});
+    for (const CascadePlan& cascade : plan.cascades) {
+        // By hand: the shortest wave is 1/64 of the tile, or at the band's end; modes a quarter of that and
+        // finer are whole.
+        const double shortest_m =
+            cascade.size_m / std::min(64.0, cascade.k_upper * cascade.size_m / 6.283185307);
+        std::size_t unfiltered = 0;
+        int shared = -1;
+        for (std::size_t l = 0; l < plan.levels.size(); ++l) {
+            if (plan.levels[l].footprint_m > 0.95 * shortest_m / 4.0) continue;
+            ++unfiltered;
+            if (shared < 0) shared = cascade.grid_of_level[l];
+            EXPECT_EQ(cascade.grid_of_level[l], shared);
+        }
+        EXPECT_GE(unfiltered, 1u);
+        EXPECT_LT(cascade.grids.size(), plan.levels.size() - unfiltered + 1);
+        EXPECT_EQ(cascade.grids[shared].fields, fields_of(plan.queries[0].query.products));
+    }
+    // The first tile's band ends at 20 modes of its own: several rungs are below its waves.
+    EXPECT_EQ(plan.cascades[0].grid_of_level[0], plan.cascades[0].grid_of_level[3]);
+}
+
+// On a rung the ladder is the footprint itself: the same sum in another plan, to rounding.
+TEST(ViewQuery, OnARungAnswersAsAPlanOfThatFootprintAlone) {
+    const Scene scene = scene_of_two_tiles();
+    const Query ladder = view_query(scene);
+    const Frame<float> frame = frame_of(scene, ladder);
+    std::vector<glm::vec2> rest;
+    for (int i = 0; i < 200; ++i)
+        rest.emplace_back(1.37f * static_cast<float>(i), 0.61f * static_cast<float>(i % 37));
+    for (const std::size_t rung :
+         {std::size_t(0), std::size_t(1), std::size_t(4), ladder.pixel_m.size() - 2}) {
+        const auto footprint_m = static_cast<float>(ladder.pixel_m[rung]);
+        const std::vector<float> footprints(rest.size(), footprint_m);
+        Query alone = ladder;
+        alone.cell_m = alone.pixel_m = {static_cast<double>(footprint_m)};
+        const Points<float> points{.count = rest.size(), .rest_m = {rest.data()}};
+        Points<float> varied = points;
+        varied.cell_m = varied.pixel_m = {footprints.data()};
+        const Answers a = ask(frame, varied), b = ask(frame_of(scene, alone), points);
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            // Single precision: heights of 3 m, sums of thousands of modes.
+            EXPECT_LE(glm::length(a.position[i] - b.position[i]), 2e-5f) << "rung " << rung;
+            EXPECT_LE(glm::length(a.normal[i] - b.normal[i]), 2e-5f) << "rung " << rung;
+            EXPECT_LE(glm::length(a.slope_variance[i] - b.slope_variance[i]), 1e-6f) << "rung " << rung;
+        }
+    }
+}
+
+// A camera that is whole periods of every tile away sees the same sea, to rounding: 1e6 m and more lose
+// nothing.
+TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
+    Scene scene = scene_of_two_tiles();
+    const auto seen = [&](glm::dvec3 shift_m) {
+        Scene moved = scene;
+        moved.camera.position_m += shift_m;
+        moved.camera.look_at_m += shift_m;
+        ProjectedGridOptions options = projected_grid_options(scene);
+        return projected_grid(view_at(moved.camera, 1.0), options);
+    };
+    const Frame<float> frame = frame_of(scene, view_query(scene));
+    const ProjectedGrid here = seen(glm::dvec3(0.0)), there = seen({1e6, -2e6, 0.0});
+    ASSERT_EQ(here.rest_m.size(), there.rest_m.size());
+    const Answers a = ask(frame, points_of_grid(here)), b = ask(frame, points_of_grid(there));
+    double waves_m2 = 0.0;
+    for (std::size_t i = 0; i < here.rest_m.size(); ++i) {
+        const glm::vec2 rest = here.rest_m[i];
+        // The grids differ by the rounding of 2e6 m in double, 2e-10 m, and by a digit of single precision; a
+        // digit at the distance of the point moves it along slopes up to 1.
+        const float digit = 4e-7f * (1.0f + glm::length(rest));
+        EXPECT_LE(glm::length(rest - there.rest_m[i]), digit);
+        if (glm::length(rest) > 1000.0f) continue;  // beyond, a digit is more than the waves that are left
+        EXPECT_LE(glm::length(a.position[i] - b.position[i]), 3.0f * digit + 3e-5f);
+        EXPECT_LE(glm::length(a.normal[i] - b.normal[i]), 5.0f * digit + 3e-5f);
+        waves_m2 += std::pow(static_cast<double>(a.position[i].z), 2);
+    }
+    EXPECT_GT(waves_m2, 1.0);
+    for (const Answers* answers : {&a, &b})
+        for (std::size_t i = 0; i < here.rest_m.size(); ++i) {
+            const glm::vec3 p = answers->position[i], n = answers->normal[i], s = answers->slope_variance[i];
+            ASSERT_TRUE(
+                std::isfinite(p.x + p.y + p.z + n.x + n.y + n.z + s.x + s.y + s.z + answers->coverage[i]));
+        }
+}
+
+// Towards the horizon everything is hidden: a flat sea whose slopes' variance is the whole spectrum's.
+TEST(ViewQuery, AtTheHorizonAllIsVariance) {
+    const Scene scene = scene_of_two_tiles();
+    const Frame<float> frame = frame_of(scene, view_query(scene));
+    const ProjectedGrid grid = projected_grid(view_at(scene.camera, 1.0), projected_grid_options(scene));
+    const Answers answers = ask(frame, points_of_grid(grid));
+    const SpectralMoments& whole = frame.sea().total();
+    for (std::size_t i = answers.position.size() - grid.columns - 1; i < answers.position.size(); ++i) {
+        EXPECT_EQ(answers.position[i].z, 0.0f);
+        EXPECT_EQ(answers.normal[i], glm::vec3(0.0f, 0.0f, 1.0f));
+        EXPECT_NEAR(answers.slope_variance[i].x, whole.xx, 1e-6);
+        EXPECT_NEAR(answers.slope_variance[i].y, whole.yy, 1e-6);
+    }
+}
+
+// Ten thousand points of a realisation against the bounds, and neither bound is more than three times what is
+// reached: five deviations against the 3.7 or so that ten thousand correlated points reach.
+TEST(Extent, HoldsTheSeaAndNotMuchMore) {
+    Scene scene = scene_of_two_tiles();
+    scene.sea.depth_m = 12.0;  // horizontal reach exceeds the vertical one there
+    const Extent extent = expected_extent(scene);
+    Query query;
+    query.name = "points";
+    query.products = products(Product::Displacement);
+    const Frame<float> frame = frame_of(scene, query);
+    std::vector<glm::vec2> rest;
+    for (int i = 0; i < 10000; ++i)
+        rest.emplace_back(4.0f * static_cast<float>(i % 100), 4.0f * static_cast<float>(i / 100));
+    std::vector<glm::vec3> moved(rest.size());
+    Results<float> results;
+    results.displacement = {moved.data()};
+    evaluate(frame, 0, Points<float>{.count = rest.size(), .rest_m = {rest.data()}}, results);
+    double height_m = 0.0, reach_m = 0.0;
+    for (const glm::vec3& d : moved) {
+        height_m = std::max(height_m, static_cast<double>(std::abs(d.z)));
+        reach_m = std::max(reach_m, static_cast<double>(std::hypot(d.x, d.y)));
+    }
+    EXPECT_LT(height_m, extent.height_m);
+    EXPECT_GT(height_m, extent.height_m / 3.0);
+    EXPECT_LT(reach_m, extent.reach_m);
+    EXPECT_GT(reach_m, extent.reach_m / 3.0);
+    EXPECT_GT(extent.reach_m, extent.height_m);
+    EXPECT_DOUBLE_EQ(extent.significant_height_m, extent.height_m * 4.0 / kExtentDeviations);
+    EXPECT_EQ(frame.sea().extent().reach_m, extent.reach_m);
+    scene.sea.wind_speed_mps = 0.0;
+    EXPECT_EQ(expected_extent(scene).height_m, 0.0);
+    EXPECT_EQ(expected_extent(scene).reach_m, 0.0);
+}
+
+}  // namespace
+}  // namespace pelagic

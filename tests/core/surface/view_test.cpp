@@ -1,0 +1,95 @@
+// The pinhole against the geometry of its definition.
+#include "core/surface/view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/base/constants.h"
+
+namespace pelagic {
+namespace {
+
+void expect_near(glm::dvec3 a, glm::dvec3 b, double tolerance) {
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
+}
+
+Camera camera_with(glm::dvec3 position_m, glm::dvec3 look_at_m) {
+    Camera camera;
+    camera.position_m = position_m;
+    camera.look_at_m = look_at_m;
+    return camera;
+}
+
+TEST(View, FollowsKeysLinearlyAndStandsStillOutside) {
+    Camera camera;
+    camera.keys = {{.frame = 10, .position_m = {0.0, 0.0, 2.0}, .look_at_m = {0.0, 10.0, 2.0}},
+                   {.frame = 20, .position_m = {10.0, 0.0, 4.0}, .look_at_m = {10.0, 10.0, 4.0}}};
+    expect_near(view_at(camera, 1.0).position_m, {0.0, 0.0, 2.0}, 0.0);
+    expect_near(view_at(camera, 10.0).position_m, {0.0, 0.0, 2.0}, 0.0);
+    expect_near(view_at(camera, 12.5).position_m, {2.5, 0.0, 2.5}, 1e-15);
+    expect_near(view_at(camera, 20.0).position_m, {10.0, 0.0, 4.0}, 0.0);
+    expect_near(view_at(camera, 99.0).position_m, {10.0, 0.0, 4.0}, 0.0);
+    expect_near(view_at(camera, 12.5).forward, {0.0, 1.0, 0.0}, 1e-15);
+}
+
+TEST(View, StandsUprightAndLooksAlongZWithNorthUp) {
+    for (const glm::dvec3 target : {glm::dvec3(3.0, 4.0, -2.0), {-5.0, 1.0, 9.0}, {0.0, -1.0, 0.0}}) {
+        const View view = view_at(camera_with({0.0, 0.0, 0.0}, target), 1.0);
+        expect_near(view.forward, glm::normalize(target), 1e-15);
+        EXPECT_NEAR(view.right.z, 0.0, 1e-15);
+        EXPECT_GT(view.up.z, 0.0);
+        expect_near(glm::cross(view.right, view.forward), view.up, 1e-15);
+        EXPECT_NEAR(glm::length(view.up), 1.0, 1e-15);
+    }
+    const View down = view_at(camera_with({1.0, 2.0, 50.0}, {1.0, 2.0, 0.0}), 1.0);
+    expect_near(down.up, {0.0, 1.0, 0.0}, 1e-15);
+    expect_near(down.right, {1.0, 0.0, 0.0}, 1e-15);
+    const View up = view_at(camera_with({1.0, 2.0, -50.0}, {1.0, 2.0, 0.0}), 1.0);
+    expect_near(up.up, {0.0, 1.0, 0.0}, 1e-15);
+    expect_near(up.right, {-1.0, 0.0, 0.0}, 1e-15);
+}
+
+TEST(View, TheBordersAreHalfTheFieldOfViewAway) {
+    Camera camera = camera_with({0.0, 0.0, 3.0}, {0.0, 7.0, 3.0});
+    camera.fov_deg = 70.0;
+    camera.resolution = {640, 480};
+    const View view = view_at(camera, 1.0);
+    const double half = 35.0 * kPi / 180.0;
+    expect_near(view.direction({320.0, 240.0}), {0.0, 1.0, 0.0}, 1e-15);
+    expect_near(view.direction({640.0, 240.0}), {std::sin(half), std::cos(half), 0.0}, 1e-15);
+    const double tan_top = std::tan(half) * 480.0 / 640.0;
+    expect_near(view.direction({320.0, 0.0}), glm::normalize(glm::dvec3(0.0, 1.0, tan_top)), 1e-15);
+}
+
+// Whatever is seen through a pixel lands on it, a million metres from the world's origin, too.
+TEST(View, ClipCoordinatesAgreeWithDirections) {
+    Camera camera = camera_with({1e6, -1e6, 12.0}, {1e6 + 30.0, -1e6 + 50.0, 4.0});
+    camera.resolution = {1920, 800};
+    const View view = view_at(camera, 1.0);
+    const glm::dvec3 origin_m(1e6 + 5.0, -1e6 - 3.0, 0.0);
+    const double near_m = 0.1;
+    const glm::mat4 clip(view.clip_from(origin_m, near_m));  // in single precision, as a shader has it
+    for (const glm::dvec2 pixel : {glm::dvec2(0.5, 0.5), {1700.25, 90.0}, {960.0, 400.0}, {3.0, 799.0}})
+        for (const double distance_m : {0.2, 30.0, 4000.0}) {
+            const glm::dvec3 p = view.position_m - origin_m + distance_m * view.direction(pixel);
+            const glm::vec4 c = clip * glm::vec4(glm::vec3(p), 1.0f);
+            // Coordinates of some 10 m in single precision move a point 0.2 m away by up to 1e-6 m: 5e-6 of
+            // the picture's half, and a hundredth of a pixel.
+            EXPECT_NEAR(0.5 * (1.0 + c.x / c.w) * 1920.0, pixel.x, 0.02);
+            EXPECT_NEAR(0.5 * (1.0 - c.y / c.w) * 800.0, pixel.y, 0.02);
+            const double depth_m = distance_m * glm::dot(view.direction(pixel), view.forward);
+            EXPECT_NEAR(c.z / c.w, 1.0 - 2.0 * near_m / depth_m, 2e-5);
+        }
+    // Nothing is clipped for being far: the horizon's depth is 1, within the box.
+    const glm::dvec4 horizon = view.clip_from(view.position_m, near_m) * glm::dvec4(1e12 * view.forward, 1.0);
+    EXPECT_LE(horizon.z, horizon.w);
+    EXPECT_NEAR(horizon.z / horizon.w, 1.0, 1e-12);
+    const glm::dvec4 nearest =
+        view.clip_from(view.position_m, near_m) * glm::dvec4(near_m * view.forward, 1.0);
+    EXPECT_NEAR(nearest.z / nearest.w, -1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace pelagic

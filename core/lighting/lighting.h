@@ -3,18 +3,18 @@
 // OpenGL as they are; here is what C++ needs to call them by the batch.
 #pragma once
 
-#include <cstddef>
 #include <glm/vec3.hpp>
 #include <span>
 
 #include "core/lighting/sky.h"
+#include "core/lighting/water.h"
 
 namespace pelagic {
 
 // How the sky's reflection is found: accuracy against time, tests/bench/README.md.
 enum class SkyQuality {
     One,       // one filtered lookup (Eq. 27)
-    Nine,      // nine inside the same ellipse
+    Nine,      // nine, at the nodes of a rule for the slopes that are seen
     Integral,  // the integral of Eq. 20 over the slopes, with visibility: the reference
 };
 enum class FresnelFit {
@@ -41,16 +41,12 @@ struct SeaRadiance {
 struct SeaPoint {
     glm::vec3 to_eye{0.0f, 0.0f, 1.0f};  // unit
     glm::vec3 normal{0.0f, 0.0f, 1.0f};  // unit, of the waves shown; may point away from the eye
-    glm::vec3 slope_variance{0.0f};      // (σxx, σyy, σxy) of those hidden [-]
+    glm::vec3 slope_variance{0.0f};      // (σxx, σyy, σxy) of those hidden [-], world axes
     float coverage = 0.0f;               // whitecaps, 0 … 1
 };
 
-// What the water itself sends back, as colours: diffuse reflectance just below the surface.
-struct WaterBody {
-    glm::vec3 reflectance{0.0f};
-};
-
-// radiance[i] is points[i]'s; the same number of both. A point's radiance depends on nothing but the point
+// radiance[i] is points[i]'s; throws std::invalid_argument where there are not the same number of both, or
+// where the sky has no map and `choice.sky` asks for one. A point's radiance depends on nothing but the point
 // and the arguments; finite for finite points. Runs on the calling thread.
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                std::span<const SeaPoint> points, std::span<SeaRadiance> radiance);

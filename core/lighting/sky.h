@@ -14,22 +14,28 @@
 namespace pelagic {
 
 struct Sky {
-    SkyMap map;                                 // without the sun
-    glm::vec3 sun_direction{0.0f, 0.0f, 1.0f};  // towards it, unit, world
-    glm::vec3 sun_radiance{0.0f};  // mean over the disc, as seen from the sea; 0 at and below the horizon
+    SkyMap map;  // without the sun
+    // Towards the middle of what is to be seen of it, unit, world: above the horizon whenever sun_radiance is
+    // not 0. A sun that has set: towards the sun.
+    glm::vec3 sun_direction{0.0f, 0.0f, 1.0f};
+    // Mean over the whole disc, as seen from the sea, what is below the horizon black: goes to 0 while the
+    // disc sets.
+    glm::vec3 sun_radiance{0.0f};
     float sun_angular_radius = 0.00465f;  // [rad]
-    glm::vec3 sun_irradiance{0.0f};       // on a horizontal plane, of the sun alone
-    glm::vec3 sky_irradiance{0.0f};       // on a horizontal plane, of the rest of the upper hemisphere
+    // On a horizontal plane, of the sun alone: radiance · solid angle · sine of the direction's elevation.
+    glm::vec3 sun_irradiance{0.0f};
+    glm::vec3 sky_irradiance{0.0f};  // on a horizontal plane, of the rest of the upper hemisphere
 };
 
 struct Daylight {
     double sun_elevation_deg = 20.0;  // −90 … 90
     double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
-    double turbidity = 3.0;  // 1.7 … 10: extinction of the air and its haze, over that of the air alone
+    double turbidity = 3.0;  // 1.7 … 10: extinction of the air and its haze at 0.55 μm, over the air's alone
 };
 
-// Clear daylight (sky.cpp says which model and why). Finite and smooth in its arguments, the sun below the
-// horizon included. map_size: as SkyMap's. Throws std::invalid_argument for values out of range.
+// Clear daylight at sea level (atmosphere.h says which model), without stars and moon: night is black. Finite
+// and smooth in its arguments, the sun below the horizon included. map_size: as SkyMap's. Throws
+// std::invalid_argument for values out of range.
 Sky daylight_sky(const Daylight& daylight, int map_size = 256);
 
 // A lat-long picture: the middle column is +x, azimuth (counter-clockwise) grows to the left, the top row is

@@ -23,6 +23,9 @@ class SkyMap {
     // std::invalid_argument for another size or count, or a texel that is negative or not finite.
     SkyMap(int size, std::vector<glm::vec3> texels);
 
+    // Throws for a size that the constructor refuses: before one fills the texels.
+    static void check_size(int size);
+
     int size() const { return size_; }
     int level_count() const { return static_cast<int>(levels_.size()); }
     const std::vector<glm::vec3>& level(int i) const { return levels_.at(i); }  // (size >> i)² texels

@@ -1,0 +1,424 @@
+// Why this model and not one of the usual fits: a fit (Preetham 1999, Hosek & Wilkie 2012) ends where the sun
+// touches the horizon and gives the sky alone; low suns and twilight are what a sea is filmed in, and the
+// sun's disc has to go with its sky. What the integral needs is a handful of measured constants, below.
+#include "core/lighting/atmosphere.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/lighting/sky_bake.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kEarth_km = 6371.0;
+constexpr double kTop_km = 100.0;       // 1e-6 of the air is above
+constexpr double kSunRadius = 0.00465;  // [rad]
+
+// Density falls off exponentially with these heights; the ozone is a tent, its column 300 Dobson units.
+constexpr double kAirScale_km = 8.0, kHazeScale_km = 1.2;
+constexpr double kOzoneMiddle_km = 25.0, kOzoneHalfWidth_km = 15.0;
+constexpr double kOzoneColumn_per_m2 = 300.0 * 2.687e20;
+
+// The haze: Ångström's law, and the asymmetry and absorption of particles over a sea with some land not too
+// far (marine ones alone: exponent 0.5, albedo 0.99; continental: 1.3, 0.93).
+constexpr double kHazeReference_um = 0.55, kHazeExponent = 1.0, kHazeAlbedo = 0.97;
+// Two Henyey–Greenstein lobes, mean cosine 0.73: the one forward is the aureole.
+constexpr double kHazeForward = 0.80, kHazeBackward = -0.45, kHazeForwardShare = 0.945;
+
+// What the sea, and what little land there is, sends back up.
+const double kGroundAlbedo = static_cast<double>(diffuse_fresnel());
+
+// Optical thickness of all the air above the sea: Hansen & Travis 1974 for 1013 hPa.
+double air_thickness(double um) {
+    const double per = 1.0 / (um * um);
+    return 0.008569 * per * per * (1.0 + 0.0113 * per + 0.00013 * per * per);
+}
+
+// Optical thickness of the ozone: its Chappuis band, 5.0e-25 m² at 0.595 μm, as a bell.
+double ozone_thickness(double um) {
+    const double x = (um - 0.595) / 0.054;
+    return kOzoneColumn_per_m2 * 5.0e-25 * std::exp(-0.5 * x * x);
+}
+
+// The three kinds of matter: densities by height, or columns along a ray, as fractions of the vertical
+// column.
+struct Matter {
+    double air = 0.0, haze = 0.0, ozone = 0.0;
+};
+
+// [1/km]
+Matter density(double height_km) {
+    const double off = std::abs(height_km - kOzoneMiddle_km) / kOzoneHalfWidth_km;
+    return {std::exp(-height_km / kAirScale_km) / kAirScale_km,
+            std::exp(-height_km / kHazeScale_km) / kHazeScale_km,
+            std::max(0.0, 1.0 - off) / kOzoneHalfWidth_km};
+}
+
+// Distance to the top of the air, from a radius and for a cosine with the vertical.
+double to_top(double radius, double cosine) {
+    constexpr double top = kEarth_km + kTop_km;
+    return -radius * cosine + std::sqrt(std::max(0.0, top * top - radius * radius * (1.0 - cosine * cosine)));
+}
+
+double horizon_distance(double radius) {
+    return std::sqrt(std::max(0.0, radius * radius - kEarth_km * kEarth_km));
+}
+
+// Columns of matter from a height up to the top, along rays that don't meet the ground, tabulated over the
+// distance to the horizon and the distance to the top: in both, rays that skim the ground have room.
+class Columns {
+  public:
+    Columns() : table_(kHeights * kDistances) {
+        for (std::size_t i = 0; i < kHeights; ++i) {
+            const double horizon = kFarthest * static_cast<double>(i) / (kHeights - 1);
+            const double radius = std::hypot(horizon, kEarth_km);
+            for (std::size_t j = 0; j < kDistances; ++j) {
+                const double least = kEarth_km + kTop_km - radius, most = horizon + kFarthest;
+                const double d = least + (most - least) * static_cast<double>(j) / (kDistances - 1);
+                table_[i * kDistances + j] = integrated(radius, d);
+            }
+        }
+    }
+
+    // cosine: of the ray with the vertical; those that meet the ground get the column of the one that skims
+    // it.
+    Matter operator()(double radius, double cosine) const {
+        const double horizon = horizon_distance(radius);
+        const double least = kEarth_km + kTop_km - radius, most = horizon + kFarthest;
+        const double skimming = -horizon / radius;
+        const double d = to_top(radius, std::max(cosine, skimming));
+        const double x = std::clamp(horizon / kFarthest, 0.0, 1.0) * (kHeights - 1);
+        const double y =
+            most > least ? std::clamp((d - least) / (most - least), 0.0, 1.0) * (kDistances - 1) : 0.0;
+        const std::size_t i = std::min(static_cast<std::size_t>(x), kHeights - 2);
+        const std::size_t j = std::min(static_cast<std::size_t>(y), kDistances - 2);
+        const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
+        const Matter* low = &table_[i * kDistances + j];
+        const Matter* high = low + kDistances;
+        const auto mixed = [&](double Matter::*kind) {
+            return (1.0 - s) * ((1.0 - t) * low[0].*kind + t * low[1].*kind) +
+                   s * ((1.0 - t) * high[0].*kind + t * high[1].*kind);
+        };
+        return {mixed(&Matter::air), mixed(&Matter::haze), mixed(&Matter::ozone)};
+    }
+
+    // The same without the table, along the ray from this radius that reaches the top at distance d.
+    static Matter integrated(double radius, double d) {
+        constexpr double top = kEarth_km + kTop_km;
+        const double cosine =
+            d > 0.0 ? std::clamp((top * top - radius * radius - d * d) / (2.0 * radius * d), -1.0, 1.0) : 1.0;
+        // Steps are short round the lowest point, where the density changes most.
+        const double lowest = std::clamp(-radius * cosine, 0.0, d);
+        Matter column;
+        for (const double length : {-lowest, d - lowest}) {
+            for (int i = 0; i < kSteps; ++i) {
+                const double a = static_cast<double>(i) / kSteps, b = (i + 1.0) / kSteps;
+                const double t = lowest + length * 0.5 * (a * a + b * b);
+                const double dt = std::abs(length) * (b * b - a * a);
+                const double height =
+                    std::sqrt(radius * radius + t * t + 2.0 * radius * t * cosine) - kEarth_km;
+                const Matter at = density(std::max(height, 0.0));
+                column.air += at.air * dt;
+                column.haze += at.haze * dt;
+                column.ozone += at.ozone * dt;
+            }
+        }
+        return column;
+    }
+
+  private:
+    static constexpr std::size_t kHeights = 64, kDistances = 128;
+    static constexpr int kSteps = 48;
+    static inline const double kFarthest = horizon_distance(kEarth_km + kTop_km);
+
+    std::vector<Matter> table_;
+};
+
+// What of a disc is above a line, that is `above` radii below its middle.
+double part_above(double above) {
+    const double x = std::clamp(above, -1.0, 1.0);
+    return 0.5 + (x * std::sqrt(1.0 - x * x) + std::asin(x)) / kPi;
+}
+
+double two_lobe(double cosine, double g) {
+    const double bracket = 1.0 + g * g - 2.0 * g * cosine;
+    return (1.0 - g * g) / (4.0 * kPi * bracket * std::sqrt(bracket));
+}
+
+constexpr std::size_t kBandCount = kBands;
+
+}  // namespace
+
+double air_phase(double cosine) {
+    return 3.0 / (16.0 * kPi) * (1.0 + cosine * cosine);  // Rayleigh, the molecules taken as round
+}
+
+double haze_phase(double cosine) {
+    return kHazeForwardShare * two_lobe(cosine, kHazeForward) +
+           (1.0 - kHazeForwardShare) * two_lobe(cosine, kHazeBackward);
+}
+
+class Atmosphere::Tables {
+  public:
+    Tables(double turbidity, double sun_elevation_rad)
+        : sun_elevation_(sun_elevation_rad), more_(kHeights * kElevations) {
+        const double haze = (turbidity - 1.0) * air_thickness(kHazeReference_um);
+        for (std::size_t b = 0; b < kBandCount; ++b) {
+            const double um = band_um(static_cast<int>(b));
+            air_[b] = air_thickness(um);
+            haze_[b] = haze * std::pow(um / kHazeReference_um, -kHazeExponent);
+            ozone_[b] = ozone_thickness(um);
+        }
+        const std::vector<double> turns = haze_turns();
+        tbb::parallel_for(std::size_t{0}, kHeights, [&](std::size_t i) { gather(i, turns); });
+    }
+
+    BandValues transmittance(const Matter& column) const {
+        BandValues out;
+        for (std::size_t b = 0; b < kBandCount; ++b) out[b] = std::exp(-thickness(column, b));
+        return out;
+    }
+
+    std::vector<Scattered> scattered(double elevation, std::span<const double> azimuths) const {
+        const Ray ray = marched(kEarth_km, elevation, kViewSteps);
+        std::vector<Scattered> all(azimuths.size());
+        for (std::size_t k = 0; k < azimuths.size(); ++k) {
+            Scattered& out = all[k];
+            const Sun sun(sun_elevation_, azimuths[k]);
+            for (const Piece& piece : ray.pieces) {
+                const double cosine = sun.cosine(piece.turn);
+                BandValues light;
+                const bool lit = sunlight(piece.radius, cosine, light);
+                const BandValues more = more_at(piece.radius - kEarth_km, cosine);
+                for (std::size_t b = 0; b < kBandCount; ++b) {
+                    out.more[b] += (piece.by_air[b] + piece.by_haze[b]) * more[b];
+                    if (!lit) continue;
+                    out.by_air[b] += piece.by_air[b] * light[b];
+                    out.by_haze[b] += piece.by_haze[b] * light[b];
+                }
+            }
+        }
+        return all;
+    }
+
+  private:
+    static constexpr int kViewSteps = 48, kGatherSteps = 24;
+    // The table of further scatterings: heights grow with the cube of the index, so that the haze has some;
+    // elevations of the sun are those met between the observer and the farthest air in sight, 10° away round
+    // the earth.
+    static constexpr std::size_t kHeights = 20, kElevations = 15;
+    static constexpr double kReach = 11.0 * kPi / 180.0;
+    static constexpr int kGatherElevations = 20, kGatherAzimuths = 5;  // of a half circle
+
+    // An angle round the earth's middle, from where the ray starts.
+    struct Turn {
+        double sine = 0.0, cosine = 1.0;
+    };
+    // A piece of a ray, small enough for its middle to stand for it.
+    struct Piece {
+        double radius = 0.0;
+        Turn turn;
+        // What of the light that falls on the piece it sends to the ray's start, without the phase functions.
+        BandValues by_air{}, by_haze{};
+    };
+    struct Ray {
+        std::vector<Piece> pieces;
+        bool ground = false;  // where it ends, or in space
+        Turn end;
+        BandValues passed{};  // what comes through from its end
+    };
+    // The sun over a vertical plane that makes this angle with the sun's own.
+    struct Sun {
+        Sun(double elevation, double azimuth)
+            : along(std::cos(elevation) * std::cos(azimuth)), up(std::sin(elevation)) {}
+        // Of its angle with the vertical, that far round the earth in the plane.
+        double cosine(Turn turn) const { return along * turn.sine + up * turn.cosine; }
+        // Of the angle by which its light is turned into a ray of the plane, seen against the ray.
+        double turned_into(double elevation) const {
+            return along * std::cos(elevation) + up * std::sin(elevation);
+        }
+        double along, up;
+    };
+
+    double thickness(const Matter& column, std::size_t b) const {
+        return air_[b] * column.air + haze_[b] * column.haze + ozone_[b] * column.ozone;
+    }
+
+    // The sunlight at a point: through the air, and less what of the disc is below the horizon there. False,
+    // and nothing written, where that is all of it.
+    bool sunlight(double radius, double cosine, BandValues& light) const {
+        const double horizon = -horizon_distance(radius) / radius;  // cosine of its angle with the vertical
+        double part = 1.0;
+        if (cosine < horizon + 2.0 * kSunRadius) {
+            part = part_above((std::asin(std::clamp(cosine, -1.0, 1.0)) - std::asin(horizon)) / kSunRadius);
+            if (part <= 0.0) return false;
+        }
+        light = transmittance(columns_(radius, cosine));
+        for (double& value : light) value *= part;
+        return true;
+    }
+
+    Ray marched(double radius, double elevation, int steps) const {
+        const double across = std::cos(elevation), up = std::sin(elevation);
+        const double closest2 = radius * radius * across * across;
+        Ray ray;
+        ray.ground = up < 0.0 && closest2 < kEarth_km * kEarth_km;
+        const double length = ray.ground
+                                  ? std::max(0.0, -radius * up - std::sqrt(kEarth_km * kEarth_km - closest2))
+                                  : to_top(radius, up);
+        const auto turn_at = [&](double t) {
+            const double r = std::hypot(t * across, radius + t * up);
+            return Turn{t * across / r, (radius + t * up) / r};
+        };
+        ray.passed.fill(1.0);
+        ray.end = turn_at(length);
+        ray.pieces.resize(static_cast<std::size_t>(steps));
+        for (int i = 0; i < steps; ++i) {
+            // Cubes: most of what an eye in dense air sees is near, however far the ray goes.
+            const auto at = [&](double s) { return length * s * s * s; };
+            const double from = at(static_cast<double>(i) / steps), to = at((i + 1.0) / steps);
+            const double middle = 0.5 * (from + to);
+            Piece& piece = ray.pieces[static_cast<std::size_t>(i)];
+            piece.turn = turn_at(middle);
+            piece.radius =
+                std::clamp(std::hypot(middle * across, radius + middle * up), kEarth_km, kEarth_km + kTop_km);
+            const Matter here = density(piece.radius - kEarth_km);
+            for (std::size_t b = 0; b < kBandCount; ++b) {
+                // The integral over a piece of even density, which is right for thick pieces, too.
+                const double extinction = thickness(here, b);
+                const double passed = std::exp(-extinction * (to - from));
+                const double seen =
+                    ray.passed[b] * (extinction > 0.0 ? (1.0 - passed) / extinction : to - from);
+                piece.by_air[b] = seen * air_[b] * here.air;
+                piece.by_haze[b] = seen * kHazeAlbedo * haze_[b] * here.haze;
+                ray.passed[b] *= passed;
+            }
+        }
+        return ray;
+    }
+
+    // One height's row of the table. For each elevation of the sun: the mean over all directions of the light
+    // that was scattered once or sent back by the ground, over 1 − f, f being the share of an even light from
+    // all round that is scattered back to where it came from: the sum of all further scatterings' radiance.
+    void gather(std::size_t height, const std::vector<double>& haze_turns) {
+        const double x = static_cast<double>(height) / (kHeights - 1);
+        const double radius = kEarth_km + kTop_km * x * x * x;
+        BandValues* row = &more_[height * kElevations];
+        BandValues again{};
+        for (int i = 0; i < kGatherElevations; ++i) {
+            // Equal steps of angle: denser near the horizon, where the air is thick, than equal solid angles.
+            const double from = kPi * i / kGatherElevations - 0.5 * kPi, to = from + kPi / kGatherElevations;
+            const double share = 0.5 * (std::sin(to) - std::sin(from)) / kGatherAzimuths;
+            const double elevation = 0.5 * (from + to);
+            const Ray ray = marched(radius, elevation, kGatherSteps);
+            for (const Piece& piece : ray.pieces)
+                for (std::size_t b = 0; b < kBandCount; ++b)
+                    again[b] += kGatherAzimuths * share * (piece.by_air[b] + piece.by_haze[b]);
+            for (std::size_t j = 0; j < kElevations; ++j)
+                for (int k = 0; k < kGatherAzimuths; ++k) {
+                    const Sun sun(table_elevation(j), kPi * (k + 0.5) / kGatherAzimuths);
+                    const double air = share * air_phase(sun.turned_into(elevation));
+                    const double haze = share * haze_turns[turn_index(i, j, k)];
+                    add_once(ray, sun, {air, haze, share * kGroundAlbedo / kPi}, row[j]);
+                }
+        }
+        for (std::size_t j = 0; j < kElevations; ++j)
+            for (std::size_t b = 0; b < kBandCount; ++b) row[j][b] /= 1.0 - again[b];
+    }
+
+    // By how much the light that haze, air or ground sends into a ray counts.
+    struct Weights {
+        double air, haze, ground;
+    };
+
+    // Adds the light that comes down the ray after having been turned once.
+    void add_once(const Ray& ray, const Sun& sun, const Weights& weights, BandValues& sum) const {
+        BandValues light;
+        for (const Piece& piece : ray.pieces)
+            if (sunlight(piece.radius, sun.cosine(piece.turn), light))
+                for (std::size_t b = 0; b < kBandCount; ++b)
+                    sum[b] += (weights.air * piece.by_air[b] + weights.haze * piece.by_haze[b]) * light[b];
+        if (ray.ground && sunlight(kEarth_km, sun.cosine(ray.end), light)) {
+            const double sent = weights.ground * std::max(0.0, sun.cosine(ray.end));
+            for (std::size_t b = 0; b < kBandCount; ++b) sum[b] += sent * ray.passed[b] * light[b];
+        }
+    }
+
+    static std::size_t turn_index(int ray, std::size_t sun, int azimuth) {
+        return (static_cast<std::size_t>(ray) * kElevations + sun) * kGatherAzimuths +
+               static_cast<std::size_t>(azimuth);
+    }
+
+    // The haze's phase function for each ray of gather() and each sun: the mean over the ray's part of the
+    // sphere, which is wider than the forward lobe.
+    std::vector<double> haze_turns() const {
+        constexpr int kParts = 6;
+        std::vector<double> means(kGatherElevations * kElevations * kGatherAzimuths);
+        tbb::parallel_for(0, kGatherElevations, [&](int i) {
+            for (std::size_t j = 0; j < kElevations; ++j)
+                for (int k = 0; k < kGatherAzimuths; ++k) {
+                    double sum = 0.0, weight = 0.0;
+                    for (int a = 0; a < kParts; ++a) {
+                        const double azimuth = kPi * (k + (a + 0.5) / kParts) / kGatherAzimuths;
+                        const Sun sun(table_elevation(j), azimuth);
+                        for (int e = 0; e < kParts; ++e) {
+                            const double elevation =
+                                kPi * ((i + (e + 0.5) / kParts) / kGatherElevations - 0.5);
+                            sum += std::cos(elevation) * haze_phase(sun.turned_into(elevation));
+                            weight += std::cos(elevation);
+                        }
+                    }
+                    means[turn_index(i, j, k)] = sum / weight;
+                }
+        });
+        return means;
+    }
+
+    double table_elevation(std::size_t j) const {
+        return sun_elevation_ + kReach * (2.0 * static_cast<double>(j) / (kElevations - 1) - 1.0);
+    }
+
+    BandValues more_at(double height, double sine) const {
+        const double x = std::cbrt(std::clamp(height / kTop_km, 0.0, 1.0)) * (kHeights - 1);
+        const double off = (std::asin(std::clamp(sine, -1.0, 1.0)) - sun_elevation_) / kReach;
+        const double y = 0.5 * (std::clamp(off, -1.0, 1.0) + 1.0) * (kElevations - 1);
+        const std::size_t i = std::min(static_cast<std::size_t>(x), kHeights - 2);
+        const std::size_t j = std::min(static_cast<std::size_t>(y), kElevations - 2);
+        const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
+        const BandValues* low = &more_[i * kElevations + j];
+        const BandValues* high = low + kElevations;
+        BandValues out;
+        for (std::size_t b = 0; b < kBandCount; ++b)
+            out[b] = (1.0 - s) * ((1.0 - t) * low[0][b] + t * low[1][b]) +
+                     s * ((1.0 - t) * high[0][b] + t * high[1][b]);
+        return out;
+    }
+
+    double sun_elevation_;
+    BandValues air_{}, haze_{}, ozone_{};  // vertical optical thickness
+    Columns columns_;
+    std::vector<BandValues> more_;  // by height and elevation of the sun
+};
+
+Atmosphere::Atmosphere(double turbidity, double sun_elevation_rad)
+    : tables_(std::make_unique<const Tables>(turbidity, sun_elevation_rad)) {}
+Atmosphere::~Atmosphere() = default;
+
+BandValues Atmosphere::transmittance(double elevation_rad) const {
+    const double cosine = std::sin(std::max(elevation_rad, 0.0));
+    return tables_->transmittance(Columns::integrated(kEarth_km, to_top(kEarth_km, cosine)));
+}
+
+std::vector<Atmosphere::Scattered> Atmosphere::scattered(double elevation_rad,
+                                                         std::span<const double> azimuths_rad) const {
+    return tables_->scattered(elevation_rad, azimuths_rad);
+}
+
+}  // namespace pelagic

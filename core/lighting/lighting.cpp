@@ -1,0 +1,106 @@
+#include "core/lighting/lighting.h"
+
+#include <array>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <stdexcept>
+#include <utility>
+
+namespace pelagic {
+namespace shading {
+
+using namespace glm;
+
+// The shared source as members of a struct, one for each variant: its constants fold.
+template <LightingChoice kChoice>
+struct Shading {
+    explicit Shading(const SkyMap& sky_map) : map(sky_map), kSkyMapSize(static_cast<float>(sky_map.size())) {}
+
+    static constexpr bool kSun = kChoice.sun, kSky = kChoice.sky, kWater = kChoice.water,
+                          kWhitecaps = kChoice.whitecaps,
+                          kExactFresnel = kChoice.fresnel == FresnelFit::Exact;
+    static constexpr int kSkyLookups = kChoice.sky_quality == SkyQuality::One    ? 1
+                                       : kChoice.sky_quality == SkyQuality::Nine ? 9
+                                                                                 : 0;
+    const SkyMap& map;
+    const float kSkyMapSize;
+
+    vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
+
+// In this order: each may use those before it.
+// clang-format off
+#include "core/lighting/special.glsl"
+#include "core/lighting/fresnel.glsl"
+#include "core/lighting/slopes.glsl"
+#include "core/lighting/sun.glsl"
+#include "core/lighting/sky.glsl"
+#include "core/lighting/water.glsl"
+#include "core/lighting/foam.glsl"
+#include "core/lighting/sea.glsl"
+    // clang-format on
+};
+
+using Batch = void (*)(const Sky&, const WaterBody&, std::span<const SeaPoint>, std::span<SeaRadiance>);
+
+template <LightingChoice kChoice>
+void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+                 std::span<SeaRadiance> radiance) {
+    using Variant = Shading<kChoice>;
+    Variant shading(sky.map);
+    const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
+                                           sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const SeaPoint& p = points[i];
+        const typename Variant::SeaTerms terms =
+            shading.sea_radiance(p.to_eye, p.normal, p.slope_variance, p.coverage, light);
+        radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
+    }
+}
+
+// Every variant has a number: four bits for the terms, one for Fresnel, and the sky's quality.
+constexpr std::size_t kVariants = 16 * 2 * 3;
+
+constexpr std::size_t number_of(const LightingChoice& c) {
+    const std::size_t terms =
+        std::size_t(c.sun) + 2 * std::size_t(c.sky) + 4 * std::size_t(c.water) + 8 * std::size_t(c.whitecaps);
+    return terms + 16 * (std::size_t(c.fresnel) + 2 * std::size_t(c.sky_quality));
+}
+
+constexpr LightingChoice choice_of(std::size_t number) {
+    return {.sun = (number & 1) != 0,
+            .sky = (number & 2) != 0,
+            .water = (number & 4) != 0,
+            .whitecaps = (number & 8) != 0,
+            .sky_quality = SkyQuality(number / 32),
+            .fresnel = FresnelFit(number / 16 % 2)};
+}
+
+// What makes no difference has one variant only.
+constexpr LightingChoice canonical(LightingChoice c) {
+    if (!c.sky) c.sky_quality = SkyQuality::One;
+    if (!c.sky && !c.water) c.fresnel = FresnelFit::Paper;
+    return c;
+}
+
+template <std::size_t... kNumbers>
+constexpr std::array<Batch, kVariants> batches(std::index_sequence<kNumbers...>) {
+    return {&shade_batch<canonical(choice_of(kNumbers))>...};
+}
+
+constexpr std::array<Batch, kVariants> kBatches = batches(std::make_index_sequence<kVariants>());
+
+}  // namespace shading
+
+void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
+               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance) {
+    if (points.size() != radiance.size()) {
+        throw std::invalid_argument("shade_sea: give one SeaRadiance for each SeaPoint");
+    }
+    if (choice.sky && sky.map.size() == 0) {
+        throw std::invalid_argument(
+            "shade_sea: the sky has no map; make one with daylight_sky() or picture_sky()");
+    }
+    shading::kBatches[shading::number_of(choice)](sky, water, points, radiance);
+}
+
+}  // namespace pelagic

@@ -1,0 +1,47 @@
+// All of the light that a pixel of sea sends to the eye. Found in scope, given by the host, besides
+// sky.glsl's:
+//   const bool kSun, kSky, kWater, kWhitecaps    which terms there are; what is off is not compiled in
+
+struct SeaLight {
+    vec3 sun_direction;
+    vec3 sun_radiance;
+    float sun_angular_radius;
+    vec3 sun_irradiance;
+    vec3 sky_irradiance;
+    vec3 water_reflectance;
+};
+
+struct SeaTerms {
+    vec3 sun;
+    vec3 sky;
+    vec3 sea;
+    vec3 foam;
+};
+
+// to_eye, normal: unit, world; the normal may face away. slope_variance: (σxx, σyy, σxy) of the hidden waves,
+// world axes. The terms already have their shares of the pixel (W for foam, 1 − W for the rest): they are
+// added up.
+SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, float coverage, SeaLight light) {
+    SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
+    SeaTerms terms = SeaTerms(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f));
+    vec3 v = into_frame(frame, to_eye);
+    float clear = 1.0f;
+    if (kWhitecaps) {
+        float foam = visible_coverage(coverage, v, frame.variance);
+        clear = 1.0f - foam;
+        terms.foam = foam * foam_radiance(to_eye, light.sun_direction, frame, light.sun_radiance,
+                                          light.sun_angular_radius, light.sky_irradiance,
+                                          foam_reflectance(light.water_reflectance));
+    }
+    if (kSun) {
+        terms.sun = clear * sun_reflection(to_eye, light.sun_direction, frame, light.sun_radiance,
+                                           light.sun_angular_radius);
+    }
+    if (kSky) terms.sky = clear * sky_reflection(to_eye, frame);
+    if (kWater) {
+        terms.sea = clear * (1.0f - effective_fresnel(v, frame.variance)) *
+                    water_radiance(light.sun_direction, light.sun_irradiance, light.sky_irradiance,
+                                   light.water_reflectance);
+    }
+    return terms;
+}

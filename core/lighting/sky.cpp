@@ -1,0 +1,147 @@
+// Daylight: light scattered in a round atmosphere (atmosphere.h has the model, atmosphere.cpp why this one),
+// in directions that are few but well chosen, and from there into the map.
+//
+// Scattered light without its phase functions changes slowly with the direction, fastest towards the horizon:
+// it is tabulated over the upper hemisphere on one side of the sun (the other is its mirror image), and each
+// sample of the map puts the phase functions, which have the aureole, back in.
+#include "core/lighting/sky.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/lighting/atmosphere.h"
+#include "core/lighting/colour.h"
+#include "core/lighting/sky_bake.h"
+#include "core/lighting/sunlight.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kDegree = kPi / 180.0;
+
+void check(const char* name, double value, glm::dvec2 range) {
+    if (value >= range.x && value <= range.y) return;
+    throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + ": from " +
+                                std::to_string(range.x) + " to " + std::to_string(range.y) + " is accepted");
+}
+
+class ScatteredTable {
+  public:
+    explicit ScatteredTable(const Atmosphere& air) : entries_((kElevations + 1) * (kAzimuths + 1)) {
+        std::vector<double> azimuths;
+        for (std::size_t j = 0; j <= kAzimuths; ++j)
+            azimuths.push_back(kPi * static_cast<double>(j) / kAzimuths);
+        tbb::parallel_for(std::size_t{0}, kElevations + 1, [&](std::size_t i) {
+            const double x = static_cast<double>(i) / kElevations;
+            const auto row = air.scattered(0.5 * kPi * x * x, azimuths);
+            for (std::size_t j = 0; j <= kAzimuths; ++j)
+                entries_[i * (kAzimuths + 1) + j] = {colour_of(row[j].by_air), colour_of(row[j].by_haze),
+                                                     colour_of(row[j].more)};
+        });
+    }
+
+    // Radiance; both angles as Atmosphere::scattered() has them, and the cosine of the angle with the sun.
+    glm::dvec3 radiance(double elevation, double azimuth, double cosine) const {
+        const double x = std::sqrt(std::clamp(elevation / (0.5 * kPi), 0.0, 1.0)) * kElevations;
+        const double y = std::clamp(std::abs(azimuth) / kPi, 0.0, 1.0) * kAzimuths;
+        const std::size_t i = std::min(static_cast<std::size_t>(x), kElevations - 1);
+        const std::size_t j = std::min(static_cast<std::size_t>(y), kAzimuths - 1);
+        const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
+        const Entry* low = &entries_[i * (kAzimuths + 1) + j];
+        const Entry* high = low + kAzimuths + 1;
+        const auto mixed = [&](glm::dvec3 Entry::*kind) {
+            return glm::mix(glm::mix(low[0].*kind, low[1].*kind, t),
+                            glm::mix(high[0].*kind, high[1].*kind, t), s);
+        };
+        return into_gamut(mixed(&Entry::by_air) * air_phase(cosine) +
+                          mixed(&Entry::by_haze) * haze_phase(cosine) + mixed(&Entry::more));
+    }
+
+  private:
+    // Elevations grow with the square of the index: 0.02° above the horizon, 3° at the zenith.
+    static constexpr std::size_t kElevations = 64, kAzimuths = 24;
+    struct Entry {
+        glm::dvec3 by_air{0.0}, by_haze{0.0}, more{0.0};
+    };
+    std::vector<Entry> entries_;
+};
+
+// The sun's disc, as far as it is above the horizon.
+struct Disc {
+    glm::dvec3 radiance{0.0};    // mean over the whole disc, what is below the horizon black
+    double elevation_rad = 0.0;  // of the visible part's middle
+};
+
+// From strips of equal elevation: near the horizon the lower edge is redder and darker than the upper.
+Disc disc_at(const Atmosphere& air, double elevation_rad, double radius_rad) {
+    constexpr int kStrips = 16;
+    const double lowest = std::max(-radius_rad, -elevation_rad);
+    Disc disc{glm::dvec3(0.0), elevation_rad};
+    if (lowest >= radius_rad) return disc;
+    const double height = (radius_rad - lowest) / kStrips;
+    glm::dvec3 sum(0.0);
+    double moment = 0.0;
+    for (int i = 0; i < kStrips; ++i) {
+        const double up = lowest + (i + 0.5) * height;
+        const double area = 2.0 * std::sqrt(std::max(0.0, radius_rad * radius_rad - up * up)) * height;
+        const glm::dvec3 light = area * colour_of(air.transmittance(elevation_rad + up));
+        sum += light;
+        moment += luminance(light) * up;
+    }
+    const double area = kPi * radius_rad * radius_rad;  // [sr]: the disc is small
+    disc.radiance = into_gamut(sum) / (area * area);
+    if (luminance(sum) > 0.0) disc.elevation_rad += moment / luminance(sum);
+    return disc;
+}
+
+}  // namespace
+
+Sky daylight_sky(const Daylight& daylight, int map_size) {
+    check("sun_elevation_deg", daylight.sun_elevation_deg, {-90.0, 90.0});
+    check("sun_azimuth_deg", daylight.sun_azimuth_deg, {-1e6, 1e6});
+    check("turbidity", daylight.turbidity, {1.7, 10.0});
+    SkyMap::check_size(map_size);
+
+    const double elevation = daylight.sun_elevation_deg * kDegree;
+    const double azimuth = std::remainder(daylight.sun_azimuth_deg, 360.0) * kDegree;
+    const Atmosphere air(daylight.turbidity, elevation);
+    const ScatteredTable table(air);
+
+    Sky sky;
+    const double radius = static_cast<double>(sky.sun_angular_radius);
+    const Disc disc = disc_at(air, elevation, radius);
+    const glm::dvec2 heading(std::cos(azimuth), std::sin(azimuth));
+    sky.sun_direction = glm::dvec3(heading * std::cos(disc.elevation_rad), std::sin(disc.elevation_rad));
+    sky.sun_radiance = disc.radiance;
+    sky.sun_irradiance =
+        disc.radiance * (kPi * radius * radius * std::max(0.0, std::sin(disc.elevation_rad)));
+
+    const glm::dvec3 sun(heading * std::cos(elevation), std::sin(elevation));
+    SkyDome dome;
+    dome.radiance = [&](glm::vec3 direction) {
+        const glm::dvec3 to(direction);
+        const double along = glm::dot(heading, glm::dvec2(to)), across = heading.x * to.y - heading.y * to.x;
+        const double side = along == 0.0 && across == 0.0 ? 0.0 : std::atan2(across, along);
+        return glm::vec3(table.radiance(std::asin(std::clamp(to.z, 0.0, 1.0)), side,
+                                        std::clamp(glm::dot(to, sun), -1.0, 1.0)));
+    };
+    dome.samples = [&](glm::vec3 direction, float) {
+        const bool aureole = glm::dot(glm::dvec3(direction), sun) > 0.95;  // 18°
+        return aureole || direction.z < 0.1f ? 4 : 1;
+    };
+    const BakedSky baked = bake_sky_map(map_size, dome);
+    sky.map = baked.map;
+    sky.sky_irradiance = baked.irradiance;
+    return sky;
+}
+
+}  // namespace pelagic

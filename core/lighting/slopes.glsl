@@ -1,0 +1,129 @@
+// Which facets there are, and which the eye sees: Ross, Dion, Potvin 2005 as in Bruneton et al. 2010, §4.
+//
+// Facets' slopes are Gaussian in the tangent frame of the average normal (§5.1). The frame is the world's,
+// turned the shortest way from the vertical to the normal, and the waves' whole 2 × 2 tensor is taken into
+// it, so that no axis has to follow the wind. Directions below are in that frame: z along the normal.
+
+struct SlopeFrame {
+    vec3 x;
+    vec3 y;
+    vec3 normal;
+    vec3 variance;  // (σxx, σyy, σxy) in the frame
+};
+
+// A facet that is seen cannot face away from the eye (§3.2).
+vec3 facing_normal(vec3 normal, vec3 to_eye) {
+    return normal - 2.0f * min(dot(normal, to_eye), 0.0f) * to_eye;
+}
+
+// The tensor of world slopes about a plane of slope s, seen from that plane: to first order a slope deviation
+// δ becomes δ/(1 + s²) along s and δ/√(1 + s²) across it, that is n_z (1 − n_xy n_xyᵀ/(1 + n_z)) δ. Variances
+// are kept above (1e-5)², a hundredth of what the sun's disc itself spreads, and the correlation below 1 −
+// 1e-4: a density has to have a determinant.
+SlopeFrame slope_frame(vec3 normal, vec3 slope_variance) {
+    float up = normal.z < 0.0f ? -1.0f : 1.0f;
+    float height = abs(normal.z);
+    float q = 1.0f / (1.0f + height);
+    float xx = 1.0f - normal.x * normal.x * q;
+    float xy = -normal.x * normal.y * q;
+    float yy = 1.0f - normal.y * normal.y * q;
+    vec3 s = slope_variance * (height * height);
+    float vx = s.x * xx * xx + s.y * xy * xy + 2.0f * s.z * xx * xy;
+    float vy = s.x * xy * xy + s.y * yy * yy + 2.0f * s.z * xy * yy;
+    float vxy = s.x * xx * xy + s.y * xy * yy + s.z * (xx * yy + xy * xy);
+    vx = max(vx, 1.0e-10f);
+    vy = max(vy, 1.0e-10f);
+    float most = 0.9999f * sqrt(vx * vy);
+    return SlopeFrame(vec3(xx, xy, -up * normal.x), vec3(xy, yy, -up * normal.y), normal,
+                      vec3(vx, vy, clamp(vxy, -most, most)));
+}
+
+vec3 into_frame(SlopeFrame frame, vec3 direction) {
+    return vec3(dot(frame.x, direction), dot(frame.y, direction), dot(frame.normal, direction));
+}
+
+vec3 out_of_frame(SlopeFrame frame, vec3 direction) {
+    return frame.x * direction.x + frame.y * direction.y + frame.normal * direction.z;
+}
+
+float determinant_of(vec3 variance) {
+    return variance.x * variance.y - variance.z * variance.z;
+}
+
+// ζᵀ S⁻¹ ζ: p(ζ) of Eq. 7, for any axes, is exp(−½ of it)/(2π √det S).
+float slope_distance(vec2 slope, vec3 variance, float determinant) {
+    float sum = variance.y * slope.x * slope.x - 2.0f * variance.z * slope.x * slope.y +
+                variance.x * slope.y * slope.y;
+    return max(sum, 0.0f) / determinant;
+}
+
+float slope_density(vec2 slope, vec3 variance) {
+    float determinant = determinant_of(variance);
+    return exp(-0.5f * slope_distance(slope, variance, determinant)) / (2.0f * kPi * sqrt(determinant));
+}
+
+// Slope variance along a direction, times its sin²θ.
+float variance_towards(vec3 direction, vec3 variance) {
+    return variance.x * direction.x * direction.x + variance.y * direction.y * direction.y +
+           2.0f * variance.z * direction.x * direction.y;
+}
+
+// a = 1/(√2 σ_d tanθ) (Eq. 9, both versions of which print tanθ for tan²θ inside the root: with that, Eq. 11
+// is 2.56 at 88°). 0 at and below the frame's horizon; no more than 1e6, where exp(−a²) has long been 0.
+float smith_argument(vec3 direction, vec3 variance) {
+    float along = max(variance_towards(direction, variance), 1.0e-20f);
+    return clamp(direction.z * inversesqrt(2.0f * along), 0.0f, 1.0e6f);
+}
+
+// Λ (Eq. 8), written without its cancellation: exp(−a²)(1 − √π a erfcx(a))/(2√π a). Infinite at grazing: 1e8
+// here.
+float smith_lambda(float a) {
+    return exp(-a * a) * erfcx_remainder(a) / (2.0f * sqrt(kPi) * max(a, 2.8e-9f));
+}
+
+// cosθ (1 + Λ), the facets' area as the eye sees it per area of the plane: Eq. 10's normalisation. Finite at
+// grazing, where it is σ_d/√(2π).
+float visible_area(vec3 direction, vec3 variance) {
+    float a = smith_argument(direction, variance);
+    float along = max(variance_towards(direction, variance), 1.0e-20f);
+    return max(direction.z, 0.0f) + sqrt(along / (2.0f * kPi)) * exp(-a * a) * erfcx_remainder(a);
+}
+
+// Of the facets that the eye sees, the share from which light may come in this direction: (1 + Λv)/(1 + Λv +
+// Λl), the ratio of Eq. 5 to Eq. 10. The rest of the light meets another wave. 0 at and below the frame's
+// horizon.
+float unblocked(vec3 to_eye, vec3 to_light, vec3 variance) {
+    float seen = visible_area(to_eye, variance);
+    return seen / (seen + max(to_eye.z, 0.0f) * smith_lambda(smith_argument(to_light, variance)));
+}
+
+// Eq. 10: the density, over slopes, of what the eye sees; its integral is 1 (Eq. 11).
+float visible_slope_density(vec2 slope, vec3 to_eye, vec3 variance) {
+    float cosine = to_eye.z - to_eye.x * slope.x - to_eye.y * slope.y;  // v·f/f_z
+    return slope_density(slope, variance) * max(cosine, 0.0f) / visible_area(to_eye, variance);
+}
+
+// Visible slopes are ζ = −along x + across y with y normal and x of density (k + x)₊ φ(x): along the line of
+// sight the facets that face the eye count more, across it nothing changes.
+struct VisibleSlopes {
+    vec2 along;
+    vec2 across;
+    float tilt;  // k = cosθ_v/(σ_v sinθ_v)
+    RampMoments x;
+};
+
+VisibleSlopes visible_slopes(vec3 to_eye, vec3 variance) {
+    float sine = sqrt(to_eye.x * to_eye.x + to_eye.y * to_eye.y);
+    vec2 towards = sine > 1.0e-6f ? vec2(to_eye.x, to_eye.y) / sine : vec2(1.0f, 0.0f);
+    vec2 turned = vec2(variance.x * towards.x + variance.z * towards.y,
+                       variance.z * towards.x + variance.y * towards.y);
+    float sigma = sqrt(max(dot(towards, turned), 1.0e-20f));
+    float k = 1.4142136f * smith_argument(to_eye, variance);
+    vec2 across = vec2(-towards.y, towards.x) * (sqrt(max(determinant_of(variance), 0.0f)) / sigma);
+    return VisibleSlopes(turned / sigma, across, k, ramp_moments(k));
+}
+
+// The facets that are seen lean towards the eye.
+vec2 mean_visible_slope(VisibleSlopes seen) {
+    return -seen.x.first * seen.along;
+}

@@ -1,0 +1,94 @@
+// Reflectance of the water body, R = 0.33 b_b/a (Morel and Prieur 1977; Darles et al. 2007), in a form that
+// stays below 0.33 where much is scattered and little absorbed, R = 0.33 b_b/(a + b_b). Absorption a and
+// backscatter b_b:
+//
+// water        a: Pope and Fry 1997; b_b: half of 0.00288 m⁻¹ (λ/500 nm)^−4.32, sea water (Morel 1974)
+// plankton     a = (a_w + 0.06 A(λ) C^0.65)(1 + 0.2 exp(−0.014(λ − 440))), A and the yellow substance that
+// goes with it:
+//              Prieur and Sathyendranath 1981, in Morel's form of 1991;
+//              b_b = (0.002 + 0.02(½ − ¼ log₁₀ C) 550/λ) 0.30 C^0.62 (Gordon and Morel 1983, Morel 1988)
+// rivers       yellow substance a_y exp(−0.014(λ − 440)) (Bricaud, Morel, Prieur 1981); mineral particles of
+//              concentration s: a = 0.041 m²/g s exp(−0.0123(λ − 443)), scattering 0.51 m²/g s (Babin et al.
+//              2003), of which 0.018 goes back (Petzold 1972)
+//
+// λ in nm, C chlorophyll in mg/m³. The spectrum becomes a colour through the CIE 1931 observer (the Gaussians
+// of Wyman, Sloan, Shirley 2013) and Rec. 709's primaries, so scaled that a reflectance of 1 is (1, 1, 1).
+#include "core/lighting/water.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <stdexcept>
+
+#include "core/lighting/colour.h"
+
+namespace pelagic {
+namespace {
+
+constexpr std::size_t kBands = 31;  // 400, 410 … 700 nm
+
+// [1/m], Pope and Fry 1997.
+constexpr std::array<double, kBands> kWaterAbsorption{
+    0.00663, 0.00473, 0.00454, 0.00495, 0.00635, 0.00922, 0.00979, 0.0106, 0.0127, 0.0150, 0.0204,
+    0.0325,  0.0409,  0.0434,  0.0474,  0.0565,  0.0619,  0.0695,  0.0896, 0.1351, 0.2224, 0.2644,
+    0.2755,  0.2916,  0.3108,  0.340,   0.410,   0.439,   0.465,   0.516,  0.624};
+
+// Relative to 440 nm, Prieur and Sathyendranath 1981.
+constexpr std::array<double, kBands> kPlanktonAbsorption{
+    0.687, 0.828, 0.913, 0.973, 1.000, 0.944, 0.917, 0.870, 0.798, 0.750, 0.668,
+    0.618, 0.528, 0.474, 0.416, 0.357, 0.294, 0.276, 0.291, 0.282, 0.236, 0.252,
+    0.276, 0.317, 0.334, 0.356, 0.441, 0.595, 0.502, 0.329, 0.215};
+
+// What rivers bring: yellow substance's absorption at 440 nm [1/m], mineral particles [g/m³].
+struct Rivers {
+    double yellow, minerals;
+};
+
+Rivers rivers_of(WaterKind kind) {
+    switch (kind) {
+        case WaterKind::Ocean:
+            return {0.0, 0.0};
+        case WaterKind::Coastal:
+            return {0.1, 0.7};
+        case WaterKind::Turbid:
+            return {0.5, 6.0};
+    }
+    return {0.0, 0.0};
+}
+
+double reflectance_at(std::size_t band, double chlorophyll, const Rivers& rivers) {
+    const double wavelength = 400.0 + 10.0 * static_cast<double>(band);
+    const double c = std::max(chlorophyll, 0.01);  // the clearest water there is; 0 has no logarithm
+    const double a_clear = (kWaterAbsorption[band] + 0.06 * kPlanktonAbsorption[band] * std::pow(c, 0.65)) *
+                           (1.0 + 0.2 * std::exp(-0.014 * (wavelength - 440.0)));
+    const double a = a_clear + rivers.yellow * std::exp(-0.014 * (wavelength - 440.0)) +
+                     0.041 * rivers.minerals * std::exp(-0.0123 * (wavelength - 443.0));
+    const double sea_water = 0.5 * 0.00288 * std::pow(wavelength / 500.0, -4.32);
+    // Above 100 mg/m³ the bracket would turn negative: such water is refused.
+    const double plankton =
+        (0.002 + 0.02 * (0.5 - 0.25 * std::log10(c)) * 550.0 / wavelength) * 0.30 * std::pow(c, 0.62);
+    const double back = sea_water + plankton + 0.018 * 0.51 * rivers.minerals;
+    return 0.33 * back / (a + back);
+}
+
+}  // namespace
+
+WaterBody water_body(const WaterChoice& choice) {
+    const double c = choice.chlorophyll_mg_m3;
+    if (!(c >= 0.0 && c <= 100.0)) {
+        throw std::invalid_argument("water: give a chlorophyll between 0 and 100 mg/m³");
+    }
+    const Rivers rivers = rivers_of(choice.kind);
+    glm::dvec3 sum(0.0), white(0.0);
+    for (std::size_t band = 0; band < kBands; ++band) {
+        const glm::dvec3 seen = observed_xyz(400.0 + 10.0 * static_cast<double>(band));
+        sum += reflectance_at(band, c, rivers) * seen;
+        white += seen;
+    }
+    // Blues purer than the primaries have a negative red, which no display shows.
+    return {glm::vec3(glm::max(rec709_of(sum) / rec709_of(white), glm::dvec3(0.0)))};
+}
+
+}  // namespace pelagic

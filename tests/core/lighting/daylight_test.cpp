@@ -1,0 +1,285 @@
+// The clear sky, against what light meters say and what energy allows.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <stdexcept>
+
+#include "core/base/constants.h"
+#include "core/lighting/atmosphere.h"
+#include "core/lighting/colour.h"
+#include "core/lighting/sky.h"
+#include "core/lighting/sunlight.h"
+
+namespace pelagic {
+namespace {
+
+constexpr int kSize = 64;
+constexpr double kOutside_klx = 133.3;  // the luminous solar constant
+
+double bright(glm::vec3 colour) {
+    return luminance(glm::dvec3(colour));
+}
+
+Sky sky_at(double elevation_deg, double turbidity = 2.5) {
+    return daylight_sky({.sun_elevation_deg = elevation_deg, .sun_azimuth_deg = 0.0, .turbidity = turbidity},
+                        kSize);
+}
+
+double total(const Sky& sky) {
+    return bright(sky.sun_irradiance) + bright(sky.sky_irradiance);
+}
+
+double blueness(glm::vec3 colour) {
+    return static_cast<double>(colour.z / colour.x);
+}
+
+TEST(Daylight, AClearDayIsAsBrightAsMeasured) {
+    // Sun 60° high: 80 … 110 klx on the ground, a tenth to a quarter of it from the sky, whose zenith has
+    // 1 … 6 kcd/m².
+    for (const double turbidity : {2.0, 3.0}) {
+        const Sky sky = sky_at(60.0, turbidity);
+        EXPECT_GT(total(sky), 80.0);
+        EXPECT_LT(total(sky), 110.0);
+        const double diffuse = bright(sky.sky_irradiance) / total(sky);
+        EXPECT_GT(diffuse, 0.10) << turbidity;
+        EXPECT_LT(diffuse, 0.25) << turbidity;
+        const double zenith = bright(sky.map.radiance(glm::vec2(0.0f), 0.0f));
+        EXPECT_GT(zenith, 1.0);
+        EXPECT_LT(zenith, 6.0);
+    }
+}
+
+TEST(Daylight, CivilTwilightEndsAtThreeLux) {
+    const double lux = 1e3 * total(sky_at(-6.0));
+    EXPECT_GT(lux, 1.0);
+    EXPECT_LT(lux, 9.0);
+}
+
+TEST(Daylight, NightIsBlackAndFinite) {
+    for (const double elevation : {-30.0, -90.0}) {
+        const Sky sky = sky_at(elevation);
+        // All air in sight is in the earth's shadow. (The table that is interpolated reaches a degree
+        // farther.)
+        EXPECT_LT(total(sky), 1e-20);
+        EXPECT_EQ(sky.sun_radiance, glm::vec3(0.0f));
+    }
+}
+
+TEST(Daylight, GivesNoMoreThanComesIn) {
+    // A horizontal square metre outside of the air gets kOutside · sin e. (Lower suns light air beyond the
+    // horizon of that square metre.)
+    for (const double turbidity : {1.7, 3.0, 10.0})
+        for (const double elevation : {10.0, 60.0})
+            EXPECT_LT(total(sky_at(elevation, turbidity)), kOutside_klx * std::sin(elevation * kPi / 180.0))
+                << elevation << " " << turbidity;
+}
+
+TEST(Daylight, WithoutHazeLittleIsLost) {
+    // Air alone takes nothing but the share it sends back to space, half of what it scatters, and the ozone's
+    // 4 %; with a zenith sun it scatters 1 − e^−0.1. Haze that absorbs 3 % of what it scatters changes
+    // little.
+    EXPECT_GT(total(sky_at(90.0, 1.7)), 0.88 * kOutside_klx);
+    EXPECT_GT(total(sky_at(90.0, 3.0)), 0.85 * kOutside_klx);
+}
+
+TEST(Daylight, DirectLightRisesWithTheSunAndFallsWithHaze) {
+    double before = 0.0, ratio_before = 0.0;
+    for (const double elevation : {0.0, 3.0, 10.0, 40.0, 60.0}) {
+        const Sky sky = sky_at(elevation);
+        const double ratio = bright(sky.sun_irradiance) / bright(sky.sky_irradiance);
+        EXPECT_GT(bright(sky.sun_irradiance), before) << elevation;
+        EXPECT_GT(ratio, ratio_before) << elevation;
+        before = bright(sky.sun_irradiance);
+        ratio_before = ratio;
+    }
+    EXPECT_GT(bright(sky_at(30.0, 2.0).sun_irradiance), bright(sky_at(30.0, 4.0).sun_irradiance));
+    EXPECT_LT(bright(sky_at(30.0, 2.0).sky_irradiance), bright(sky_at(30.0, 4.0).sky_irradiance));
+}
+
+TEST(Daylight, DirectLightFollowsBouguersLaw) {
+    // Straight up the optical thickness at 0.55 μm is turbidity times the air's own 0.097 and the ozone's
+    // 0.03, and the columns in a flat atmosphere grow with 1/sin e: right to 1 % at 30°, where the earth's
+    // roundness and the sum's steps make up half of that.
+    const int green = static_cast<int>((0.55 - kShortest_um) / (kLongest_um - kShortest_um) * kBands);
+    const auto thickness = [&](double turbidity, double elevation) {
+        const Atmosphere air(turbidity, 1.0);
+        return -std::log(air.transmittance(elevation)[static_cast<std::size_t>(green)]);
+    };
+    const double um = band_um(green);
+    const double air = 0.097 * std::pow(0.55 / um, 4.0), haze = 0.097 * 0.55 / um;
+    EXPECT_NEAR(thickness(3.0, 0.5 * kPi) - thickness(1.0, 0.5 * kPi), 2.0 * haze, 0.01 * haze);
+    EXPECT_NEAR(thickness(1.0, 0.5 * kPi), air + 0.03, 0.006);
+    EXPECT_NEAR(thickness(2.0, kPi / 6.0) / thickness(2.0, 0.5 * kPi), 2.0, 0.02);
+}
+
+TEST(Daylight, PhaseFunctionsSendAllLightSomewhere) {
+    constexpr int kSteps = 20000;
+    double air = 0.0, haze = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double cosine = -1.0 + 2.0 * (i + 0.5) / kSteps;
+        air += kTwoPi * air_phase(cosine) * 2.0 / kSteps;
+        haze += kTwoPi * haze_phase(cosine) * 2.0 / kSteps;
+    }
+    EXPECT_NEAR(air, 1.0, 1e-6);
+    EXPECT_NEAR(haze, 1.0, 1e-5);
+}
+
+TEST(Daylight, TheSunOutsideIsWhiteAndBright) {
+    BandValues all;
+    all.fill(1.0);
+    const glm::dvec3 sun = colour_of(all);
+    EXPECT_NEAR(luminance(sun), kOutside_klx, 0.01);  // Rec. 709's rounded coefficients
+    // Between the horizon's 5000 K and D65: a little more red than blue.
+    EXPECT_GT(sun.x / sun.z, 1.0);
+    EXPECT_LT(sun.x / sun.z, 1.4);
+    EXPECT_NEAR(sun.y / luminance(sun), 1.0, 0.05);
+}
+
+TEST(Daylight, ColoursAreThoseOfADay) {
+    const Sky noon = sky_at(60.0), low = sky_at(3.0), down = sky_at(-3.0);
+    const glm::vec2 zenith(0.0f), away(-0.97f, 0.0f), towards(0.97f, 0.0f);
+    EXPECT_GT(blueness(noon.map.radiance(zenith, 0.0f)), 1.4);
+    EXPECT_GT(blueness(noon.map.radiance(zenith, 0.0f)), 1.2 * blueness(noon.map.radiance(away, 0.0f)));
+    EXPECT_LT(blueness(low.map.radiance(towards, 0.0f)), 0.5);  // warm
+    EXPECT_GT(blueness(low.map.radiance(zenith, 0.0f)), 1.5);
+    EXPECT_GT(blueness(down.map.radiance(zenith, 0.0f)), 2.0);  // the blue hour
+    EXPECT_LT(blueness(low.sun_radiance), 0.1);
+    // No green casts: green lies between the others, or near them.
+    for (const Sky* sky : {&noon, &low, &down})
+        for (const glm::vec2 u : {zenith, away, towards, glm::vec2(0.0f, 0.7f)}) {
+            const glm::vec3 colour = sky->map.radiance(u, 0.0f);
+            EXPECT_LT(colour.y, 1.1f * std::max(colour.x, colour.z));
+        }
+}
+
+TEST(Daylight, TheMapHoldsTheSkyAndNotTheSun) {
+    const Sky sky =
+        daylight_sky({.sun_elevation_deg = 40.0, .sun_azimuth_deg = 120.0, .turbidity = 3.0}, 256);
+    const double rad = kPi / 180.0;
+    const glm::vec3 sun(std::cos(40.0 * rad) * std::cos(120.0 * rad),
+                        std::cos(40.0 * rad) * std::sin(120.0 * rad), std::sin(40.0 * rad));
+    // The disc's upper edge is a little brighter: its middle is moved by less than a hundredth of its radius.
+    EXPECT_LT(glm::length(sky.sun_direction - sun), 4e-5f);
+    double brightest = 0.0;
+    glm::vec2 place(0.0f);
+    for (int j = 0; j < 256; ++j)
+        for (int i = 0; i < 256; ++i) {
+            const double value = bright(sky.map.level(0)[static_cast<std::size_t>(j * 256 + i)]);
+            if (value <= brightest) continue;
+            brightest = value;
+            place = (glm::vec2(static_cast<float>(i), static_cast<float>(j)) + 0.5f) *
+                        (2.0f * kSkyMapExtent / 256.0f) -
+                    kSkyMapExtent;
+        }
+    // The aureole is round the sun, to a texel or two (it is brighter on the horizon's side), and 1e4 times
+    // fainter than the disc.
+    EXPECT_LT(glm::length(place - sky_map_place(sun)), 0.03f);
+    EXPECT_GT(bright(sky.sun_radiance), 1e4 * brightest);
+    // The map's own integral is the irradiance: texels' means at their middles, right to a texel's width
+    // squared.
+    double irradiance = 0.0;
+    const double side = 2.0 * static_cast<double>(kSkyMapExtent) / 256.0;
+    for (int j = 0; j < 256; ++j)
+        for (int i = 0; i < 256; ++i) {
+            const double x = (i + 0.5) * side - 1.25, y = (j + 0.5) * side - 1.25, u2 = x * x + y * y;
+            if (u2 < 1.0)
+                irradiance += bright(sky.map.level(0)[static_cast<std::size_t>(j * 256 + i)]) * 4.0 *
+                              (1.0 - u2) / std::pow(1.0 + u2, 3.0) * side * side;
+        }
+    EXPECT_NEAR(irradiance / bright(sky.sky_irradiance), 1.0, 1e-3);
+    // Disc: irradiance = radiance · solid angle · sine.
+    const double solid_angle = kPi * std::pow(static_cast<double>(sky.sun_angular_radius), 2.0);
+    EXPECT_NEAR(bright(sky.sun_irradiance) /
+                    (bright(sky.sun_radiance) * solid_angle * static_cast<double>(sky.sun_direction.z)),
+                1.0, 1e-5);
+}
+
+TEST(Daylight, TheSkyIsTheSameOnBothSidesOfTheSunAndTurnsWithIt) {
+    const Sky east =
+        daylight_sky({.sun_elevation_deg = 15.0, .sun_azimuth_deg = 0.0, .turbidity = 3.0}, kSize);
+    const Sky north =
+        daylight_sky({.sun_elevation_deg = 15.0, .sun_azimuth_deg = 90.0, .turbidity = 3.0}, kSize);
+    for (const glm::vec2 u : {glm::vec2(0.3f, 0.5f), glm::vec2(-0.8f, 0.2f), glm::vec2(0.6f, 0.1f)}) {
+        const double here = bright(east.map.radiance(u, 0.0f));
+        EXPECT_NEAR(bright(east.map.radiance({u.x, -u.y}, 0.0f)) / here, 1.0, 1e-4);
+        EXPECT_NEAR(bright(north.map.radiance({-u.y, u.x}, 0.0f)) / here, 1.0, 1e-4);
+    }
+}
+
+TEST(Daylight, SmoothWhereTheSunRises) {
+    // Steps of 0.1° while the disc, 0.53° wide, crosses the horizon: the sky changes by a few per cent a
+    // step at most, and the changes of two steps in a row differ little.
+    double before = 0.0, change_before = 0.0;
+    for (int i = 0; i <= 12; ++i) {
+        const Sky sky = sky_at(-0.6 + 0.1 * i, 2.0);
+        const double now = bright(sky.sky_irradiance);
+        EXPECT_TRUE(std::isfinite(bright(sky.sun_irradiance)));
+        EXPECT_GE(sky.sun_direction.z, bright(sky.sun_radiance) > 0.0 ? 0.0f : -1.0f);
+        if (i > 0) {
+            const double change = now / before - 1.0;
+            EXPECT_GT(change, 0.0);
+            EXPECT_LT(change, 0.1);
+            if (i > 1) {
+                EXPECT_NEAR(change, change_before, 0.003);
+            }
+            change_before = change;
+        }
+        before = now;
+    }
+    // The disc: nothing while it is below, all of it soon after, rising in between.
+    const glm::vec3 below = sky_at(-0.27, 2.0).sun_radiance;
+    EXPECT_EQ(below, glm::vec3(0.0f));
+    double last = 0.0;
+    for (const double elevation : {-0.2, 0.0, 0.2, 0.4}) {
+        const double now = bright(sky_at(elevation, 2.0).sun_radiance);
+        EXPECT_GT(now, last) << elevation;
+        last = now;
+    }
+}
+
+TEST(Daylight, SmoothInTheTable) {
+    // Second differences along a line through the sky, away from the sun: tables that show would have kinks.
+    const Sky sky = daylight_sky({.sun_elevation_deg = 10.0, .sun_azimuth_deg = 0.0, .turbidity = 2.5}, 256);
+    for (int i = 20; i < 230; ++i) {
+        const auto at = [&](int k) {
+            return bright(sky.map.radiance({0.0f, -0.9f + static_cast<float>(k) * 1.8f / 250.0f}, 0.0f));
+        };
+        EXPECT_LT(std::abs(at(i + 1) - 2.0 * at(i) + at(i - 1)) / at(i), 5e-3) << i;
+    }
+}
+
+TEST(Daylight, EveryPixelIsARadiance) {
+    // SkyMap refuses anything else: it is enough that it is made.
+    for (const double turbidity : {1.7, 10.0})
+        for (const double elevation : {90.0, 0.0, -8.0}) EXPECT_NO_THROW(sky_at(elevation, turbidity));
+}
+
+TEST(Daylight, RefusesWhatIsOutOfRange) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(sky_at(91.0), std::invalid_argument);
+    EXPECT_THROW(sky_at(nan), std::invalid_argument);
+    EXPECT_THROW(sky_at(20.0, 1.0), std::invalid_argument);
+    EXPECT_THROW(sky_at(20.0, 11.0), std::invalid_argument);
+    EXPECT_THROW(daylight_sky({.sun_azimuth_deg = nan}), std::invalid_argument);
+    EXPECT_THROW(daylight_sky({}, 100), std::invalid_argument);
+    EXPECT_THROW(daylight_sky({}, 0), std::invalid_argument);
+    EXPECT_THROW(daylight_sky({}, 1 << 20), std::invalid_argument);
+}
+
+TEST(Sunlight, GamutKeepsLuminanceAndTakesAwayNegatives) {
+    for (const glm::dvec3 colour :
+         {glm::dvec3(-0.3, 1.0, 0.5), glm::dvec3(2.0, 0.4, -0.1), glm::dvec3(0.2, 0.3, 0.4)}) {
+        const glm::dvec3 mended = into_gamut(colour);
+        EXPECT_NEAR(luminance(mended), luminance(colour), 1e-12);
+        EXPECT_GE(std::min({mended.x, mended.y, mended.z}), 0.0);
+    }
+    EXPECT_EQ(into_gamut(glm::dvec3(0.2, 0.3, 0.4)), glm::dvec3(0.2, 0.3, 0.4));
+    EXPECT_EQ(into_gamut(glm::dvec3(0.0, -1.0, 0.1)), glm::dvec3(0.0));
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,165 @@
+// Whitecaps, and the light out of the water.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "tests/core/lighting/optics.h"
+
+namespace pelagic::optics {
+namespace {
+
+constexpr double kRadius = 0.00465;
+constexpr double kBumps = 0.1;  // foam's own slope variance
+
+dvec3 rough(dvec3 s) {
+    return s + dvec3(kBumps, kBumps, 0.0);
+}
+
+double area(dvec3 v, dvec3 s) {
+    return v.z * (1.0 + oracle::lambda(v, s));
+}
+
+TEST(Foam, VisibleCoverageIsAShareOfProjectedAreas) {
+    Optics optics;
+    Inputs inputs(30);
+    for (int i = 0; i < 100000; ++i) {
+        const vec3 v = inputs.direction(1e-5), s = inputs.variance(1e-3, 0.7, 0.9);
+        const float w = static_cast<float>(inputs.uniform(0.0, 1.0));
+        const double foam = static_cast<double>(w) * area(dvec3(v), rough(dvec3(s))),
+                     clear = (1.0 - static_cast<double>(w)) * area(dvec3(v), dvec3(s));
+        const double expected = foam / (foam + clear);
+        ASSERT_NEAR(optics.visible_coverage(w, v, s), expected, 1e-4 * expected) << i;
+        ASSERT_EQ(optics.visible_coverage(0.0f, v, s), 0.0f);
+        ASSERT_EQ(optics.visible_coverage(1.0f, v, s), 1.0f);
+    }
+    // Straight down nothing hides anything; at grazing angles foam, being rougher, shows more of itself.
+    const vec3 s(0.02f, 0.015f, 0.0f);
+    EXPECT_NEAR(optics.visible_coverage(0.3f, vec3(0.0f, 0.0f, 1.0f), s), 0.3f, 1e-6f);
+    float last = 0.3f;
+    for (float cosine : {0.2f, 0.1f, 0.05f, 0.01f, 0.0f}) {
+        const float seen =
+            optics.visible_coverage(0.3f, vec3(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine), s);
+        EXPECT_GT(seen, last);
+        last = seen;
+    }
+}
+
+// foam.glsl's closed form in double: E max(x, 0) for a normal x by its own integral.
+double foam(dvec3 v, dvec3 l, dvec3 waves) {
+    const dvec3 s = rough(waves);
+    const double sine = std::sqrt(v.x * v.x + v.y * v.y);
+    const dvec2 d = dvec2(v.x, v.y) / sine, turned(s.x * d.x + s.z * d.y, s.z * d.x + s.y * d.y);
+    const double sigma = std::sqrt(dot(d, turned)), k = v.z / (sigma * sine);
+    const double upper = 0.5 * std::erfc(-k / std::sqrt(2.0)),
+                 here = std::exp(-0.5 * k * k) / std::sqrt(2.0 * oracle::kPi);
+    const double first = upper / (k * upper + here), second = here / (k * upper + here);
+    const dvec2 along = turned / sigma,
+                across = dvec2(-d.y, d.x) * (std::sqrt(s.x * s.y - s.z * s.z) / sigma), mean = -first * along;
+    const dvec2 light(l.x, l.y);
+    const double spread = std::sqrt(std::pow(dot(across, light), 2.0) +
+                                    std::pow(dot(along, light), 2.0) * (1.0 + second - first * first));
+    const double middle = l.z - dot(mean, light), x = middle / spread;
+    const double facing = 0.5 * std::erfc(-x / std::sqrt(2.0)) * middle +
+                          spread * std::exp(-0.5 * x * x) / std::sqrt(2.0 * oracle::kPi);
+    const double up = 1.0 / std::sqrt(1.0 + dot(mean, mean) + dot(across, across) + dot(along, along));
+    const double rise = std::clamp(l.z / kRadius, 0.0, 1.0);
+    const double sun = oracle::kPi * kRadius * kRadius * rise * rise * (3.0 - 2.0 * rise) * facing * up *
+                       oracle::unblocked(v, l, s);
+    return (1e5 * sun + 0.5 + 0.5 * up) / oracle::kPi;
+}
+
+TEST(Foam, SingleIsDouble) {
+    Optics optics;
+    Inputs inputs(31);
+    for (int i = 0; i < 100000; ++i) {
+        const vec3 v = inputs.direction(1e-4), l = inputs.direction(1e-4),
+                   s = inputs.variance(1e-3, 0.7, 0.9);
+        if (v.z > 0.9999f) continue;
+        const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), s);
+        const double expected = foam(normalize(dvec3(v)), normalize(dvec3(l)), dvec3(s));
+        const vec3 found =
+            optics.foam_radiance(v, l, frame, vec3(1e5f), float(kRadius), vec3(1.0f), vec3(1.0f));
+        ASSERT_NEAR(found.x, expected, 1e-4 * expected) << i;
+    }
+}
+
+// Diffuse facets that reflect everything send no more than they get: over all directions of the light the
+// share that comes back to any eye is at most 1 (single scattering: what is shaded or faces away is less).
+// 1e-2: the closed form takes the facets' tilt at its mean.
+TEST(Foam, ReflectsNoMoreThanItGets) {
+    Optics optics;
+    for (float sigma : {0.01f, 0.15f, 0.4f})
+        for (double degrees : {1.0, 40.0, 70.0, 85.0, 89.5}) {
+            const double theta = degrees * oracle::kPi / 180.0;
+            const vec3 v(dvec3(std::sin(theta), 0.0, std::cos(theta)));
+            const auto frame =
+                optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), vec3(sigma * sigma, sigma * sigma, 0.0f));
+            double sum = 0.0;
+            constexpr int kSteps = 60;
+            for (int i = 0; i < kSteps; ++i)
+                for (int j = 0; j < kSteps; ++j) {
+                    const double z = (i + 0.5) / kSteps, a = 2.0 * oracle::kPi * (j + 0.5) / kSteps,
+                                 q = std::sqrt(1.0 - z * z);
+                    const vec3 l(dvec3(q * std::cos(a), q * std::sin(a), z));
+                    const vec3 found =
+                        optics.foam_radiance(v, l, frame, vec3(1.0f), float(kRadius), vec3(0.0f), vec3(1.0f));
+                    sum += static_cast<double>(found.x) /
+                           (oracle::kPi * kRadius * kRadius);  // per solid angle of sun
+                }
+            sum *= 2.0 * oracle::kPi / (kSteps * kSteps);
+            EXPECT_LE(sum, 1.01) << sigma << ' ' << degrees;
+            EXPECT_GT(sum, 0.6) << sigma << ' ' << degrees;
+        }
+}
+
+// Koepke's 0.22 over black water; bluer than white over blue water, which thin foam lets through.
+TEST(Foam, IsKoepkesAndShowsTheWater) {
+    Optics optics;
+    EXPECT_NEAR(optics.foam_reflectance(vec3(0.0f)).x, 0.22f, 1e-6f);
+    const vec3 foam = optics.foam_reflectance(vec3(0.0f, 0.01f, 0.05f));
+    EXPECT_NEAR(foam.x, 0.22f, 1e-6f);
+    EXPECT_NEAR(foam.z, 0.22f + 0.6f * 0.05f, 1e-6f);
+}
+
+// L = R E_d/(π n²), E_d what the surface lets in, with the way back up from the surface's underside.
+TEST(Water, RadianceOutOfTheWater) {
+    Optics optics;
+    Inputs inputs(32);
+    for (int i = 0; i < 100000; ++i) {
+        const vec3 l = inputs.direction(1e-5);
+        const double sun = inputs.logarithmic(1e-3, 100.0), sky = inputs.logarithmic(1e-3, 20.0),
+                     r = inputs.uniform(0.0, 0.33);
+        const double down = sun * (1.0 - oracle::fresnel(static_cast<double>(l.z))) + sky * (1.0 - 0.06751);
+        const double expected = r / (1.0 - 0.48 * r) * down / (oracle::kPi * 1.34 * 1.34);
+        const vec3 found = optics.water_radiance(l, vec3(float(sun)), vec3(float(sky)), vec3(float(r)));
+        // 1 − F of a grazing sun keeps 1e-7 of 1.
+        ASSERT_NEAR(found.x, expected, 1e-4 * expected + 1e-7 * r * sun) << i;
+    }
+}
+
+// 0.06751 is the exact term averaged over a uniform sky, ∫ F 2 cosθ d cosθ.
+TEST(Water, ShareOfTheSkyThatStaysOutside) {
+    double sum = 0.0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double c = (i + 0.5) / kSteps;
+        sum += 2.0 * c * oracle::fresnel(c) / kSteps;
+    }
+    EXPECT_NEAR(sum, 0.06751, 1e-5);
+}
+
+// And 0.48 is the same from below, for what comes up evenly.
+TEST(Water, ShareThatStaysInside) {
+    double sum = 0.0;
+    constexpr int kSteps = 20000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double c = (i + 0.5) / kSteps;
+        sum += 2.0 * c * oracle::fresnel(c, 1.0 / 1.34) / kSteps;
+    }
+    EXPECT_NEAR(sum, 0.48, 0.01);
+}
+
+}  // namespace
+}  // namespace pelagic::optics

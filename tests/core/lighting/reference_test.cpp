@@ -1,0 +1,127 @@
+// The lighting against the waves themselves: a real surface's facets, each a mirror that counts with the area
+// that the eye sees of it (Bruneton, Neyret, Holzschuch 2010, Eq. 10 as a sum instead of a Gaussian). What
+// facets hide from each other is not in it; tests/bench/reference has that.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <vector>
+
+#include "core/evaluate/evaluate.h"
+#include "core/lighting/lighting.h"
+#include "core/surface/patch.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kTile_m = 100.0;
+constexpr int kPoints = 1024;
+
+// Normals on a lattice over one tile of waves between 0.4 m and 100 m, and the slope variance that the
+// spectrum gives them. Without choppiness, so that every facet has the same area at rest.
+struct Facets {
+    std::vector<glm::vec3> normals;
+    glm::vec3 slope_variance{0.0f};
+};
+
+const Facets& facets() {
+    static const Facets made = [] {
+        Scene scene;
+        scene.sea.wind_speed_mps = 5.0;
+        scene.waves.choppiness = 0.0;
+        scene.waves.cascades = {{.size_m = kTile_m, .resolution = 512}};
+        Query query;
+        query.products = products(Product::Normal);
+        query.lattice = Lattice{0.0, kTile_m / kPoints};
+        query.only_cascade = 0;
+        const auto sea = std::make_shared<const Sea<float>>(scene, make_plan(scene, {query}));
+        Frame<float> frame(sea);
+        frame.set(0.0);
+        const auto rest_m =
+            rest_points<float>({.per_side = kPoints, .spacing_m = kTile_m / kPoints, .first_m = 0.0});
+        Facets result;
+        result.normals.resize(rest_m.size());
+        Results<float> results;
+        results.normal = {result.normals.data()};
+        evaluate(frame, 0, Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}}, results);
+        const SpectralMoments shown = sea->shown(0);
+        result.slope_variance = glm::vec3(shown.xx, shown.yy, shown.xy);
+        return result;
+    }();
+    return made;
+}
+
+// Hu et al. 2006, Eq. 2.
+double fresnel(double c) {
+    constexpr double n = 1.34;
+    const double g = std::sqrt(n * n - 1.0 + c * c), ratio = (g - c) / (g + c);
+    const double along = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
+    return 0.5 * ratio * ratio * (1.0 + along * along);
+}
+
+// Mean of `value` over the facets that face the eye.
+template <class Value>
+double seen_mean(glm::vec3 to_eye, Value&& value) {
+    double sum = 0.0, area = 0.0;
+    for (const glm::vec3& normal : facets().normals) {
+        const float cosine = glm::dot(to_eye, normal);
+        if (cosine <= 0.0f) continue;
+        const double seen = static_cast<double>(cosine / normal.z);
+        area += seen;
+        sum += seen * value(normal, static_cast<double>(cosine));
+    }
+    return sum / area;
+}
+
+glm::vec3 direction(double elevation_deg, double azimuth_deg) {
+    const double elevation = elevation_deg * 3.14159265358979 / 180.0;
+    const double azimuth = azimuth_deg * 3.14159265358979 / 180.0;
+    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+            std::sin(elevation)};
+}
+
+SeaRadiance shaded(const Sky& sky, const SeaPoint& point) {
+    SeaRadiance radiance;
+    shade_sea({.whitecaps = false, .sky_quality = SkyQuality::One}, sky, {.reflectance = glm::vec3(0.05f)},
+              {&point, 1}, {&radiance, 1});
+    return radiance;
+}
+
+// One tile's variance is within 5 % of the spectrum's, which changes 1 − F̄ by 0.7 % (its logarithm by 0.14
+// times the variance's, at grazing); the fit of F̄ is good to 0.015.
+TEST(LightingReference, RefractedLightIsThatOfTheFacetsSeen) {
+    const Sky sky = daylight_sky({});
+    // Straight down onto a mirror F is known: what is left is the water's own radiance.
+    const float from_below = shaded(sky, {}).sea.y / static_cast<float>(1.0 - fresnel(1.0));
+    for (const double elevation_deg : {1.0, 5.0, 15.0, 40.0})
+        for (const double azimuth_deg : {0.0, 53.0, 90.0, 200.0}) {
+            const glm::vec3 to_eye = direction(elevation_deg, azimuth_deg);
+            const double expected =
+                seen_mean(to_eye, [](glm::vec3, double cosine) { return 1.0 - fresnel(cosine); });
+            const float got =
+                shaded(sky, {.to_eye = to_eye, .slope_variance = facets().slope_variance}).sea.y;
+            EXPECT_NEAR(static_cast<double>(got / from_below), expected, 0.02)
+                << "elevation " << elevation_deg << ", azimuth " << azimuth_deg;
+        }
+}
+
+// A wide sun, so that some 1e4 facets of the tile show it, in patches of some ten: 3 %; and the variance's
+// own 5 % twice over at 1 σ from the middle. A high one: no wave shades it.
+TEST(LightingReference, SunIsThatOfTheFacetsSeen) {
+    Sky sky = daylight_sky({.sun_elevation_deg = 50.0, .sun_azimuth_deg = 0.0});
+    sky.sun_angular_radius = 0.03f;
+    for (const double elevation_deg : {35.0, 45.0, 60.0}) {
+        const glm::vec3 to_eye = direction(elevation_deg, 180.0);
+        const double share = seen_mean(to_eye, [&](glm::vec3 normal, double cosine) {
+            const glm::vec3 mirrored = 2.0f * static_cast<float>(cosine) * normal - to_eye;
+            return glm::length(mirrored - sky.sun_direction) < sky.sun_angular_radius ? fresnel(cosine) : 0.0;
+        });
+        const float got = shaded(sky, {.to_eye = to_eye, .slope_variance = facets().slope_variance}).sun.y;
+        EXPECT_NEAR(static_cast<double>(got / sky.sun_radiance.y) / share, 1.0, 0.1)
+            << "elevation " << elevation_deg;
+    }
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,214 @@
+// The reflected sky: one lookup, nine, and the integral.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <vector>
+
+#include "core/lighting/sky_map.h"
+#include "tests/core/lighting/optics.h"
+
+namespace pelagic::optics {
+namespace {
+
+// A clear evening in one number: bright at the horizon, brighter towards the sun that has just set in +y.
+double evening(dvec3 r) {
+    const double height = std::max(r.z, 0.01), towards = r.y;
+    return (1.0 - std::exp(-0.32 / height)) * (1.0 + 2.0 * std::exp(-2.0 * (1.0 - towards)));
+}
+
+constexpr double kBelow = 0.06;
+constexpr int kSize = 256;
+
+const SkyMap& evening_map() {
+    static const SkyMap map = [] {
+        std::vector<vec3> texels(kSize * kSize);
+        constexpr int kParts = 4;
+        for (int j = 0; j < kSize; ++j)
+            for (int i = 0; i < kSize; ++i) {
+                double sum = 0.0;
+                for (int q = 0; q < kParts * kParts; ++q) {
+                    const double x = (i + (q % kParts + 0.5) / kParts) / kSize,
+                                 y = (j + (q / kParts + 0.5) / kParts) / kSize;
+                    const dvec2 u = (2.0 * dvec2(x, y) - 1.0) * double(kSkyMapExtent);
+                    const double r2 = dot(u, u);
+                    sum += r2 >= 1.0 ? kBelow : evening(dvec3(2.0 * u.x, 2.0 * u.y, 1.0 - r2) / (1.0 + r2));
+                }
+                texels[static_cast<std::size_t>(j * kSize + i)] =
+                    vec3(static_cast<float>(sum / (kParts * kParts)));
+            }
+        return SkyMap(kSize, texels);
+    }();
+    return map;
+}
+
+Optics under_the_evening(int lookups, bool exact) {
+    Optics optics;
+    optics.lookup = [](vec2 u, float level) { return evening_map().radiance(u, level); };
+    optics.kSkyLookups = lookups;
+    optics.kExactFresnel = exact;
+    return optics;
+}
+
+double shown(Optics& optics, dvec3 v, dvec3 s) {
+    return static_cast<double>(
+        optics.sky_reflection(vec3(v), optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), vec3(s))).x);
+}
+
+double map_radiance(dvec3 r) {
+    return static_cast<double>(evening_map().radiance(sky_map_place(vec3(r)), 0.0f).x);
+}
+
+// Root mean square of the relative errors against the same integral in double with 160 × 160 slopes and no
+// filters, from straight down to the horizon, looking towards the glow, away from it, and across. The
+// project's targets for a picture's lines: with the paper's approximations 20 % on a calm sea and 35 % on an
+// agitated one, with our nine lookups 10 % and 15 %, with the integral 5 %.
+double error_of(int lookups, bool exact, dvec3 s) {
+    Optics optics = under_the_evening(lookups, exact);
+    double sum = 0.0;
+    int count = 0;
+    for (double azimuth : {-90.0, 0.0, 90.0})
+        for (double degrees : {0.0, 30.0, 60.0, 72.0, 80.0, 85.0, 88.0, 89.5}) {
+            const double theta = degrees * oracle::kPi / 180.0, a = azimuth * oracle::kPi / 180.0;
+            const dvec3 v(std::sin(theta) * std::cos(a), std::sin(theta) * std::sin(a), std::cos(theta));
+            const double expected = oracle::sky(v, s, kBelow, 160, map_radiance);
+            sum += std::pow(shown(optics, v, s) / expected - 1.0, 2.0);
+            ++count;
+        }
+    return std::sqrt(sum / count);
+}
+
+const dvec3 kCalm(0.0025, 0.0016, 0.0), kAgitated(0.03, 0.02, 0.005);
+
+TEST(SkyLookup, ThePapersApproximations) {
+    EXPECT_LT(error_of(1, false, kCalm), 0.20);
+    EXPECT_LT(error_of(1, false, kAgitated), 0.35);
+}
+
+TEST(SkyLookup, NineComeNear) {
+    EXPECT_LT(error_of(9, true, kCalm), 0.02);
+    EXPECT_LT(error_of(9, true, kAgitated), 0.05);
+}
+
+TEST(SkyLookup, TheIntegralIsTheIntegral) {
+    EXPECT_LT(error_of(0, true, kCalm), 0.005);
+    EXPECT_LT(error_of(0, true, kAgitated), 0.01);
+}
+
+// Without waves every way is the mirror's: F of the angle times the sky there. 1e-3: the finest level's
+// interpolation moves by a part of a texel's variance, and 1e-5 of slope is left.
+TEST(SkyLookup, MirrorShowsTheSky) {
+    for (int lookups : {0, 1, 9}) {
+        Optics optics = under_the_evening(lookups, true);
+        for (double degrees : {0.0, 30.0, 60.0, 75.0, 85.0}) {
+            const double theta = degrees * oracle::kPi / 180.0;
+            const dvec3 v(0.0, -std::sin(theta), std::cos(theta)), r(0.0, std::sin(theta), std::cos(theta));
+            const double expected = oracle::fresnel(std::cos(theta)) * map_radiance(r);
+            EXPECT_NEAR(shown(optics, v, dvec3(0.0)), expected, 2e-3 * expected) << lookups << ' ' << degrees;
+        }
+    }
+}
+
+// The nine in double, on a sky that is a smooth function of the place, with the level as part of the answer.
+double smooth(dvec2 u, double level) {
+    return (1.0 + 0.3 * u.x - 0.2 * u.y) * std::exp(-0.1 * dot(u, u)) + 0.01 * level;
+}
+
+double nine(dvec3 v, dvec3 s) {
+    const double sine = std::sqrt(v.x * v.x + v.y * v.y);
+    const dvec2 d = dvec2(v.x, v.y) / sine, turned(s.x * d.x + s.z * d.y, s.z * d.x + s.y * d.y);
+    const double sigma = std::sqrt(dot(d, turned)), k = v.z / (sigma * sine);
+    const dvec2 along = turned / sigma,
+                across = dvec2(-d.y, d.x) * (std::sqrt(s.x * s.y - s.z * s.z) / sigma);
+    // The place's change with the slope, by differences.
+    const auto place = [&](dvec2 slope) {
+        const dvec3 f = normalize(dvec3(-slope.x, -slope.y, 1.0)), r = 2.0 * dot(v, f) * f - v;
+        return dvec2(r.x, r.y) / (1.0 + r.z);
+    };
+    const auto change = [&](dvec2 by) { return (place(1e-6 * by) - place(-1e-6 * by)) / 2e-6; };
+    const double first = std::max(-k, -3.0), step = (3.0 - first) / 9.0;
+    const dvec2 p = change(along), q = change(across);
+    const double blur = 0.2 * std::min(dot(p, p) * step * step, dot(q, q));
+    const double level =
+        std::max(0.5 * std::log2(std::max(4.0 * blur, 1e-12) * std::pow(256.0 / 2.5, 2.0)), 0.0);
+    const double below = smooth(dvec2(1.25), 0.0);
+    double sum = 0.0, total = 0.0;
+    for (int i = 0; i < 9; ++i) {
+        const double x = first + step * (i + 0.5),
+                     turn = std::sqrt(1.5) * std::array{0.0, 1.0, -1.0}[static_cast<std::size_t>(i % 3)];
+        const dvec2 slope = across * turn - along * x;
+        const dvec3 f = normalize(dvec3(-slope.x, -slope.y, 1.0)), r = 2.0 * dot(v, f) * f - v;
+        const double weight = (k + x) * std::exp(-0.5 * x * x), open = oracle::unblocked(v, r, s);
+        const double seen =
+            open > 0.0 ? open * smooth(dvec2(r.x, r.y) / (1.0 + r.z), level) + (1.0 - open) * below : below;
+        total += weight;
+        sum += weight * oracle::fresnel(std::max(dot(v, f), 0.0)) * seen;
+    }
+    return sum / total;
+}
+
+TEST(SkyLookup, SingleIsDouble) {
+    Optics optics;
+    optics.lookup = [](vec2 u, float level) {
+        return vec3(static_cast<float>(smooth(dvec2(u), static_cast<double>(level))));
+    };
+    Inputs inputs(20);
+    for (int i = 0; i < 100000; ++i) {
+        const vec3 v = inputs.direction(1e-3), s = inputs.variance(1e-3, 0.5, 0.9);
+        if (v.z > 0.9999f) continue;  // straight down no direction is along the line of sight
+        const double expected = nine(normalize(dvec3(v)), dvec3(s));
+        const double found = shown(optics, dvec3(v), dvec3(s));
+        ASSERT_NEAR(found, expected, 1e-4 * expected + 1e-5) << i;
+    }
+}
+
+// The white furnace: a uniform sky of radiance 1 over facets that reflect all. Never more than 1; exactly 1
+// where what is reflected onto the sea shows as much as the sky (1e-5: rounding of 512 terms).
+TEST(SkyLookup, WhiteFurnace) {
+    for (int lookups : {0, 9}) {
+        Furnace closed, open;
+        closed.kSkyLookups = open.kSkyLookups = lookups;
+        // Nothing comes from below: what single scattering leaves.
+        open.lookup = [](vec2 u, float) { return vec3(dot(u, u) < 1.0f ? 1.0f : 0.0f); };
+        for (float sigma : {1e-4f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 2.0f})
+            for (double degrees : {0.0, 45.0, 70.0, 80.0, 85.0, 89.0, 90.0}) {
+                const double theta = degrees * oracle::kPi / 180.0;
+                const vec3 v(dvec3(std::sin(theta), 0.0, std::cos(theta)));
+                const vec3 s(sigma * sigma, 0.7f * sigma * sigma, 0.0f);
+                const auto frame = closed.slope_frame(vec3(0.0f, 0.0f, 1.0f), s);
+                const float whole = closed.sky_reflection(v, frame).x;
+                EXPECT_NEAR(whole, 1.0f, 1e-5f) << sigma << ' ' << degrees;
+                const float once = open.sky_reflection(v, frame).x;
+                EXPECT_LE(once, 1.001f) << sigma << ' ' << degrees;
+                if (sigma < 0.25f && degrees < 88.0) {
+                    EXPECT_GT(once, 0.75f) << sigma << ' ' << degrees;
+                }
+            }
+    }
+}
+
+TEST(SkyLookup, MapReachesAsFarInBothSources) {
+    EXPECT_EQ(Optics().kSkyMapReach, kSkyMapExtent);
+}
+
+TEST(SkyLookup, HardCasesStayFinite) {
+    const vec3 up(0.0f, 0.0f, 1.0f), side(1.0f, 0.0f, 0.0f);
+    for (int lookups : {0, 1, 9})
+        for (bool exact : {false, true}) {
+            Optics optics = under_the_evening(lookups, exact);
+            for (const vec3 v : {up, side, normalize(vec3(1.0f, 0.0f, 1e-7f)), -up})
+                for (const vec3 n :
+                     {up, side, -up, normalize(vec3(1.0f, 0.0f, 1.0f)), normalize(vec3(-1.0f, 0.0f, 1e-4f))})
+                    for (const vec3 s : {vec3(0.0f), vec3(100.0f, 1e-4f, 0.0f), vec3(1.0f, 1.0f, 1.0f),
+                                         vec3(1e8f, 1e8f, 0.0f)}) {
+                        const vec3 found =
+                            optics.sky_reflection(v, optics.slope_frame(optics.facing_normal(n, v), s));
+                        EXPECT_TRUE(std::isfinite(found.x) && found.x >= 0.0f && found.x <= 4.0f) << lookups;
+                    }
+        }
+}
+
+}  // namespace
+}  // namespace pelagic::optics

@@ -1,0 +1,184 @@
+// The stereographic map: its levels, its lookup, the projection, and what is baked into it.
+#include "core/lighting/sky_map.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/lighting/sky_bake.h"
+
+namespace pelagic {
+namespace {
+
+std::vector<glm::vec3> noise(int size) {
+    std::mt19937 generator(3);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    std::vector<glm::vec3> texels(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+    for (glm::vec3& texel : texels) texel = {uniform(generator), uniform(generator), uniform(generator)};
+    return texels;
+}
+
+// The middle of a texel of a level.
+glm::vec2 middle(const SkyMap& map, int level, int i, int j) {
+    const float texel = 2.0f * kSkyMapExtent / static_cast<float>(map.size() >> level);
+    return glm::vec2(-kSkyMapExtent) +
+           texel * glm::vec2(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f);
+}
+
+TEST(SkyMap, LevelsAreMeansDownToTheMeanOfAll) {
+    const SkyMap map(16, noise(16));
+    ASSERT_EQ(map.level_count(), 5);
+    glm::dvec3 mean(0.0);
+    for (const glm::vec3& texel : map.level(0)) mean += glm::dvec3(texel) / 256.0;
+    ASSERT_EQ(map.level(4).size(), 1u);
+    // Sums of 256 numbers below 1 in single precision.
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(static_cast<double>(map.level(4)[0][c]), mean[c], 1e-6);
+    // One texel in between, in the second row and third column of level 1.
+    const auto& fine = map.level(0);
+    const float sum = fine[2 * 16 + 4].x + fine[2 * 16 + 5].x + fine[3 * 16 + 4].x + fine[3 * 16 + 5].x;
+    EXPECT_FLOAT_EQ(map.level(1)[1 * 8 + 2].x, 0.25f * sum);
+}
+
+TEST(SkyMap, LookupIsTrilinear) {
+    const SkyMap map(16, noise(16));
+    constexpr float kTolerance = 4e-6f;  // the place of a texel's middle is rounded to 1e-6 of a texel
+    for (int level = 0; level < 4; ++level) {
+        const int n = 16 >> level;
+        const auto& texels = map.level(level);
+        const auto at = [&](int i, int j) { return texels[static_cast<std::size_t>(j * n + i)].y; };
+        const glm::vec2 a = middle(map, level, 0, 1), b = middle(map, level, 1, 1),
+                        c = middle(map, level, 0, 0);
+        const auto l = static_cast<float>(level);
+        EXPECT_NEAR(map.radiance(a, l).y, at(0, 1), kTolerance);
+        EXPECT_NEAR(map.radiance(0.75f * a + 0.25f * b, l).y, 0.75f * at(0, 1) + 0.25f * at(1, 1),
+                    kTolerance);
+        EXPECT_NEAR(map.radiance(0.75f * a + 0.25f * c, l).y, 0.75f * at(0, 1) + 0.25f * at(0, 0),
+                    kTolerance);
+        const glm::vec2 u(0.3f, -0.7f);
+        EXPECT_NEAR(map.radiance(u, l + 0.25f).y,
+                    0.75f * map.radiance(u, l).y + 0.25f * map.radiance(u, l + 1.0f).y, kTolerance);
+    }
+}
+
+TEST(SkyMap, LookupIsClampedToEdgesAndLevels) {
+    const SkyMap map(8, noise(8));
+    const glm::vec3 corner = map.level(0)[0], last = map.level(3)[0];
+    const float inf = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(map.radiance({-kSkyMapExtent, -kSkyMapExtent}, 0.0f), corner);
+    EXPECT_EQ(map.radiance({-1e30f, -inf}, -5.0f), corner);
+    EXPECT_EQ(map.radiance({0.1f, 0.2f}, 3.0f), last);
+    EXPECT_EQ(map.radiance({0.1f, 0.2f}, inf), last);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_TRUE(std::isfinite(map.radiance({nan, 0.0f}, nan).x));
+}
+
+TEST(SkyMap, RefusesWhatIsNoMap) {
+    EXPECT_THROW(SkyMap(6, std::vector<glm::vec3>(36)), std::invalid_argument);
+    EXPECT_THROW(SkyMap(2, std::vector<glm::vec3>(4)), std::invalid_argument);
+    EXPECT_THROW(SkyMap(8, std::vector<glm::vec3>(63)), std::invalid_argument);
+    for (const float wrong :
+         {-1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        std::vector<glm::vec3> texels(64, glm::vec3(1.0f));
+        texels[17].z = wrong;
+        try {
+            const SkyMap map(8, texels);
+            FAIL() << wrong;
+        } catch (const std::invalid_argument& error) {
+            EXPECT_NE(std::string(error.what()).find("(1, 2)"), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(SkyMap, ProjectionAndItsInverse) {
+    // The horizon is the unit circle, the zenith the middle.
+    EXPECT_EQ(sky_map_place({0.0f, 0.0f, 1.0f}), glm::vec2(0.0f));
+    EXPECT_EQ(sky_map_place({0.0f, 1.0f, 0.0f}), glm::vec2(0.0f, 1.0f));
+    for (float x = -1.2f; x <= 1.2f; x += 0.3f)
+        for (float y = -1.2f; y <= 1.2f; y += 0.3f) {
+            const glm::vec3 direction = sky_map_direction({x, y});
+            // A few roundings of numbers round 1, enlarged by 1/(1 + r_z) ≤ 2 below the horizon.
+            EXPECT_NEAR(glm::length(direction), 1.0f, 1e-6f);
+            EXPECT_LT(glm::length(sky_map_place(direction) - glm::vec2(x, y)), 2e-6f);
+        }
+    // Down there all places are at the edge, the pole's own included.
+    for (const glm::vec3 down :
+         {glm::vec3(0.0f, 0.0f, -1.0f), glm::vec3(1e-20f, 0.0f, -1.0f), glm::vec3(-0.6f, 0.0f, -0.8f)}) {
+        const glm::vec2 u = sky_map_place(down);
+        EXPECT_FLOAT_EQ(std::max(std::abs(u.x), std::abs(u.y)), kSkyMapExtent);
+    }
+}
+
+SkyDome uniform_dome(float radiance) {
+    return {[=](glm::vec3) { return glm::vec3(radiance); }, [](glm::vec3, float) { return 1; }};
+}
+
+TEST(SkyBake, UniformSkyOfOneGivesPi) {
+    // The horizon's texels are the largest error: their area is known to 1/8², their cosine is below 2 du.
+    for (const int size : {64, 256}) {
+        const BakedSky baked = bake_sky_map(size, uniform_dome(1.0f));
+        EXPECT_NEAR(static_cast<double>(baked.irradiance.x), kPi, 1e-3) << size;
+    }
+}
+
+TEST(SkyBake, IrradianceIsWeightedWithTheCosine) {
+    // L = cosθ: ∫ cos²θ dω = 2π/3.
+    SkyDome dome = uniform_dome(0.0f);
+    dome.radiance = [](glm::vec3 direction) { return glm::vec3(direction.z); };
+    EXPECT_NEAR(static_cast<double>(bake_sky_map(128, dome).irradiance.y), kTwoPi / 3.0, 1e-3);
+}
+
+TEST(SkyBake, BelowTheHorizonTheSeaReflectsTheSky) {
+    const BakedSky baked = bake_sky_map(256, uniform_dome(2.0f));
+    // A uniform sky has L = E/π: below it is diffuse_fresnel() times as bright.
+    EXPECT_NEAR(baked.map.radiance({1.2f, 1.2f}, 0.0f).y, 2.0f * diffuse_fresnel(), 1e-4f);
+    EXPECT_NEAR(baked.map.radiance({0.0f, -1.1f}, 0.0f).y, 2.0f * diffuse_fresnel(), 1e-4f);
+    EXPECT_FLOAT_EQ(baked.map.radiance({0.0f, 0.9f}, 0.0f).y, 2.0f);
+    // Where the horizon crosses, the mean of the whole map is that of the areas: π of 6.25 is sky. An edge
+    // without antialiasing would be off by a texel's share here and there; sampled 8 × 8 it is right to 1e-4.
+    const float sky = static_cast<float>(kPi) / (4.0f * kSkyMapExtent * kSkyMapExtent);
+    EXPECT_NEAR(baked.map.radiance({0.0f, 0.0f}, 8.0f).y, 2.0f * (sky + (1.0f - sky) * diffuse_fresnel()),
+                4e-4f);
+}
+
+TEST(SkyBake, TexelsThatTheHorizonCrossesAreMixedByArea) {
+    constexpr int kSize = 16, kParts = 64;
+    const BakedSky baked = bake_sky_map(kSize, uniform_dome(1.0f));
+    const double below = static_cast<double>(baked.map.radiance(glm::vec2(1.25f), 0.0f).x);
+    const double side = 2.5 / kSize;
+    for (int j = 0; j < kSize; ++j)
+        for (int i = 0; i < kSize; ++i) {
+            int inside = 0;
+            for (int b = 0; b < kParts; ++b)
+                for (int a = 0; a < kParts; ++a)
+                    inside += std::hypot(side * (i + (a + 0.5) / kParts) - 1.25,
+                                         side * (j + (b + 0.5) / kParts) - 1.25) < 1.0;
+            const double share = static_cast<double>(inside) / (kParts * kParts);
+            // 8 × 8 samples: an edge across the texel is off by less than half a row.
+            EXPECT_NEAR(static_cast<double>(baked.map.level(0)[static_cast<std::size_t>(j * kSize + i)].x),
+                        share + (1.0 - share) * below, 0.5 / 8.0)
+                << i << " " << j;
+        }
+}
+
+TEST(SkyBake, DiffuseFresnelIsTheIntegralOfTheExactTerm) {
+    constexpr double n = 1.34;  // sea water
+    constexpr int kSteps = 20000;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        // With c = cosθ: ∫ F 2 c dc. Snell's law and Fresnel's two amplitudes.
+        const double c = (i + 0.5) / kSteps, t = std::sqrt(1.0 - (1.0 - c * c) / (n * n));
+        const double s = (c - n * t) / (c + n * t), p = (t - n * c) / (t + n * c);
+        sum += 0.5 * (s * s + p * p) * 2.0 * c / kSteps;
+    }
+    EXPECT_NEAR(static_cast<double>(diffuse_fresnel()), sum, 1e-5);
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,183 @@
+// Tone mapping, the exposure of a light, and what lies behind the sea.
+#include "core/lighting/tone.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/lighting/background.h"
+
+namespace pelagic {
+namespace {
+
+// IEC 61966-2-1, from the screen's value to light: the inverse of what is tested.
+double light_of(float shown) {
+    const auto v = static_cast<double>(shown);
+    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+
+TEST(Tone, MiddleGreyStaysWhereItIs) {
+    for (const float exposure : {1.0f, 1e-3f, 50.0f}) {
+        const glm::vec3 shown = display_colour(glm::vec3(0.18f / exposure), exposure);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(light_of(shown[c]), 0.18, 1e-3);  // 1/2 of a step of 8 bits
+    }
+}
+
+// Every colour only gets brighter with more light, all three parts, and never leaves 0 … 1, over sixty orders
+// of magnitude. 2e-6: some steps of a single at 1.
+TEST(Tone, RisesWithTheLightAndStaysInRange) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<float> part(0.0f, 1.0f);
+    for (int colour = 0; colour < 200; ++colour) {
+        const glm::vec3 hue =
+            colour == 0 ? glm::vec3(1.0f, 0.0f, 0.0f) : glm::vec3(part(random), part(random), part(random));
+        glm::vec3 before(0.0f);
+        for (float power = -30.0f; power <= 30.0f; power += 0.05f) {
+            const glm::vec3 shown = display_colour(hue * std::pow(10.0f, power), 1.0f);
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_TRUE(shown[c] >= 0.0f && shown[c] <= 1.0f) << power;
+                ASSERT_GE(shown[c], before[c] - 2e-6f) << power;
+            }
+            before = shown;
+        }
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(before[c], 1.0f, 1e-5f);  // whatever is bright is white
+    }
+    EXPECT_EQ(display_colour(glm::vec3(0.0f), 1.0f), glm::vec3(0.0f));
+    EXPECT_EQ(display_colour(glm::vec3(-1.0f, -2.0f, 0.0f), 1.0f), glm::vec3(0.0f));
+    const float most = std::numeric_limits<float>::max();
+    for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::isfinite(display_colour(glm::vec3(most), 1e3f)[c]));
+}
+
+// The hue of a glitter: what the three parts exceed the least by keeps its ratios, from dark to nearly white.
+// A curve of each part alone moves the middle one by half and more.
+TEST(Tone, KeepsTheHue) {
+    const glm::vec3 orange(1.0f, 0.45f, 0.1f);
+    const double asked = (0.45 - 0.1) / (1.0 - 0.1);
+    for (float strength = 1e-2f; strength < 20.0f; strength *= 1.3f) {
+        const glm::vec3 shown = display_colour(orange * strength, 1.0f);
+        const double r = light_of(shown.x), g = light_of(shown.y), b = light_of(shown.z);
+        EXPECT_NEAR((g - b) / (r - b), asked, 1e-4) << strength;
+    }
+}
+
+Sky sky_of(float radiance) {
+    Sky sky;
+    sky.sky_irradiance = glm::vec3(radiance * static_cast<float>(kPi));
+    return sky;
+}
+
+// A light that is brighter looks brighter, but less so; the night is dark, and nothing is infinite.
+TEST(Exposure, FollowsTheLightPartOfTheWay) {
+    float exposure_before = std::numeric_limits<float>::infinity(), shown_before = 0.0f;
+    for (float radiance = 1e-2f; radiance < 1e3f; radiance *= 1.5f) {
+        const float exposure = exposure_for(sky_of(radiance));
+        EXPECT_LT(exposure, exposure_before);
+        EXPECT_GT(exposure * radiance, shown_before);
+        exposure_before = exposure;
+        shown_before = exposure * radiance;
+    }
+    const float night = exposure_for(Sky{});
+    EXPECT_TRUE(std::isfinite(night) && night > 0.0f);
+    EXPECT_EQ(night, exposure_for(sky_of(1e-6f)));
+}
+
+TEST(Exposure, StopsAreFactorsOfTwo) {
+    const Sky sky = sky_of(4.0f);
+    EXPECT_FLOAT_EQ(exposure_for(sky, 3.0), 8.0f * exposure_for(sky));
+    EXPECT_FLOAT_EQ(exposure_for(sky, -1.0), 0.5f * exposure_for(sky));
+    EXPECT_EQ(exposure_for(sky, 0.0), exposure_for(sky));
+}
+
+// Over the pixels of a picture the disc has its own solid angle π ρ², whether a pixel is much smaller than
+// the disc or larger. The midpoint rule over a grid that is finer than the pixel's edge: 1e-3.
+TEST(Background, DiscHasItsSolidAngleWhateverThePixels) {
+    Sky sky;
+    sky.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(0.0f)));
+    sky.sun_direction = glm::normalize(glm::vec3(0.3f, 0.5f, 0.4f));
+    sky.sun_radiance = glm::vec3(2.0f);
+    const glm::vec3 across = glm::normalize(glm::cross(sky.sun_direction, glm::vec3(0.0f, 0.0f, 1.0f)));
+    const glm::vec3 upwards = glm::cross(across, sky.sun_direction);
+    for (const float pixel : {1e-4f, 1e-3f, 0.0092f, 0.0094f, 0.03f}) {
+        const float reach = 1.1f * (sky.sun_angular_radius + 0.5f * pixel);
+        constexpr int kSteps = 400;
+        const float step = 2.0f * reach / kSteps;
+        double sum = 0.0;
+        for (int j = 0; j < kSteps; ++j)
+            for (int i = 0; i < kSteps; ++i) {
+                const float x = (static_cast<float>(i) + 0.5f) * step - reach;
+                const float y = (static_cast<float>(j) + 0.5f) * step - reach;
+                const glm::vec3 direction = glm::normalize(sky.sun_direction + x * across + y * upwards);
+                sum += static_cast<double>(background(sky, direction, pixel).sun.x) *
+                       static_cast<double>(step * step);
+            }
+        const auto radius = static_cast<double>(sky.sun_angular_radius);
+        EXPECT_NEAR(sum / (2.0 * kPi * radius * radius), 1.0, 2e-3) << pixel;
+    }
+}
+
+TEST(Background, ShowsTheMapAndTheDiscOnlyWhereTheyAre) {
+    Sky sky;
+    sky.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(3.0f)));
+    sky.sun_direction = {0.0f, 0.6f, 0.8f};
+    sky.sun_radiance = {1e6f, 9e5f, 7e5f};
+    const float pixel = 1e-4f;
+    const Background middle = background(sky, sky.sun_direction, pixel);
+    EXPECT_NEAR(middle.sun.x, 1e6f, 1e3f);
+    EXPECT_EQ(middle.sky, glm::vec3(3.0f));
+    EXPECT_EQ(background(sky, glm::vec3(0.0f, 0.61f, 0.7924f), pixel).sun, glm::vec3(0.0f));
+    EXPECT_EQ(background(sky, -sky.sun_direction, pixel).sun, glm::vec3(0.0f));
+}
+
+// A map that is bright above the horizon and black below: the sky behind the sea is bright down to it, in
+// every direction, while a lookup of the map itself is not.
+TEST(Background, IsTheSkyDownToTheHorizon) {
+    constexpr int kSize = 64;
+    std::vector<glm::vec3> texels;
+    for (int j = 0; j < kSize; ++j)
+        for (int i = 0; i < kSize; ++i) {
+            const glm::vec2 first = kSkyMapExtent * (glm::vec2(i, j) * (2.0f / kSize) - 1.0f);
+            const glm::vec2 last = kSkyMapExtent * (glm::vec2(i + 1, j + 1) * (2.0f / kSize) - 1.0f);
+            const bool above = glm::length(glm::max(glm::abs(first), glm::abs(last))) <= 1.0f;
+            texels.push_back(glm::vec3(above ? 4.0f : 0.0f));
+        }
+    Sky sky;
+    sky.map = SkyMap(kSize, texels);
+    int dark = 0;
+    for (int azimuth = 0; azimuth < 360; ++azimuth) {
+        const auto a = static_cast<float>(azimuth * kPi / 180.0);
+        for (const float z : {-0.03f, 0.0f, 0.003f, 0.02f, 0.1f, 0.9f}) {
+            const float across = std::sqrt(1.0f - z * z);
+            const glm::vec3 direction(across * std::cos(a), across * std::sin(a), z);
+            EXPECT_NEAR(background(sky, direction, 1e-3f).sky.x, 4.0f, 1e-5f) << azimuth << ", " << z;
+            dark += sky.map.radiance(sky_map_place(direction), 0.0f).x < 3.9f;
+        }
+    }
+    EXPECT_GT(dark, 0);
+    EXPECT_EQ(background(sky, glm::vec3(0.0f, 0.6f, -0.8f), 1e-3f).sky, glm::vec3(0.0f));
+}
+
+// A pixel's solid angle is t² cos³θ: of a picture of 90° across the parts add up to the sixth of a sphere
+// that a cube's side is.
+TEST(Background, PixelsAnglesFillThePicture) {
+    constexpr int kPixels = 200;
+    constexpr float kTangent = 2.0f / kPixels;
+    double sum = 0.0;
+    for (int j = 0; j < kPixels; ++j)
+        for (int i = 0; i < kPixels; ++i) {
+            const float x = (static_cast<float>(i) + 0.5f) * kTangent - 1.0f;
+            const float y = (static_cast<float>(j) + 0.5f) * kTangent - 1.0f;
+            const auto angle =
+                static_cast<double>(pixel_angle(kTangent, 1.0f / std::sqrt(1.0f + x * x + y * y)));
+            sum += angle * angle;
+        }
+    EXPECT_NEAR(sum, 4.0 * kPi / 6.0, 1e-4);  // the midpoint rule's own error: kTangent²
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,71 @@
+// The water's own colour: what the plankton and the rivers do to it.
+#include "core/lighting/water.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
+
+namespace pelagic {
+namespace {
+
+glm::vec3 colour(WaterKind kind, double chlorophyll) {
+    return water_body({.kind = kind, .chlorophyll_mg_m3 = chlorophyll}).reflectance;
+}
+
+// Case 1 waters, Jerlov's and Morel's blue desert: the clearest oceans send back some 5 … 12 % of the blue, a
+// few per cent of the green, and next to no red, which water absorbs within metres.
+TEST(WaterBody, ClearOceanIsDeepBlue) {
+    const glm::vec3 c = colour(WaterKind::Ocean, 0.03);
+    EXPECT_GT(c.b, 0.05f);
+    EXPECT_LT(c.b, 0.12f);
+    EXPECT_GT(c.b, 2.0f * c.g);
+    EXPECT_LT(c.r, 0.1f * c.b);
+}
+
+// Plankton absorbs blue: the more of it, the greener.
+TEST(WaterBody, PlanktonTurnsBlueIntoGreen) {
+    float last = 0.0f;
+    for (double chlorophyll : {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0}) {
+        const glm::vec3 c = colour(WaterKind::Ocean, chlorophyll);
+        EXPECT_GT(c.g / c.b, last) << chlorophyll;
+        last = c.g / c.b;
+    }
+    EXPECT_GT(last, 1.2f);
+}
+
+TEST(WaterBody, RiversMakeItBrighterAndBrowner) {
+    const glm::vec3 ocean = colour(WaterKind::Ocean, 1.0), coastal = colour(WaterKind::Coastal, 1.0),
+                    turbid = colour(WaterKind::Turbid, 1.0);
+    EXPECT_GT(coastal.g, coastal.b);
+    EXPECT_GT(coastal.g, coastal.r);
+    EXPECT_GT(turbid.g, turbid.b);
+    EXPECT_GT(turbid.r, turbid.b);
+    EXPECT_GT(turbid.g, coastal.g);
+    EXPECT_GT(coastal.g, ocean.g);
+}
+
+// 0.33 b_b/(a + b_b) is below 0.33 whatever is in the water, and a negative colour is none.
+TEST(WaterBody, StaysAReflectance) {
+    for (WaterKind kind : {WaterKind::Ocean, WaterKind::Coastal, WaterKind::Turbid}) {
+        for (double chlorophyll : {0.0, 1e-300, 1e-3, 1.0, 30.0, 100.0}) {
+            const glm::vec3 c = colour(kind, chlorophyll);
+            for (int i = 0; i < 3; ++i) {
+                EXPECT_GE(c[i], 0.0f);
+                EXPECT_LT(c[i], 0.33f);
+            }
+        }
+    }
+}
+
+TEST(WaterBody, RefusesWhatIsNoChlorophyll) {
+    for (double c :
+         {-1e-9, 100.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        EXPECT_THROW(colour(WaterKind::Ocean, c), std::invalid_argument);
+    }
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,206 @@
+// Pictures are read as this project's own writers and OpenEXR's write them; what is no picture is refused.
+#include "plugin/exr/read.h"
+
+#include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineOutputFile.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "plugin/exr/exr.h"
+
+namespace pelagic::exr {
+namespace {
+
+constexpr int kWidth = 70, kHeight = 66;  // more than one tile either way
+
+// Exact in halves: red counts columns, green rows from the top, blue is their product's low bits.
+std::array<float, 3> pixel(int x, int y) {
+    return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(x * y % 64) / 8.0f};
+}
+
+class ReadRgb : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::path(::testing::TempDir()) / ("pelagic-" + std::string(test->name()));
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+
+    std::filesystem::path written(const std::string& bytes) const {
+        std::ofstream(path("sky.exr"), std::ios::binary) << bytes;
+        return path("sky.exr");
+    }
+
+    std::string refusal(const std::filesystem::path& file) const {
+        try {
+            read_rgb(file);
+        } catch (const std::runtime_error& error) {
+            EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("accepted"), std::string::npos) << error.what();
+            return error.what();
+        }
+        return "(not refused)";
+    }
+
+    std::filesystem::path folder_;
+};
+
+// Rows of rising y, as encoders take them.
+struct Planes {
+    int width, height;
+    std::array<std::vector<float>, 3> values;
+
+    Planes(int w, int h) : width(w), height(h) {
+        for (int j = h - 1; j >= 0; --j)
+            for (int i = 0; i < w; ++i)
+                for (std::size_t c = 0; c < 3; ++c) values[c].push_back(pixel(i, j)[c]);
+    }
+    Image image(PixelType type) const {
+        Image out{width, height, {}};
+        const std::array<const char*, 3> names{"R", "G", "B"};
+        for (std::size_t c = 0; c < 3; ++c)
+            out.channels.push_back({.name = names[c], .data = values[c].data(), .type = type});
+        return out;
+    }
+};
+
+void expect_pixels(const RgbPixels& read) {
+    ASSERT_EQ(read.width, kWidth);
+    ASSERT_EQ(read.height, kHeight);
+    ASSERT_EQ(read.pixels.size(), static_cast<std::size_t>(kWidth * kHeight));
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            ASSERT_EQ(read.pixels[static_cast<std::size_t>(y * kWidth + x)], pixel(x, y)) << x << " " << y;
+}
+
+TEST_F(ReadRgb, ScanLinesOfHalvesAndFloats) {
+    const Planes planes(kWidth, kHeight);
+    for (const PixelType type : {PixelType::Half, PixelType::Float})
+        for (const Compression compression : {Compression::None, Compression::Piz}) {
+            Header header;
+            header.compression = compression;
+            expect_pixels(read_rgb(written(encode_scanline(header, planes.image(type)))));
+        }
+}
+
+TEST_F(ReadRgb, TilesOfTheFullPicture) {
+    std::vector<Planes> levels;
+    std::vector<Image> images;
+    for (int l = 0; l < mip_level_count(kWidth, kHeight); ++l) {
+        const auto [width, height] = mip_level_size(kWidth, kHeight, l);
+        levels.emplace_back(width, height);
+    }
+    for (const Planes& level : levels) images.push_back(level.image(PixelType::Half));
+    expect_pixels(read_rgb(written(encode_mipmapped({}, images))));
+}
+
+TEST_F(ReadRgb, GreyAloneAndOtherChannelsBeside) {
+    const Planes planes(kWidth, kHeight);
+    Image grey{kWidth, kHeight, {{.name = "Y", .data = planes.values[1].data(), .type = PixelType::Half}}};
+    const RgbPixels read = read_rgb(written(encode_scanline({}, grey)));
+    EXPECT_EQ(read.pixels[static_cast<std::size_t>(5 * kWidth + 3)],
+              (std::array<float, 3>{5.0f, 5.0f, 5.0f}));
+    Image more = planes.image(PixelType::Half);
+    more.channels.push_back({.name = "A", .data = planes.values[0].data()});
+    expect_pixels(read_rgb(written(encode_scanline({}, more))));
+}
+
+TEST_F(ReadRgb, ValuesAreHandedOverAsTheyAre) {
+    // Whoever uses them says what they may be: a NaN isn't made into something else here.
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::vector<float> values{1.0f, nan, -2.0f, std::numeric_limits<float>::infinity()};
+    Imf::Header header(2, 2);
+    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    {
+        Imf::OutputFile file(path("odd.exr").c_str(), header);
+        Imf::FrameBuffer buffer;
+        buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 8));
+        file.setFrameBuffer(buffer);
+        file.writePixels(2);
+    }
+    const RgbPixels read = read_rgb(path("odd.exr"));
+    EXPECT_TRUE(std::isnan(read.pixels[1][0]));
+    EXPECT_EQ(read.pixels[2][2], -2.0f);
+    EXPECT_TRUE(std::isinf(read.pixels[3][1]));
+}
+
+TEST_F(ReadRgb, AWindowAwayFromTheOrigin) {
+    const Imath::Box2i window({10, -7}, {12, -6});
+    Imf::Header header(window, window);
+    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    std::vector<float> values{1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f};
+    {
+        Imf::OutputFile file(path("away.exr").c_str(), header);
+        Imf::FrameBuffer buffer;
+        buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, values.data(), window));
+        file.setFrameBuffer(buffer);
+        file.writePixels(2);
+    }
+    const RgbPixels read = read_rgb(path("away.exr"));
+    ASSERT_EQ(read.pixels.size(), 6u);
+    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(read.pixels[i][0], values[i]);
+}
+
+TEST_F(ReadRgb, RefusesWhatIsNoPicture) {
+    EXPECT_NE(refusal(path("missing.exr")).find("can't be read"), std::string::npos);
+    EXPECT_NE(refusal(written("no picture at all")).find("can't be read"), std::string::npos);
+    const Planes planes(kWidth, kHeight);
+    const std::string whole = encode_scanline({}, planes.image(PixelType::Half));
+    EXPECT_NE(refusal(written(whole.substr(0, whole.size() / 2))).find("can't be read"), std::string::npos);
+
+    Image named = planes.image(PixelType::Half);
+    named.channels[0].name = "red";
+    EXPECT_NE(refusal(written(encode_scanline({}, named))).find("B, G, red"), std::string::npos);
+    Image chroma = planes.image(PixelType::Half);
+    chroma.channels[0].name = "Y", chroma.channels[1].name = "RY", chroma.channels[2].name = "BY";
+    EXPECT_NE(refusal(written(encode_scanline({}, chroma))).find("BY, RY, Y"), std::string::npos);
+}
+
+TEST_F(ReadRgb, RefusesIntegersCropsAndDeepPixels) {
+    const auto empty_file = [&](const Imf::Header& header) {
+        // Its rows are never written: the header alone is reason enough.
+        Imf::OutputFile(path("header.exr").c_str(), header);
+        return path("header.exr");
+    };
+    Imf::Header integers(4, 2);
+    integers.channels().insert("Y", Imf::Channel(Imf::UINT));
+    EXPECT_NE(refusal(empty_file(integers)).find("integers"), std::string::npos);
+    Imf::Header crop({{0, 0}, {7, 3}}, {{2, 0}, {5, 3}});
+    crop.channels().insert("Y", Imf::Channel(Imf::HALF));
+    EXPECT_NE(refusal(empty_file(crop)).find("only a part"), std::string::npos);
+    Imf::Header sparse(4, 2);
+    sparse.channels().insert("Y", Imf::Channel(Imf::HALF, 2, 2));
+    EXPECT_NE(refusal(empty_file(sparse)).find("fewer samples"), std::string::npos);
+    Imf::Header huge(40000, 1);
+    huge.channels().insert("Y", Imf::Channel(Imf::HALF));
+    EXPECT_NE(refusal(empty_file(huge)).find("40000 x 1"), std::string::npos);
+
+    Imf::Header deep(2, 1);
+    deep.channels().insert("R", Imf::Channel(Imf::HALF));
+    deep.setType(Imf::DEEPSCANLINE);
+    deep.compression() = Imf::ZIPS_COMPRESSION;
+    Imf::DeepScanLineOutputFile(path("deep.exr").c_str(), deep);
+    EXPECT_NE(refusal(path("deep.exr")).find("deep"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pelagic::exr

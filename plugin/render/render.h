@@ -1,28 +1,96 @@
 // Pictures from the CPU: the sea of a shot through its camera, lit by core/lighting. The same picture that
-// the preview draws, and the one that it is measured against.
+// the preview draws, and the one that it is measured against:
+//
+//   projected grid → evaluate() at its points, filtered by their cells → triangles (raster.h) → in each pixel
+//   evaluate() again at the place at rest that the pixel shows, filtered by the pixel → shade_sea()
+//
+// and where there is no sea, the sky (core/lighting/background.glsl).
+//
+// A renderer holds its plan's sea and one frame of it (Plan::sea_bytes(), frame_bytes()), the projected grid,
+// some 100 bytes a cell, and some 30 MB for the pixels at hand, whatever the picture's size.
 #pragma once
 
 #include <atomic>
-#include <filesystem>
+#include <cstdint>
 #include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "core/lighting/lighting.h"
+#include "core/lighting/sky.h"
+#include "core/lighting/water.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
-#include "core/surface/view.h"
 
 namespace pelagic {
 
+// Where the pictures' view volume begins [m]: nearer than any lens focuses on a sea, and far enough for the
+// depth buffers of GPUs.
+inline constexpr double kNear_m = 0.05;
+
 // One frame, HDR, rows from the top, x fastest; in the sky's units. The layers add up to the picture:
-// `sky` is the sky that the sea reflects and, beside the sea, the sky itself.
+// `sky` is the sky that the sea reflects and, beside the sea, the sky itself with the sun's disc.
 struct Picture {
     glm::ivec2 resolution{0};
     std::vector<SeaRadiance> layers;
-    std::vector<std::uint8_t> sea;  // 1: sea, 0: sky, by pixel
+    std::vector<std::uint8_t> sea;  // 1: sea in the middle of the pixel, 0: sky
+};
+
+// The layers' sum.
+inline glm::vec3 radiance_of(const SeaRadiance& layers) {
+    return layers.sun + layers.sky + layers.sea + layers.foam;
+}
+
+struct RenderOptions {
+    LightingChoice lighting;
+    int samples = 1;  // N × N a pixel, averaged before any tone mapping: 1 … 16
+};
+
+inline constexpr int kMostSamples = 16;
+
+// What the shot's quality level means for its pictures, for the preview as well; effects that are off are off
+// here.
+RenderOptions render_options(const Scene& scene);
+
+// The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike,
+// whose finest footprints are those of all of the shot's frames together.
+Plan picture_plan(const Scene& scene);
+
+// The shot's light: its daylight, or the picture that light.sky is the path of. Throws std::invalid_argument,
+// naming the file, for a picture that can't be read or isn't one of a sky.
+Sky make_sky(const Scene& scene);
+// What is in the shot's water.
+WaterBody make_water(const Scene& scene);
+
+// A large picture takes long: both are looked at after each part of it.
+struct RenderWatch {
+    std::function<void(double done)> progress{};  // 0 … 1, from the calling thread; may be empty
+    const std::atomic<bool>* cancel = nullptr;    // set from elsewhere
+};
+
+class Renderer {
+  public:
+    // The scene must be valid; its own sky, or another one. Seconds for the largest seas. Throws
+    // std::invalid_argument for options out of range, and as make_sky().
+    Renderer(const Scene& scene, const RenderOptions& options);
+    Renderer(const Scene& scene, const RenderOptions& options, Sky sky);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+    Renderer& operator=(const Renderer&) = delete;
+
+    // One frame of the shot at the camera's resolution, into a picture whose memory is used again. On all
+    // threads of the calling arena; the same bits whatever their number and whichever frame came before.
+    // Every value is finite. False when it was cancelled: the picture is then only partly there.
+    bool render(int frame, Picture& picture, const RenderWatch& watch = {});
+
+    const Plan& plan() const;
+    const Sky& sky() const;
+
+  private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace pelagic

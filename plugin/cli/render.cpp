@@ -1,0 +1,246 @@
+// pelagic render SHOT.toml
+#include "plugin/render/render.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/text.h"
+#include "plugin/bake/bake.h"
+#include "plugin/bake/pipeline.h"
+#include "plugin/cli/exit_status.h"
+#include "plugin/cli/help.h"
+#include "plugin/cli/progress.h"
+#include "plugin/cli/size.h"
+#include "plugin/cli/stop.h"
+#include "plugin/cli/text.h"
+#include "plugin/cli/threads.h"
+#include "plugin/cli/verb.h"
+#include "plugin/files/files.h"
+#include "plugin/render/picture_files.h"
+#include "plugin/shot/shot.h"
+
+namespace pelagic::cli {
+namespace {
+
+// A picture is computed while the one before is encoded and written.
+constexpr int kPicturesInFlight = 2;
+constexpr double kMostStops = 30.0;
+
+struct Arguments {
+    std::string shot;
+    std::optional<std::string> out, frames, terms, sky_quality;
+    std::optional<int> samples;
+    double exposure_stops = 0.0;
+    std::string size, threads;
+};
+
+struct WrongUsage : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// "sun,sea": those alone.
+void parse_terms(const std::string& text, LightingChoice& choice) {
+    choice.sun = choice.sky = choice.water = false;
+    bool foam = false;
+    const std::array<std::pair<std::string_view, bool*>, 4> terms{
+        {{"sun", &choice.sun}, {"sky", &choice.sky}, {"sea", &choice.water}, {"foam", &foam}}};
+    std::istringstream words(text);
+    for (std::string word; std::getline(words, word, ',');) {
+        const auto term =
+            std::find_if(terms.begin(), terms.end(), [&](const auto& t) { return t.first == word; });
+        if (term == terms.end())
+            throw WrongUsage("terms \"" + text + "\": \"" + word +
+                             "\" is none; accepted: any of sun, sky, sea, foam with commas between");
+        *term->second = true;
+    }
+    choice.whitecaps = choice.whitecaps && foam;
+}
+
+SkyQuality parse_sky_quality(const std::string& text) {
+    if (text == "one") return SkyQuality::One;
+    if (text == "nine") return SkyQuality::Nine;
+    if (text == "integral") return SkyQuality::Integral;
+    throw WrongUsage("sky quality \"" + text + "\"; accepted: one, nine, integral");
+}
+
+struct Job {
+    Scene scene;
+    RenderOptions options;
+    std::vector<int> frames;
+    std::filesystem::path out;
+    double exposure_stops = 0.0;
+};
+
+Job job_of(const Arguments& arguments) {
+    Job job{.scene = load_shot(arguments.shot), .options = {}, .frames = {}, .out = {}};
+    const Shot& shot = job.scene.shot;
+    if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) job.scene.camera.resolution = size;
+    job.options = render_options(job.scene);
+    if (arguments.samples) job.options.samples = *arguments.samples;
+    if (job.options.samples < 1 || job.options.samples > kMostSamples)
+        throw WrongUsage("samples " + std::to_string(job.options.samples) + "; accepted: 1 to " +
+                         std::to_string(kMostSamples));
+    if (arguments.terms) parse_terms(*arguments.terms, job.options.lighting);
+    if (arguments.sky_quality) job.options.lighting.sky_quality = parse_sky_quality(*arguments.sky_quality);
+    if (!(std::abs(arguments.exposure_stops) <= kMostStops))
+        throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
+                         number_text(-kMostStops) + " to " + number_text(kMostStops));
+    job.exposure_stops = arguments.exposure_stops;
+    try {
+        const std::string whole_shot =
+            std::to_string(shot.first_frame) + "-" + std::to_string(shot.last_frame);
+        job.frames = parse_frames(arguments.frames.value_or(whole_shot), shot);
+    } catch (const std::invalid_argument& error) {
+        throw WrongUsage(error.what());
+    }
+    if (arguments.out && arguments.out->empty())
+        throw WrongUsage("--out \"\": that is no folder; accepted: a path, or no --out for ./" + shot.name);
+    job.out = arguments.out.value_or(shot.name);
+    return job;
+}
+
+struct Cancelled {};
+
+struct Done {
+    int frames = 0;
+    double seconds = 0.0;
+    bool cancelled = false;
+};
+
+// What a picture in flight holds.
+struct Place {
+    Picture picture;
+    std::string exr, png;
+};
+
+Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
+    using Clock = std::chrono::steady_clock;
+    const auto count = static_cast<int>(job.frames.size());
+    BakeProgress now{.stage = BakeStage::Building, .total = count};
+    progress.show(now);
+    files::ensure_folder(job.out);
+    files::remove_stale_temporaries(job.out);
+    Renderer renderer(job.scene, job.options);
+    const PictureContext context{.scene = job.scene,
+                                 .options = job.options,
+                                 .sky = renderer.sky(),
+                                 .fingerprint = renderer.plan().fingerprint_text(),
+                                 .exposure_stops = job.exposure_stops};
+    stop.files_begin();
+    now.stage = BakeStage::Frames;
+    const Clock::time_point start = Clock::now();
+    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    const auto stop_if_cancelled = [&] {
+        if (stop.cancelled().load(std::memory_order_relaxed)) throw Cancelled();
+    };
+
+    Done done;
+    std::array<Place, kPicturesInFlight> places;
+    PipelineStages stages;
+    stages.compute = [&](int item, int place) {
+        stop_if_cancelled();
+        const RenderWatch watch{.progress =
+                                    [&](double part) {
+                                        progress.show("frame " + std::to_string(job.frames[item]) + ": " +
+                                                      std::to_string(std::lround(100.0 * part)) + " %, " +
+                                                      std::to_string(done.frames) + " of " +
+                                                      std::to_string(count) + " whole");
+                                    },
+                                .cancel = &stop.cancelled()};
+        if (!renderer.render(job.frames[item], places[place].picture, watch)) throw Cancelled();
+    };
+    stages.encode = [&](int item, int place) {
+        Place& at = places[place];
+        at.png = encode_png(context, at.picture);
+        at.exr = encode_exr(context, at.picture, job.frames[item]);
+    };
+    stages.write = [&](int item, int place) {
+        const Shot& shot = job.scene.shot;
+        files::write_atomically(job.out / picture_file(shot, job.frames[item], "png"), places[place].png);
+        files::write_atomically(job.out / picture_file(shot, job.frames[item], "exr"), places[place].exr);
+    };
+    stages.written = [&](int item) {
+        now.frame = job.frames[item];
+        now.done = ++done.frames;
+        now.seconds = seconds();
+        progress.show(now);
+    };
+    try {
+        run_pipeline(count, kPicturesInFlight, stages);
+    } catch (const Cancelled&) {
+        done.cancelled = true;
+    }
+    done.seconds = seconds();
+    return done;
+}
+
+int run(const Arguments& arguments) {
+    Job job;
+    try {
+        job = job_of(arguments);
+    } catch (const WrongUsage& error) {
+        std::cerr << "pelagic: " << error.what() << "\nSee: pelagic render --help\n";
+        return kWrongUsage;
+    }
+    const std::string out = job.out.string();
+    StopSignals stop;
+    Progress progress;
+    Threads threads(arguments.threads);
+    Done done;
+    try {
+        done = threads.execute([&] { return render_all(job, stop, progress); });
+    } catch (const std::bad_alloc&) {
+        progress.clear();
+        std::cerr << "pelagic: out of memory; ask for a smaller picture with --size (now "
+                  << job.scene.camera.resolution.x << "x" << job.scene.camera.resolution.y
+                  << ") or lower the cascades' resolutions; files already written are whole\n";
+        return kRefused;
+    } catch (const std::invalid_argument& error) {
+        progress.clear();
+        std::cerr << arguments.shot << ": " << error.what() << '\n';
+        return kRefused;
+    }
+    progress.clear();
+    const std::string asked = count_text(static_cast<long>(job.frames.size()), "frame", "frames");
+    if (done.cancelled) {
+        std::cerr << "pelagic: stopped; " << done.frames << " of the " << asked << " asked for are whole in "
+                  << out << "; --frames takes the others\n";
+        return kSignal + stop.number();
+    }
+    std::cout << "pictures: " << (job.out / picture_file(job.scene.shot, job.frames.front(), "exr")).string()
+              << (job.frames.size() > 1 ? " …" : "") << " and .png\n"
+              << asked << " rendered in " << duration_text(done.seconds) << std::endl;
+    return kDone;
+}
+
+}  // namespace
+
+Verb add_render(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("render", help::kRender);
+    command->group(help::kVerbs);
+    command->footer(help::kRenderFooter);
+    auto arguments = std::make_shared<Arguments>();
+    command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
+    command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
+    command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
+    add_size(*command, arguments->size, help::kSize);
+    command->add_option("--exposure", arguments->exposure_stops, help::kExposure)->type_name("EV");
+    command->add_option("--samples", arguments->samples, help::kSamples)->type_name("N");
+    command->add_option("--sky-quality", arguments->sky_quality, help::kSkyQuality)->type_name("QUALITY");
+    command->add_option("--terms", arguments->terms, help::kTerms)->type_name("TERMS");
+    add_threads(*command, arguments->threads, help::kThreads);
+    return {command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace pelagic::cli

@@ -1,0 +1,22 @@
+// PNG files in memory: 8-bit sRGB pictures for screens.
+//
+// Knows the format and no physics. The bytes depend on the arguments alone: no time stamp in them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace pelagic::png {
+
+// Rows from the top, x fastest, three bytes a pixel: R, G, B, encoded as sRGB has it.
+struct Image {
+    int width = 0, height = 0;  // 1 … 1e6 each
+    std::span<const std::uint8_t> rgb;
+};
+
+// The image as the bytes of a file, marked as sRGB. Throws std::invalid_argument for a size out of range or
+// that doesn't match the number of bytes, std::bad_alloc.
+std::string encode(const Image& image);
+
+}  // namespace pelagic::png

@@ -1,0 +1,57 @@
+// The light of a shot, and its water. See render.h.
+#include <stdexcept>
+
+#include "plugin/exr/read.h"
+#include "plugin/render/render.h"
+
+namespace pelagic {
+namespace {
+
+WaterKind kind_of(WaterType type) {
+    switch (type) {
+        case WaterType::Ocean:
+            return WaterKind::Ocean;
+        case WaterType::Coastal:
+            return WaterKind::Coastal;
+        case WaterType::Turbid:
+            return WaterKind::Turbid;
+    }
+    throw std::invalid_argument("water of no type");
+}
+
+LatLong read_picture(const std::string& file) {
+    const exr::RgbPixels pixels = [&] {
+        try {
+            return exr::read_rgb(file);
+        } catch (const std::runtime_error& error) {
+            throw std::invalid_argument(error.what());  // which names the file
+        }
+    }();
+    LatLong picture{.width = pixels.width, .height = pixels.height, .radiance = {}};
+    picture.radiance.reserve(pixels.pixels.size());
+    for (const auto& [r, g, b] : pixels.pixels) picture.radiance.emplace_back(r, g, b);
+    return picture;
+}
+
+}  // namespace
+
+Sky make_sky(const Scene& scene) {
+    const Light& light = scene.light;
+    if (light.sky == Light{}.sky)
+        return daylight_sky({.sun_elevation_deg = light.sun_elevation_deg,
+                             .sun_azimuth_deg = light.sun_azimuth_deg,
+                             .turbidity = light.turbidity});
+    const LatLong picture = read_picture(light.sky);
+    try {
+        return picture_sky(picture);
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(light.sky + ": " + error.what());
+    }
+}
+
+WaterBody make_water(const Scene& scene) {
+    return water_body(
+        {.kind = kind_of(scene.water.type), .chlorophyll_mg_m3 = scene.water.chlorophyll_mg_m3});
+}
+
+}  // namespace pelagic

@@ -1,0 +1,126 @@
+#include "plugin/render/picture_files.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/instruction_set.h"
+#include "core/lighting/tone.h"
+#include "core/scene/names.h"
+#include "core/surface/view.h"
+#include "plugin/exr/exr.h"
+#include "plugin/png/png.h"
+
+namespace pelagic {
+namespace {
+
+constexpr float kLargestHalf = 65504.0f;
+
+float largest(glm::vec3 c) {
+    return std::max({c.x, c.y, c.z});
+}
+
+// Whether the sun's light, and all of the light, fits into halves: nothing that the sea sends back is
+// brighter than what falls on it, nor than a white surface under it.
+struct Ranges {
+    exr::PixelType sun, whole;
+};
+
+Ranges ranges_of(const Sky& sky) {
+    const auto type = [](float most) {
+        return most < kLargestHalf ? exr::PixelType::Half : exr::PixelType::Float;
+    };
+    float most = largest(sky.sun_irradiance + sky.sky_irradiance);
+    if (sky.map.level_count() > 0)
+        for (const glm::vec3& texel : sky.map.level(0)) most = std::max(most, largest(texel));
+    return {.sun = type(most + largest(sky.sun_radiance)), .whole = type(most)};
+}
+
+std::array<float, 3> packed(glm::vec3 v) {
+    return {v.x, v.y, v.z};
+}
+
+std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
+    const Scene& scene = context.scene;
+    const View view = view_at(scene.camera, frame);
+    return {{"content", std::string("radiance; the layers add up to R, G, B")},
+            {"unit", std::string(scene.light.sky == Light{}.sky ? "kcd/m2, linear Rec. 709"
+                                                                : "the sky picture's own, linear")},
+            {"time", scene.shot.time_s(frame)},
+            {"fps", scene.shot.fps},
+            {"frame", frame},
+            {"seed", std::to_string(scene.shot.seed)},
+            {"windSpeed_mps", scene.sea.wind_speed_mps},
+            {"windTowards_deg", scene.sea.wind_direction_deg},
+            {"spectrum", std::string(word_of(scene.sea.spectrum))},
+            {"cameraPosition_m", packed(glm::vec3(view.position_m))},
+            {"cameraForward", packed(glm::vec3(view.forward))},
+            {"horizontalFieldOfView_deg", scene.camera.fov_deg},
+            {"sunDirection", packed(context.sky.sun_direction)},
+            {"sky", scene.light.sky},
+            {"exposure", static_cast<double>(exposure_for(context.sky, context.exposure_stops))},
+            {"samplesPerPixel", context.options.samples * context.options.samples},
+            {"fingerprint", context.fingerprint},
+            {"instructionSet", std::string(instruction_set())},
+            {"software", std::string("pelagic " PELAGIC_VERSION)}};
+}
+
+}  // namespace
+
+std::string picture_file(const Shot& shot, int frame, const char* extension) {
+    std::array<char, 16> number{};
+    std::snprintf(number.data(), number.size(), "%04d", frame);
+    return shot.name + "." + number.data() + "." + extension;
+}
+
+std::string encode_exr(const PictureContext& context, const Picture& picture, int frame) {
+    const auto width = static_cast<std::ptrdiff_t>(picture.resolution.x);
+    const std::ptrdiff_t height = picture.resolution.y;
+    std::vector<glm::vec3> sum(picture.layers.size());
+    std::transform(picture.layers.begin(), picture.layers.end(), sum.begin(), radiance_of);
+
+    const Ranges ranges = ranges_of(context.sky);
+    exr::Image image{.width = picture.resolution.x, .height = picture.resolution.y, .channels = {}};
+    // Rows from the top, where the writer counts from the bottom: from the last row backwards.
+    const auto add = [&](const std::string& layer, const glm::vec3& first, std::ptrdiff_t pixel_bytes,
+                         exr::PixelType type) {
+        const auto* last_row = reinterpret_cast<const float*>(reinterpret_cast<const char*>(&first.x) +
+                                                              pixel_bytes * width * (height - 1));
+        constexpr std::array kNames{"R", "G", "B"};
+        for (int c = 0; c < 3; ++c)
+            image.channels.push_back({.name = layer + kNames[c],
+                                      .data = last_row + c,
+                                      .pixel_stride_bytes = pixel_bytes,
+                                      .row_stride_bytes = -pixel_bytes * width,
+                                      .type = type});
+    };
+    constexpr std::ptrdiff_t kLayers = sizeof(SeaRadiance);
+    const SeaRadiance& first = picture.layers.front();
+    add("", sum.front(), sizeof(glm::vec3), ranges.sun);
+    add("sun.", first.sun, kLayers, ranges.sun);
+    add("sky.", first.sky, kLayers, ranges.sun);  // the disc beside the sea
+    add("sea.", first.sea, kLayers, ranges.whole);
+    add("foam.", first.foam, kLayers, ranges.whole);
+    const exr::Header header{.attributes = attributes_of(context, frame),
+                             .compression = exr::Compression::Zip};
+    return exr::encode_scanline(header, image);
+}
+
+std::string encode_png(const PictureContext& context, const Picture& picture) {
+    const float exposure = exposure_for(context.sky, context.exposure_stops);
+    std::vector<std::uint8_t> bytes(picture.layers.size() * 3);
+    tbb::parallel_for(0, picture.resolution.y, [&](int row) {
+        const auto width = static_cast<std::size_t>(picture.resolution.x);
+        for (std::size_t i = width * row; i < width * (row + std::size_t{1}); ++i) {
+            const glm::vec3 colour = display_colour(radiance_of(picture.layers[i]), exposure);
+            for (int c = 0; c < 3; ++c)
+                bytes[3 * i + c] = static_cast<std::uint8_t>(std::lround(255.0f * colour[c]));
+        }
+    });
+    return png::encode({.width = picture.resolution.x, .height = picture.resolution.y, .rgb = bytes});
+}
+
+}  // namespace pelagic

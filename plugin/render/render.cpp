@@ -1,0 +1,358 @@
+#include "plugin/render/render.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/evaluate/evaluate.h"
+#include "core/lighting/background.h"
+#include "core/lighting/water.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
+#include "plugin/render/raster.h"
+
+namespace pelagic {
+namespace {
+
+// Samples that are computed at once: enough to keep all threads busy, little enough to stay near the caches.
+constexpr int kBatch = 1 << 16;
+constexpr std::size_t kShadeGrain = 256;  // samples a task shades
+
+// What a batch of samples holds, by sample of the batch or by sample that shows the sea.
+template <class T>
+struct Batch {
+    std::vector<std::uint32_t> triangles;  // by sample
+    std::vector<SeaRadiance> radiance;     // by sample
+    std::vector<std::size_t> sea;          // which samples show the sea, rising
+    std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
+    std::vector<T> pixel_m;
+    std::vector<glm::vec3> to_eye;
+    std::vector<glm::vec<3, T>> normal, slope_variance;
+    std::vector<T> coverage;
+    std::vector<SeaPoint> points;
+    std::vector<SeaRadiance> lit;
+};
+
+bool asks(const Query& query, Product product) {
+    return query.products[index(product)];
+}
+
+}  // namespace
+
+class Renderer::Impl {
+  public:
+    virtual ~Impl() = default;
+    virtual bool render(int frame, Picture& picture, const RenderWatch& watch) = 0;
+    virtual const Plan& plan() const = 0;
+    virtual const Sky& sky() const = 0;
+};
+
+namespace {
+
+// Samples are pixels of a larger picture with cells as large as before.
+Scene of_samples(const Scene& scene, int samples) {
+    Scene sampled = scene;
+    sampled.camera.resolution *= samples;
+    sampled.surface.cell_px *= samples;
+    return sampled;
+}
+
+// Of a scene of samples, in the plan's precision; Impl is Renderer's own.
+template <class T, class Impl>
+class RendererOf final : public Impl {
+  public:
+    RendererOf(const Scene& scene, const RenderOptions& options, Sky sky, const Plan& plan)
+        : scene_(scene),
+          options_(options),
+          sky_(std::move(sky)),
+          water_(make_water(scene)),
+          sea_(std::make_shared<const Sea<T>>(scene, plan)),
+          frame_(sea_),
+          grid_options_(projected_grid_options(scene)) {}
+
+    const Plan& plan() const override { return sea_->plan(); }
+    const Sky& sky() const override { return sky_; }
+
+    bool render(int frame, Picture& picture, const RenderWatch& watch) override {
+        frame_.set(scene_.shot.time_s(frame));
+        view_ = view_at(scene_.camera, frame);
+        lay_out_grid();
+        picture.resolution = scene_.camera.resolution / options_.samples;
+        const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
+        picture.layers.resize(pixels);
+        picture.sea.resize(pixels);
+        // Whole bands of the rasteriser that are whole rows of the picture.
+        const int rows_at_once = Rasteriser::kBandRows * options_.samples;
+        const int step = std::max(1, kBatch / (rows_at_once * view_.resolution.x)) * rows_at_once;
+        for (int row = 0; row < view_.resolution.y; row += step) {
+            const int rows = std::min(step, view_.resolution.y - row);
+            draw(row, rows);
+            light_sky(row);
+            light_sea(row);
+            average(row, rows, picture);
+            if (watch.progress) watch.progress(static_cast<double>(row + rows) / view_.resolution.y);
+            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
+        }
+        return true;
+    }
+
+  private:
+    void lay_out_grid() {
+        grid_ = projected_grid(view_, grid_options_);
+        const std::size_t count = grid_.rest_m.size();
+        rest_.assign(grid_.rest_m.begin(), grid_.rest_m.end());
+        cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());
+        position_.resize(count);
+        Results<T> results;
+        results.position = {position_.data()};
+        evaluate(frame_, kQuery,
+                 Points<T>{.origin_m = grid_.origin_m,
+                           .count = count,
+                           .rest_m = {rest_.data()},
+                           .cell_m = {cell_m_.data()}},
+                 results);
+        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kNear_m);
+        clip_.resize(count);
+        for (std::size_t i = 0; i < count; ++i) clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
+        const ProjectedGridSize size{grid_.columns, grid_.rows};
+        if (size != triangles_size_) triangles_ = projected_grid_triangles(size);
+        triangles_size_ = size;
+        raster_.set(clip_, triangles_, view_.resolution);
+    }
+
+    // Which triangle each sample of the rows shows.
+    void draw(int first_row, int rows) {
+        const auto width = static_cast<std::size_t>(view_.resolution.x);
+        batch_.triangles.resize(width * rows);
+        batch_.radiance.assign(width * rows, SeaRadiance{});
+        const int first_band = first_row / Rasteriser::kBandRows;
+        const int bands = (rows + Rasteriser::kBandRows - 1) / Rasteriser::kBandRows;
+        tbb::parallel_for(0, bands, [&](int band) {
+            const std::size_t begin = width * band * Rasteriser::kBandRows;
+            const std::size_t size = std::min(width * Rasteriser::kBandRows, batch_.triangles.size() - begin);
+            raster_.draw(first_band + band, std::span(batch_.triangles).subspan(begin, size));
+        });
+        batch_.sea.clear();
+        for (std::size_t i = 0; i < batch_.triangles.size(); ++i)
+            if (batch_.triangles[i] != Rasteriser::kNone) batch_.sea.push_back(i);
+    }
+
+    // The picture point of a sample of the batch.
+    glm::dvec2 centre(int first_row, std::size_t sample) const {
+        const auto width = static_cast<std::size_t>(view_.resolution.x);
+        return {static_cast<double>(sample % width) + 0.5,
+                static_cast<double>(sample / width) + first_row + 0.5};
+    }
+
+    template <class Work>
+    static void in_parallel(std::size_t count, const Work& work) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i) work(i);
+                          });
+    }
+
+    void light_sky(int first_row) {
+        const LightingChoice& lighting = options_.lighting;
+        if (!lighting.sky && !lighting.sun) return;
+        in_parallel(batch_.triangles.size(), [&](std::size_t i) {
+            if (batch_.triangles[i] != Rasteriser::kNone) return;
+            const glm::dvec3 direction = view_.direction(centre(first_row, i));
+            const auto cos_off_axis = static_cast<float>(glm::dot(direction, view_.forward));
+            const Background behind =
+                background(sky_, glm::vec3(direction),
+                           pixel_angle(static_cast<float>(view_.pixel_tangent()), cos_off_axis));
+            if (lighting.sky) batch_.radiance[i].sky += behind.sky;
+            if (lighting.sun) batch_.radiance[i].sky += behind.sun;
+        });
+    }
+
+    void light_sea(int first_row) {
+        const std::size_t count = batch_.sea.size();
+        if (count == 0) return;
+        find_places(first_row);
+        const Query& query = plan().queries[kQuery].query;
+        const auto wanted = [&]<class Value>(Product product, std::vector<Value>& values) {
+            values.resize(asks(query, product) ? count : 0);
+            return Strided<Value>{values.empty() ? nullptr : values.data()};
+        };
+        Results<T> results;
+        results.normal = wanted(Product::Normal, batch_.normal);
+        results.slope_variance = wanted(Product::SlopeVariance, batch_.slope_variance);
+        results.coverage = wanted(Product::Coverage, batch_.coverage);
+        evaluate(frame_, kQuery,
+                 Points<T>{.origin_m = grid_.origin_m,
+                           .count = count,
+                           .rest_m = {batch_.rest.data()},
+                           .pixel_m = {batch_.pixel_m.data()}},
+                 results);
+        batch_.points.resize(count);
+        batch_.lit.resize(count);
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                for (std::size_t i = range.begin(); i < range.end(); ++i)
+                    batch_.points[i] = {
+                        .to_eye = batch_.to_eye[i],
+                        .normal = glm::vec3(batch_.normal[i]),
+                        .slope_variance = glm::vec3(batch_.slope_variance[i]),
+                        .coverage = batch_.coverage.empty() ? 0.0f : static_cast<float>(batch_.coverage[i])};
+                const auto points = std::span(batch_.points).subspan(range.begin(), range.size());
+                const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
+                shade_sea(options_.lighting, sky_, water_, points, lit);
+                for (std::size_t i = range.begin(); i < range.end(); ++i)
+                    batch_.radiance[batch_.sea[i]] = batch_.lit[i];
+            });
+    }
+
+    // The place at rest that each sample of the sea shows, its footprint and the way to the eye.
+    void find_places(int first_row) {
+        const std::size_t count = batch_.sea.size();
+        batch_.rest.resize(count);
+        batch_.pixel_m.resize(count);
+        batch_.to_eye.resize(count);
+        const glm::dvec3 eye = view_.position_m - glm::dvec3(grid_.origin_m, 0.0);
+        in_parallel(count, [&](std::size_t i) {
+            const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
+            const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, batch_.sea[i]));
+            glm::dvec2 rest(0.0);
+            glm::dvec3 position(0.0);
+            double pixel_m = 0.0;
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::uint32_t vertex = triangles_[3 * std::size_t{triangle} + corner];
+                rest += weights[corner] * glm::dvec2(rest_[vertex]);
+                position += weights[corner] * glm::dvec3(position_[vertex]);
+                pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
+            }
+            batch_.rest[i] = glm::vec<2, T>(rest);
+            batch_.pixel_m[i] = static_cast<T>(pixel_m);
+            const glm::dvec3 way = eye - position;
+            const double distance = glm::length(way);
+            // At the eye itself, which the near plane keeps from happening, up is as good as any.
+            batch_.to_eye[i] = distance > 0.0 ? glm::vec3(way / distance) : glm::vec3(0.0f, 0.0f, 1.0f);
+        });
+    }
+
+    // The batch's samples into the picture's pixels.
+    void average(int first_row, int rows, Picture& picture) const {
+        const int n = options_.samples;
+        const auto sample_width = static_cast<std::size_t>(view_.resolution.x);
+        const auto width = static_cast<std::size_t>(picture.resolution.x);
+        const float share = 1.0f / static_cast<float>(n * n);
+        tbb::parallel_for(0, rows / n, [&](int row) {
+            const std::size_t to = width * (first_row / n + row);
+            for (std::size_t x = 0; x < width; ++x) {
+                SeaRadiance sum;
+                for (int y = 0; y < n; ++y)
+                    for (int i = 0; i < n; ++i) {
+                        const SeaRadiance& sample = batch_.radiance[sample_width * (row * n + y) + x * n + i];
+                        sum.sun += sample.sun;
+                        sum.sky += sample.sky;
+                        sum.sea += sample.sea;
+                        sum.foam += sample.foam;
+                    }
+                picture.layers[to + x] = {sum.sun * share, sum.sky * share, sum.sea * share,
+                                          sum.foam * share};
+                const std::size_t middle = sample_width * (row * n + n / 2) + x * n + n / 2;
+                picture.sea[to + x] = batch_.triangles[middle] != Rasteriser::kNone;
+            }
+        });
+    }
+
+    static constexpr int kQuery = 0;  // the plan's only one
+
+    Scene scene_;
+    RenderOptions options_;
+    Sky sky_;
+    WaterBody water_;
+    std::shared_ptr<const Sea<T>> sea_;
+    Frame<T> frame_;
+    ProjectedGridOptions grid_options_;
+    View view_;
+    ProjectedGrid grid_;
+    ProjectedGridSize triangles_size_;
+    std::vector<std::uint32_t> triangles_;  // vertex indices
+    std::vector<glm::vec<2, T>> rest_;      // the grid's own, in T
+    std::vector<T> cell_m_;
+    std::vector<glm::vec<3, T>> position_;
+    std::vector<glm::dvec4> clip_;
+    Rasteriser raster_;
+    Batch<T> batch_;
+};
+
+}  // namespace
+
+RenderOptions render_options(const Scene& scene) {
+    RenderOptions options;
+    options.lighting.whitecaps = scene.effects.whitecaps;
+    switch (scene.quality.level) {
+        case QualityLevel::Draft:
+            options.lighting.sky_quality = SkyQuality::One;
+            options.lighting.fresnel = FresnelFit::Paper;
+            break;
+        case QualityLevel::Preview:
+            options.lighting.sky_quality = SkyQuality::Nine;
+            options.lighting.fresnel = FresnelFit::Exact;
+            break;
+        case QualityLevel::Final:
+            options.lighting.sky_quality = SkyQuality::Nine;
+            options.lighting.fresnel = FresnelFit::Exact;
+            options.samples = 2;
+            break;
+        case QualityLevel::Reference:
+            options.lighting.sky_quality = SkyQuality::Integral;
+            options.lighting.fresnel = FresnelFit::Exact;
+            options.samples = 4;
+            break;
+    }
+    return options;
+}
+
+Plan picture_plan(const Scene& scene) {
+    const ProjectedGridNeeds needs = projected_grid_needs(scene);
+    return make_plan(scene, {view_query(scene, {.products = {},
+                                                .finest_cell_m = needs.finest_cell_m,
+                                                .finest_pixel_m = needs.finest_pixel_m,
+                                                .points = points_of(needs.size)})});
+}
+
+Renderer::Renderer(const Scene& scene, const RenderOptions& options)
+    : Renderer(scene, options, make_sky(scene)) {}
+
+Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky) {
+    if (options.samples < 1 || options.samples > kMostSamples)
+        throw std::invalid_argument(std::to_string(options.samples) + " x " +
+                                    std::to_string(options.samples) + " samples a pixel: 1 to " +
+                                    std::to_string(kMostSamples) + " a side are accepted");
+    const Scene sampled = of_samples(scene, options.samples);
+    if (const glm::ivec2 all = sampled.camera.resolution; std::max(all.x, all.y) > Rasteriser::kLargestSide)
+        throw std::invalid_argument("a picture of " + std::to_string(all.x) + " x " + std::to_string(all.y) +
+                                    " samples: up to " + std::to_string(Rasteriser::kLargestSide) +
+                                    " a side are accepted; ask for a smaller picture or fewer samples");
+    const Plan plan = picture_plan(sampled);
+    if (plan.knobs.double_precision)
+        impl_ = std::make_unique<RendererOf<double, Impl>>(sampled, options, std::move(sky), plan);
+    else
+        impl_ = std::make_unique<RendererOf<float, Impl>>(sampled, options, std::move(sky), plan);
+}
+
+Renderer::~Renderer() = default;
+
+bool Renderer::render(int frame, Picture& picture, const RenderWatch& watch) {
+    return impl_->render(frame, picture, watch);
+}
+const Plan& Renderer::plan() const {
+    return impl_->plan();
+}
+const Sky& Renderer::sky() const {
+    return impl_->sky();
+}
+
+}  // namespace pelagic

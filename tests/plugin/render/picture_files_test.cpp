@@ -1,0 +1,150 @@
+// What the files of a picture hold, read back by OpenEXR's own reader.
+#include "plugin/render/picture_files.h"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfStringAttribute.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace pelagic {
+namespace {
+
+class MemoryStream : public Imf::IStream {
+  public:
+    explicit MemoryStream(const std::string& bytes) : IStream("memory"), bytes_(bytes) {}
+    bool read(char to[], int count) override {
+        if (at_ + static_cast<std::size_t>(count) > bytes_.size()) throw std::runtime_error("past the end");
+        std::memcpy(to, bytes_.data() + at_, static_cast<std::size_t>(count));
+        at_ += static_cast<std::size_t>(count);
+        return at_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return at_; }
+    void seekg(std::uint64_t at) override { at_ = at; }
+
+  private:
+    const std::string& bytes_;
+    std::size_t at_ = 0;
+};
+
+struct Read {
+    std::map<std::string, std::vector<float>> channels;
+    std::map<std::string, Imf::PixelType> types;
+    std::string fingerprint;
+};
+
+Read read(const std::string& bytes, glm::ivec2 resolution) {
+    MemoryStream stream(bytes);
+    Imf::InputFile file(stream);
+    Read result;
+    Imf::FrameBuffer buffer;
+    const auto pixels = static_cast<std::size_t>(resolution.x) * resolution.y;
+    for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c) {
+        std::vector<float>& values = result.channels[c.name()];
+        values.resize(pixels);
+        result.types[c.name()] = c.channel().type;
+        buffer.insert(c.name(), Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float),
+                                           sizeof(float) * resolution.x));
+    }
+    file.setFrameBuffer(buffer);
+    file.readPixels(0, resolution.y - 1);
+    result.fingerprint = file.header().typedAttribute<Imf::StringAttribute>("fingerprint").value();
+    return result;
+}
+
+Picture pattern(glm::ivec2 resolution) {
+    Picture picture{.resolution = resolution, .layers = {}, .sea = {}};
+    for (int i = 0; i < resolution.x * resolution.y; ++i) {
+        const auto f = static_cast<float>(i);
+        picture.layers.push_back({.sun = glm::vec3(100.0f + f, 0.0f, 3.0f),
+                                  .sky = glm::vec3(0.1f * f, 1.0f, 2.0f),
+                                  .sea = glm::vec3(0.01f, 0.02f, 0.03f * f),
+                                  .foam = glm::vec3(0.5f, 0.25f * f, 0.125f)});
+        picture.sea.push_back(1);
+    }
+    return picture;
+}
+
+Sky some_sky(float sun_radiance) {
+    Sky sky;
+    sky.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(2.0f)));
+    sky.sky_irradiance = glm::vec3(6.0f);
+    sky.sun_radiance = glm::vec3(sun_radiance);
+    return sky;
+}
+
+// The first row of the file is the picture's top one, each layer is where it belongs, and they add up: to a
+// half's rounding, 2^-11 of each, and of the sum.
+TEST(PictureFiles, LayersAreInPlaceAndAddUp) {
+    const glm::ivec2 resolution(7, 5);
+    const Picture picture = pattern(resolution);
+    const Scene scene;
+    const RenderOptions options;
+    for (const float sun : {100.0f, 1e6f}) {
+        const Sky sky = some_sky(sun);
+        const PictureContext context{scene, options, sky, "0123456789abcdef"};
+        const Read file = read(encode_exr(context, picture, 12), resolution);
+        EXPECT_EQ(file.channels.size(), 15u);
+        EXPECT_EQ(file.fingerprint, "0123456789abcdef");
+        // The sun's own radiance is beyond a half's range.
+        EXPECT_EQ(file.types.at("sky.G"), sun > 65504.0f ? Imf::FLOAT : Imf::HALF);
+        EXPECT_EQ(file.types.at("foam.G"), Imf::HALF);
+        constexpr double kHalf = 1.0 / 2048.0;
+        constexpr std::array<const char*, 3> kNames{"R", "G", "B"};
+        for (std::size_t i = 0; i < picture.layers.size(); ++i)
+            for (int c = 0; c < 3; ++c) {
+                const std::string name = kNames[c];
+                const auto value = [&](const std::string& layer) {
+                    return static_cast<double>(file.channels.at(layer + name).at(i));
+                };
+                const SeaRadiance& layers = picture.layers[i];
+                const auto near = [&](double got, float asked) {
+                    EXPECT_NEAR(got, static_cast<double>(asked), kHalf * static_cast<double>(asked))
+                        << name << i;
+                };
+                near(value("sun."), layers.sun[c]);
+                near(value("sky."), layers.sky[c]);
+                near(value("sea."), layers.sea[c]);
+                near(value("foam."), layers.foam[c]);
+                const double sum = value("sun.") + value("sky.") + value("sea.") + value("foam.");
+                EXPECT_NEAR(value(""), sum, 2.0 * kHalf * sum);
+            }
+    }
+}
+
+TEST(PictureFiles, ScreensShowTheSumWithTheExposure) {
+    const glm::ivec2 resolution(3, 2);
+    Picture picture{.resolution = resolution, .layers = std::vector<SeaRadiance>(6), .sea = {}};
+    const Scene scene;
+    const RenderOptions options;
+    const Sky sky = some_sky(0.0f);
+    const auto png = [&](double stops) { return encode_png({scene, options, sky, "", stops}, picture); };
+    const std::string black = png(0.0);
+    picture.layers[4].foam = glm::vec3(1.0f);
+    const std::string foam = png(0.0);
+    EXPECT_NE(foam, black);
+    EXPECT_NE(png(1.0), foam);
+    picture.layers[4] = {
+        .sun = glm::vec3(0.25f), .sky = glm::vec3(0.25f), .sea = glm::vec3(0.5f), .foam = {}};
+    EXPECT_EQ(png(0.0), foam);
+}
+
+TEST(PictureFiles, NamesHaveFourDigits) {
+    Shot shot;
+    shot.name = "storm";
+    EXPECT_EQ(picture_file(shot, 12, "exr"), "storm.0012.exr");
+    EXPECT_EQ(picture_file(shot, 12345, "png"), "storm.12345.png");
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,324 @@
+// Whole pictures, of seas for which something is known. Small ones: a few thousand pixels.
+#include "plugin/render/render.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/surface/view.h"
+
+namespace pelagic {
+namespace {
+
+constexpr float kSkyRadiance = 5.0f;
+
+// The same radiance from everywhere, the lower hemisphere included, and no sun.
+Sky uniform_sky() {
+    Sky sky;
+    sky.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(kSkyRadiance)));
+    sky.sky_irradiance = glm::vec3(kSkyRadiance * static_cast<float>(kPi));
+    return sky;
+}
+
+Scene small_scene() {
+    Scene scene;
+    scene.camera.resolution = {64, 40};
+    scene.quality.level = QualityLevel::Draft;
+    scene.waves.cascades = {{250.0, 64}, {30.0, 64}};
+    return scene;
+}
+
+Scene calm_scene() {
+    Scene scene = small_scene();
+    scene.sea.wind_speed_mps = 0.0;
+    return scene;
+}
+
+Picture picture_of(const Scene& scene, const RenderOptions& options, int frame = 1) {
+    Renderer renderer(scene, options, uniform_sky());
+    Picture picture;
+    EXPECT_TRUE(renderer.render(frame, picture));
+    return picture;
+}
+Picture picture_of(const Scene& scene, int frame = 1) {
+    return picture_of(scene, render_options(scene), frame);
+}
+
+bool same_bits(const Picture& a, const Picture& b) {
+    return a.resolution == b.resolution && a.sea == b.sea && a.layers.size() == b.layers.size() &&
+           std::memcmp(a.layers.data(), b.layers.data(), a.layers.size() * sizeof(SeaRadiance)) == 0;
+}
+
+double largest_difference(const Picture& a, const Picture& b) {
+    EXPECT_EQ(a.resolution, b.resolution);
+    double most = 0.0;
+    for (std::size_t i = 0; i < a.layers.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            most = std::max(most, std::abs(static_cast<double>(radiance_of(a.layers[i])[c]) -
+                                           static_cast<double>(radiance_of(b.layers[i])[c])));
+    return most;
+}
+
+void expect_finite(const Picture& picture) {
+    for (const SeaRadiance& layers : picture.layers)
+        for (const glm::vec3& layer : {layers.sun, layers.sky, layers.sea, layers.foam})
+            for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(layer[c]) && layer[c] >= 0.0f);
+}
+
+// Of unpolarised light on water, from Fresnel's amplitudes.
+double fresnel(double cos_theta) {
+    constexpr double n = 1.34;
+    const double t = std::sqrt(1.0 - (1.0 - cos_theta * cos_theta) / (n * n));
+    const double s = (cos_theta - n * t) / (cos_theta + n * t);
+    const double p = (n * cos_theta - t) / (n * cos_theta + t);
+    return 0.5 * (s * s + p * p);
+}
+
+// Under the same sky everywhere a mirror sends back F L, whatever lies in its direction, and the water (1 −
+// F) times one colour. 0.016 of L: the fit of the effective term is asked to be within 0.015 of the exact
+// one.
+TEST(Render, FlatSeaUnderUniformSkyIsFresnelsAndTheWaters) {
+    Scene scene = calm_scene();
+    scene.quality.level = QualityLevel::Preview;
+    const Picture picture = picture_of(scene);
+    const View view = view_at(scene.camera, 1);
+    double colour = 0.0;
+    int sea = 0;
+    for (int y = 0; y < picture.resolution.y; ++y)
+        for (int x = 0; x < picture.resolution.x; ++x) {
+            const std::size_t i = static_cast<std::size_t>(y) * picture.resolution.x + x;
+            const SeaRadiance& pixel = picture.layers[i];
+            const double cos_theta = -view.direction({x + 0.5, y + 0.5}).z;
+            ASSERT_EQ(picture.sea[i], cos_theta > 0.0) << x << ", " << y;
+            EXPECT_EQ(pixel.sun, glm::vec3(0.0f));
+            EXPECT_EQ(pixel.foam, glm::vec3(0.0f));
+            if (picture.sea[i] == 0) {
+                EXPECT_EQ(pixel.sky, glm::vec3(kSkyRadiance));
+                EXPECT_EQ(pixel.sea, glm::vec3(0.0f));
+                continue;
+            }
+            ++sea;
+            const double share = static_cast<double>(pixel.sky.y) / static_cast<double>(kSkyRadiance);
+            EXPECT_NEAR(share, fresnel(cos_theta), 0.016) << "cos " << cos_theta;
+            const double through = static_cast<double>(pixel.sea.y) / (1.0 - share);
+            if (colour == 0.0) colour = through;
+            // Near grazing 1 − F is a small difference of singles.
+            EXPECT_NEAR(through, colour, 5e-5 * colour / (1.0 - share));
+        }
+    EXPECT_GT(sea, 1000);
+    EXPECT_GT(colour, 0.0);
+}
+
+// The horizon of a calm sea lies where level rays go, on a row of its own.
+TEST(Render, HorizonIsLevelAndInItsPlace) {
+    Scene scene = calm_scene();
+    for (const double height_m : {0.5, 60.0, 20e3}) {
+        scene.camera.position_m = {3.0, -60.0, height_m};
+        scene.camera.look_at_m = {3.0, 1e6, height_m - 1e5 * 0.73};
+        const Picture picture = picture_of(scene);
+        const View view = view_at(scene.camera, 1);
+        for (int y = 0; y < picture.resolution.y; ++y)
+            for (int x = 0; x < picture.resolution.x; ++x)
+                EXPECT_EQ(picture.sea[static_cast<std::size_t>(y) * picture.resolution.x + x],
+                          view.direction({x + 0.5, y + 0.5}).z < 0.0)
+                    << height_m << " m: " << x << ", " << y;
+    }
+}
+
+// Waves hide what is behind them and leave no holes: seen from above the crests, below the first sea of a
+// column there is nothing but sea.
+TEST(Render, AgitatedSeaHasNoHoles) {
+    Scene scene = small_scene();
+    scene.sea.wind_speed_mps = 20.0;
+    for (const glm::dvec3 from :
+         {glm::dvec3(0.0, -60.0, 30.0), glm::dvec3(1e6, 1e6, 30.0), glm::dvec3(0.0, -60.0, 8e3)}) {
+        scene.camera.position_m = from;
+        scene.camera.look_at_m = from + glm::dvec3(20.0, 60.0, -9.0);
+        const Picture picture = picture_of(scene);
+        expect_finite(picture);
+        for (int x = 0; x < picture.resolution.x; ++x) {
+            bool sea = false;
+            for (int y = 0; y < picture.resolution.y; ++y) {
+                const bool here = picture.sea[static_cast<std::size_t>(y) * picture.resolution.x + x] != 0;
+                EXPECT_TRUE(here || !sea) << x << ", " << y;
+                sea = sea || here;
+            }
+            EXPECT_TRUE(sea);
+        }
+    }
+}
+
+TEST(Render, SameBitsForAnyNumberOfThreadsAndOrderOfFrames) {
+    Scene scene = small_scene();
+    scene.camera.resolution = {150, 90};  // more than a band
+    const RenderOptions options{.lighting = render_options(scene).lighting, .samples = 3};
+    const auto on_threads = [&](int threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<std::size_t>(threads));
+        tbb::task_arena arena(threads);
+        return arena.execute([&] { return picture_of(scene, options, 5); });
+    };
+    const Picture one = on_threads(1);
+    EXPECT_TRUE(same_bits(one, on_threads(4)));
+    Renderer renderer(scene, options, uniform_sky());
+    Picture again;
+    ASSERT_TRUE(renderer.render(9, again));
+    EXPECT_FALSE(same_bits(one, again));  // the sea moves
+    ASSERT_TRUE(renderer.render(5, again));
+    EXPECT_TRUE(same_bits(one, again));
+}
+
+// Half way between two keys the picture is that of a camera that stands there. 1e-4 of the sky: places are
+// singles relative to the camera's nadir, and the way there is rounded another way.
+TEST(Render, FollowsTheCamerasKeys) {
+    Scene moving = calm_scene();
+    moving.camera.keys = {{.frame = 1, .position_m = {0.0, -60.0, 4.0}, .look_at_m = {0.0, 0.0, 0.0}},
+                          {.frame = 5, .position_m = {8.0, -20.0, 12.0}, .look_at_m = {40.0, 60.0, 2.0}}};
+    Scene still = calm_scene();
+    still.camera.position_m = {4.0, -40.0, 8.0};
+    still.camera.look_at_m = {20.0, 30.0, 1.0};
+    const Picture there = picture_of(still, 3);
+    EXPECT_LE(largest_difference(picture_of(moving, 3), there), 1e-4 * static_cast<double>(kSkyRadiance));
+    EXPECT_GT(largest_difference(picture_of(moving, 2), there), 1e-2 * static_cast<double>(kSkyRadiance));
+}
+
+TEST(Render, LookingUpIsSkyAlone) {
+    Scene scene = small_scene();
+    scene.camera.look_at_m = scene.camera.position_m + glm::dvec3(0.0, 1.0, 1.5);
+    const Picture picture = picture_of(scene);
+    EXPECT_EQ(std::ranges::count(picture.sea, 1), 0);
+    for (const SeaRadiance& pixel : picture.layers) EXPECT_EQ(radiance_of(pixel), glm::vec3(kSkyRadiance));
+}
+
+TEST(Render, StaysFiniteAtInAndUnderTheSurface) {
+    Scene scene = small_scene();
+    scene.sea.wind_speed_mps = 25.0;
+    for (const double height_m : {0.0, -3.0, -1000.0, 1e-3, 1e6}) {
+        scene.camera.position_m = {0.0, 0.0, height_m};
+        for (const glm::dvec3 towards :
+             {glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(0.0, 0.0, -1.0), glm::dvec3(0.0, 0.0, 1.0)}) {
+            scene.camera.look_at_m = scene.camera.position_m + towards;
+            expect_finite(picture_of(scene));
+        }
+    }
+}
+
+// N × N samples are the pixels of an N times larger picture with cells as large as before. Sums of N² singles
+// in another order.
+TEST(Render, SamplesAreAveraged) {
+    Scene scene = small_scene();
+    RenderOptions options{.lighting = render_options(scene).lighting, .samples = 2};
+    const Picture averaged = picture_of(scene, options);
+    Scene larger = scene;
+    larger.camera.resolution *= 2;
+    larger.surface.cell_px *= 2.0;
+    options.samples = 1;
+    const Picture fine = picture_of(larger, options);
+    const int width = scene.camera.resolution.x;
+    for (int y = 0; y < scene.camera.resolution.y; ++y)
+        for (int x = 0; x < width; ++x) {
+            glm::dvec3 mean(0.0);
+            for (int j = 0; j < 2; ++j)
+                for (int i = 0; i < 2; ++i)
+                    mean +=
+                        0.25 * glm::dvec3(radiance_of(
+                                   fine.layers[static_cast<std::size_t>(2 * y + j) * 2 * width + 2 * x + i]));
+            const glm::dvec3 got(radiance_of(averaged.layers[static_cast<std::size_t>(y) * width + x]));
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], mean[c], 1e-6 * mean[c]);
+        }
+}
+
+// A term that is off leaves its layer black, and the other layers as they are but for the foam's share.
+TEST(Render, TermsThatAreOffAreBlack) {
+    Scene scene = small_scene();
+    scene.sea.wind_speed_mps = 18.0;
+    Sky sky = uniform_sky();
+    sky.sun_direction = {0.0f, 0.8f, 0.6f};
+    sky.sun_radiance = glm::vec3(1e5f);
+    sky.sun_irradiance = glm::vec3(4.0f);
+    const auto with = [&](LightingChoice lighting) {
+        lighting.sky_quality = SkyQuality::One;
+        Renderer renderer(scene, {.lighting = lighting}, sky);
+        Picture picture;
+        EXPECT_TRUE(renderer.render(1, picture));
+        return picture;
+    };
+    const Picture all = with({});
+    const Picture sun = with({.sky = false, .water = false, .whitecaps = false});
+    const Picture sea = with({.sun = false, .sky = false, .whitecaps = false});
+    double foam = 0.0;
+    for (std::size_t i = 0; i < all.layers.size(); ++i) {
+        foam += static_cast<double>(all.layers[i].foam.x);
+        const glm::vec3 none(0.0f);
+        EXPECT_EQ(sun.layers[i].sea, none);
+        EXPECT_EQ(sun.layers[i].foam, none);
+        EXPECT_EQ(sea.layers[i].sky, none);
+        EXPECT_EQ(sea.layers[i].sun, none);
+        if (sun.sea[i] != 0) {
+            EXPECT_EQ(sun.layers[i].sky, none);
+        }
+        EXPECT_GE(sun.layers[i].sun.x, all.layers[i].sun.x);
+        EXPECT_GE(sea.layers[i].sea.x, all.layers[i].sea.x);
+    }
+    EXPECT_GT(foam, 0.0);
+    scene.effects.whitecaps = false;
+    for (const SeaRadiance& pixel : with(render_options(scene).lighting).layers)
+        EXPECT_EQ(pixel.foam, glm::vec3(0.0f));
+}
+
+TEST(Render, QualityChoosesTheLighting) {
+    Scene scene;
+    const auto at = [&](QualityLevel level) {
+        scene.quality.level = level;
+        return render_options(scene).lighting;
+    };
+    EXPECT_EQ(at(QualityLevel::Draft).sky_quality, SkyQuality::One);
+    EXPECT_EQ(at(QualityLevel::Draft).fresnel, FresnelFit::Paper);
+    EXPECT_EQ(at(QualityLevel::Final).sky_quality, SkyQuality::Nine);
+    EXPECT_EQ(at(QualityLevel::Final).fresnel, FresnelFit::Exact);
+    EXPECT_EQ(at(QualityLevel::Reference).sky_quality, SkyQuality::Integral);
+    EXPECT_TRUE(at(QualityLevel::Final).whitecaps);
+    scene.effects.whitecaps = false;
+    EXPECT_FALSE(at(QualityLevel::Final).whitecaps);
+}
+
+TEST(Render, TellsHowFarItIsAndStopsWhenAsked) {
+    Scene scene = small_scene();
+    Renderer renderer(scene, render_options(scene), uniform_sky());
+    Picture picture;
+    double done = 0.0;
+    EXPECT_TRUE(renderer.render(1, picture, {.progress = [&](double part) {
+                                    EXPECT_GT(part, done);
+                                    done = part;
+                                }}));
+    EXPECT_EQ(done, 1.0);
+    const std::atomic<bool> stop = true;
+    EXPECT_FALSE(renderer.render(1, picture, {.cancel = &stop}));
+}
+
+TEST(Render, RefusesWhatItCannotDo) {
+    Scene scene = small_scene();
+    EXPECT_THROW(Renderer(scene, {.lighting = {}, .samples = 0}, uniform_sky()), std::invalid_argument);
+    EXPECT_THROW(Renderer(scene, {.lighting = {}, .samples = kMostSamples + 1}, uniform_sky()),
+                 std::invalid_argument);
+    scene.camera.resolution = {65536, 2};
+    EXPECT_THROW(Renderer(scene, {.lighting = {}, .samples = 8}, uniform_sky()), std::invalid_argument);
+    scene.light.sky = "/nowhere/sky.exr";
+    try {
+        make_sky(scene);
+        FAIL() << "a picture that isn't there";
+    } catch (const std::invalid_argument& error) {
+        EXPECT_NE(std::string(error.what()).find("/nowhere/sky.exr"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -6,7 +6,10 @@ namespace pelagic {
 namespace behind {
 
 using namespace glm;
+// clang-format off
+#include "core/lighting/special.glsl"
 #include "core/lighting/background.glsl"
+// clang-format on
 
 }  // namespace behind
 

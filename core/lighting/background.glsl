@@ -1,15 +1,14 @@
 // What lies behind the sea: the sun's own disc before the sky. A picture shows, where there is no sea,
 //     sky_lookup(background_place(place of the direction in the map, kSkyMapSize), 0.0f)
 //         + sun_radiance · sun_disc(…).
-// One source for C++ and GLSL; needs nothing but the language.
+// One source for C++ and GLSL; special.glsl comes before it.
 
 // Where the sky behind the sea is looked up: at the place itself, but for a seam along the horizon, on both
 // sides, which takes the sky just above. There the map's texels hold what lies above and below the horizon,
 // which is right for a reflection and a dark saw to look at. A lookup mixes what is up to 1½ texels off, each
 // way.
 vec2 background_place(vec2 u, float map_size) {
-    float map_reach = 1.25f;  // the map holds |u_x|, |u_y| up to this
-    float texel = 2.0f * map_reach / map_size;
+    float texel = 2.0f * kSkyMapReach / map_size;
     float radius = length(u);
     if (radius < 0.5f) return u;  // not near the horizon, |u| = 1, in any map that has one
     vec2 outwards = u / radius;

@@ -4,13 +4,6 @@
 //   const float kSkyMapSize        texels a side of the map
 //   vec3 sky_lookup(vec2 u, float level)    the map, trilinear; u = r_xy/(1 + r_z), level 0 the finest
 
-const float kSkyMapReach = 1.25f;  // the map holds |u_x|, |u_y| up to this; C++'s kSkyMapExtent
-
-// Where a direction lies. r_z → −1 is the projection's pole: any place beyond the map's edge will do there.
-vec2 sky_place(vec3 direction) {
-    return vec2(direction.x, direction.y) / max(1.0f + direction.z, 1.0e-4f);
-}
-
 // What a ray meets that is reflected onto the sea: the map's value below the horizon (§6), found in its
 // corner.
 vec3 light_from_below() {

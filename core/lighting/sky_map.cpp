@@ -7,13 +7,17 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
+#include <glm/glm.hpp>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace pelagic {
+namespace projection {
+using namespace glm;
+#include "core/lighting/special.glsl"
+}  // namespace projection
+
 namespace {
 
 constexpr int kSmallest = 4, kLargest = 4096;
@@ -105,7 +109,7 @@ glm::vec2 sky_map_place(glm::vec3 direction) {
         const float largest = std::max(std::abs(across.x), std::abs(across.y));
         return largest > 0.0f ? across * (kSkyMapExtent / largest) : glm::vec2(kSkyMapExtent, 0.0f);
     }
-    return across / up;
+    return projection::sky_place(direction);
 }
 
 glm::vec3 sky_map_direction(glm::vec2 u) {

@@ -11,9 +11,20 @@ struct SlopeFrame {
     vec3 variance;  // (σxx, σyy, σxy) in the frame
 };
 
-// A facet that is seen cannot face away from the eye (§3.2).
+// What is seen cannot face away from the eye (§3.2), nor, where the eye is above, be a mirror for rays that go on
+// downwards: they would meet the next wave, at a grazing angle as well, and be sent up by it. Both happen where a
+// pixel's normal is finer than the crest that it stands on. The normal is bent towards the eye as little as
+// takes the mirrored ray up to the horizon; the paper's n − 2(n·v)v, the least here, leaves a dark line along crests.
+// n + cv mirrors v to the horizon where v_z c² + 2 n_z c + 2 n_z (n·v) − v_z = 0.
 vec3 facing_normal(vec3 normal, vec3 to_eye) {
-    return normal - 2.0f * min(dot(normal, to_eye), 0.0f) * to_eye;
+    float facing = dot(normal, to_eye);
+    float below = to_eye.z - 2.0f * facing * normal.z;  // minus the mirrored ray's height
+    float bend = max(-2.0f * facing, 0.0f);
+    if (below > 0.0f && to_eye.z > 0.0f) {
+        float root = sqrt(max(square(normal.z) + to_eye.z * below, 0.0f));
+        bend = max(bend, below / max(normal.z + root, 1.0e-4f));
+    }
+    return normalize(normal + bend * to_eye);
 }
 
 // The tensor of world slopes about a plane of slope s, seen from that plane: to first order a slope deviation

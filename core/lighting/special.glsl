@@ -1,4 +1,4 @@
-// Constants and special functions of the sea's lighting.
+// Constants, the sky map's projection and special functions of the sea's lighting.
 //
 // These files (special, fresnel, slopes, sun, sky, water, foam, sea: in this order) are the same text for C++
 // and for GLSL: plain functions over floats and vectors. C++ takes them in inside a struct after `using
@@ -6,6 +6,13 @@
 
 const float kPi = 3.14159265f;
 const float kWaterIndex = 1.34f;  // sea water's index of refraction for visible light (Hu et al. 2006)
+
+const float kSkyMapReach = 1.25f;  // the map holds |u_x|, |u_y| up to this; C++'s kSkyMapExtent
+
+// Where a direction lies. r_z → −1 is the projection's pole: any place beyond the map's edge will do there.
+vec2 sky_place(vec3 direction) {
+    return vec2(direction.x, direction.y) / max(1.0f + direction.z, 1.0e-4f);
+}
 
 // exp(a²) erfc(a) for a ≥ 0, to 1e-6 relative. The factor (1 + 2a) takes out the decay; what is left is a
 // polynomial in s = (a − 2)/(a + 2), which has the whole half-line in −1 … 1: least squares in Chebyshev's

@@ -11,6 +11,8 @@ const char* const kProgram =
 const char* const kProgramFooter =
     "Examples:\n"
     "  pelagic bake storm.toml --out storm     every frame, into the folder storm\n"
+    "  pelagic render storm.toml --out storm   pictures of it, OpenEXR and PNG\n"
+    "  pelagic preview storm.toml              a window that plays it\n"
     "  pelagic explain storm.toml              what a bake will compute, and why\n"
     "  pelagic validate shots/*.toml           check shot files without baking\n"
     "  pelagic keys                            all that a shot file can say\n"
@@ -48,6 +50,67 @@ const char* const kFrames =
     "Default: all of them";
 const char* const kThreads =
     "How many threads, 1 to 256; the files don't depend on it.\n"
+    "Default: one for each core that the process may use";
+
+const char* const kRender =
+    "Render pictures of a shot through its camera: OpenEXR with layers, and PNG.\n"
+    "The sea as the preview shows it, computed on the CPU. Each frame leaves DIR/NAME.####.exr\n"
+    "(R, G, B and the layers sun, sky, sea and foam, which add up to them) and DIR/NAME.####.png.";
+const char* const kRenderFooter =
+    "Examples:\n"
+    "  pelagic render storm.toml --out storm             every frame\n"
+    "  pelagic render storm.toml --frames 12 --size 640x360 --samples 1\n"
+    "                                                    one, small and fast, to look at first\n"
+    "  pelagic render storm.toml --frames 12 --terms sun the glitter alone\n"
+    "\n"
+    "The PNG's exposure follows from the light, so that a camera that turns keeps its\n"
+    "brightness. Frames don't depend on one another, nor on the number of threads.";
+const char* const kSize =
+    "The pictures' width and height in pixels.\n"
+    "Default: the shot's camera.resolution";
+const char* const kExposure =
+    "Stops by which the PNG is brighter, or darker below 0: twice the light for each";
+const char* const kSamples =
+    "N × N samples a pixel, 1 to 16.\n"
+    "Default: from the shot's quality.level: 1 for draft and preview, 2 for final, 4 for reference";
+const char* const kSkyQuality =
+    "How the sky's reflection is found: one (lookup), nine, integral.\n"
+    "Default: from the shot's quality.level: one for draft, integral for reference, else nine";
+const char* const kTerms =
+    "Which of the light there is: sun, sky, sea, foam, with commas between.\n"
+    "Default: all of them";
+
+const char* const kPreview =
+    "Play a shot in a window, in real time, and turn what it is made of.\n"
+    "The pictures are those of pelagic render, drawn by OpenGL 3.3. A changed wind is built beside\n"
+    "the sea that plays. F1 in the window says how to move.";
+const char* const kPreviewFooter =
+    "Examples:\n"
+    "  pelagic preview storm.toml                            a window\n"
+    "  pelagic preview storm.toml --scale 4 --quality draft  where there is no graphics card\n"
+    "  pelagic preview storm.toml --offscreen storm.png --frame 12 --size 640x360\n"
+    "                                                        one picture, without a display (EGL)\n"
+    "\n"
+    "The window's \"Copy as shot file\" puts the keys that you changed on the clipboard.";
+const char* const kOffscreen =
+    "Draw one frame into a file and open no window: an .exr with the layers sun, sky,\n"
+    "sea and foam, or a .png. Needs no display";
+const char* const kFrame =
+    "With --offscreen which frame, otherwise where to begin, paused.\n"
+    "Default: the shot's first; the window plays on from there";
+const char* const kPreviewSize =
+    "The window's, or the picture's, width and height in pixels.\n"
+    "Default: the shot's camera.resolution, the window's no larger than the screen";
+const char* const kPreviewQuality = "Instead of the shot's quality.level: draft, preview, final, reference";
+const char* const kScale =
+    "Draw fewer pixels than the window has: each covers 1, 2 × 2 or 4 × 4 of them.\n"
+    "Also in the window's panel. Default: 1";
+const char* const kScreenshot =
+    "Save the window with its panel as a .png after some pictures, and close: to try\n"
+    "the window without a hand, under Xvfb for one";
+const char* const kAfter = "With --screenshot: after how many pictures that show the sea. Default: 8";
+const char* const kPreviewThreads =
+    "How many threads compute the sea, 1 to 256.\n"
     "Default: one for each core that the process may use";
 
 const char* const kExplain =

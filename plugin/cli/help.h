@@ -17,6 +17,25 @@ extern const char* const kOut;
 extern const char* const kFrames;
 extern const char* const kThreads;
 
+extern const char* const kRender;
+extern const char* const kRenderFooter;
+extern const char* const kSize;
+extern const char* const kExposure;
+extern const char* const kSamples;
+extern const char* const kSkyQuality;
+extern const char* const kTerms;
+
+extern const char* const kPreview;
+extern const char* const kPreviewFooter;
+extern const char* const kOffscreen;
+extern const char* const kFrame;
+extern const char* const kPreviewSize;
+extern const char* const kPreviewQuality;
+extern const char* const kScale;
+extern const char* const kScreenshot;
+extern const char* const kAfter;
+extern const char* const kPreviewThreads;
+
 extern const char* const kExplain;
 extern const char* const kExplainFooter;
 extern const char* const kMeasure;

@@ -15,6 +15,8 @@ struct Verb {
 
 // The program's App must outlive the verbs.
 Verb add_bake(CLI::App& program);
+Verb add_render(CLI::App& program);
+Verb add_preview(CLI::App& program);
 Verb add_explain(CLI::App& program);
 Verb add_validate(CLI::App& program);
 Verb add_keys(CLI::App& program);

@@ -75,8 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "3:13", "camera.look_at_m = [1, 2, 3]: ", "a target"},
         Refused{"ValueNotBuiltYet", "[surface]\nkind = \"planet\"\n", "2:8",
                 "surface.kind = \"planet\": is not built yet", "\"patch\""},
-        Refused{"KeyNotBuiltYet", "[surface]\ncell_px = 8.0\n", "2:1",
-                "surface.cell_px = 8: is not built yet", "a file without this key"},
+        Refused{"KeyNotBuiltYet", "[surface]\ncage_level = 8\n", "2:1",
+                "surface.cage_level = 8: is not built yet", "a file without this key"},
         Refused{"NoToml", "[output\nmesh = \"none\"\n", "1:8", "", "TOML"}),
     [](const auto& one) { return one.param.name; });
 

@@ -196,9 +196,10 @@ TEST(Raster, ShowsTheNearest) {
         return corners;
     };
     for (const bool swapped : {false, true}) {
-        std::vector<glm::dvec4> clip = plane_clip(1.0, 9.0);
-        const std::vector<glm::dvec4> other = plane_clip(9.0, 1.0);
-        clip.insert(swapped ? clip.begin() : clip.end(), other.begin(), other.end());
+        std::vector<glm::dvec4> clip;
+        for (const bool rising : {!swapped, swapped})
+            for (const glm::dvec4& corner : rising ? plane_clip(1.0, 9.0) : plane_clip(9.0, 1.0))
+                clip.push_back(corner);
         const std::vector<std::uint32_t> indices{0, 1, 2, 1, 3, 2, 4, 5, 6, 5, 7, 6};
         Rasteriser raster;
         raster.set(clip, indices, resolution);

@@ -1,0 +1,138 @@
+// pelagic preview SHOT.toml
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/plan/plan.h"
+#include "core/scene/names.h"
+#include "plugin/bake/bake.h"
+#include "plugin/cli/exit_status.h"
+#include "plugin/cli/help.h"
+#include "plugin/cli/size.h"
+#include "plugin/cli/threads.h"
+#include "plugin/cli/verb.h"
+#include "plugin/files/files.h"
+#include "plugin/preview/offscreen.h"
+#include "plugin/preview/window.h"
+#include "plugin/render/picture_files.h"
+#include "plugin/shot/shot.h"
+
+namespace pelagic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+    std::string shot;
+    std::optional<std::string> offscreen, screenshot, quality;
+    std::optional<int> frame;
+    std::string size, threads;
+    int scale = 1, after = 8;
+};
+
+int wrong_usage(const std::string& problem) {
+    std::cerr << "pelagic: " << problem << "\nSee: pelagic preview --help\n";
+    return kWrongUsage;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text;
+}
+
+// What is wrong with a picture's name; empty where nothing is.
+std::string refuse_file(const fs::path& file, const std::vector<std::string>& extensions) {
+    if (std::find(extensions.begin(), extensions.end(), file.extension()) != extensions.end() &&
+        file.has_stem())
+        return {};
+    return "\"" + file.string() + "\" names no picture; accepted: a file that ends in " + joined(extensions);
+}
+
+int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments) {
+    const int frame = arguments.frame.value_or(scene.shot.first_frame);
+    if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
+    const fs::path folder = file.parent_path();
+    files::ensure_folder(folder);
+    OffscreenContext context;
+    const Sky sky = make_sky(scene);
+    const OffscreenPicture drawn = render_offscreen(scene, sky, frame);
+    RenderOptions options = render_options(scene);
+    options.samples = 1;
+    const PictureContext about{.scene = scene,
+                               .options = options,
+                               .sky = sky,
+                               .fingerprint = make_plan(scene, {view_query(scene)}).fingerprint_text()};
+    files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
+                                                             : encode_png(about, drawn.picture));
+    std::cout << "picture: " << file.string() << "\ndrawn by " << drawn.device << std::endl;
+    return kDone;
+}
+
+int run(const Arguments& arguments) {
+    Scene scene = load_shot(arguments.shot);
+    if (arguments.quality) {
+        const auto level = choice_of<QualityLevel>(*arguments.quality);
+        if (!level)
+            return wrong_usage("quality \"" + *arguments.quality +
+                               "\"; accepted: " + joined(all_words<QualityLevel>()));
+        scene.quality.level = *level;
+    }
+    if (arguments.frame) {
+        try {
+            parse_frames(std::to_string(*arguments.frame), scene.shot);
+        } catch (const std::invalid_argument& error) {
+            return wrong_usage(error.what());
+        }
+    }
+    Threads threads(arguments.threads);
+    if (arguments.offscreen) {
+        if (const std::string problem = refuse_file(*arguments.offscreen, {".png", ".exr"}); !problem.empty())
+            return wrong_usage("--offscreen " + problem);
+        return threads.execute([&] { return draw_offscreen(scene, *arguments.offscreen, arguments); });
+    }
+    WindowOptions options{.folder = fs::path(arguments.shot).parent_path(),
+                          .size = size_of(arguments.size),
+                          .pixel_size = arguments.scale,
+                          .frame = arguments.frame,
+                          .screenshot_after = arguments.after};
+    if (arguments.screenshot) {
+        if (const std::string problem = refuse_file(*arguments.screenshot, {".png"}); !problem.empty())
+            return wrong_usage("--screenshot " + problem);
+        options.screenshot = *arguments.screenshot;
+    }
+    run_window(scene, options);
+    return kDone;
+}
+
+}  // namespace
+
+Verb add_preview(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("preview", help::kPreview);
+    command->group(help::kVerbs);
+    command->footer(help::kPreviewFooter);
+    auto arguments = std::make_shared<Arguments>();
+    command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
+    command->add_option("--offscreen", arguments->offscreen, help::kOffscreen)->type_name("FILE");
+    command->add_option("--frame", arguments->frame, help::kFrame)->type_name("N");
+    add_size(*command, arguments->size, help::kPreviewSize);
+    command->add_option("--quality", arguments->quality, help::kPreviewQuality)->type_name("LEVEL");
+    command->add_option("--scale", arguments->scale, help::kScale)
+        ->type_name("1|2|4")
+        ->check(CLI::IsMember({1, 2, 4}).description(""));
+    CLI::Option* screenshot =
+        command->add_option("--screenshot", arguments->screenshot, help::kScreenshot)->type_name("FILE");
+    command->add_option("--after", arguments->after, help::kAfter)
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000000).description(""))
+        ->needs(screenshot);
+    add_threads(*command, arguments->threads, help::kPreviewThreads);
+    return {command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace pelagic::cli

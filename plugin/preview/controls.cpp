@@ -1,0 +1,478 @@
+// The window's panel. See controls.h.
+#include "plugin/preview/controls.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "core/scene/limits.h"
+#include "core/scene/names.h"
+
+namespace pelagic {
+namespace {
+
+constexpr float kPanelWidth = 330.0f, kBarHeight = 46.0f, kMargin = 10.0f;  // at scale 1, pixels
+const ImVec4 kAccent(0.33f, 0.66f, 0.80f, 1.0f);
+const ImVec4 kWarning(1.0f, 0.72f, 0.35f, 1.0f);
+
+// Everything scales with the font, whose size is the screen's.
+float scaled(float pixels) {
+    return pixels * ImGui::GetFontSize() / 15.0f;
+}
+
+void tooltip(const char* text) {
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(scaled(300.0f));
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+struct SliderLook {
+    double low = 0.0, high = 1.0;
+    const char* format = "%.2f";
+    const char* help = "";
+    bool logarithmic = false;
+};
+
+bool slider(const char* label, double& value, const SliderLook& look) {
+    const ImGuiSliderFlags flags =
+        ImGuiSliderFlags_AlwaysClamp | (look.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+    const bool changed =
+        ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &look.low, &look.high, look.format, flags);
+    tooltip(look.help);
+    return changed;
+}
+
+void warning(const std::string& message) {
+    ImGui::PushStyleColor(ImGuiCol_Text, kWarning);
+    ImGui::TextWrapped("%s", message.c_str());
+    ImGui::PopStyleColor();
+}
+
+bool section(const char* title, bool open = true) {
+    ImGui::Spacing();
+    return ImGui::CollapsingHeader(title, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+template <class Choice, std::size_t N>
+void choose(const char* label, Choice& value, const std::array<std::pair<Choice, const char*>, N>& choices,
+            const char* help) {
+    const auto now = std::find_if(choices.begin(), choices.end(),
+                                  [&](const auto& choice) { return choice.first == value; });
+    if (ImGui::BeginCombo(label, now == choices.end() ? "" : now->second)) {
+        for (const auto& [choice, name] : choices)
+            if (ImGui::Selectable(name, choice == value)) value = choice;
+        ImGui::EndCombo();
+    }
+    tooltip(help);
+}
+
+void waves_section(Scene& scene, const Readout& readout) {
+    if (!section("Wind and waves")) return;
+    SeaState& sea = scene.sea;
+    slider("Wind", sea.wind_speed_mps,
+           {.low = 0.0, .high = 40.0, .format = "%.1f m/s", .help = "Wind speed, 10 m above the sea"});
+    slider("Direction", sea.wind_direction_deg,
+           {.low = -180.0,
+            .high = 180.0,
+            .format = "%.0f°",
+            .help = "Where the wind blows to, counter-clockwise from +x (east); 90° is north"});
+    double fetch_km = sea.fetch_m * 1e-3;
+    if (slider("Fetch", fetch_km,
+               {.low = 1.0,
+                .high = 3000.0,
+                .format = "%.0f km",
+                .help = "How much open water the wind has had: little gives a short, steep, young sea",
+                .logarithmic = true}))
+        sea.fetch_m = fetch_km * 1e3;
+    slider("Choppiness", scene.waves.choppiness,
+           {.low = 0.0, .high = 2.0, .help = "How sharp the crests are; 1 is nature's, 0 leaves them round"});
+    for (std::size_t i = 0; i < sea.swell.size(); ++i) {
+        Swell& swell = sea.swell[i];
+        ImGui::PushID(static_cast<int>(i));
+        ImGui::TextDisabled(sea.swell.size() > 1 ? "Swell %zu" : "Swell", i + 1);
+        slider("Height", swell.height_m,
+               {.low = 0.0, .high = 10.0, .format = "%.1f m", .help = "Significant height of the swell"});
+        slider("Period", swell.period_s,
+               {.low = 3.0, .high = 25.0, .format = "%.1f s", .help = "Peak period: longer is longer waves"});
+        slider("Towards", swell.direction_deg,
+               {.low = -180.0,
+                .high = 180.0,
+                .format = "%.0f°",
+                .help = "Where it travels to, counter-clockwise from +x (east)"});
+        ImGui::PopID();
+    }
+    ImGui::Checkbox("Whitecaps", &scene.effects.whitecaps);
+    tooltip("Foam where waves break. Off, nothing of it is computed: no transform, no shader");
+    if (readout.building_sea)
+        ImGui::TextColored(
+            kAccent, readout.has_sea ? "Building this sea; the last one plays on …" : "Building the sea …");
+    else
+        ImGui::TextDisabled("Significant height %.2f m, built in %.2f s", readout.significant_height_m,
+                            readout.times.build_s);
+}
+
+void sky_section(Light& light, const Readout& readout) {
+    if (!section("Sun and sky")) return;
+    const bool daylight = light.sky == Light{}.sky;
+    if (!daylight) {
+        ImGui::TextDisabled("Sky: %s", std::filesystem::path(light.sky).filename().string().c_str());
+        tooltip("The sun stands where the picture has it");
+    }
+    ImGui::BeginDisabled(!daylight);
+    slider("Sun height", light.sun_elevation_deg,
+           {.low = -10.0, .high = 90.0, .format = "%.1f°", .help = "Elevation of the sun above the horizon"});
+    slider("Sun towards", light.sun_azimuth_deg,
+           {.low = -180.0,
+            .high = 180.0,
+            .format = "%.0f°",
+            .help = "Azimuth: where the sun stands, counter-clockwise from +x (east)"});
+    slider("Turbidity", light.turbidity,
+           {.low = limits::kTurbidity.low,
+            .high = limits::kTurbidity.high,
+            .format = "%.1f",
+            .help = "Haze: 2 is mountain air, 3 a clear day, 6 and more is hazy"});
+    ImGui::EndDisabled();
+    if (readout.building_sky) ImGui::TextColored(kAccent, "Building this sky …");
+}
+
+void water_section(Water& water) {
+    if (!section("Water")) return;
+    static constexpr std::array kTypes{std::pair{WaterType::Ocean, "Ocean"},
+                                       std::pair{WaterType::Coastal, "Coastal"},
+                                       std::pair{WaterType::Turbid, "Turbid"}};
+    choose("Type", water.type, kTypes, "What floats in it besides plankton: nothing, some silt, much of it");
+    slider("Chlorophyll", water.chlorophyll_mg_m3,
+           {.low = limits::kChlorophyll_mg_m3.low,
+            .high = 30.0,
+            .format = "%.2f mg/m³",
+            .help = "Plankton: little leaves the water blue, much turns it green",
+            .logarithmic = true});
+}
+
+void light_section(LightingChoice& choice) {
+    if (!section("Light")) return;
+    struct Term {
+        const char* name;
+        bool LightingChoice::*on;
+        const char* help;
+    };
+    static constexpr std::array kTerms{
+        Term{"Sun", &LightingChoice::sun, "The sun's reflection: the glitter"},
+        Term{"Sky", &LightingChoice::sky, "The sky's reflection"},
+        Term{"Water", &LightingChoice::water, "Light that comes back from under the surface"},
+        Term{"Foam", &LightingChoice::whitecaps, "Light from the whitecaps"}};
+    const float step = scaled(76.0f);
+    for (std::size_t i = 0; i < kTerms.size(); ++i) {
+        if (i > 0) ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + step * static_cast<float>(i));
+        ImGui::BeginGroup();
+        ImGui::PushID(kTerms[i].name);
+        ImGui::Checkbox(kTerms[i].name, &(choice.*kTerms[i].on));
+        tooltip(kTerms[i].help);
+        if (ImGui::SmallButton("only")) {
+            const bool alone =
+                choice.*kTerms[i].on && std::count_if(kTerms.begin(), kTerms.end(),
+                                                      [&](const Term& term) { return choice.*term.on; }) == 1;
+            for (const Term& term : kTerms) choice.*term.on = alone || &term == &kTerms[i];
+        }
+        tooltip("This term alone; again for all of them");
+        ImGui::PopID();
+        ImGui::EndGroup();
+    }
+    static constexpr std::array kSkies{std::pair{SkyQuality::One, "1 lookup"},
+                                       std::pair{SkyQuality::Nine, "9 lookups"}};
+    choose("Sky", choice.sky_quality, kSkies, "How the sky's reflection is found: fast, or more accurate");
+    static constexpr std::array kFits{std::pair{FresnelFit::Exact, "Exact fit"},
+                                      std::pair{FresnelFit::Paper, "Bruneton 2010"}};
+    choose("Fresnel", choice.fresnel, kFits,
+           "How much rough water reflects: fitted to the exact term, or the paper's own fit to Schlick's");
+}
+
+void picture_section(Controls& controls, const Readout& readout) {
+    if (!section("Picture")) return;
+    slider("Exposure", controls.exposure_stops,
+           {.low = -6.0,
+            .high = 6.0,
+            .format = "%+.1f stops",
+            .help = "Brighter or darker than what suits the light; a stop is a factor of two"});
+    static constexpr std::array kSizes{std::pair{1, "Full"}, std::pair{2, "½"}, std::pair{4, "¼"}};
+    choose("Resolution", controls.pixel_size, kSizes,
+           "Of the drawn picture, against the window's: lower it where the graphics are slow");
+    ImGui::TextDisabled("%d × %d pixels drawn", readout.drawn_px.x, readout.drawn_px.y);
+    slider(
+        "Cells", controls.scene.surface.cell_px,
+        {.low = 2.0,
+         .high = 32.0,
+         .format = "%.0f px",
+         .help = "Side of the grid's cells on the screen: smaller shows finer silhouettes, and is slower"});
+    static constexpr std::array kColours{std::pair{FalseColour::None, "Light"},
+                                         std::pair{FalseColour::FilterLevel, "Filter levels"},
+                                         std::pair{FalseColour::HiddenVariance, "Hidden slopes"},
+                                         std::pair{FalseColour::Coverage, "Whitecap coverage"}};
+    choose("Show", controls.draw.false_colour, kColours,
+           "The light, or in its place: which filter level a pixel's waves come from, the variance of the "
+           "slopes that it hides, or how much of it is foam");
+    ImGui::Checkbox("Wireframe", &controls.draw.wireframe);
+    tooltip("The projected grid");
+}
+
+void camera_section(const Readout& readout, Clicks& clicks) {
+    if (!section("Camera")) return;
+    ImGui::Text("%.1f, %.1f, %.1f m", readout.camera_m.x, readout.camera_m.y, readout.camera_m.z);
+    ImGui::BeginDisabled(readout.follows_shot);
+    clicks.shot_camera =
+        ImGui::Button(readout.follows_shot ? "The shot's camera" : "Back to the shot's camera");
+    tooltip("Follows the shot's keys until you take the camera (Home)");
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::TextDisabled("F1: how to move");
+}
+
+void time_row(const char* name, double ms, double whole_ms) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(name);
+    ImGui::TableNextColumn();
+    ImGui::Text("%7.2f", ms);
+    ImGui::TableNextColumn();
+    const auto share = static_cast<float>(whole_ms > 0.0 ? std::clamp(ms / whole_ms, 0.0, 1.0) : 0.0);
+    ImGui::ProgressBar(share, ImVec2(-1.0f, ImGui::GetTextLineHeight() * 0.7f), "");
+}
+
+bool begin_times(const char* name) {
+    if (!ImGui::BeginTable(name, 3, ImGuiTableFlags_SizingStretchProp)) return false;
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, scaled(130.0f));
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, scaled(58.0f));
+    ImGui::TableSetupColumn("");
+    return true;
+}
+
+void times_section(const Readout& readout) {
+    if (!section("Time")) return;
+    const PictureTimes& times = readout.times;
+    // A slow first picture must not flatten the others.
+    const auto highest = static_cast<float>(2.0 * times.total_ms);
+    if (!readout.history_ms.empty())
+        ImGui::PlotLines("##history", readout.history_ms.data(), static_cast<int>(readout.history_ms.size()),
+                         0, nullptr, 0.0f, highest, ImVec2(-1.0f, scaled(44.0f)));
+    tooltip("Milliseconds from picture to picture, the latest on the right");
+    ImGui::TextDisabled("A picture, milliseconds");
+    if (begin_times("picture")) {
+        time_row("Grid, CPU", times.grid_ms, times.total_ms);
+        time_row("Panel, CPU", times.panel_ms, times.total_ms);
+        time_row("Submitting, CPU", times.gpu.submit_ms, times.total_ms);
+        time_row("Upload, GPU", times.gpu.upload_ms, times.total_ms);
+        time_row("Sea, GPU", times.gpu.sea_ms, times.total_ms);
+        time_row("Sky, GPU", times.gpu.sky_ms, times.total_ms);
+        time_row("Showing, GPU", times.gpu.show_ms, times.total_ms);
+        time_row("Present and wait", times.present_ms, times.total_ms);
+        ImGui::EndTable();
+    }
+    ImGui::TextDisabled("A time of the sea, beside the drawing");
+    if (begin_times("sea")) {
+        const double whole_ms = times.transforms_ms + times.packing_ms;
+        time_row("Transforms", times.transforms_ms, whole_ms);
+        time_row("Packing", times.packing_ms, whole_ms);
+        ImGui::EndTable();
+    }
+    ImGui::TextDisabled("%s", readout.device.c_str());
+    tooltip(readout.device.c_str());
+}
+
+void panel(Controls& controls, const Readout& readout, const Scene& shot, Clicks& clicks) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float margin = scaled(kMargin);
+    ImGui::SetNextWindowPos(ImVec2(margin, margin));
+    ImGui::SetNextWindowSize(
+        ImVec2(scaled(kPanelWidth), std::max(screen.y - 3.0f * margin - scaled(kBarHeight), scaled(120.0f))));
+    ImGui::Begin("##panel", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings);
+    ImGui::PushItemWidth(scaled(180.0f));
+    ImGui::TextColored(kAccent, "%s", shot.shot.name.c_str());
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s quality", std::string(word_of(shot.quality.level)).c_str());
+    if (readout.times.total_ms > 0.0) {
+        std::array<char, 32> rate{};
+        std::snprintf(rate.data(), rate.size(), "%.1f fps", 1000.0 / readout.times.total_ms);
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(rate.data()).x);
+        ImGui::TextColored(kAccent, "%s", rate.data());
+    }
+    if (!readout.message.empty()) warning(readout.message);
+    waves_section(controls.scene, readout);
+    sky_section(controls.scene.light, readout);
+    water_section(controls.scene.water);
+    light_section(controls.draw.lighting);
+    picture_section(controls, readout);
+    camera_section(readout, clicks);
+    times_section(readout);
+    ImGui::Spacing();
+    ImGui::Separator();
+    clicks.copy = ImGui::Button("Copy as shot file");
+    tooltip("Puts the keys that differ from the shot's, the camera's place included, on the clipboard");
+    ImGui::SameLine();
+    clicks.reset = ImGui::Button("Reset");
+    tooltip("Everything as the shot file has it");
+    ImGui::PopItemWidth();
+    ImGui::End();
+}
+
+void bar(Controls& controls, const Shot& shot) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const float margin = scaled(kMargin);
+    ImGui::SetNextWindowPos(ImVec2(margin, screen.y - margin - scaled(kBarHeight)));
+    ImGui::SetNextWindowSize(ImVec2(screen.x - 2.0f * margin, scaled(kBarHeight)));
+    ImGui::Begin("##bar", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoSavedSettings);
+    if (ImGui::Button(controls.playing ? "Pause" : "Play", ImVec2(scaled(64.0f), 0.0f)))
+        controls.playing = !controls.playing;
+    tooltip("Space");
+    ImGui::SameLine();
+    const double frame_now = 1.0 + controls.time_s * shot.fps;
+    auto frame = static_cast<float>(frame_now);
+    const float right = scaled(330.0f);
+    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - right, scaled(60.0f)));
+    if (ImGui::SliderFloat("##frame", &frame, static_cast<float>(shot.first_frame),
+                           static_cast<float>(std::max(shot.last_frame, shot.first_frame + 1)), "frame %.1f",
+                           ImGuiSliderFlags_AlwaysClamp))
+        controls.time_s = (static_cast<double>(frame) - 1.0) / shot.fps;
+    tooltip("Frame of the shot; fractions are shown too. The arrow keys step");
+    ImGui::SameLine();
+    ImGui::TextDisabled("%.2f s", controls.time_s);
+    ImGui::SameLine(ImGui::GetWindowWidth() - scaled(245.0f));
+    ImGui::SetNextItemWidth(scaled(120.0f));
+    slider("##speed", controls.time_scale,
+           {.low = 0.05,
+            .high = 8.0,
+            .format = "speed × %.2f",
+            .help = "How fast time runs; Ctrl-click to type",
+            .logarithmic = true});
+    ImGui::SameLine();
+    ImGui::Checkbox("Repeat", &controls.repeat);
+    tooltip("Play the shot's frames over and over; otherwise time goes on past the last one");
+    ImGui::End();
+}
+
+void help() {
+    static constexpr std::array<std::array<const char*, 2>, 14> kLines{{
+        {"Left drag", "turn round what is in the middle"},
+        {"Middle drag, Shift + left drag", "slide along"},
+        {"Wheel", "nearer and farther"},
+        {"Right drag", "look round on the spot"},
+        {"W A S D, E Q", "fly: ahead, left, back, right, up, down"},
+        {"Shift with these", "five times as fast (a height a second otherwise)"},
+        {"Home", "back to the shot's camera"},
+        {"Space", "play and pause"},
+        {"Left, Right", "a frame back, a frame on"},
+        {"Tab", "hide and show the panel"},
+        {"F12", "save the picture, without the panel, beside the shot"},
+        {"Ctrl + click on a slider", "type a number"},
+        {"F1", "this help"},
+        {"Esc, Ctrl + Q", "close"},
+    }};
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(screen.x * 0.5f, screen.y * 0.5f), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    ImGui::Begin("##help", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings);
+    if (ImGui::BeginTable("keys", 2)) {
+        for (const auto& [keys, what] : kLines) {
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextColored(kAccent, "%s", keys);
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(what);
+        }
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+}  // namespace
+
+Controls controls_for(const Scene& scene) {
+    Controls controls;
+    controls.scene = scene;
+    controls.draw.lighting = render_options(scene).lighting;
+    // A shot that moves its camera, or closes, is watched as it is; a sea is watched for as long as one
+    // likes.
+    controls.repeat = !scene.camera.keys.empty() || scene.shot.loop_s > 0.0;
+    controls.time_s = scene.shot.time_s(scene.shot.first_frame);
+    return controls;
+}
+
+Clicks draw_controls(Controls& controls, const Readout& readout, const Scene& shot) {
+    Clicks clicks;
+    if (controls.show_panel) {
+        panel(controls, readout, shot, clicks);
+        bar(controls, shot.shot);
+    }
+    if (!controls.show_panel && !readout.message.empty()) {
+        ImGui::SetNextWindowPos(ImVec2(scaled(kMargin), scaled(kMargin)));
+        ImGui::SetNextWindowSize(ImVec2(scaled(kPanelWidth), 0.0f));
+        ImGui::Begin(
+            "##message", nullptr,
+            ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
+        warning(readout.message);
+        ImGui::End();
+    }
+    if (controls.show_help) help();
+    return clicks;
+}
+
+void set_controls_style(float scale) {
+    ImGui::StyleColorsDark();
+    ImGuiStyle& style = ImGui::GetStyle();
+    style.WindowRounding = 6.0f;
+    style.FrameRounding = 4.0f;
+    style.GrabRounding = 4.0f;
+    style.PopupRounding = 4.0f;
+    style.ScrollbarRounding = 4.0f;
+    style.WindowBorderSize = 0.0f;
+    style.WindowPadding = ImVec2(12.0f, 10.0f);
+    style.FramePadding = ImVec2(8.0f, 3.0f);
+    style.ItemSpacing = ImVec2(8.0f, 5.0f);
+    style.ScrollbarSize = 10.0f;
+    const auto set = [&](ImGuiCol_ colour, float strength, float alpha) {
+        style.Colors[colour] =
+            ImVec4(kAccent.x * strength, kAccent.y * strength, kAccent.z * strength, alpha);
+    };
+    style.Colors[ImGuiCol_WindowBg] = ImVec4(0.07f, 0.09f, 0.11f, 0.88f);
+    style.Colors[ImGuiCol_PopupBg] = ImVec4(0.07f, 0.09f, 0.11f, 0.96f);
+    style.Colors[ImGuiCol_FrameBg] = ImVec4(0.16f, 0.19f, 0.22f, 1.0f);
+    style.Colors[ImGuiCol_FrameBgHovered] = ImVec4(0.21f, 0.25f, 0.29f, 1.0f);
+    style.Colors[ImGuiCol_FrameBgActive] = ImVec4(0.24f, 0.29f, 0.34f, 1.0f);
+    set(ImGuiCol_SliderGrab, 0.75f, 1.0f);
+    set(ImGuiCol_SliderGrabActive, 1.0f, 1.0f);
+    set(ImGuiCol_CheckMark, 1.1f, 1.0f);
+    set(ImGuiCol_Header, 0.35f, 0.6f);
+    set(ImGuiCol_HeaderHovered, 0.45f, 0.8f);
+    set(ImGuiCol_HeaderActive, 0.55f, 1.0f);
+    set(ImGuiCol_Button, 0.45f, 0.8f);
+    set(ImGuiCol_ButtonHovered, 0.6f, 1.0f);
+    set(ImGuiCol_ButtonActive, 0.75f, 1.0f);
+    set(ImGuiCol_PlotHistogram, 0.75f, 1.0f);
+    set(ImGuiCol_PlotLines, 1.0f, 1.0f);
+    style.ScaleAllSizes(scale);
+    // Debian's own; where it isn't, the library's built-in font, which is of pixels.
+    const char* const font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+    static constexpr std::array<ImWchar, 5> kLetters{0x20, 0xff, 0x2026, 0x2026, 0};  // Latin-1 and …
+    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(font, ignored)) {
+        fonts.AddFontFromFileTTF(font, std::round(15.0f * scale), nullptr, kLetters.data());
+    } else {
+        ImFontConfig config;
+        config.SizePixels = std::round(13.0f * scale);
+        fonts.AddFontDefault(&config);
+    }
+}
+
+}  // namespace pelagic

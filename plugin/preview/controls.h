@@ -1,0 +1,72 @@
+// What an artist can turn in the preview's window: a panel of sliders, a bar that plays the shot, and what
+// the picture costs. Draws with Dear ImGui into the frame that has begun; knows no OpenGL and no window.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "plugin/preview/sea_renderer.h"
+
+namespace pelagic {
+
+// What the panel changes.
+struct Controls {
+    Scene scene;  // as asked for now: the waves of it that play may still be older
+    DrawOptions draw;
+    double exposure_stops = 0.0;  // above what suits the light
+    int pixel_size = 1;           // 1, 2, 4: a drawn pixel covers this many of the window's, squared
+    bool playing = true;
+    bool repeat = false;  // the shot's range; otherwise time goes on
+    double time_scale = 1.0;
+    double time_s = 0.0;
+    bool show_panel = true, show_help = false;
+};
+
+// How the panel begins for a shot.
+Controls controls_for(const Scene& scene);
+
+// The milliseconds of one picture, in the order in which they are spent; frames and seas beside it.
+struct PictureTimes {
+    double total_ms = 0.0;    // from picture to picture
+    double panel_ms = 0.0;    // this panel
+    double grid_ms = 0.0;     // the projected grid
+    double present_ms = 0.0;  // handing the window's picture over, waiting for the screen included
+    StageTimes gpu;
+    double transforms_ms = 0.0, packing_ms = 0.0;  // of the frame on show, beside the drawing
+    double build_s = 0.0;                          // of the sea on show
+};
+
+// What the panel tells.
+struct Readout {
+    std::string device;
+    std::string message;   // what went wrong; empty: all is well
+    bool has_sea = false;  // one is on show
+    bool building_sea = false, building_sky = false;
+    bool follows_shot = true;  // the camera is the shot's own
+    glm::dvec3 camera_m{0.0};
+    double significant_height_m = 0.0;  // of the sea on show
+    glm::ivec2 drawn_px{0};             // the picture's size before it is scaled to the window
+    PictureTimes times;
+    std::vector<float> history_ms;  // total_ms of the last pictures, the oldest first
+};
+
+// What was clicked.
+struct Clicks {
+    bool shot_camera = false;  // back to it
+    bool copy = false;         // the changed keys, as a shot file
+    bool reset = false;        // everything as the shot has it
+};
+
+// Draws everything and changes `controls` as the artist wills. `shot` is the scene as its file has it.
+Clicks draw_controls(Controls& controls, const Readout& readout, const Scene& shot);
+
+// Dear ImGui's look: colours, spacing and a font for a screen of this scale (1: 96 dots an inch). Once,
+// before the first frame.
+void set_controls_style(float scale);
+
+// The keys that differ, as tables of a shot file; empty: none does.
+std::string changed_keys(const Scene& shot, const Scene& now);
+
+}  // namespace pelagic

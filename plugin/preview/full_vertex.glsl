@@ -1,0 +1,7 @@
+// One triangle over the whole picture, as far away as there is.
+uniform float farthest;
+
+void main() {
+    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
+    gl_Position = vec4(corner, farthest, 1.0);
+}

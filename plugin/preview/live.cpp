@@ -1,0 +1,124 @@
+// Frames beside the drawing, seas beside the playing. See live.h.
+#include "plugin/preview/live.h"
+
+#include <oneapi/tbb/task_arena.h>
+
+#include <chrono>
+#include <utility>
+
+#include "core/waves/frame.h"
+
+namespace pelagic {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double, std::milli>(to - from).count();
+}
+
+// The frames' parallel loops go before the sea's where both want the cores.
+LiveSea::Build in_the_background(LiveSea::Build build) {
+    return [build = std::move(build)](const Scene& scene) {
+        tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
+        return arena.execute([&] { return build(scene); });
+    };
+}
+
+}  // namespace
+
+LiveSea::LiveSea(Build build)
+    : frames_thread_([this] { compute_frames(); }), builder_(in_the_background(std::move(build))) {}
+
+LiveSea::~LiveSea() {
+    {
+        const std::lock_guard lock(mutex_);
+        stopping_ = true;
+    }
+    wake_.notify_one();
+    frames_thread_.join();
+}
+
+void LiveSea::ask(const Scene& scene) {
+    if (asked_ && same_sea(*asked_, scene)) return;
+    asked_ = scene;
+    builder_.ask(scene);
+}
+
+void LiveSea::show(double time_s) {
+    auto built = builder_.take();
+    {
+        const std::lock_guard lock(mutex_);
+        time_s_ = time_s;
+        if (built) {
+            build_.swap(built);
+            ++seas_;
+        }
+    }
+    wake_.notify_one();
+}
+
+const LiveFrame* LiveSea::newest() {
+    const std::lock_guard lock(mutex_);
+    if (fresh_) std::swap(waiting_, shown_);
+    fresh_ = false;
+    const LiveFrame& frame = slots_[shown_];
+    return frame.packed ? &frame : nullptr;
+}
+
+LiveStatus LiveSea::status() const {
+    LiveStatus status{.building = builder_.is_busy(), .error = builder_.error()};
+    const std::lock_guard lock(mutex_);
+    if (status.error.empty()) status.error = frame_error_;
+    status.seas = seas_;
+    status.frames = frames_;
+    return status;
+}
+
+void LiveSea::compute_frames() {
+    std::optional<Frame<float>> frame;
+    // What was computed last, or failed: not again.
+    std::shared_ptr<const LiveBuild> tried;
+    std::optional<double> tried_s;
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        wake_.wait(lock, [&] {
+            return stopping_ || (build_ != nullptr && time_s_ && (build_ != tried || time_s_ != tried_s));
+        });
+        if (stopping_) return;
+        tried = build_;
+        tried_s = time_s_;
+        LiveFrame& slot = slots_[written_];
+        lock.unlock();
+        std::string error;
+        try {
+            if (!frame || &frame->sea() != tried->sea.get()) {
+                frame.reset();  // before the new one: half the memory
+                frame.emplace(tried->sea);
+            }
+            if (slot.build != tried) {
+                slot.packed.reset();
+                slot.build = tried;
+                slot.packed.emplace(tried->sea, tried->query);
+            }
+            const auto start = Clock::now();
+            frame->set(*tried_s);
+            const auto transformed = Clock::now();
+            slot.packed->pack(*frame);
+            slot.transforms_ms = milliseconds(start, transformed);
+            slot.packing_ms = milliseconds(transformed, Clock::now());
+        } catch (...) {
+            error = message_of(std::current_exception());
+            frame.reset();
+            slot = LiveFrame{};
+        }
+        lock.lock();
+        frame_error_ = error;
+        if (!error.empty()) continue;
+        slot.number = ++frames_;
+        std::swap(written_, waiting_);
+        fresh_ = true;
+    }
+}
+
+}  // namespace pelagic

@@ -1,0 +1,44 @@
+// From a shot to a sea that plays. See live.h.
+#include <chrono>
+#include <stdexcept>
+
+#include "core/plan/plan.h"
+#include "core/scene/canonical.h"
+#include "core/scene/validate.h"
+#include "plugin/preview/live.h"
+
+namespace pelagic {
+namespace {
+
+// What is not of the waves as it is by default, so that changing it changes nothing here.
+Scene waves_of(const Scene& scene) {
+    Scene waves = scene;
+    waves.camera = Camera{};
+    waves.light = Light{};
+    waves.water = Water{};
+    waves.surface = Surface{};
+    waves.output = Output{};
+    return waves;
+}
+
+}  // namespace
+
+std::shared_ptr<const LiveBuild> build_live(const Scene& scene) {
+    std::string problems;
+    for (const Problem& problem : validate(scene))
+        problems += (problems.empty() ? "" : "\n") + text_of(problem);
+    if (!problems.empty()) throw std::invalid_argument(problems);
+    const auto start = std::chrono::steady_clock::now();
+    LiveBuild made;
+    made.scene = scene;
+    made.sea = std::make_shared<const Sea<float>>(scene, make_plan(scene, {view_query(scene)}));
+    made.grid = projected_grid_options(scene);
+    made.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return std::make_shared<const LiveBuild>(std::move(made));
+}
+
+bool same_sea(const Scene& a, const Scene& b) {
+    return canonical(waves_of(a)) == canonical(waves_of(b));
+}
+
+}  // namespace pelagic

@@ -1,0 +1,31 @@
+#include "core/plan/plan.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
+#include "plugin/preview/offscreen.h"
+
+namespace pelagic {
+
+OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame, glm::ivec2 size) {
+    Scene seen = scene;
+    if (size.x > 0 && size.y > 0) seen.camera.resolution = size;
+    const auto sea = std::make_shared<const Sea<float>>(seen, picture_plan(seen));
+    Frame<float> state(sea);
+    state.set(seen.shot.time_s(frame));
+    PackedFrame packed(sea, 0);
+    packed.pack(state);
+
+    SeaRenderer renderer;
+    renderer.set_sky(sky, make_water(seen));
+    renderer.upload(packed);
+    const View view = view_at(seen.camera, frame);
+    const ProjectedGrid grid = projected_grid(view, projected_grid_options(seen));
+    renderer.draw(view, grid, {.lighting = render_options(seen).lighting, .layers = true});
+    OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
+    if (sea->plan().knobs.double_precision)
+        drawn.note =
+            "the preview computes in single precision, quality.level \"reference\" in double: use "
+            "pelagic render for that";
+    return drawn;
+}
+
+}  // namespace pelagic

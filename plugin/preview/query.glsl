@@ -1,0 +1,36 @@
+// The query at one point: what evaluate() answers.
+
+uniform float whitecap_threshold;
+uniform vec2 finest_m;  // the ladders' first rungs, below which trains are not followed: cells', pixels'
+
+// Height, Dx, Dy of the point that rests at x.
+vec3 query_cell(vec2 rest_m, float cell_m) {
+    SplitMetres x = split_metres(rest_m);
+    vec3 sum = cell_cascades(x, cell_m);
+    if (kTrains) sum += cell_trains(x, cell_m > finest_m.x ? cell_m : finest_m.x);
+    return sum;
+}
+
+struct PixelAnswer {
+    vec3 normal;
+    PixelMoments hidden;
+    float coverage;
+    float rung;  // lower + t
+};
+
+PixelAnswer query_pixel(vec2 rest_m, float pixel_m) {
+    SplitMetres x = split_metres(rest_m);
+    Rung rung = rung_of(kCellRungs, kPixelRungs, pixel_m);
+    TrainSums sums = TrainSums(pixel_cascades(x, rung), hidden_of(rung));
+    if (kTrains) sums = pixel_trains(x, pixel_m > finest_m.y ? pixel_m : finest_m.y, sums);
+    PixelFields f = sums.fields;
+    PixelMoments hidden = possible_moments(sums.hidden);
+    SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy);
+    float foam = 0.0;
+    if (kCoverage)
+        foam = coverage(jacobian_moments(f.dxx, f.dyy, f.dxy,
+                                         HiddenStrain(hidden.xxxx, hidden.xxxy, hidden.xxyy, hidden.xyyy,
+                                                      hidden.yyyy)),
+                        whitecap_threshold, kThirdMoment);
+    return PixelAnswer(vec3(n.x, n.y, n.z), hidden, foam, float(rung.lower) + rung.t);
+}

@@ -1,0 +1,186 @@
+#include "plugin/preview/sea_layout.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "core/plan/grid_layout.h"
+#include "core/plan/tables.h"
+#include "plugin/preview/sea_renderer.h"
+
+namespace pelagic {
+
+SplitNumber split_number(double value) {
+    constexpr int kBits = 12;
+    int exponent = 0;
+    const double fraction = std::frexp(value, &exponent);  // ½ ≤ |fraction| < 1
+    const double high = std::ldexp(std::round(std::ldexp(fraction, kBits)), exponent - kBits);
+    return {static_cast<float>(high), static_cast<float>(value - high)};
+}
+
+SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(std::move(sea)), query_(query) {
+    const Plan& plan = sea_->plan();
+    const PlannedQuery& planned = plan.queries.at(query);
+    if (planned.query.lattice || planned.query.only_cascade)
+        throw std::invalid_argument(
+            "query \"" + planned.query.name +
+            "\" is of a lattice or of one cascade: a picture needs one of points anywhere "
+            "in the whole sea");
+    const ProductSet least = products(Product::Position, Product::Normal, Product::SlopeVariance);
+    if ((planned.query.products & least) != least)
+        throw std::invalid_argument(
+            "query \"" + planned.query.name +
+            "\" must ask for position, normal and slope variance: a picture needs them");
+    has_coverage_ = planned.query.products[index(Product::Coverage)];
+    is_choppy_ = !plan.dropped[index(Field::Dx)];
+
+    cells_ = ladder_of(planned.query.cell_m, planned.cell_levels);
+    pixels_ = ladder_of(planned.query.pixel_m, planned.pixel_levels);
+    const glm::ivec2 cell_size = place(cells_), pixel_size = place(pixels_);
+    if (is_choppy_) {
+        planes_.push_back({true, 4, {Field::Height, Field::Dx, Field::Dy}, cell_size});
+        planes_.push_back({false, 4, {Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy}, pixel_size});
+        planes_.push_back({false, 1, {Field::Dxy}, pixel_size});
+    } else {
+        planes_.push_back({true, 1, {Field::Height}, cell_size});
+        planes_.push_back({false, 2, {Field::SlopeX, Field::SlopeY}, pixel_size});
+    }
+
+    // Differences of doubles: in single precision the finest rungs would keep no digits.
+    const QueryStatistics& statistics = sea_->statistics(query);
+    const auto whole = hidden_moments<double>(has_trains() ? sea_->trains().outside : statistics.whole);
+    const auto left = [&](const SpectralMoments& resolved) {
+        const auto shown = hidden_moments<double>(resolved);
+        HiddenMoments<float> hidden;
+        for (std::size_t i = 0; i < hidden.size(); ++i) hidden[i] = static_cast<float>(whole[i] - shown[i]);
+        return hidden;
+    };
+    for (std::size_t i = 0; i < pixels_.footprints_m.size(); ++i)
+        hidden_.push_back({left(statistics.resolved[i]), i + 1 < pixels_.footprints_m.size()
+                                                             ? left(statistics.resolved_next[i])
+                                                             : HiddenMoments<float>{}});
+}
+
+SeaLayout::Ladder SeaLayout::ladder_of(const std::vector<double>& footprints_m,
+                                       const std::vector<int>& levels) const {
+    Ladder ladder{footprints_m, {}};
+    for (const int level : levels)
+        for (int c = 0; c < cascades(); ++c) {
+            const CascadePlan& cascade = sea_->plan().cascades[c];
+            const int grid = cascade.grid_of_level[level];
+            ladder.tiles.push_back(
+                {.n = grid < 0 ? 0 : cascade.grids[grid].resolution, .cascade = c, .grid = grid});
+        }
+    return ladder;
+}
+
+// Shelves, the largest tiles first, in a picture about as wide as high.
+glm::ivec2 SeaLayout::place(Ladder& ladder) const {
+    const int skirt = sea_->plan().knobs.spline_taps - 1;
+    std::map<std::pair<int, int>, std::vector<Tile*>> by_grid;  // rungs may share one
+    for (Tile& tile : ladder.tiles)
+        if (tile.n > 0) by_grid[{tile.cascade, tile.grid}].push_back(&tile);
+    if (by_grid.empty()) return glm::ivec2(1);
+    std::vector<std::vector<Tile*>> grids;
+    double texels = 0.0;
+    for (auto& [key, tiles] : by_grid) {
+        texels += std::pow(tiles.front()->n + skirt, 2.0);
+        grids.push_back(tiles);
+    }
+    std::stable_sort(grids.begin(), grids.end(),
+                     [](const auto& a, const auto& b) { return a.front()->n > b.front()->n; });
+    const int width =
+        std::max(grids.front().front()->n + skirt, static_cast<int>(std::ceil(std::sqrt(texels))));
+    glm::ivec2 at(0), size(0);
+    int shelf = 0;
+    for (const auto& tiles : grids) {
+        const int side = tiles.front()->n + skirt;
+        if (at.x + side > width) {
+            at = {0, at.y + shelf};
+            shelf = 0;
+        }
+        for (Tile* tile : tiles) tile->first = at;
+        shelf = std::max(shelf, side);
+        at.x += side;
+        size = {std::max(size.x, at.x), std::max(size.y, at.y + shelf)};
+    }
+    return size;
+}
+
+void SeaLayout::fill(const Frame<float>& frame, std::vector<std::vector<float>>& planes) const {
+    const int skirt = sea_->plan().knobs.spline_taps - 1;
+    planes.resize(planes_.size());
+    for (std::size_t p = 0; p < planes_.size(); ++p) {
+        const Plane& plane = planes_[p];
+        const auto channels = static_cast<std::size_t>(plane.channels);
+        const auto width = static_cast<std::size_t>(plane.size.x);
+        planes[p].resize(width * static_cast<std::size_t>(plane.size.y) * channels);
+        std::vector<std::pair<int, int>> done;
+        for (const Tile& tile : (plane.of_cells ? cells_ : pixels_).tiles) {
+            if (tile.n == 0) continue;
+            if (std::find(done.begin(), done.end(), std::pair(tile.cascade, tile.grid)) != done.end())
+                continue;
+            done.emplace_back(tile.cascade, tile.grid);
+            const std::size_t stride = line_stride<float>(tile.n);
+            tbb::parallel_for(0, tile.n + skirt, [&](int row) {
+                float* const to = planes[p].data() + ((static_cast<std::size_t>(tile.first.y + row)) * width +
+                                                      static_cast<std::size_t>(tile.first.x)) *
+                                                         channels;
+                for (std::size_t f = 0; f < plane.fields.size(); ++f) {
+                    const float* from = frame.samples(tile.cascade, tile.grid, plane.fields[f]);
+                    if (!from) continue;
+                    from += static_cast<std::size_t>(row % tile.n) * stride;
+                    for (int i = 0; i < tile.n; ++i) to[static_cast<std::size_t>(i) * channels + f] = from[i];
+                    for (int i = 0; i < skirt; ++i)
+                        to[static_cast<std::size_t>(tile.n + i) * channels + f] = from[i % tile.n];
+                }
+            });
+        }
+    }
+}
+
+std::vector<glm::vec4> SeaLayout::train_texels() const {
+    const Trains<float>& trains = sea_->trains();
+    const std::size_t count = trains.count();
+    std::vector<glm::vec4> texels(kTrainTexels * (count + 1), glm::vec4(0.0f));
+    const auto at = [&](std::size_t row, std::size_t train) -> glm::vec4& {
+        return texels[row * (count + 1) + train];
+    };
+    const auto outside = hidden_moments<double>(trains.outside);
+    for (std::size_t i = 0; i <= count; ++i) {
+        const auto from = hidden_moments<double>(trains.from[i]);
+        for (std::size_t m = 0; m < from.size(); ++m)
+            at(6 + m / 4, i)[static_cast<int>(m % 4)] = static_cast<float>(from[m] - outside[m]);
+        if (i == count) break;
+        const SplitNumber kx = split_number(trains.kx_cycles_per_m[i]),
+                          ky = split_number(trains.ky_cycles_per_m[i]);
+        const auto amplitude = [&](Field field) { return trains.amplitude[index(field)][i]; };
+        at(0, i) = {kx.high, kx.low, ky.high, ky.low};
+        at(1, i) = {amplitude(Field::SlopeX), amplitude(Field::SlopeY), amplitude(Field::Dxx),
+                    amplitude(Field::Dyy)};
+        at(2, i) = {amplitude(Field::Dxy), amplitude(Field::Height), amplitude(Field::Dx),
+                    amplitude(Field::Dy)};
+        at(3, i) = {trains.wavelength[i], trains.steepness2[i], 0.0f, 0.0f};
+        for (std::size_t m = 0; m < from.size(); ++m)
+            at(4 + m / 4, i)[static_cast<int>(m % 4)] = trains.hidden_alone[i][m];
+    }
+    return texels;
+}
+
+PackedFrame::PackedFrame(std::shared_ptr<const Sea<float>> sea, int query)
+    : layout_(std::make_shared<SeaLayout>(std::move(sea), query)) {}
+
+void PackedFrame::pack(const Frame<float>& frame) {
+    if (&frame.sea() != &layout_->sea())
+        throw std::invalid_argument("the frame is of another sea than the one that it is packed for");
+    if (!frame.is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
+    layout_->fill(frame, planes_);
+    time_s_ = frame.time_s();
+    time_within_loop_s_ = frame.time_within_loop_s();
+}
+
+}  // namespace pelagic

@@ -1,0 +1,82 @@
+// Where a query's grids and tables lie in the GPU's memory: what a sea has that is the same for all frames
+// and views. Needs no OpenGL.
+#pragma once
+
+#include <array>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <vector>
+
+#include "core/waves/frame.h"
+
+namespace pelagic {
+
+// A number as a sum of two floats, the first short enough for its product with another such number to be
+// exact: 12 bits each.
+struct SplitNumber {
+    float high, low;
+};
+SplitNumber split_number(double value);
+
+class SeaLayout {
+  public:
+    // Throws std::invalid_argument as PackedFrame.
+    SeaLayout(std::shared_ptr<const Sea<float>> sea, int query);
+
+    const Sea<float>& sea() const { return *sea_; }
+    int query() const { return query_; }
+    bool is_choppy() const { return is_choppy_; }
+    bool has_coverage() const { return has_coverage_; }
+    bool has_trains() const { return sea_->plan().trains.has_value(); }
+    int cascades() const { return static_cast<int>(sea_->plan().cascades.size()); }
+
+    // A texture: rows of `width` texels, the fields side by side and zeros up to `channels`.
+    struct Plane {
+        bool of_cells = false;  // which ladder's grids
+        int channels = 1;       // 1, 2 or 4
+        std::vector<Field> fields;
+        glm::ivec2 size{1};
+    };
+    const std::vector<Plane>& planes() const { return planes_; }
+    void fill(const Frame<float>& frame, std::vector<std::vector<float>>& planes) const;
+
+    // A grid's place: its N × N samples, repeated after the last column and row so that a spline reads across
+    // the period's seam. n = 0: of this cascade nothing passes this footprint.
+    struct Tile {
+        glm::ivec2 first{0};
+        int n = 0;
+        int cascade = 0, grid = 0;
+    };
+    // Footprints [m], rising, and by rung · cascades() + cascade the tiles that they see.
+    struct Ladder {
+        std::vector<double> footprints_m;
+        std::vector<Tile> tiles;
+    };
+    const Ladder& cells() const { return cells_; }
+    const Ladder& pixels() const { return pixels_; }
+
+    // What a rung of pixels hides, less what the trains hide: alone, and its mixed sum with the next rung.
+    struct HiddenRung {
+        HiddenMoments<float> alone{}, with_next{};
+    };
+    const std::vector<HiddenRung>& hidden() const { return hidden_; }
+
+    // kTrainTexels rows, a column for each train and one more, where the prefix sums end: trains.glsl says
+    // what each row holds.
+    static constexpr int kTrainTexels = 8;
+    std::vector<glm::vec4> train_texels() const;
+
+  private:
+    Ladder ladder_of(const std::vector<double>& footprints_m, const std::vector<int>& levels) const;
+    glm::ivec2 place(Ladder& ladder) const;
+
+    std::shared_ptr<const Sea<float>> sea_;
+    int query_ = 0;
+    bool is_choppy_ = false, has_coverage_ = false;
+    std::vector<Plane> planes_;
+    Ladder cells_, pixels_;
+    std::vector<HiddenRung> hidden_;
+};
+
+}  // namespace pelagic

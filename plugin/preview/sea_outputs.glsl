@@ -1,0 +1,16 @@
+// Where pictures go: the terms one by one, or their sum. alpha: 1 where there is sea.
+layout(location = 0) out vec4 sea_out;
+layout(location = 1) out vec4 sun_out;
+layout(location = 2) out vec4 sky_out;
+layout(location = 3) out vec4 foam_out;
+
+void write_terms(vec3 sun, vec3 sky, vec3 sea, vec3 foam, float is_sea) {
+    if (kLayers) {
+        sea_out = vec4(sea, is_sea);
+        sun_out = vec4(sun, 1.0);
+        sky_out = vec4(sky, 1.0);
+        foam_out = vec4(foam, 1.0);
+    } else {
+        sea_out = vec4(sun + sky + sea + foam, is_sea);
+    }
+}

@@ -1,0 +1,368 @@
+#include "plugin/preview/sea_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "plugin/preview/gl_objects.h"
+#include "plugin/preview/gl_stage_timer.h"
+#include "plugin/preview/gl_textures.h"
+#include "plugin/preview/sea_layout.h"
+#include "plugin/preview/sea_textures.h"
+#include "plugin/preview/shader_program.h"
+#include "plugin/preview/shader_source.h"
+#include "plugin/preview/shader_variants.h"
+
+namespace pelagic {
+namespace {
+
+// Texture units; the first ones are SeaTextures' own.
+enum Unit : int { kSkyMap = SeaTextures::kUnits, kPictures };
+
+constexpr int kTerms = 4;  // sea, sun, sky, foam: sea_outputs.glsl
+constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
+                                                        "foam_picture"};
+
+void set_uniform(GLint at, const glm::vec3& v) {
+    glUniform3f(at, v.x, v.y, v.z);
+}
+
+// What the caller had bound comes back.
+class KeptFramebuffer {
+  public:
+    KeptFramebuffer() {
+        glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &draw_);
+        glGetIntegerv(GL_READ_FRAMEBUFFER_BINDING, &read_);
+        glGetIntegerv(GL_VIEWPORT, viewport_.data());
+    }
+    ~KeptFramebuffer() {
+        glBindFramebuffer(GL_DRAW_FRAMEBUFFER, static_cast<GLuint>(draw_));
+        glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(read_));
+        glViewport(viewport_[0], viewport_[1], viewport_[2], viewport_[3]);
+    }
+    KeptFramebuffer(const KeptFramebuffer&) = delete;
+    KeptFramebuffer& operator=(const KeptFramebuffer&) = delete;
+
+  private:
+    GLint draw_ = 0, read_ = 0;
+    std::array<GLint, 4> viewport_{};
+};
+
+}  // namespace
+
+struct SeaRenderer::Implementation {
+    Implementation();
+
+    void upload_grid(const ProjectedGrid& grid);
+    void make_pictures(glm::ivec2 size, bool layers);
+    void set_common(const ShaderProgram& program, const View& view) const;
+    void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
+    void draw_sky(const View& view, const DrawOptions& options);
+    const ShaderProgram& program_of(const ShaderVariant& variant);
+
+    GLint largest_texture = 0;
+    bool reversed_depth = false;
+
+    SeaTextures sea;
+
+    GlTexture sky_map;
+    int sky_map_size = 0;
+    Sky light;  // without its map
+    WaterBody water;
+
+    GlVertexArray grid_array, no_array;
+    GlBuffer grid_vertices, grid_indices;
+    glm::ivec2 grid_size{0};
+    GLsizei grid_index_count = 0;
+
+    GlFramebuffer framebuffer;
+    std::array<GlTexture, kTerms> pictures;
+    GlTexture depth;
+    glm::ivec2 picture_size{0};
+    bool picture_layers = false, picture_plain = false;
+
+    std::map<std::string, ShaderProgram> programs;  // by ShaderVariant::key()
+    GlStageTimer timer;
+    double submit_ms = 0.0;
+};
+
+SeaRenderer::Implementation::Implementation() {
+    if (epoxy_gl_version() < 33 || !epoxy_is_desktop_gl())
+        throw PreviewError("the preview needs OpenGL 3.3, and this driver (" +
+                           std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ") has " +
+                           std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))) +
+                           ": update it, or use pelagic render");
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture);
+    reversed_depth = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
+    make_pictures(glm::ivec2(4), true);
+}
+
+// Shaders.
+
+const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant& variant) {
+    const auto found = programs.find(variant.key());
+    if (found != programs.end()) return found->second;
+    ShaderProgram program(variant.vertex(), variant.fragment());
+    program.use();
+    glUniform1i(program.uniform("sky_map"), kSkyMap);
+    for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
+    return programs.emplace(variant.key(), std::move(program)).first->second;
+}
+
+void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
+    struct Vertex {
+        glm::vec2 rest_m;
+        float cell_m, pixel_m;
+    };
+    std::vector<Vertex> vertices(grid.rest_m.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        vertices[i] = {grid.rest_m[i], grid.cell_m[i], grid.pixel_m[i]};
+    glBindVertexArray(grid_array.name());
+    glBindBuffer(GL_ARRAY_BUFFER, grid_vertices.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
+                 GL_STREAM_DRAW);
+    const auto attribute = [](GLuint location, GLint size, std::size_t offset) {
+        glEnableVertexAttribArray(location);
+        glVertexAttribPointer(location, size, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                              reinterpret_cast<const void*>(offset));
+    };
+    attribute(0, 2, offsetof(Vertex, rest_m));
+    attribute(1, 1, offsetof(Vertex, cell_m));
+    attribute(2, 1, offsetof(Vertex, pixel_m));
+    if (grid_size == glm::ivec2(grid.columns, grid.rows)) return;
+    grid_size = {grid.columns, grid.rows};
+    const std::vector<std::uint32_t> triangles =
+        projected_grid_triangles(ProjectedGridSize{.columns = grid.columns, .rows = grid.rows});
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, grid_indices.name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size() * sizeof(std::uint32_t)),
+                 triangles.data(), GL_STATIC_DRAW);
+    grid_index_count = static_cast<GLsizei>(triangles.size());
+}
+
+// Pictures.
+
+void SeaRenderer::Implementation::make_pictures(glm::ivec2 size, bool layers) {
+    if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > largest_texture)
+        throw PreviewError("a picture of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
+                           " does not fit the driver, whose largest is " + std::to_string(largest_texture) +
+                           " a side: ask for a smaller one");
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    if (size == picture_size && layers == picture_layers) return;
+    std::array<GLenum, kTerms> attachments{};
+    for (int i = 0; i < kTerms; ++i) {
+        const bool used = i == 0 || layers;
+        attachments[i] = used ? GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i) : GL_NONE;
+        edit_texture(pictures[i]);
+        texels_as_they_are();
+        const glm::ivec2 of = used ? size : glm::ivec2(1);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, of.x, of.y, 0, GL_RGBA, GL_FLOAT, nullptr);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i), GL_TEXTURE_2D,
+                               used ? pictures[i].name() : 0, 0);
+    }
+    edit_texture(depth);
+    texels_as_they_are();
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, size.x, size.y, 0, GL_DEPTH_COMPONENT, GL_FLOAT,
+                 nullptr);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
+    glDrawBuffers(kTerms, attachments.data());
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        throw PreviewError("the driver cannot draw into pictures of 32-bit floats (framebuffer status " +
+                           std::to_string(status) + "): update it, or use pelagic render");
+    picture_size = size;
+    picture_layers = layers;
+}
+
+void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const View& view) const {
+    const auto tangent = view.pixel_tangent();
+    set_uniform(program.uniform("view_forward"), glm::vec3(view.forward));
+    set_uniform(program.uniform("view_right"), glm::vec3(view.right * tangent));
+    set_uniform(program.uniform("view_up"), glm::vec3(view.up * tangent));
+    glUniform2f(program.uniform("view_centre"), 0.5f * static_cast<float>(view.resolution.x),
+                0.5f * static_cast<float>(view.resolution.y));
+    glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
+    bind_texture(kSkyMap, sky_map);
+    set_uniform(program.uniform("sun_direction"), light.sun_direction);
+    set_uniform(program.uniform("sun_radiance"), light.sun_radiance);
+    glUniform1f(program.uniform("sun_angular_radius"), light.sun_angular_radius);
+    set_uniform(program.uniform("sun_irradiance"), light.sun_irradiance);
+    set_uniform(program.uniform("sky_irradiance"), light.sky_irradiance);
+    set_uniform(program.uniform("water_reflectance"), water.reflectance);
+}
+
+void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
+                                           const DrawOptions& options) {
+    const SeaLayout& layout = sea.layout();
+    const ShaderProgram& program = program_of(ShaderVariant::of_sea(layout, options, sky_map_size));
+    program.use();
+    set_common(program, view);
+    sea.bind(program, grid.origin_m);
+    upload_grid(grid);
+
+    const glm::mat4 clip(view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m));
+    glUniformMatrix4fv(program.uniform("clip_from_grid"), 1, GL_FALSE, glm::value_ptr(clip));
+    // Reversed depth, near/distance, keeps a float's digits out to the horizon.
+    if (reversed_depth)
+        glUniform2f(program.uniform("depth_of_distance"), 0.0f, static_cast<float>(kNear_m));
+    else
+        glUniform2f(program.uniform("depth_of_distance"), 1.0f, static_cast<float>(-2.0 * kNear_m));
+    glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
+    glDrawElements(GL_TRIANGLES, grid_index_count, GL_UNSIGNED_INT, nullptr);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& options) {
+    const ShaderProgram& program = program_of(ShaderVariant::of_sky(options, sky_map_size));
+    program.use();
+    set_common(program, view);
+    glUniform1f(program.uniform("farthest"), reversed_depth ? 0.0f : 1.0f);
+    glBindVertexArray(no_array.name());
+    glDepthFunc(reversed_depth ? GL_GEQUAL : GL_LEQUAL);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+SeaRenderer::SeaRenderer() : implementation_(std::make_unique<Implementation>()) {}
+SeaRenderer::~SeaRenderer() = default;
+
+std::string SeaRenderer::device() const {
+    return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", OpenGL " +
+           reinterpret_cast<const char*>(glGetString(GL_VERSION));
+}
+
+void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
+    Implementation& of = *implementation_;
+    of.light = sky;
+    of.light.map = SkyMap();
+    of.water = water;
+    of.sky_map_size = sky.map.size();
+    bind_texture(kSkyMap, of.sky_map);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, std::max(sky.map.level_count() - 1, 0));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    for (int level = 0; level < sky.map.level_count(); ++level)
+        glTexImage2D(GL_TEXTURE_2D, level, GL_RGB32F, sky.map.size() >> level, sky.map.size() >> level, 0,
+                     GL_RGB, GL_FLOAT, sky.map.level(level).data());
+}
+
+void SeaRenderer::upload(const PackedFrame& frame) {
+    Implementation& of = *implementation_;
+    of.timer.begin(GlStageTimer::Upload);
+    of.sea.upload(frame);
+    of.timer.end();
+}
+bool SeaRenderer::has_frame() const {
+    return !implementation_->sea.empty();
+}
+
+void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOptions& options) {
+    const auto started = std::chrono::steady_clock::now();
+    Implementation& of = *implementation_;
+    const KeptFramebuffer kept;
+    of.make_pictures(view.resolution, options.layers);
+    of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
+    glViewport(0, 0, view.resolution.x, view.resolution.y);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glClearDepth(of.reversed_depth ? 0.0 : 1.0);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    if (of.reversed_depth) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glDepthFunc(of.reversed_depth ? GL_GREATER : GL_LESS);
+
+    of.timer.begin(GlStageTimer::Sea);
+    if (!of.sea.empty()) of.draw_sea(view, grid, options);
+    of.timer.end();
+    of.timer.begin(GlStageTimer::Sky);
+    of.draw_sky(view, options);
+    of.timer.end();
+
+    glDisable(GL_DEPTH_TEST);
+    if (of.reversed_depth) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    glBindVertexArray(0);
+    glActiveTexture(GL_TEXTURE0);
+    of.submit_ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+}
+
+void SeaRenderer::show(float exposure) {
+    Implementation& of = *implementation_;
+    const ShaderProgram& program =
+        of.program_of(ShaderVariant::of_screen(of.picture_layers, of.picture_plain));
+    std::array<GLint, 4> viewport{};
+    glGetIntegerv(GL_VIEWPORT, viewport.data());
+    if (viewport[2] < 1 || viewport[3] < 1) return;  // a window without a pixel
+    of.timer.begin(GlStageTimer::Show);
+    program.use();
+    for (int i = 0; i < kTerms; ++i) bind_texture(kPictures + i, of.pictures[i]);
+    glUniform2f(program.uniform("picture_from_window"),
+                static_cast<float>(of.picture_size.x) / static_cast<float>(viewport[2]),
+                static_cast<float>(of.picture_size.y) / static_cast<float>(viewport[3]));
+    glUniform2f(program.uniform("window_first"), static_cast<float>(viewport[0]),
+                static_cast<float>(viewport[1]));
+    glUniform1f(program.uniform("exposure"), exposure);
+    glUniform1f(program.uniform("farthest"), 0.0f);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glBindVertexArray(of.no_array.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindVertexArray(0);
+    glActiveTexture(GL_TEXTURE0);
+    of.timer.end();
+}
+
+Picture SeaRenderer::read_layers() const {
+    const Implementation& of = *implementation_;
+    const KeptFramebuffer kept;
+    glBindFramebuffer(GL_FRAMEBUFFER, of.framebuffer.name());
+    const auto width = static_cast<std::size_t>(of.picture_size.x),
+               height = static_cast<std::size_t>(of.picture_size.y);
+    Picture picture{of.picture_size, std::vector<SeaRadiance>(width * height),
+                    std::vector<std::uint8_t>(width * height)};
+    constexpr std::array<glm::vec3 SeaRadiance::*, kTerms> kTerm{&SeaRadiance::sea, &SeaRadiance::sun,
+                                                                 &SeaRadiance::sky, &SeaRadiance::foam};
+    std::vector<glm::vec4> texels(width * height);
+    for (int i = 0; i < (of.picture_layers ? kTerms : 1); ++i) {
+        glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+        glPixelStorei(GL_PACK_ALIGNMENT, 4);
+        glReadPixels(0, 0, of.picture_size.x, of.picture_size.y, GL_RGBA, GL_FLOAT, texels.data());
+        for (std::size_t y = 0; y < height; ++y)
+            for (std::size_t x = 0; x < width; ++x) {
+                const glm::vec4& texel = texels[(height - 1 - y) * width + x];
+                const std::size_t at = y * width + x;
+                if (i == 0) picture.sea[at] = texel.w > 0.5f;
+                const auto term = of.picture_layers || picture.sea[at] ? kTerm[i] : &SeaRadiance::sky;
+                picture.layers[at].*term = glm::vec3(texel);
+            }
+    }
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    return picture;
+}
+
+StageTimes SeaRenderer::times() const {
+    const Implementation& of = *implementation_;
+    return {.upload_ms = of.timer.milliseconds(GlStageTimer::Upload),
+            .sea_ms = of.timer.milliseconds(GlStageTimer::Sea),
+            .sky_ms = of.timer.milliseconds(GlStageTimer::Sky),
+            .show_ms = of.timer.milliseconds(GlStageTimer::Show),
+            .submit_ms = of.submit_ms};
+}
+
+}  // namespace pelagic

@@ -1,0 +1,46 @@
+// A sea and its latest frame on the GPU, for shaders that ask the query there (query.glsl).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "plugin/preview/gl_objects.h"
+#include "plugin/preview/sea_layout.h"
+#include "plugin/preview/sea_renderer.h"
+#include "plugin/preview/shader_program.h"
+
+namespace pelagic {
+
+class SeaTextures {
+  public:
+    static constexpr int kUnits = 5;  // texture units that bind() takes, from 0 on
+
+    // As SeaRenderer::upload().
+    void upload(const PackedFrame& frame);
+    bool empty() const { return layout_ == nullptr; }
+    const SeaLayout& layout() const { return *layout_; }
+
+    // Everything that query.glsl finds in scope, for points relative to origin_m. The program must be in use.
+    void bind(const ShaderProgram& program, glm::dvec2 origin_m);
+
+  private:
+    void take_sea(const std::shared_ptr<const SeaLayout>& layout);
+    void upload_tables(glm::dvec2 origin_m);
+
+    std::shared_ptr<const SeaLayout> layout_;
+    std::vector<GlTexture> planes_;
+    std::optional<GlTexture> train_table_, train_cycles_;
+    GlBuffer tables_;
+    double time_within_loop_s_ = 0.0;
+
+    struct Staging {
+        std::array<std::optional<GlBuffer>, 3> planes;
+    };
+    std::array<Staging, 2> staging_;  // one is filled while the driver copies from the other
+    std::size_t next_staging_ = 0;
+};
+
+}  // namespace pelagic

@@ -1,0 +1,25 @@
+// A vertex and a fragment shader, compiled and linked.
+#pragma once
+
+#include <string>
+
+#include "plugin/preview/gl_objects.h"
+#include "plugin/preview/shader_source.h"
+
+namespace pelagic {
+
+class ShaderProgram {
+  public:
+    // Throws PreviewError with the driver's messages, by file and line.
+    ShaderProgram(const ShaderSource& vertex, const ShaderSource& fragment);
+
+    void use() const { glUseProgram(program_.name()); }
+    // −1, which OpenGL ignores, for one that this variant has no use for.
+    GLint uniform(const char* name) const { return glGetUniformLocation(program_.name(), name); }
+    GLuint name() const { return program_.name(); }
+
+  private:
+    GlProgram program_;
+};
+
+}  // namespace pelagic

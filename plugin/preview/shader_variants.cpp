@@ -1,0 +1,115 @@
+#include "plugin/preview/shader_variants.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace pelagic {
+namespace {
+
+std::string constant(const char* name, bool value) {
+    return std::string("const bool ") + name + " = " + (value ? "true" : "false") + ";\n";
+}
+std::string constant(const char* name, int value) {
+    return std::string("const int ") + name + " = " + std::to_string(value) + ";\n";
+}
+
+std::vector<std::string_view> joined(std::initializer_list<std::vector<std::string_view>> lists) {
+    std::vector<std::string_view> all;
+    for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+    return all;
+}
+
+// What both the sea's shader and the sky's are asked for.
+std::string picture_constants(const DrawOptions& options) {
+    return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
+           constant("kFalseColour", static_cast<int>(options.false_colour));
+}
+
+}  // namespace
+
+const std::vector<std::string_view>& lighting_files() {
+    static const std::vector<std::string_view> files{
+        "core/lighting/fresnel.glsl", "core/lighting/slopes.glsl", "core/lighting/sun.glsl",
+        "core/lighting/sky.glsl",     "core/lighting/water.glsl",  "core/lighting/foam.glsl",
+        "core/lighting/sea.glsl"};
+    return files;
+}
+
+const std::vector<std::string_view>& query_files() {
+    static const std::vector<std::string_view> files{
+        "core/lighting/special.glsl", "plugin/preview/prelude.glsl", "core/plan/filter.inl",
+        "core/waves/spline.inl",      "core/waves/whitecaps.inl",    "core/evaluate/surface.inl",
+        "core/evaluate/hidden.inl",   "plugin/preview/places.glsl",  "plugin/preview/cascades.glsl",
+        "plugin/preview/trains.glsl", "plugin/preview/query.glsl"};
+    return files;
+}
+
+std::string query_constants(const SeaLayout& layout, bool coverage) {
+    return constant("kCascades", layout.cascades()) +
+           constant("kTileCascades", std::max(layout.cascades(), 1)) +
+           constant("kCellRungs", static_cast<int>(layout.cells().footprints_m.size())) +
+           constant("kPixelRungs", static_cast<int>(layout.pixels().footprints_m.size())) +
+           constant("P", layout.sea().plan().knobs.spline_taps) + constant("kChoppy", layout.is_choppy()) +
+           constant("kCoverage", coverage) +
+           constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
+           constant("kTrains", layout.has_trains());
+}
+
+std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
+    const int lookups = choice.sky_quality == SkyQuality::One    ? 1
+                        : choice.sky_quality == SkyQuality::Nine ? 9
+                                                                 : 0;
+    return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
+           constant("kWhitecaps", choice.whitecaps) + constant("kSkyLookups", lookups) +
+           constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
+           "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
+}
+
+ShaderVariant::ShaderVariant(std::string constants, std::vector<std::string_view> vertex,
+                             std::vector<std::string_view> fragment)
+    : constants_(std::move(constants)), vertex_(std::move(vertex)), fragment_(std::move(fragment)) {
+    key_ = constants_;
+    key_ += fragment_.back();
+}
+
+ShaderSource ShaderVariant::source(const std::vector<std::string_view>& files) const {
+    ShaderSource source;
+    source.add_constants(constants_);
+    source.add_files(files);
+    return source;
+}
+
+ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& options, int sky_map_size) {
+    LightingChoice lighting = options.lighting;
+    lighting.whitecaps = lighting.whitecaps && layout.has_coverage();
+    lighting.sky = lighting.sky && sky_map_size > 0;
+    const bool coverage =
+        layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
+    return {query_constants(layout, coverage) + lighting_constants(lighting, sky_map_size) +
+                picture_constants(options),
+            joined({query_files(), {"plugin/preview/sea_vertex.glsl"}}),
+            joined({query_files(),
+                    {"plugin/preview/sky_texture.glsl"},
+                    lighting_files(),
+                    {"plugin/preview/rays.glsl", "plugin/preview/sea_outputs.glsl",
+                     "plugin/preview/false_colour.glsl", "plugin/preview/sea_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size) {
+    LightingChoice lighting = options.lighting;
+    lighting.sky = lighting.sky && sky_map_size > 0;
+    return {lighting_constants(lighting, sky_map_size) + picture_constants(options),
+            {"plugin/preview/full_vertex.glsl"},
+            joined({{"core/lighting/special.glsl", "plugin/preview/sky_texture.glsl"},
+                    lighting_files(),
+                    {"core/lighting/background.glsl", "plugin/preview/rays.glsl",
+                     "plugin/preview/sea_outputs.glsl", "plugin/preview/sky_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_screen(bool layers, bool plain) {
+    return {constant("kLayers", layers) + constant("kPlain", plain),
+            {"plugin/preview/full_vertex.glsl"},
+            {"core/lighting/tone.glsl", "plugin/preview/show_fragment.glsl"}};
+}
+
+}  // namespace pelagic

@@ -1,0 +1,41 @@
+// Which shaders a picture needs: code of its own for each choice of terms and each kind of sea, so that what
+// is off costs nothing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "plugin/preview/sea_layout.h"
+#include "plugin/preview/sea_renderer.h"
+#include "plugin/preview/shader_source.h"
+
+namespace pelagic {
+
+class ShaderVariant {
+  public:
+    static ShaderVariant of_sea(const SeaLayout& layout, const DrawOptions& options, int sky_map_size);
+    static ShaderVariant of_sky(const DrawOptions& options, int sky_map_size);
+    static ShaderVariant of_screen(bool layers, bool plain);
+
+    // The same for variants with the same text.
+    const std::string& key() const { return key_; }
+    ShaderSource vertex() const { return source(vertex_); }
+    ShaderSource fragment() const { return source(fragment_); }
+
+  private:
+    ShaderVariant(std::string constants, std::vector<std::string_view> vertex,
+                  std::vector<std::string_view> fragment);
+    ShaderSource source(const std::vector<std::string_view>& files) const;
+
+    std::string constants_, key_;
+    std::vector<std::string_view> vertex_, fragment_;
+};
+
+// core/lighting's files in their order, without background.glsl and tone.glsl.
+const std::vector<std::string_view>& lighting_files();
+// The files of the shared formulas and of the query, and the constants that they find in scope.
+const std::vector<std::string_view>& query_files();
+std::string query_constants(const SeaLayout& layout, bool coverage);
+std::string lighting_constants(const LightingChoice& choice, int sky_map_size);
+
+}  // namespace pelagic

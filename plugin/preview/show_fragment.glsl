@@ -1,0 +1,20 @@
+// The picture on a screen: its terms added up, through core/lighting/tone.glsl.
+uniform sampler2D sea_picture;
+uniform sampler2D sun_picture;
+uniform sampler2D sky_picture;
+uniform sampler2D foam_picture;
+uniform vec2 picture_from_window;  // pixels of the picture by pixel of the viewport
+uniform vec2 window_first;
+uniform float exposure;
+
+out vec4 colour_out;
+
+void main() {
+    ivec2 at = clamp(ivec2((gl_FragCoord.xy - window_first) * picture_from_window), ivec2(0),
+                     textureSize(sea_picture, 0) - 1);
+    vec4 radiance = texelFetch(sea_picture, at, 0);
+    if (kLayers)
+        radiance += texelFetch(sun_picture, at, 0) + texelFetch(sky_picture, at, 0) +
+                    texelFetch(foam_picture, at, 0);
+    colour_out = vec4(kPlain ? radiance.xyz : display_colour(radiance.xyz, exposure), 1.0);
+}

@@ -1,0 +1,15 @@
+// Where there is no sea: the sky and the sun's disc (core/lighting/background.glsl).
+void main() {
+    if (kWireframe || kFalseColour != 0) {
+        write_terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+        return;
+    }
+    vec3 direction = pixel_ray();
+    vec3 sky = vec3(0.0);
+    if (kSky) sky += sky_lookup(background_place(sky_place(direction), kSkyMapSize), 0.0);
+    if (kSun) {
+        float width = pixel_angle(view_pixel_tangent, dot(direction, view_forward));
+        sky += sun_disc(direction, sun_direction, sun_angular_radius, width) * sun_radiance;
+    }
+    write_terms(vec3(0.0), sky, vec3(0.0), vec3(0.0), 0.0);
+}

@@ -1,0 +1,85 @@
+// The trochoid trains at a point: evaluate()'s (core/evaluate/trains-inl.h), from tables that SeaLayout has
+// made. Only trains that a footprint lets through are looked at.
+//
+// Texels of train i, in column i: 0: kx, ky [cycles/m], each as (high, low); 1: amplitudes of ηx, ηy, Dxx,
+// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m], squared steepness; 4, 5: its moments; 6, 7: those of
+// trains i … last together.
+uniform sampler2D train_table;
+uniform sampler2D train_cycles;  // phases at the origin, at the frame's time
+uniform int train_count;
+uniform vec4 train_filter;  // n_min, 1/(n_max − n_min), footprints over wavelength that pass whole: 1/n_max, not
+                            // at all: 1/n_min
+
+// How many trains, the longest first, are longer than footprint_m / share.
+int trains_above(float footprint_m, float share) {
+    int low = 0;
+    int high = train_count;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (footprint_m < texelFetch(train_table, ivec2(middle, 3), 0).x * share) low = middle + 1;
+        else high = middle;
+    }
+    return low;
+}
+
+float train_weight(float wavelength_m, float footprint_m) {
+    return smooth_rise(clamp((wavelength_m / footprint_m - train_filter.x) * train_filter.y, 0.0, 1.0));
+}
+
+vec2 train_sine_cosine(int i, SplitMetres x) {
+    float cycles = texelFetch(train_cycles, ivec2(i, 0), 0).x -
+                   split_cycles(x, texelFetch(train_table, ivec2(i, 0), 0));
+    float angle = 6.28318530717958647692 * (cycles - floor(cycles + 0.5));
+    return vec2(sin(angle), cos(angle));
+}
+
+// Height, Dx, Dy.
+vec3 cell_trains(SplitMetres x, float cell_m) {
+    vec3 sum = vec3(0.0);
+    int full = trains_above(cell_m, train_filter.z);
+    int end = trains_above(cell_m, train_filter.w);
+    for (int i = 0; i < end; ++i) {
+        vec2 wave = train_sine_cosine(i, x);
+        if (i >= full) wave *= train_weight(texelFetch(train_table, ivec2(i, 3), 0).x, cell_m);
+        vec4 amplitude = texelFetch(train_table, ivec2(i, 2), 0);
+        sum += vec3(amplitude.y * wave.y, amplitude.z * wave.x, amplitude.w * wave.x);
+    }
+    return sum;
+}
+
+// Added to what the cascades show and to what they hide.
+struct TrainSums {
+    PixelFields fields;
+    PixelMoments hidden;
+};
+
+TrainSums pixel_trains(SplitMetres x, float pixel_m, TrainSums sums) {
+    int full = trains_above(pixel_m, train_filter.z);
+    int end = trains_above(pixel_m, train_filter.w);
+    vec4 low = texelFetch(train_table, ivec2(end, 6), 0);
+    vec4 high = texelFetch(train_table, ivec2(end, 7), 0);
+    vec4 first = vec4(0.0);
+    float dxy = 0.0;
+    for (int i = 0; i < end; ++i) {
+        vec2 wave = train_sine_cosine(i, x);
+        if (i >= full) {
+            vec4 train = texelFetch(train_table, ivec2(i, 3), 0);
+            float w = train_weight(train.x, pixel_m);
+            wave *= w;
+            float slope_part = hidden_slope_part(w, train.y);
+            float strain_part = hidden_strain_part(w);
+            low += vec4(slope_part, slope_part, slope_part, strain_part) *
+                   texelFetch(train_table, ivec2(i, 4), 0);
+            high += strain_part * texelFetch(train_table, ivec2(i, 5), 0);
+        }
+        vec4 amplitude = texelFetch(train_table, ivec2(i, 1), 0);
+        first += amplitude * vec4(wave.x, wave.x, wave.y, wave.y);
+        if (kChoppy) dxy += texelFetch(train_table, ivec2(i, 2), 0).x * wave.y;
+    }
+    PixelFields f = sums.fields;
+    PixelMoments m = sums.hidden;
+    return TrainSums(PixelFields(f.slope_x + first.x, f.slope_y + first.y, f.dxx + first.z, f.dyy + first.w,
+                                 f.dxy + dxy),
+                     PixelMoments(m.xx + low.x, m.xy + low.y, m.yy + low.z, m.xxxx + low.w, m.xxxy + high.x,
+                                  m.xxyy + high.y, m.xyyy + high.z, m.yyyy + high.w));
+}

@@ -1,0 +1,513 @@
+// The preview's window. See window.h.
+#include "plugin/preview/window.h"
+
+// Before GLFW, which then leaves OpenGL's declarations to it.
+#include <epoxy/gl.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/lighting/tone.h"
+#include "core/scene/canonical.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
+#include "plugin/files/files.h"
+#include "plugin/png/png.h"
+#include "plugin/preview/controls.h"
+#include "plugin/preview/live.h"
+#include "plugin/preview/orbit.h"
+
+namespace pelagic {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kTurn_per_px = 0.005;  // [rad]: a window's width turns half round
+constexpr double kHaste = 5.0;          // of a flight with Shift
+constexpr std::size_t kHistory = 120;   // pictures in the graph
+constexpr double kSmoothing = 0.1;      // of times on show: readable numbers, not the last picture's
+// A picture that took long must not throw time or a flight far ahead.
+constexpr double kLongestStep_s = 0.25;
+constexpr double kIdle_s = 0.05;  // between pictures that show nothing new
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// GLFW's own words about what went wrong last.
+std::string glfw_reason() {
+    const char* text = nullptr;
+    glfwGetError(&text);
+    return text == nullptr ? std::string("no reason given") : std::string(text);
+}
+
+class Glfw {
+  public:
+    Glfw() {
+        if (glfwInit() != GLFW_TRUE)
+            throw PreviewError(
+                "there is no display to open a window on (" + glfw_reason() +
+                "); draw without one with --offscreen FILE.png, or give the window a display of its own: "
+                "xvfb-run -s '-screen 0 1280x720x24' pelagic preview …");
+    }
+    ~Glfw() { glfwTerminate(); }
+    Glfw(const Glfw&) = delete;
+    Glfw& operator=(const Glfw&) = delete;
+};
+
+// The window's size: what is asked for, or the shot's, kept within the screen.
+glm::ivec2 window_size(const Scene& scene, const WindowOptions& options) {
+    if (options.size.x > 0 && options.size.y > 0) return options.size;
+    glm::ivec2 room(1280, 720);
+    if (GLFWmonitor* monitor = glfwGetPrimaryMonitor(); monitor != nullptr) {
+        glm::ivec2 corner(0);
+        glfwGetMonitorWorkarea(monitor, &corner.x, &corner.y, &room.x, &room.y);
+    }
+    const glm::ivec2 wanted = scene.camera.resolution;
+    const double scale =
+        std::min({1.0, static_cast<double>(room.x) / wanted.x, static_cast<double>(room.y) / wanted.y});
+    return glm::max(glm::ivec2(static_cast<int>(wanted.x * scale), static_cast<int>(wanted.y * scale)),
+                    glm::ivec2(320, 200));
+}
+
+class Window {
+  public:
+    Window(glm::ivec2 size, const std::string& title) {
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+        glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+        glfwWindowHint(GLFW_DEPTH_BITS, 0);  // the sea has its own
+        glfwWindowHint(GLFW_STENCIL_BITS, 0);
+        window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
+        if (window_ == nullptr)
+            throw PreviewError(
+                "the display gives no OpenGL 3.3 core context (" + glfw_reason() +
+                "); update its driver, or set LIBGL_ALWAYS_SOFTWARE=1 for Mesa's software one, "
+                "or draw without a window: --offscreen FILE.png");
+        glfwMakeContextCurrent(window_);
+        glfwSetWindowUserPointer(window_, this);
+        // Before Dear ImGui's own, which calls it: that one only knows which keys are down when a picture
+        // begins, and a short press between two slow pictures must not be lost.
+        glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+            if (action == GLFW_RELEASE) return;
+            static_cast<Window*>(glfwGetWindowUserPointer(window))
+                ->pressed_.push_back({key, action == GLFW_REPEAT});
+        });
+    }
+    ~Window() { glfwDestroyWindow(window_); }
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    GLFWwindow* get() const { return window_; }
+    glm::ivec2 size_px() const {
+        glm::ivec2 size(0);
+        glfwGetFramebufferSize(window_, &size.x, &size.y);
+        return size;
+    }
+    // Framebuffer pixels by the window's own units, in which the mouse is told.
+    double mouse_scale() const {
+        glm::ivec2 size(0);
+        glfwGetWindowSize(window_, &size.x, &size.y);
+        return size.x > 0 ? static_cast<double>(size_px().x) / size.x : 1.0;
+    }
+    float content_scale() const {
+        float x = 1.0f, y = 1.0f;
+        glfwGetWindowContentScale(window_, &x, &y);
+        return std::clamp(std::max(x, y), 1.0f, 4.0f);
+    }
+    bool is_down(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
+    struct Press {
+        int key;
+        bool repeated;  // held down
+    };
+    // Since the last call, in order.
+    std::vector<Press> take_pressed() { return std::exchange(pressed_, {}); }
+
+  private:
+    GLFWwindow* window_ = nullptr;
+    std::vector<Press> pressed_;
+};
+
+class Gui {
+  public:
+    explicit Gui(const Window& window) {
+        IMGUI_CHECKVERSION();
+        ImGui::CreateContext();
+        ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+        set_controls_style(window.content_scale());
+        ImGui_ImplGlfw_InitForOpenGL(window.get(), true);
+        ImGui_ImplOpenGL3_Init("#version 330 core");
+    }
+    ~Gui() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+    Gui(const Gui&) = delete;
+    Gui& operator=(const Gui&) = delete;
+};
+
+// The back buffer as a PNG.
+void save_window(glm::ivec2 size, const std::filesystem::path& file) {
+    const auto row = static_cast<std::size_t>(size.x) * 3;
+    std::vector<std::uint8_t> upwards(row * size.y), rgb(upwards.size());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    glReadBuffer(GL_BACK);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, size.x, size.y, GL_RGB, GL_UNSIGNED_BYTE, upwards.data());
+    for (std::size_t y = 0; y < static_cast<std::size_t>(size.y); ++y)
+        std::copy_n(upwards.begin() + static_cast<std::ptrdiff_t>(y * row), row,
+                    rgb.end() - static_cast<std::ptrdiff_t>((y + 1) * row));
+    files::write_atomically(file, png::encode({.width = size.x, .height = size.y, .rgb = rgb}));
+}
+
+// The first name that is free: NAME.preview.0001.png, …
+std::filesystem::path picture_name(const std::filesystem::path& folder, const std::string& name) {
+    for (int i = 1;; ++i) {
+        const std::string number = std::to_string(i);
+        std::filesystem::path file =
+            folder / (name + ".preview." + std::string(4 - std::min<std::size_t>(number.size(), 4), '0') +
+                      number + ".png");
+        if (!std::filesystem::exists(file)) return file;
+    }
+}
+
+// What is above the water: made beside the picture, as the sea is.
+struct LiveSky {
+    Sky sky;
+    WaterBody water;
+    float exposure = 1.0f;
+};
+
+std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
+    LiveSky made;
+    made.sky = make_sky(scene);
+    made.water = make_water(scene);
+    made.exposure = exposure_for(made.sky);
+    return std::make_shared<const LiveSky>(std::move(made));
+}
+
+bool same_light(const Scene& a, const Scene& b) {
+    const auto light = [](const Scene& scene) {
+        Scene alone;
+        alone.light = scene.light;
+        alone.water = scene.water;
+        return canonical(alone);
+    };
+    return light(a) == light(b);
+}
+
+class Preview {
+  public:
+    Preview(const Scene& scene, const WindowOptions& options)
+        : options_(options),
+          shot_(scene),
+          window_(window_size(scene, options), "Pelagic: " + scene.shot.name),
+          gui_(window_),
+          controls_(controls_for(scene)),
+          skies_(build_sky) {
+        controls_.pixel_size = options.pixel_size;
+        if (options.frame) {
+            controls_.time_s = scene.shot.time_s(*options.frame);
+            controls_.playing = false;
+        }
+        shown_time_s_ = controls_.time_s;
+        readout_.device = renderer_.device();
+        camera_.take(view_at(scene.camera, scene.shot.first_frame));
+        // With the screen's own rhythm, except where nobody watches.
+        glfwSwapInterval(options.screenshot ? 0 : 1);
+        show_sky(*build_sky(scene));
+        lit_ = scene;
+        sea_.ask(scene);
+    }
+
+    void run() {
+        auto last = Clock::now();
+        while (glfwWindowShouldClose(window_.get()) == 0) {
+            is_idle() ? glfwWaitEventsTimeout(kIdle_s) : glfwPollEvents();
+            const glm::ivec2 size = window_.size_px();
+            if (size.x <= 0 || size.y <= 0) {  // minimised
+                glfwWaitEventsTimeout(kIdle_s);
+                continue;
+            }
+            const double whole_ms = milliseconds_since(last);
+            last = Clock::now();
+            begin_picture(whole_ms);
+            act();
+            play(std::min(whole_ms * 1e-3, kLongestStep_s));
+            move(std::min(whole_ms * 1e-3, kLongestStep_s));
+            take_what_is_ready();
+            draw_sea(size);
+            if (std::exchange(save_picture_, false)) save_without_panel(size);
+            ImGui::Render();
+            ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+            if (is_screenshot_due()) {
+                save_window(size, *options_.screenshot);
+                return;
+            }
+            const auto presenting = Clock::now();
+            glfwSwapBuffers(window_.get());
+            smooth(readout_.times.present_ms, milliseconds_since(presenting));
+        }
+        glfwHideWindow(window_.get());  // a sea that is being built is waited for, not looked at
+    }
+
+  private:
+    static void smooth(double& shown, double now) {
+        shown = shown > 0.0 ? shown + kSmoothing * (now - shown) : now;
+    }
+
+    // Nothing moves and nobody touches anything: a picture now and then is enough.
+    bool is_idle() const {
+        return !options_.screenshot && !controls_.playing && !is_flying_ && !readout_.building_sea &&
+               !readout_.building_sky && shown_time_s_ == controls_.time_s && !ImGui::IsAnyMouseDown();
+    }
+
+    void begin_picture(double whole_ms) {
+        smooth(readout_.times.total_ms, whole_ms);
+        readout_.history_ms.push_back(static_cast<float>(whole_ms));
+        if (readout_.history_ms.size() > kHistory) readout_.history_ms.erase(readout_.history_ms.begin());
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui_ImplGlfw_NewFrame();
+        ImGui::NewFrame();
+    }
+
+    // The panel and the keys.
+    void act() {
+        const auto start = Clock::now();
+        const Clicks clicks = draw_controls(controls_, readout_, shot_);
+        smooth(readout_.times.panel_ms, milliseconds_since(start));
+        const ImGuiIO& io = ImGui::GetIO();
+        if (clicks.reset) {
+            const Controls fresh = controls_for(shot_);
+            controls_.scene = fresh.scene;
+            controls_.draw = fresh.draw;
+            controls_.exposure_stops = fresh.exposure_stops;
+        }
+        if (clicks.shot_camera || clicks.reset) readout_.follows_shot = true;
+        if (clicks.copy) copy();
+        for (const Window::Press& press : window_.take_pressed())
+            if (!io.WantTextInput) act_on(press);
+    }
+
+    void act_on(const Window::Press& press) {
+        const auto step = [&](int frames) {
+            controls_.playing = false;
+            const double frame = std::round(1.0 + controls_.time_s * shot_.shot.fps) + frames;
+            controls_.time_s = (frame - 1.0) / shot_.shot.fps;
+        };
+        if (press.key == GLFW_KEY_RIGHT) return step(1);
+        if (press.key == GLFW_KEY_LEFT) return step(-1);
+        if (press.repeated) return;
+        switch (press.key) {
+            case GLFW_KEY_ESCAPE:
+                return glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
+            case GLFW_KEY_Q:
+                if (ImGui::GetIO().KeyCtrl) glfwSetWindowShouldClose(window_.get(), GLFW_TRUE);
+                return;
+            case GLFW_KEY_F1:
+                controls_.show_help = !controls_.show_help;
+                return;
+            case GLFW_KEY_TAB:
+                controls_.show_panel = !controls_.show_panel;
+                return;
+            case GLFW_KEY_F12:
+                save_picture_ = true;
+                return;
+            case GLFW_KEY_HOME:
+                readout_.follows_shot = true;
+                return;
+            case GLFW_KEY_SPACE:
+                controls_.playing = !controls_.playing;
+                return;
+            default:
+                return;
+        }
+    }
+
+    // The changed keys, with the camera where it is.
+    void copy() {
+        Scene now = controls_.scene;
+        if (!readout_.follows_shot) {
+            const auto millimetres = [](glm::dvec3 v_m) { return glm::round(v_m * 1e3) / 1e3; };
+            now.camera.position_m = millimetres(camera_.position_m());
+            now.camera.look_at_m = millimetres(camera_.middle_m());
+        }
+        const std::string keys = changed_keys(shot_, now);
+        glfwSetClipboardString(window_.get(),
+                               keys.empty() ? "# nothing differs from the shot\n" : keys.c_str());
+    }
+
+    void play(double step_s) {
+        if (!controls_.playing) return;
+        controls_.time_s += step_s * controls_.time_scale;
+        if (!controls_.repeat) return;
+        // The last frame is on show as long as the others.
+        const double first_s = shot_.shot.time_s(shot_.shot.first_frame);
+        const double length_s = shot_.shot.time_s(shot_.shot.last_frame + 1) - first_s;
+        const double within_s = std::fmod(controls_.time_s - first_s, length_s);
+        controls_.time_s = first_s + (within_s < 0.0 ? within_s + length_s : within_s);
+    }
+
+    // The camera in the hand; while nobody touches it, the shot's own.
+    void move(double step_s) {
+        const ImGuiIO& io = ImGui::GetIO();
+        const View lens = lens_now();
+        const glm::dvec2 hand(io.MouseDelta.x, io.MouseDelta.y);
+        const auto is_dragging = [&](int button) {
+            // A press's own picture still has the way that led to it.
+            return !io.WantCaptureMouse && ImGui::IsMouseDown(button) && !ImGui::IsMouseClicked(button) &&
+                   (hand.x != 0.0 || hand.y != 0.0);
+        };
+        const bool left = is_dragging(ImGuiMouseButton_Left);
+        const bool slides = is_dragging(ImGuiMouseButton_Middle) || (left && io.KeyShift);
+        const bool looks = is_dragging(ImGuiMouseButton_Right);
+        const double wheel = io.WantCaptureMouse ? 0.0 : static_cast<double>(io.MouseWheel);
+        const auto axis = [&](int more, int less) {
+            return (window_.is_down(more) ? 1.0 : 0.0) - (window_.is_down(less) ? 1.0 : 0.0);
+        };
+        glm::dvec3 steering(0.0);
+        if (!io.WantTextInput && !io.KeyCtrl)
+            steering = {axis(GLFW_KEY_D, GLFW_KEY_A), axis(GLFW_KEY_W, GLFW_KEY_S),
+                        axis(GLFW_KEY_E, GLFW_KEY_Q)};
+        is_flying_ = steering != glm::dvec3(0.0);
+        if (!left && !slides && !looks && wheel == 0.0 && !is_flying_) return;
+        if (std::exchange(readout_.follows_shot, false)) camera_.take(lens);
+        if (slides) {
+            camera_.pan(hand * window_.mouse_scale() / static_cast<double>(controls_.pixel_size), lens);
+        } else if (left) {
+            camera_.orbit(-kTurn_per_px * hand);
+        }
+        if (looks) camera_.look(-kTurn_per_px * hand);
+        camera_.zoom(wheel);
+        camera_.fly({.steering = steering, .seconds = step_s, .haste = io.KeyShift ? kHaste : 1.0});
+    }
+
+    // The shot's camera at the time on show, with the window's pixels. Its vertical field of view stays when
+    // the window is wider than the shot, its horizontal one when it is narrower: what the shot shows is in
+    // it.
+    View lens_now() const {
+        View view = view_at(shot_.camera, 1.0 + shown_time_s_ * shot_.shot.fps);
+        const glm::dvec2 shot_size(shot_.camera.resolution);
+        view.resolution =
+            glm::max((window_.size_px() + (controls_.pixel_size - 1)) / controls_.pixel_size, glm::ivec2(1));
+        const double wider =
+            static_cast<double>(view.resolution.x) / view.resolution.y * shot_size.y / shot_size.x;
+        view.tan_half_width *= std::max(wider, 1.0);
+        return view;
+    }
+
+    void show_sky(const LiveSky& sky) {
+        renderer_.set_sky(sky.sky, sky.water);
+        exposure_ = sky.exposure;
+    }
+
+    // Asks for what the panel wants, and shows what has been made; waits for neither.
+    void take_what_is_ready() {
+        if (!same_light(lit_, controls_.scene)) {
+            lit_ = controls_.scene;
+            skies_.ask(lit_);
+        }
+        if (const auto sky = skies_.take()) show_sky(*sky);
+        sea_.ask(controls_.scene);
+        sea_.show(controls_.time_s);
+        frame_ = sea_.newest();
+        const LiveStatus status = sea_.status();
+        readout_.building_sea = status.building;
+        readout_.building_sky = skies_.is_busy();
+        readout_.message = status.error.empty() ? skies_.error() : status.error;
+        if (frame_ != nullptr && std::exchange(uploaded_, frame_->number) != frame_->number) upload();
+        for (const std::string& error : {upload_error_, save_error_})
+            if (readout_.message.empty()) readout_.message = error;
+        readout_.has_sea = frame_ != nullptr;
+        if (frame_ == nullptr) return;
+        readout_.significant_height_m = frame_->build->grid.significant_height_m;
+        readout_.times.build_s = frame_->build->build_s;
+        smooth(readout_.times.transforms_ms, frame_->transforms_ms);
+        smooth(readout_.times.packing_ms, frame_->packing_ms);
+    }
+
+    void upload() {
+        shown_time_s_ = frame_->packed->time_s();
+        try {
+            renderer_.upload(*frame_->packed);
+            upload_error_.clear();
+        } catch (const PreviewError& error) {
+            upload_error_ = error.what();
+        }
+    }
+
+    void draw_sea(glm::ivec2 size) {
+        const View lens = lens_now();
+        const View view = readout_.follows_shot ? lens : camera_.view(lens);
+        readout_.camera_m = view.position_m;
+        readout_.drawn_px = view.resolution;
+        const auto start = Clock::now();
+        ProjectedGridOptions grid_options;
+        if (frame_ != nullptr) grid_options = frame_->build->grid;
+        grid_options.cell_px = std::max(controls_.scene.surface.cell_px / controls_.pixel_size, 1.0);
+        const ProjectedGrid grid = projected_grid(view, grid_options);
+        smooth(readout_.times.grid_ms, milliseconds_since(start));
+        renderer_.draw(view, grid, controls_.draw);
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        glViewport(0, 0, size.x, size.y);
+        renderer_.show(exposure_ * static_cast<float>(std::exp2(controls_.exposure_stops)));
+        readout_.times.gpu = renderer_.times();
+    }
+
+    void save_without_panel(glm::ivec2 size) {
+        try {
+            save_window(size, picture_name(options_.folder, shot_.shot.name));
+            save_error_.clear();
+        } catch (const files::FileError& error) {
+            save_error_ = error.what();
+        }
+    }
+
+    bool is_screenshot_due() {
+        if (!options_.screenshot || frame_ == nullptr) return false;
+        return ++pictures_ >= options_.screenshot_after;
+    }
+
+    const WindowOptions options_;
+    const Scene shot_;
+    Glfw glfw_;
+    Window window_;
+    Gui gui_;
+    Controls controls_;
+    Readout readout_;
+    SeaRenderer renderer_;
+    OrbitCamera camera_;
+    float exposure_ = 1.0f;
+    Scene lit_;  // whose light was asked for last
+    const LiveFrame* frame_ = nullptr;
+    long uploaded_ = 0;  // its number
+    double shown_time_s_ = 0.0;
+    int pictures_ = 0;
+    bool is_flying_ = false, save_picture_ = false;
+    std::string upload_error_, save_error_;
+    LiveWorker<Scene, LiveSky> skies_;
+    LiveSea sea_;
+};
+
+}  // namespace
+
+void run_window(const Scene& scene, const WindowOptions& options) {
+    Preview(scene, options).run();
+}
+
+}  // namespace pelagic

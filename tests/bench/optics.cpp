@@ -1,0 +1,201 @@
+// The optics' tables: Eq. 11, the white furnace, effective Fresnel terms, and what a point of each variant
+// costs.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/lighting/lighting.h"
+#include "core/lighting/sky.h"
+#include "tests/core/lighting/optics.h"
+
+namespace pelagic {
+namespace {
+
+using glm::dvec2, glm::dvec3, glm::vec2, glm::vec3;
+using optics::Furnace;
+using optics::Inputs;
+using optics::Optics;
+namespace oracle = optics::oracle;
+
+constexpr std::array<double, 9> kAngles{0.0, 30.0, 60.0, 70.0, 75.0, 80.0, 85.0, 88.0, 89.5};
+constexpr std::array<double, 5> kSigmas{0.02, 0.1, 0.2, 0.3, 0.5};
+
+dvec3 seen_from(double degrees) {
+    const double theta = degrees * oracle::kPi / 180.0;
+    return {std::sin(theta), 0.0, std::cos(theta)};
+}
+
+void heading(const char* title, const char* unit) {
+    std::printf("\n%s\n%-18s", title, unit);
+    for (double angle : kAngles) std::printf("%9.1f", angle);
+    std::printf("\n");
+}
+
+// One row for each σ of isotropic waves, a column for each angle from the normal.
+template <class Function>
+void table(const char* title, Function&& f) {
+    heading(title, "sigma \\ angle");
+    for (double sigma : kSigmas) {
+        std::printf("%-18.2f", sigma);
+        for (double angle : kAngles) std::printf("%9.5f", f(seen_from(angle), sigma * sigma));
+        std::printf("\n");
+    }
+}
+
+double normalisation(dvec3 v, double variance) {
+    Optics shared;
+    const vec3 s(dvec3(variance, variance, 0.0));
+    constexpr int kSteps = 400;
+    double sum = 0.0;
+    for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; j < kSteps; ++j) {
+            const dvec2 x = (dvec2(i, j) + 0.5) * (12.0 / kSteps) - 6.0;
+            sum +=
+                static_cast<double>(shared.visible_slope_density(vec2(x * std::sqrt(variance)), vec3(v), s));
+        }
+    return sum * variance * 144.0 / (kSteps * kSteps);
+}
+
+// What a white sea shows of a white sky; what is reflected onto the sea shows `below`.
+double furnace(dvec3 v, double variance, float below) {
+    Furnace white;
+    white.lookup = [below](vec2 u, float) { return vec3(dot(u, u) < 1.0f ? 1.0f : below); };
+    const auto frame = white.slope_frame(vec3(0.0f, 0.0f, 1.0f), vec3(dvec3(variance, variance, 0.0)));
+    return static_cast<double>(white.sky_reflection(vec3(v), frame).x);
+}
+
+// The real sea under a white sky of radiance 1, the integral: what of it is the map's value below the
+// horizon, which here is the mean Fresnel term of a uniform sky, 0.066.
+double given_back(dvec3 v, double variance) {
+    Optics sea;
+    sea.kSkyLookups = 0;
+    const auto shown = [&](float below) {
+        sea.lookup = [below](vec2 u, float) { return vec3(dot(u, u) < 1.0f ? 1.0f : below); };
+        const auto frame = sea.slope_frame(vec3(0.0f, 0.0f, 1.0f), vec3(dvec3(variance, variance, 0.0)));
+        return static_cast<double>(sea.sky_reflection(vec3(v), frame).x);
+    };
+    return shown(0.066f) / shown(0.0f) - 1.0;
+}
+
+// The largest error against the average over 200 × 200 slopes, and where.
+template <class Fit, class Term>
+void fresnel_errors(const char* name, Fit&& fit, Term&& term) {
+    double most = 0.0, most_angle = 0.0, most_along = 0.0, most_across = 0.0, squares = 0.0;
+    int count = 0;
+    for (double angle : {0.0, 20.0, 40.0, 55.0, 65.0, 72.0, 76.0, 80.0, 83.0, 86.0, 88.0, 89.0, 89.5, 89.9})
+        for (double along : {0.01, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5})
+            for (double across : {0.01, 0.1, 0.2, 0.35, 0.5}) {
+                const dvec3 v = seen_from(angle), s(along * along, across * across, 0.0);
+                const double average =
+                    oracle::over_visible(v, s, 200, [&](dvec2, dvec3 f) { return term(dot(v, f)); });
+                const double error = fit(v.z, along, across) - average;
+                squares += error * error;
+                ++count;
+                if (std::abs(error) > std::abs(most)) {
+                    most = error, most_angle = angle, most_along = along, most_across = across;
+                }
+            }
+    std::printf("%-44s %+8.4f at %4.1f deg, sigma %.2f along, %.2f across; rms %.4f\n", name, most,
+                most_angle, most_along, most_across, std::sqrt(squares / count));
+}
+
+// The best of several runs over the same points, as a multiple of the first.
+void costs() {
+    Inputs inputs(1);
+    std::vector<SeaPoint> points(20000);
+    for (SeaPoint& p : points) {
+        p = {.to_eye = inputs.direction(1e-2),
+             .normal = inputs.direction(0.8),
+             .slope_variance = inputs.variance(0.05, 0.3, 0.5),
+             .coverage = 0.02f};
+    }
+    std::vector<SeaRadiance> radiance(points.size());
+    const Sky sky = daylight_sky({});
+    const WaterBody water = water_body({});
+    const auto seconds = [&](const LightingChoice& choice) {
+        double best = std::numeric_limits<double>::infinity();
+        for (int run = 0; run < (choice.sky_quality == SkyQuality::Integral ? 1 : 7); ++run) {
+            const auto begin = std::chrono::steady_clock::now();
+            shade_sea(choice, sky, water, points, radiance);
+            best = std::min(best,
+                            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+        }
+        return best;
+    };
+    using Quality = SkyQuality;
+    const LightingChoice nothing{.sun = false, .sky = false, .water = false, .whitecaps = false};
+    const double unit = seconds({.sky_quality = Quality::One, .fresnel = FresnelFit::Paper});
+    const auto row = [&](const char* name, const LightingChoice& choice) {
+        std::printf("%-52s %8.3f\n", name, seconds(choice) / unit);
+    };
+    std::printf("\ntime per point, in times of the paper's variant (%.0f ns here)\n",
+                unit / static_cast<double>(points.size()) * 1e9);
+    row("nothing", nothing);
+    LightingChoice one = nothing;
+    one.sun = true;
+    row("sun alone", one);
+    one = nothing;
+    one.water = true;
+    row("water alone", one);
+    one = nothing;
+    one.whitecaps = true;
+    row("whitecaps alone", one);
+    one = nothing;
+    one.sky = true;
+    one.sky_quality = Quality::One;
+    row("sky alone, one lookup", one);
+    one.sky_quality = Quality::Nine;
+    row("sky alone, nine", one);
+    row("all, one lookup, Eq. 26 (the paper's)", {.sky_quality = Quality::One, .fresnel = FresnelFit::Paper});
+    row("all, one lookup, exact Fresnel", {.sky_quality = Quality::One});
+    row("all, nine, Eq. 26", {.fresnel = FresnelFit::Paper});
+    row("all, nine, exact Fresnel (the default)", {});
+    row("all, the integral", {.sky_quality = Quality::Integral});
+}
+
+void print() {
+    table("Eq. 11: integral of what is seen over all slopes (1)", normalisation);
+    table("white furnace, single scattering: 1 less the deficit",
+          [](dvec3 v, double s) { return furnace(v, s, 0.0f); });
+    table("white furnace, what meets the sea again shows the same",
+          [](dvec3 v, double s) { return furnace(v, s, 1.0f); });
+    table("sea under a white sky: what the multiple-reflection term adds, relative", given_back);
+    std::printf("\neffective Fresnel terms, largest errors for sigma <= 0.5\n");
+    Optics shared;
+    const auto paper = [&](double c, double along, double) {
+        return static_cast<double>(
+            shared.fresnel_effective_paper(static_cast<float>(c), static_cast<float>(along)));
+    };
+    const auto exact = [&](double c, double along, double across) {
+        return static_cast<double>(shared.fresnel_effective_exact(
+            static_cast<float>(c), static_cast<float>(along), static_cast<float>(along * along),
+            static_cast<float>(across * across)));
+    };
+    const auto term = [](double c) { return oracle::fresnel(c); };
+    fresnel_errors("Eq. 26 against the average of Schlick's term", paper, oracle::schlick);
+    fresnel_errors("Eq. 26 against the average of the exact term", paper, term);
+    fresnel_errors("our fit against the average of the exact term", exact, term);
+    std::printf("\nwater, reflectance (Rec. 709)\n");
+    for (double chlorophyll : {0.03, 0.1, 1.0, 10.0})
+        for (const auto& [name, kind] : {std::pair{"ocean", WaterKind::Ocean},
+                                         {"coastal", WaterKind::Coastal},
+                                         {"turbid", WaterKind::Turbid}}) {
+            const vec3 c = water_body({.kind = kind, .chlorophyll_mg_m3 = chlorophyll}).reflectance;
+            std::printf("%-10s %6.2f mg/m3 %9.4f %9.4f %9.4f\n", name, chlorophyll, static_cast<double>(c.x),
+                        static_cast<double>(c.y), static_cast<double>(c.z));
+        }
+    costs();
+}
+
+}  // namespace
+}  // namespace pelagic
+
+int main() {
+    pelagic::print();
+}

@@ -1,0 +1,88 @@
+// Pixels as the projected grid shades them. See shaded_sea.h.
+#include "tests/bench/reference/shaded_sea.h"
+
+#include <tbb/parallel_for.h>
+
+#include <glm/geometric.hpp>
+
+#include "core/evaluate/evaluate.h"
+
+namespace pelagic::bench {
+namespace {
+
+// The water's radiance from below in shade_sea()'s own units, found where its share is known: seen from
+// straight above, a mirror's Fresnel term is ((n − 1)/(n + 1))², which the paper rounds to 0.02.
+double radiance_from_below(const LightingChoice& choice, const Sky& sky, const WaterBody& water) {
+    const SeaPoint level;
+    SeaRadiance seen;
+    shade_sea(choice, sky, water, {&level, 1}, {&seen, 1});
+    const double reflected = choice.fresnel == FresnelFit::Paper ? 0.02 : (0.34 / 2.34) * (0.34 / 2.34);
+    return luminance(seen.sea) / (1.0 - reflected);
+}
+
+}  // namespace
+
+SeaPixels sea_pixels(const WaveTile& tile, const View& view, const PixelOptions& options) {
+    const ProjectedSea sea(tile, view, options.cell_px);
+    SeaPixels pixels;
+    const int n = options.samples;
+    pixels.per_line = view.resolution.x * n * n;
+    std::vector<glm::vec2> rest_m;
+    std::vector<float> footprints_m;
+    for (int row = options.first_row; row < view.resolution.y; ++row) {
+        pixels.first.push_back(rest_m.size());
+        for (int i = 0; i < pixels.per_line; ++i) {
+            const double column = i / (n * n), across = i % n, down = i / n % n;
+            const glm::vec3 direction(view.direction({column + (across + 0.5) / n, row + (down + 0.5) / n}));
+            SeaHit hit;
+            if (!sea.trace({.origin_m = glm::vec3(view.position_m), .direction = direction}, hit)) continue;
+            rest_m.push_back(hit.rest_m);
+            footprints_m.push_back(options.pixels > 0.0 ? static_cast<float>(options.pixels) * hit.pixel_m
+                                                        : hit.cell_m);
+            pixels.points.push_back({.to_eye = -direction});
+        }
+    }
+    pixels.first.push_back(rest_m.size());
+    Results<float> results;
+    results.normal = {&pixels.points.front().normal, sizeof(SeaPoint)};
+    results.slope_variance = {&pixels.points.front().slope_variance, sizeof(SeaPoint)};
+    evaluate(
+        tile.frame(), kPixels,
+        Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}, .pixel_m = {footprints_m.data()}},
+        results);
+    return pixels;
+}
+
+SeaPixels with_constant_variance(SeaPixels pixels) {
+    const std::size_t begin = pixels.first[pixels.first.size() - 2], end = pixels.first.back();
+    glm::vec3 sum(0.0f);
+    for (std::size_t i = begin; i < end; ++i) sum += pixels.points[i].slope_variance;
+    for (SeaPoint& point : pixels.points)
+        point.slope_variance = sum / static_cast<float>(std::max<std::size_t>(end - begin, 1));
+    return pixels;
+}
+
+Lines shaded_lines(const SeaPixels& pixels, const LightingChoice& choice, const Sky& sky, double refracted) {
+    const WaterBody water{.reflectance = glm::vec3(0.05f)};
+    const double scale = refracted / radiance_from_below(choice, sky, water);
+    // The integral takes a hundred times as long; it is for sky and water, which change little between
+    // samples.
+    const std::size_t step = choice.sky_quality == SkyQuality::Integral ? 9 : 1;
+    Lines lines(pixels.first.size() - 1);
+    tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t row) {
+        std::vector<SeaPoint> points;
+        for (std::size_t i = pixels.first[row]; i < pixels.first[row + 1]; i += step)
+            points.push_back(pixels.points[i]);
+        std::vector<SeaRadiance> radiance(points.size());
+        shade_sea(choice, sky, water, points, radiance);
+        const double weight = static_cast<double>(step) / pixels.per_line;
+        for (const SeaRadiance& sample : radiance) {
+            lines[row].term[kSun] += weight * luminance(sample.sun);
+            lines[row].term[kRefracted] += weight * scale * luminance(sample.sea);
+            lines[row].term[kSky] += weight * luminance(sample.sky);
+        }
+    });
+    return lines;
+}
+
+}  // namespace pelagic::bench

@@ -1,0 +1,34 @@
+// What pictures are compared by: the mean luminance of each of their lines, term by term.
+#pragma once
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/lighting/sky.h"
+
+namespace pelagic::bench {
+
+enum Term { kSun, kRefracted, kSky, kTerms };
+inline constexpr const char* kTermNames[kTerms] = {"sun", "refracted", "sky"};
+
+struct Line {
+    double term[kTerms] = {};
+};
+using Lines = std::vector<Line>;  // from the first row below the horizon downwards
+
+inline double luminance(const glm::vec3& colour) {
+    return static_cast<double>(glm::dot(colour, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
+}
+
+// The sky with the sun's light spread over a disc that is `factor` times as wide: the same irradiance.
+inline Sky with_wider_sun(Sky sky, float factor) {
+    const auto cap = [](float radius) { return 1.0 - std::cos(static_cast<double>(radius)); };
+    sky.sun_radiance *=
+        static_cast<float>(cap(sky.sun_angular_radius) / cap(factor * sky.sun_angular_radius));
+    sky.sun_angular_radius *= factor;
+    return sky;
+}
+
+}  // namespace pelagic::bench

@@ -1,0 +1,47 @@
+// The sea that the lighting is validated on (Bruneton, Neyret, Holzschuch 2010, §7.2): one periodic tile of
+// waves that ends at a known wavelength, so that very fine geometry can show all of it, and what pixels hide
+// is exactly what that geometry shows and the filter doesn't.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/surface/projected_grid.h"
+#include "core/waves/frame.h"
+
+namespace pelagic::bench {
+
+struct WaveTileOptions {
+    double wind_speed_mps = 5.0, fetch_m = 300e3;
+    double choppiness = 1.0;
+    std::uint64_t seed = 1;
+    double size_m = 100.0;
+    int resolution = 2048;  // of the waves: the shortest is a little more than two samples long
+};
+
+// The queries of the tile's plan, all of this band alone.
+enum TileQuery {
+    kWhole,   // positions and normals of all waves, nothing filtered
+    kCells,   // positions, filtered by cells: a ladder
+    kPixels,  // normals and hidden slope variance, filtered by pixels: a ladder
+};
+
+class WaveTile {
+  public:
+    explicit WaveTile(const WaveTileOptions& options);
+
+    const Frame<float>& frame() const { return *frame_; }
+    double size_m() const { return size_m_; }
+    double shortest_m() const { return shortest_m_; }
+    // All that the tile's band holds, and what a footprint of 0 leaves of it: the error of "hides nothing".
+    const SpectralMoments& whole() const { return frame_->sea().statistics(kWhole).whole; }
+    SpectralMoments hidden_from_all() const;
+    // Of the positions, with room for the highest crest of a few thousand.
+    SurfaceBounds bounds() const;
+
+  private:
+    double size_m_, shortest_m_;
+    std::unique_ptr<Frame<float>> frame_;
+};
+
+}  // namespace pelagic::bench

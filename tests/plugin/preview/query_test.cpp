@@ -1,0 +1,196 @@
+// The query on the GPU against evaluate(): the same points, footprints and fields through both.
+//
+// Single precision on both sides: places on the GPU are as good as evaluate()'s doubles (places.glsl), so
+// that what remains is the rounding of sums of some hundred terms in another order, 1e-7 of the largest, and
+// the last digits of the driver's sines. The bounds allow for ten times what llvmpipe shows.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <random>
+
+#include "core/evaluate/evaluate.h"
+#include "plugin/preview/sea_layout.h"
+#include "plugin/preview/sea_textures.h"
+#include "plugin/preview/shader_variants.h"
+#include "tests/plugin/preview/gpu.h"
+
+namespace pelagic {
+namespace {
+
+Scene scene_of(WaveModel model) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 12.0;
+    scene.waves.model = model;
+    if (model == WaveModel::Fft) scene.waves.cascades = {{200.0, 128}, {37.3, 96}};
+    scene.waves.trains = 40;
+    return scene;
+}
+
+Query picture_query() {
+    Query query;
+    query.name = "picture";
+    query.products = products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage);
+    query.cell_m = {0.6, 1.2, 2.4, 4.8, 9.6, 19.2, 38.4};
+    query.pixel_m = {0.3, 0.6, 1.2, 2.4, 4.8, 9.6, 19.2, 38.4};
+    return query;
+}
+
+struct Answers {
+    std::vector<glm::vec3> position, normal, slope_variance;
+    std::vector<float> coverage;
+    explicit Answers(std::size_t n) : position(n), normal(n), slope_variance(n), coverage(n) {}
+};
+
+// The points that both sides are asked for: rest [m], cell and pixel [m].
+struct Asked {
+    std::vector<glm::vec2> rest_m;
+    std::vector<float> cell_m, pixel_m;
+};
+
+// Footprints from below the ladder to beyond it; as far from the origin as such a pixel is.
+Asked points(std::size_t count) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    Asked asked;
+    for (std::size_t i = 0; i < count; ++i) {
+        const float pixel_m = 0.1f * std::pow(1000.0f, unit(random));
+        const float distance_m = 500.0f * pixel_m * unit(random), angle = 6.2831853f * unit(random);
+        asked.rest_m.emplace_back(distance_m * std::cos(angle), distance_m * std::sin(angle));
+        asked.pixel_m.push_back(pixel_m);
+        asked.cell_m.push_back(8.0f * pixel_m);
+    }
+    return asked;
+}
+
+struct Compared {
+    glm::dvec2 origin_m{0.0};
+    double time_s = 12.5;
+};
+
+void compare(const Scene& scene, const Query& query, const Compared& at, std::size_t count = 20000) {
+    const auto sea = std::make_shared<const Sea<float>>(scene, make_plan(scene, {query}));
+    Frame<float> frame(sea);
+    frame.set(at.time_s);
+    const Asked asked = points(count);
+    const bool asks_coverage = query.products[index(Product::Coverage)];
+    Answers cpu(count);
+    Results<float> results;
+    results.position = {cpu.position.data()};
+    results.normal = {cpu.normal.data()};
+    results.slope_variance = {cpu.slope_variance.data()};
+    if (asks_coverage) results.coverage = {cpu.coverage.data()};
+    evaluate(frame, 0,
+             Points<float>{.origin_m = at.origin_m,
+                           .count = count,
+                           .rest_m = {asked.rest_m.data()},
+                           .cell_m = {asked.cell_m.data()},
+                           .pixel_m = {asked.pixel_m.data()}},
+             results);
+
+    gpu::need_context();
+    PackedFrame packed(sea, 0);
+    packed.pack(frame);
+    SeaTextures textures;
+    textures.upload(packed);
+    std::vector<glm::vec4> inputs;
+    for (std::size_t i = 0; i < count; ++i)
+        inputs.emplace_back(asked.rest_m[i], asked.cell_m[i], asked.pixel_m[i]);
+    ShaderSource query_source;
+    query_source.add_constants(query_constants(*packed.layout(), asks_coverage));
+    query_source.add_files(query_files());
+    const auto ask = [&](std::string_view body) {
+        const ShaderProgram program = gpu::program_of(gpu::caller(query_source, "", body));
+        program.use();
+        textures.bind(program, at.origin_m);
+        return gpu::run(program, inputs, 1);
+    };
+    const auto cells =
+        ask("vec4 p = given(0); vec3 d = query_cell(vec2(p.x, p.y), p.z);\n"
+            "answer = vec4(p.x + d.y, p.y + d.z, d.x, 1.0);");
+    const auto pixels =
+        ask("vec4 p = given(0); PixelAnswer a = query_pixel(vec2(p.x, p.y), p.w);\n"
+            "answer = vec4(a.normal, a.coverage);");
+    const auto hidden =
+        ask("vec4 p = given(0); PixelAnswer a = query_pixel(vec2(p.x, p.y), p.w);\n"
+            "answer = vec4(a.hidden.xx, a.hidden.yy, a.hidden.xy, a.rung);");
+
+    const auto hs_m = static_cast<float>(4.0 * std::sqrt(sea->total().m0));
+    const auto mss = static_cast<float>(sea->total().xx + sea->total().yy);
+    std::vector<float> normal_error, coverage_error;
+    float position_error = 0.0f, hidden_error = 0.0f, steepest = 0.0f, most_hidden = 0.0f, most_foam = 0.0f;
+    for (std::size_t i = 0; i < count; ++i) {
+        // A float's own step at this distance is no error of the waves.
+        const float step_m = 2e-7f * glm::length(asked.rest_m[i]);
+        position_error =
+            std::max(position_error,
+                     std::max(glm::distance(glm::vec3(cells[i]), cpu.position[i]) - step_m, 0.0f) / hs_m);
+        normal_error.push_back(glm::distance(glm::vec3(pixels[i]), cpu.normal[i]));
+        coverage_error.push_back(std::abs(pixels[i].w - cpu.coverage[i]));
+        hidden_error =
+            std::max(hidden_error, glm::distance(glm::vec3(hidden[i]), cpu.slope_variance[i]) / mss);
+        steepest = std::max(steepest, 1.0f - cpu.normal[i].z);
+        most_hidden = std::max(most_hidden, cpu.slope_variance[i].x);
+        most_foam = std::max(most_foam, cpu.coverage[i]);
+    }
+    std::sort(normal_error.begin(), normal_error.end());
+    std::sort(coverage_error.begin(), coverage_error.end());
+    const std::size_t last = count - 1;
+    std::printf(
+        "    position %.2e Hs, normal median %.2e 99.9 %% %.2e, coverage 99.9 %% %.2e worst %.2e, hidden "
+        "%.2e mss\n",
+        position_error, normal_error[count / 2], normal_error[count - count / 1000],
+        coverage_error[count - count / 1000], coverage_error[last], hidden_error);
+    // The scene has what is compared.
+    EXPECT_GT(steepest, 0.01f);
+    EXPECT_GT(most_hidden, 0.005f);
+    EXPECT_LT(position_error, 5e-6f);
+    EXPECT_LT(hidden_error, 2e-6f);
+    EXPECT_LT(normal_error[count - count / 1000], 3e-6f);
+    EXPECT_LT(normal_error[count / 2], 1e-6f);
+    if (!asks_coverage) return;
+    EXPECT_GT(most_foam, 0.02f);
+    EXPECT_LT(coverage_error[count - count / 1000], 1e-5f);
+}
+
+TEST(QueryOnTheGpu, OfCascadesIsEvaluates) {
+    compare(scene_of(WaveModel::Fft), picture_query(), {});
+}
+TEST(QueryOnTheGpu, OfCascadesIsEvaluatesAMillionMetresAway) {
+    compare(scene_of(WaveModel::Fft), picture_query(), {.origin_m = {1e6 + 0.3, -1e6 + 0.7}, .time_s = 1e5});
+}
+TEST(QueryOnTheGpu, OfTrainsIsEvaluates) {
+    compare(scene_of(WaveModel::Trochoid), picture_query(), {});
+}
+TEST(QueryOnTheGpu, OfTrainsIsEvaluatesAMillionMetresAway) {
+    compare(scene_of(WaveModel::Trochoid), picture_query(),
+            {.origin_m = {1e6 + 0.3, -1e6 + 0.7}, .time_s = 1e5});
+}
+TEST(QueryOnTheGpu, OfTrainsAndCascadesTogetherIsEvaluates) {
+    Scene scene = scene_of(WaveModel::Trochoid);
+    scene.waves.cascades = {{20.0, 128}};
+    compare(scene, picture_query(), {});
+}
+TEST(QueryOnTheGpu, OfFourTapsAndTwoMomentsIsEvaluates) {
+    Scene scene = scene_of(WaveModel::Fft);
+    scene.quality.level = QualityLevel::Draft;
+    compare(scene, picture_query(), {});
+}
+TEST(QueryOnTheGpu, WithoutChoppinessIsEvaluates) {
+    Scene scene = scene_of(WaveModel::Fft);
+    scene.waves.choppiness = 0.0;
+    Query query = picture_query();
+    query.products[index(Product::Coverage)] = false;
+    scene.effects.whitecaps = false;
+    compare(scene, query, {});
+}
+TEST(QueryOnTheGpu, WithOneFootprintForAllIsEvaluates) {
+    Query query = picture_query();
+    query.cell_m = query.pixel_m = {0.8};
+    compare(scene_of(WaveModel::Fft), query, {});
+}
+
+}  // namespace
+}  // namespace pelagic

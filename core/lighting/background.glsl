@@ -27,7 +27,7 @@ float pixel_angle(float pixel_tangent, float cos_off_axis) {
 // The disc's share of the pixel round `direction`, 0 … 1: a disc whose edge is smooth over a pixel's width.
 // Both directions unit, pixel_angle > 0. Summed over the pixels it has the disc's own solid angle, whatever
 // their size: the smooth edge adds a² ↦ a² + w²/12 to the squared radius a² where the pixel's width w is at
-// most the disc's, and a³ ↦ (a + w/2)³/(3w) where it is wider, which the factors take back.
+// most the disc's, and a² ↦ (a + w/2)³/(3w) where it is wider, which the factors take back.
 float sun_disc(vec3 direction, vec3 sun_direction, float sun_angular_radius, float width) {
     // The chord: exact where the cosine of a small angle has no digits left; 3e-6 short at the sun's edge.
     float angle = length(direction - sun_direction);

@@ -47,8 +47,8 @@ struct LatLong {
 
 // The picture's sun is found, taken out of the map, and becomes the disc, so that it is counted once: its
 // irradiance is what was taken out. A sky in which nothing stands out (overcast) has none: sun_radiance 0.
-// NaN, infinite and negative pixels are refused with std::invalid_argument naming the first of them; so is a
-// picture without pixels. The lower half of the picture is not used.
+// NaN, negative pixels and those above 1e30 are refused with std::invalid_argument naming the first of them;
+// so is a picture without pixels. The lower half of the picture is not used.
 Sky picture_sky(const LatLong& picture, int map_size = 512);
 
 }  // namespace pelagic

@@ -11,20 +11,24 @@ struct SlopeFrame {
     vec3 variance;  // (σxx, σyy, σxy) in the frame
 };
 
-// What is seen cannot face away from the eye (§3.2), nor, where the eye is above, be a mirror for rays that go on
-// downwards: they would meet the next wave, at a grazing angle as well, and be sent up by it. Both happen where a
-// pixel's normal is finer than the crest that it stands on. The normal is bent towards the eye as little as
-// takes the mirrored ray up to the horizon; the paper's n − 2(n·v)v, the least here, leaves a dark line along crests.
-// n + cv mirrors v to the horizon where v_z c² + 2 n_z c + 2 n_z (n·v) − v_z = 0.
+// What is seen cannot face away from the eye (§3.2), nor, where the eye is above, be a mirror for rays that
+// go on downwards: they would meet the next wave, at a grazing angle as well, and be sent up by it. Both
+// happen where a pixel's normal is finer than the crest that it stands on, or where the crest has folded
+// over. The normal is bent towards the eye: first as the paper has it, n − 2(n·v)v, which alone leaves a dark
+// line along crests, then as little as takes the mirrored ray up to the horizon.
+//
+// n + cv mirrors v to the horizon where v_z c² + 2 n_z c + 2 n_z (n·v) − v_z = 0. With n·v ≥ 0 just one root
+// is positive where n itself mirrors v downwards; it is written so that nothing cancels, whichever sign n_z
+// has. n + cv then points up: its z is the root of the discriminant. The bounds of 1e-6 keep c finite.
 vec3 facing_normal(vec3 normal, vec3 to_eye) {
-    float facing = dot(normal, to_eye);
-    float below = to_eye.z - 2.0f * facing * normal.z;  // minus the mirrored ray's height
-    float bend = max(-2.0f * facing, 0.0f);
+    vec3 seen = normal - 2.0f * min(dot(normal, to_eye), 0.0f) * to_eye;
+    float below = to_eye.z - 2.0f * dot(seen, to_eye) * seen.z;  // minus the mirrored ray's height
+    float bend = 0.0f;
     if (below > 0.0f && to_eye.z > 0.0f) {
-        float root = sqrt(max(square(normal.z) + to_eye.z * below, 0.0f));
-        bend = max(bend, below / max(normal.z + root, 1.0e-4f));
+        float root = sqrt(square(seen.z) + to_eye.z * below);
+        bend = seen.z < 0.0f ? (root - seen.z) / max(to_eye.z, 1.0e-6f) : below / max(seen.z + root, 1.0e-6f);
     }
-    return normalize(normal + bend * to_eye);
+    return normalize(seen + bend * to_eye);
 }
 
 // The tensor of world slopes about a plane of slope s, seen from that plane: to first order a slope deviation

@@ -23,7 +23,7 @@ float exposure_for(const Sky& sky) {
     // The mean of a clear noon's sky, in kcd/m²: shown as a sky, well above middle grey.
     constexpr double kNoon = 6.0, kNoonShown = 0.5;
     // Of the changes of the light the exposure makes up this power: eyes expect less light to look darker.
-    constexpr double kAdaptation = 0.4;
+    constexpr double kAdaptation = 0.25;
     constexpr double kDarkest = 1e-3;  // [kcd/m²] deep dusk: beyond it the night comes down
     const double mean = luminance(glm::dvec3(sky.sky_irradiance)) / kPi;  // radiance of the upper hemisphere
     const double seen = std::max(mean, kDarkest) / kNoon;

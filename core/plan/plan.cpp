@@ -176,16 +176,19 @@ std::uint64_t fnv1a(std::string_view text) {  // Fowler, Noll, Vo: 64-bit FNV-1a
     return hash;
 }
 
-// The scene's canonical text without what only the stage's root shows: a new lens or another sun leaves every
-// frame as it is. Unless the mesh is the camera's own.
+// The scene's canonical text without what frames don't hold: a new lens, another sun or other water leaves
+// each of them as it is. Unless the mesh is the camera's own.
 std::string what_frames_hold(const Scene& scene) {
     const bool camera_shapes_mesh =
         scene.surface.kind == SurfaceKind::ProjectedGrid && scene.output.mesh != MeshFormat::None;
+    const auto is_held = [&](const std::string& line) {
+        if (line.starts_with("light.") || line.starts_with("water.")) return false;
+        return camera_shapes_mesh || !(line.starts_with("camera.") || line.starts_with("surface.cell_px "));
+    };
     std::istringstream lines(canonical(scene));
     std::string text = "pelagic " PELAGIC_VERSION " revision " + std::to_string(kRevision);
     for (std::string line; std::getline(lines, line);)
-        if ((camera_shapes_mesh || !line.starts_with("camera.")) && !line.starts_with("light."))
-            text += "\n" + line;
+        if (is_held(line)) text += "\n" + line;
     // The grid is as large as the shot's widest frame asks for: the range decides, too.
     if (camera_shapes_mesh) {
         const ProjectedGridSize size = projected_grid_needs(scene).size;
@@ -287,6 +290,7 @@ void add_map_queries(std::vector<Query>& queries, const Scene& scene, double siz
 Query view_query(const Scene& scene, const ViewQueryOptions& options) {
     Query query;
     query.name = "view";
+    query.is_view = true;
     query.products = options.products;
     if (query.products.none()) {
         query.products = products(Product::Position, Product::Normal, Product::SlopeVariance);
@@ -387,7 +391,7 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
     plan.choppiness = scene.waves.choppiness;
     plan.fingerprint = fnv1a(what_frames_hold(scene));
 
-    double finest_m = std::numeric_limits<double>::infinity();
+    double finest_m = std::numeric_limits<double>::infinity(), trains_finest_m = finest_m;
     for (const Query& query : queries) {
         const auto rising = [](const std::vector<double>& footprints) {
             return !footprints.empty() && footprints.front() >= 0.0 && std::isfinite(footprints.back()) &&
@@ -406,6 +410,8 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
             planned.pixel_levels.push_back(
                 level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
         if (!query.only_cascade) finest_m = std::min({finest_m, query.cell_m.front(), query.pixel_m.front()});
+        if (!query.only_cascade && !query.is_view)
+            trains_finest_m = std::min({trains_finest_m, query.cell_m.front(), query.pixel_m.front()});
         plan.queries.push_back(std::move(planned));
     }
 
@@ -415,7 +421,7 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
         plan.closure.push_back({std::string("no ") + row.name, row.why_off});
     }
     const double finest_footprint_m = std::isfinite(finest_m) ? finest_m : 0.0;
-    if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(scene, finest_footprint_m);
+    if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(scene, trains_finest_m);
     const auto sizes = resolve_cascades(scene, finest_footprint_m);
     std::vector<double> sizes_m;
     for (const CascadeSize& cascade : sizes) sizes_m.push_back(cascade.size_m);

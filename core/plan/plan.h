@@ -36,7 +36,10 @@ struct Query {
     std::size_t points = 0;           // how many at a time, for explain()'s account of memory
     std::optional<Lattice> lattice;   // where the points are known to lie on one: no error of sampling
     std::optional<int> only_cascade;  // a cascade's own tile: the others count as unresolved
-    std::optional<MapKind> map;       // what a bake makes of the answers; a mesh where there is none
+    // Of a camera, whose place must not decide which wave trains there are: pictures from near and far, and
+    // bakes, are of one sea.
+    bool is_view = false;
+    std::optional<MapKind> map;  // what a bake makes of the answers; a mesh where there is none
 };
 
 // How a point finds its value in a grid of samples.

@@ -60,7 +60,8 @@ struct ProjectedGrid {
 // What a pose asks for.
 struct ProjectedGridNeeds {
     ProjectedGridSize size;  // in multiples of 16, so that neighbouring poses often agree
-    // No point's footprints are finer [m], for the ladder of a query.
+    // No point's footprints are finer in a grid of this size [m], for the ladder of a query. In one with rows
+    // to spare cells may be, and are filtered as if they were not.
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;
 };
 ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOptions& options);

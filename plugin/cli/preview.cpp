@@ -57,19 +57,19 @@ std::string refuse_file(const fs::path& file, const std::vector<std::string>& ex
 int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments) {
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
-    const fs::path folder = file.parent_path();
-    files::ensure_folder(folder);
-    OffscreenContext context;
-    const Sky sky = make_sky(scene);
+    const OffscreenContext context;
+    const Sky sky = make_sky(scene);  // what is wrong with either leaves no folder behind
+    files::ensure_folder(file.parent_path());
     const OffscreenPicture drawn = render_offscreen(scene, sky, frame);
     RenderOptions options = render_options(scene);
     options.samples = 1;
     const PictureContext about{.scene = scene,
                                .options = options,
                                .sky = sky,
-                               .fingerprint = make_plan(scene, {view_query(scene)}).fingerprint_text()};
+                               .fingerprint = picture_plan(scene).fingerprint_text()};
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
                                                              : encode_png(about, drawn.picture));
+    if (!drawn.note.empty()) std::cerr << "pelagic: note: " << drawn.note << '\n';
     std::cout << "picture: " << file.string() << "\ndrawn by " << drawn.device << std::endl;
     return kDone;
 }
@@ -118,7 +118,8 @@ Verb add_preview(CLI::App& program) {
     command->footer(help::kPreviewFooter);
     auto arguments = std::make_shared<Arguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
-    command->add_option("--offscreen", arguments->offscreen, help::kOffscreen)->type_name("FILE");
+    CLI::Option* offscreen =
+        command->add_option("--offscreen", arguments->offscreen, help::kOffscreen)->type_name("FILE");
     command->add_option("--frame", arguments->frame, help::kFrame)->type_name("N");
     add_size(*command, arguments->size, help::kPreviewSize);
     command->add_option("--quality", arguments->quality, help::kPreviewQuality)->type_name("LEVEL");
@@ -131,6 +132,7 @@ Verb add_preview(CLI::App& program) {
         ->type_name("N")
         ->check(CLI::Range(1, 1000000).description(""))
         ->needs(screenshot);
+    screenshot->excludes(offscreen);
     add_threads(*command, arguments->threads, help::kPreviewThreads);
     return {command, [arguments] { return run(*arguments); }};
 }

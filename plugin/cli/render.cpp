@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/scene/text.h"
@@ -55,7 +56,7 @@ void parse_terms(const std::string& text, LightingChoice& choice) {
     bool foam = false;
     const std::array<std::pair<std::string_view, bool*>, 4> terms{
         {{"sun", &choice.sun}, {"sky", &choice.sky}, {"sea", &choice.water}, {"foam", &foam}}};
-    std::istringstream words(text);
+    std::istringstream words(text + ',');  // an empty text is a word that is none
     for (std::string word; std::getline(words, word, ',');) {
         const auto term =
             std::find_if(terms.begin(), terms.end(), [&](const auto& t) { return t.first == word; });
@@ -129,9 +130,11 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
     const auto count = static_cast<int>(job.frames.size());
     BakeProgress now{.stage = BakeStage::Building, .total = count};
     progress.show(now);
+    check_render(job.scene, job.options);
+    Sky sky = make_sky(job.scene);  // what is wrong with either leaves no folder behind
     files::ensure_folder(job.out);
     files::remove_stale_temporaries(job.out);
-    Renderer renderer(job.scene, job.options);
+    Renderer renderer(job.scene, job.options, std::move(sky));
     const PictureContext context{.scene = job.scene,
                                  .options = job.options,
                                  .sky = renderer.sky(),

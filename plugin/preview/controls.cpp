@@ -73,8 +73,9 @@ void choose(const char* label, Choice& value, const std::array<std::pair<Choice,
     tooltip(help);
 }
 
-void waves_section(Scene& scene, const Readout& readout) {
+void waves_section(Controls& controls, const Readout& readout) {
     if (!section("Wind and waves")) return;
+    Scene& scene = controls.scene;
     SeaState& sea = scene.sea;
     slider("Wind", sea.wind_speed_mps,
            {.low = 0.0, .high = 40.0, .format = "%.1f m/s", .help = "Wind speed, 10 m above the sea"});
@@ -108,7 +109,9 @@ void waves_section(Scene& scene, const Readout& readout) {
                 .help = "Where it travels to, counter-clockwise from +x (east)"});
         ImGui::PopID();
     }
-    ImGui::Checkbox("Whitecaps", &scene.effects.whitecaps);
+    // Foam that is computed is shown, also in a shot that begins without.
+    if (ImGui::Checkbox("Whitecaps", &scene.effects.whitecaps) && scene.effects.whitecaps)
+        controls.draw.lighting.whitecaps = true;
     tooltip("Foam where waves break. Off, nothing of it is computed: no transform, no shader");
     if (readout.building_sea)
         ImGui::TextColored(
@@ -186,8 +189,10 @@ void light_section(LightingChoice& choice) {
         ImGui::EndGroup();
     }
     static constexpr std::array kSkies{std::pair{SkyQuality::One, "1 lookup"},
-                                       std::pair{SkyQuality::Nine, "9 lookups"}};
-    choose("Sky", choice.sky_quality, kSkies, "How the sky's reflection is found: fast, or more accurate");
+                                       std::pair{SkyQuality::Nine, "9 lookups"},
+                                       std::pair{SkyQuality::Integral, "Integral"}};
+    choose("Sky", choice.sky_quality, kSkies,
+           "How the sky's reflection is found: fast, more accurate, or the reference, of 512 lookups");
     static constexpr std::array kFits{std::pair{FresnelFit::Exact, "Exact fit"},
                                       std::pair{FresnelFit::Paper, "Bruneton 2010"}};
     choose("Fresnel", choice.fresnel, kFits,
@@ -305,7 +310,7 @@ void panel(Controls& controls, const Readout& readout, const Scene& shot, Clicks
         ImGui::TextColored(kAccent, "%s", rate.data());
     }
     if (!readout.message.empty()) warning(readout.message);
-    waves_section(controls.scene, readout);
+    waves_section(controls, readout);
     sky_section(controls.scene.light, readout);
     water_section(controls.scene.water);
     light_section(controls.draw.lighting);

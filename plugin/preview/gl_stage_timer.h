@@ -8,30 +8,6 @@
 namespace pelagic {
 
 class GlStageTimer {
-  public:
-    enum Stage { Upload, Sea, Sky, Show };
-    static constexpr int kStages = 4;
-
-    // Stages don't overlap. A measurement is left out while all of its stage's queries are under way.
-    void begin(Stage stage) {
-        Row& row = rows_[stage];
-        collect(row);
-        running_ = nullptr;
-        Slot& slot = row.slots[row.next];
-        if (slot.pending) return;
-        running_ = &slot;
-        row.next = (row.next + 1) % kFramesBehind;
-        glBeginQuery(GL_TIME_ELAPSED, slot.query.name());
-    }
-    void end() {
-        if (!running_) return;
-        glEndQuery(GL_TIME_ELAPSED);
-        running_->pending = true;
-        running_ = nullptr;
-    }
-    double milliseconds(Stage stage) const { return rows_[stage].latest_ms; }
-
-  private:
     static constexpr std::size_t kFramesBehind = 4;
     struct Slot {
         GlQuery query;
@@ -43,6 +19,37 @@ class GlStageTimer {
         double latest_ms = 0.0;
     };
 
+  public:
+    enum Stage { Upload, Sea, Sky, Show };
+    static constexpr int kStages = 4;
+
+    // A stage's time is what the GPU is given while one of these lives; they don't overlap. A measurement is
+    // left out while all of its stage's queries are under way.
+    class Measured {
+      public:
+        Measured(GlStageTimer& timer, Stage stage) {
+            Row& row = timer.rows_[stage];
+            collect(row);
+            Slot& slot = row.slots[row.next];
+            if (slot.pending) return;
+            running_ = &slot;
+            row.next = (row.next + 1) % kFramesBehind;
+            glBeginQuery(GL_TIME_ELAPSED, slot.query.name());
+        }
+        ~Measured() {
+            if (!running_) return;
+            glEndQuery(GL_TIME_ELAPSED);
+            running_->pending = true;
+        }
+        Measured(const Measured&) = delete;
+        Measured& operator=(const Measured&) = delete;
+
+      private:
+        Slot* running_ = nullptr;
+    };
+    double milliseconds(Stage stage) const { return rows_[stage].latest_ms; }
+
+  private:
     static void collect(Row& row) {
         for (std::size_t i = 0; i < kFramesBehind; ++i) {  // oldest first
             Slot& slot = row.slots[(row.next + i) % kFramesBehind];
@@ -58,7 +65,6 @@ class GlStageTimer {
     }
 
     std::array<Row, kStages> rows_;
-    Slot* running_ = nullptr;
 };
 
 }  // namespace pelagic

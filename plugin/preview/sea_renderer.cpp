@@ -260,9 +260,8 @@ void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
 
 void SeaRenderer::upload(const PackedFrame& frame) {
     Implementation& of = *implementation_;
-    of.timer.begin(GlStageTimer::Upload);
+    const GlStageTimer::Measured measured(of.timer, GlStageTimer::Upload);
     of.sea.upload(frame);
-    of.timer.end();
 }
 bool SeaRenderer::has_frame() const {
     return !implementation_->sea.empty();
@@ -287,12 +286,14 @@ void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOp
     if (of.reversed_depth) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDepthFunc(of.reversed_depth ? GL_GREATER : GL_LESS);
 
-    of.timer.begin(GlStageTimer::Sea);
-    if (!of.sea.empty()) of.draw_sea(view, grid, options);
-    of.timer.end();
-    of.timer.begin(GlStageTimer::Sky);
-    of.draw_sky(view, options);
-    of.timer.end();
+    {
+        const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sea);
+        if (!of.sea.empty()) of.draw_sea(view, grid, options);
+    }
+    {
+        const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sky);
+        of.draw_sky(view, options);
+    }
 
     glDisable(GL_DEPTH_TEST);
     if (of.reversed_depth) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
@@ -309,7 +310,7 @@ void SeaRenderer::show(float exposure) {
     std::array<GLint, 4> viewport{};
     glGetIntegerv(GL_VIEWPORT, viewport.data());
     if (viewport[2] < 1 || viewport[3] < 1) return;  // a window without a pixel
-    of.timer.begin(GlStageTimer::Show);
+    const GlStageTimer::Measured measured(of.timer, GlStageTimer::Show);
     program.use();
     for (int i = 0; i < kTerms; ++i) bind_texture(kPictures + i, of.pictures[i]);
     glUniform2f(program.uniform("picture_from_window"),
@@ -325,7 +326,6 @@ void SeaRenderer::show(float exposure) {
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindVertexArray(0);
     glActiveTexture(GL_TEXTURE0);
-    of.timer.end();
 }
 
 Picture SeaRenderer::read_layers() const {

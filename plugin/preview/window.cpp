@@ -182,7 +182,8 @@ std::filesystem::path picture_name(const std::filesystem::path& folder, const st
         std::filesystem::path file =
             folder / (name + ".preview." + std::string(4 - std::min<std::size_t>(number.size(), 4), '0') +
                       number + ".png");
-        if (!std::filesystem::exists(file)) return file;
+        std::error_code unknown;  // of a folder that can't be looked into: writing says what is wrong
+        if (!std::filesystem::exists(file, unknown)) return file;
     }
 }
 
@@ -251,6 +252,7 @@ class Preview {
             play(std::min(whole_ms * 1e-3, kLongestStep_s));
             move(std::min(whole_ms * 1e-3, kLongestStep_s));
             take_what_is_ready();
+            if (options_.screenshot && !readout_.message.empty()) throw PreviewError(readout_.message);
             draw_sea(size);
             if (std::exchange(save_picture_, false)) save_without_panel(size);
             ImGui::Render();
@@ -263,6 +265,9 @@ class Preview {
             glfwSwapBuffers(window_.get());
             smooth(readout_.times.present_ms, milliseconds_since(presenting));
         }
+        if (options_.screenshot)
+            throw PreviewError("the window was closed before its picture was there: no " +
+                               options_.screenshot->string() + "; leave it open, or lower --after");
         glfwHideWindow(window_.get());  // a sea that is being built is waited for, not looked at
     }
 
@@ -353,7 +358,8 @@ class Preview {
     }
 
     void play(double step_s) {
-        if (!controls_.playing) return;
+        // A shot begins at its beginning: with the first sea.
+        if (!controls_.playing || frame_ == nullptr) return;
         controls_.time_s += step_s * controls_.time_scale;
         if (!controls_.repeat) return;
         // The last frame is on show as long as the others.

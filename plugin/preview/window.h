@@ -23,8 +23,9 @@ struct WindowOptions {
 
 // Opens the window and returns when it is closed. The scene must be valid. On the calling thread, which must
 // be the program's first (GLFW's rule); one window at a time. Throws PreviewError where there is no display
-// or its OpenGL lacks something, saying what; FileError when the screenshot can't be written; and what
-// make_sky() throws.
+// or its OpenGL lacks something, saying what, and where a screenshot is asked for and the sea can't be shown
+// or the window is closed too early; FileError when the screenshot can't be written; and what make_sky()
+// throws.
 void run_window(const Scene& scene, const WindowOptions& options);
 
 }  // namespace pelagic

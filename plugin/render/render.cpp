@@ -323,19 +323,21 @@ Plan picture_plan(const Scene& scene) {
                                                 .points = points_of(needs.size)})});
 }
 
-Renderer::Renderer(const Scene& scene, const RenderOptions& options)
-    : Renderer(scene, options, make_sky(scene)) {}
-
-Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky) {
+void check_render(const Scene& scene, const RenderOptions& options) {
     if (options.samples < 1 || options.samples > kMostSamples)
         throw std::invalid_argument(std::to_string(options.samples) + " x " +
                                     std::to_string(options.samples) + " samples a pixel: 1 to " +
                                     std::to_string(kMostSamples) + " a side are accepted");
-    const Scene sampled = of_samples(scene, options.samples);
-    if (const glm::ivec2 all = sampled.camera.resolution; std::max(all.x, all.y) > Rasteriser::kLargestSide)
+    const glm::ivec2 all = scene.camera.resolution * options.samples;
+    if (std::max(all.x, all.y) > Rasteriser::kLargestSide)
         throw std::invalid_argument("a picture of " + std::to_string(all.x) + " x " + std::to_string(all.y) +
                                     " samples: up to " + std::to_string(Rasteriser::kLargestSide) +
                                     " a side are accepted; ask for a smaller picture or fewer samples");
+}
+
+Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky) {
+    check_render(scene, options);
+    const Scene sampled = of_samples(scene, options.samples);
     const Plan plan = picture_plan(sampled);
     if (plan.knobs.double_precision)
         impl_ = std::make_unique<RendererOf<double, Impl>>(sampled, options, std::move(sky), plan);

@@ -54,6 +54,10 @@ inline constexpr int kMostSamples = 16;
 // here.
 RenderOptions render_options(const Scene& scene);
 
+// Throws std::invalid_argument, saying what is accepted, for options out of range or more samples a side than
+// a picture can have.
+void check_render(const Scene& scene, const RenderOptions& options);
+
 // The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike,
 // whose finest footprints are those of all of the shot's frames together.
 Plan picture_plan(const Scene& scene);
@@ -72,9 +76,8 @@ struct RenderWatch {
 
 class Renderer {
   public:
-    // The scene must be valid; its own sky, or another one. Seconds for the largest seas. Throws
-    // std::invalid_argument for options out of range, and as make_sky().
-    Renderer(const Scene& scene, const RenderOptions& options);
+    // The scene must be valid; its own sky (make_sky()), or another one. Seconds for the largest seas. Throws
+    // as check_render().
     Renderer(const Scene& scene, const RenderOptions& options, Sky sky);
     ~Renderer();
     Renderer(const Renderer&) = delete;

@@ -2,16 +2,16 @@
 // costs.
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <initializer_list>
-#include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
+#include "tests/bench/timing.h"
 #include "tests/core/lighting/optics.h"
 
 namespace pelagic {
@@ -105,7 +105,7 @@ void fresnel_errors(const char* name, Fit&& fit, Term&& term) {
                 most_angle, most_along, most_across, std::sqrt(squares / count));
 }
 
-// The best of several runs over the same points, as a multiple of the first.
+// Medians of interleaved runs over the same points, as multiples of the paper's variant.
 void costs() {
     Inputs inputs(1);
     std::vector<SeaPoint> points(20000);
@@ -118,45 +118,44 @@ void costs() {
     std::vector<SeaRadiance> radiance(points.size());
     const Sky sky = daylight_sky({});
     const WaterBody water = water_body({});
-    const auto seconds = [&](const LightingChoice& choice) {
-        double best = std::numeric_limits<double>::infinity();
-        for (int run = 0; run < (choice.sky_quality == SkyQuality::Integral ? 1 : 7); ++run) {
-            const auto begin = std::chrono::steady_clock::now();
-            shade_sea(choice, sky, water, points, radiance);
-            best = std::min(best,
-                            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-        }
-        return best;
+    const LightingChoice off{.sun = false, .sky = false, .water = false, .whitecaps = false};
+    const auto only = [&off](const auto& turn_on) {
+        LightingChoice choice = off;
+        turn_on(choice);
+        return choice;
     };
     using Quality = SkyQuality;
-    const LightingChoice nothing{.sun = false, .sky = false, .water = false, .whitecaps = false};
-    const double unit = seconds({.sky_quality = Quality::One, .fresnel = FresnelFit::Paper});
-    const auto row = [&](const char* name, const LightingChoice& choice) {
-        std::printf("%-52s %8.3f\n", name, seconds(choice) / unit);
+    std::vector<bench::Timed> timed;
+    for (const auto& [name, choice] : std::vector<std::pair<const char*, LightingChoice>>{
+             {"all, one lookup, Eq. 26 (the paper's)",
+              {.sky_quality = Quality::One, .fresnel = FresnelFit::Paper}},
+             {"all, one lookup, exact Fresnel", {.sky_quality = Quality::One}},
+             {"all, nine, Eq. 26", {.fresnel = FresnelFit::Paper}},
+             {"all, nine, exact Fresnel (the default)", {}},
+             {"nothing", off},
+             {"sun alone", only([](LightingChoice& c) { c.sun = true; })},
+             {"water alone", only([](LightingChoice& c) { c.water = true; })},
+             {"whitecaps alone", only([](LightingChoice& c) { c.whitecaps = true; })},
+             {"sky alone, one lookup",
+              only([](LightingChoice& c) { c.sky = true, c.sky_quality = Quality::One; })},
+             {"sky alone, nine", only([](LightingChoice& c) { c.sky = true; })}})
+        timed.push_back({name, [&, choice = choice] { shade_sea(choice, sky, water, points, radiance); }});
+    bench::interleave(timed, 9);
+    // The reference takes long: a fiftieth of the points, beside the paper's variant of as many.
+    const std::size_t few = points.size() / 50;
+    const auto shade_few = [&](const LightingChoice& choice) {
+        shade_sea(choice, sky, water, std::span(points).first(few), std::span(radiance).first(few));
     };
+    std::vector<bench::Timed> slow{
+        {"", [&] { shade_few({.sky_quality = Quality::One, .fresnel = FresnelFit::Paper}); }},
+        {"all, the integral", [&] { shade_few({.sky_quality = Quality::Integral}); }}};
+    bench::interleave(slow, 9);
+
+    const double unit = timed.front().median();
     std::printf("\ntime per point, in times of the paper's variant (%.0f ns here)\n",
-                unit / static_cast<double>(points.size()) * 1e9);
-    row("nothing", nothing);
-    LightingChoice one = nothing;
-    one.sun = true;
-    row("sun alone", one);
-    one = nothing;
-    one.water = true;
-    row("water alone", one);
-    one = nothing;
-    one.whitecaps = true;
-    row("whitecaps alone", one);
-    one = nothing;
-    one.sky = true;
-    one.sky_quality = Quality::One;
-    row("sky alone, one lookup", one);
-    one.sky_quality = Quality::Nine;
-    row("sky alone, nine", one);
-    row("all, one lookup, Eq. 26 (the paper's)", {.sky_quality = Quality::One, .fresnel = FresnelFit::Paper});
-    row("all, one lookup, exact Fresnel", {.sky_quality = Quality::One});
-    row("all, nine, Eq. 26", {.fresnel = FresnelFit::Paper});
-    row("all, nine, exact Fresnel (the default)", {});
-    row("all, the integral", {.sky_quality = Quality::Integral});
+                unit / static_cast<double>(points.size()) * 1e6);
+    for (const bench::Timed& row : timed) std::printf("%-52s %8.2f\n", row.name.c_str(), row.median() / unit);
+    std::printf("%-52s %8.2f\n", slow[1].name.c_str(), slow[1].median() / slow[0].median());
 }
 
 void print() {

@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
-# Builds the benchmarks and prints their tables, the numbers first. Some six minutes on two cores.
-#   tests/bench/run.sh [PROGRAM…]      default: frame ocean choices sampling stages conservation trains crate bake
+# Builds the benchmarks and prints their tables, the numbers first. Some twenty minutes on two cores.
+#   tests/bench/run.sh [PROGRAM…]      default: all, the light last:
+#     frame ocean choices sampling stages conservation trains crate bake optics whitecaps backoff preview fig10
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
-[ $# -gt 0 ] || set -- frame ocean choices sampling stages conservation trains crate bake
+[ $# -gt 0 ] || set -- frame ocean choices sampling stages conservation trains crate bake \
+    optics whitecaps backoff preview fig10
 targets=()
 for program in "$@"; do
     [ "$program" = ocean ] && targets+=(pelagic_python) || targets+=("bench_$program")
@@ -17,6 +19,8 @@ for program in "$@"; do
         # Without --python-exit-code Blender hides a script's failure.
         PYTHONPATH=$PELAGIC_ROOT/build/release/python PYTHONDONTWRITEBYTECODE=1 blender -b --factory-startup \
             --python-exit-code 1 --python "$here/blender_ocean.py" | grep -vE '^(Blender|Read prefs|Warning)|^$'
+    elif [ "$program" = fig10 ]; then
+        "$PELAGIC_ROOT/build/release/bench/bench_fig10" full plot="$PELAGIC_ROOT/build/release/fig10.png"
     else
         "$PELAGIC_ROOT/build/release/bench/bench_$program"
     fi

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/lighting/colour.h"
 #include "core/lighting/sky.h"
 
 namespace pelagic::bench {
@@ -19,7 +19,7 @@ struct Line {
 using Lines = std::vector<Line>;  // from the first row below the horizon downwards
 
 inline double luminance(const glm::vec3& colour) {
-    return static_cast<double>(glm::dot(colour, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
+    return pelagic::luminance(glm::dvec3(colour));
 }
 
 // The sky with the sun's light spread over a disc that is `factor` times as wide: the same irradiance.

@@ -196,6 +196,12 @@ TEST(PictureSky, SmallAndOddPicturesAreSkies) {
         const Sky sky = picture_sky(picture, 64);
         EXPECT_TRUE(std::isfinite(sky.sky_irradiance.x) && std::isfinite(sky.sun_radiance.x));
     }
+    // The brightest sun there may be, as low as pixels let it be.
+    LatLong glaring{64, 32, std::vector<glm::vec3>(64 * 32, glm::vec3(0.0f))};
+    glaring.radiance[15 * 64 + 20] = glm::vec3(1e30f);
+    const Sky bright = picture_sky(glaring, 64);
+    EXPECT_GT(bright.sun_radiance.x, 0.0f);
+    EXPECT_TRUE(std::isfinite(bright.sun_radiance.x) && std::isfinite(bright.sun_irradiance.x));
     // One bright pixel in the night.
     LatLong night{64, 32, std::vector<glm::vec3>(64 * 32, glm::vec3(0.0f))};
     EXPECT_EQ(picture_sky(night, 64).sky_irradiance, glm::vec3(0.0f));
@@ -205,7 +211,7 @@ TEST(PictureSky, SmallAndOddPicturesAreSkies) {
 
 TEST(PictureSky, RefusesWhatIsNoRadiance) {
     for (const float wrong :
-         {-0.1f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+         {-0.1f, 1e31f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         LatLong picture{8, 4, std::vector<glm::vec3>(32, glm::vec3(1.0f))};
         picture.radiance[13].y = wrong;
         picture.radiance[20].x = wrong;

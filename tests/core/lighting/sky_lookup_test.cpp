@@ -111,6 +111,28 @@ TEST(SkyLookup, MirrorShowsTheSky) {
     }
 }
 
+// Crests that have no waves of their own: whichever way a pixel's normal points, folded crests' included, an
+// eye above sees the sky in it, F(v·n) of it and nothing of the sea's own light. 1e-5 of slope is left: at
+// the horizon that is 1e-4 of the place.
+TEST(SkyLookup, NoCrestMirrorsWhatIsBelowTheHorizon) {
+    Inputs inputs(21);
+    for (int lookups : {0, 1, 9}) {
+        Optics optics;
+        optics.lookup = [](vec2 u, float) { return vec3(length(u) < 1.001f ? 1.0f : 0.0f); };
+        optics.kSkyLookups = lookups;
+        int down = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const vec3 v = inputs.direction(1e-2), n = (i % 4 ? 1.0f : -1.0f) * inputs.direction(1e-2);
+            down += 2.0f * dot(n, v) * n.z < v.z;
+            const vec3 facing = optics.facing_normal(n, v);
+            const float found = optics.sky_reflection(v, optics.slope_frame(facing, vec3(0.0f))).x;
+            const double expected = oracle::fresnel(std::min(double(dot(facing, v)), 1.0));
+            ASSERT_NEAR(found, expected, 2e-3 * expected) << lookups << ' ' << i;
+        }
+        EXPECT_GT(down, 300);
+    }
+}
+
 // The nine in double, on a sky that is a smooth function of the place, with the level as part of the answer.
 double smooth(dvec2 u, double level) {
     return (1.0 + 0.3 * u.x - 0.2 * u.y) * std::exp(-0.1 * dot(u, u)) + 0.01 * level;

@@ -5,7 +5,7 @@
 
 #include <cmath>
 #include <cstddef>
-#include <glm/glm.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -30,17 +30,6 @@ glm::vec2 middle(const SkyMap& map, int level, int i, int j) {
     const float texel = 2.0f * kSkyMapExtent / static_cast<float>(map.size() >> level);
     return glm::vec2(-kSkyMapExtent) +
            texel * glm::vec2(static_cast<float>(i) + 0.5f, static_cast<float>(j) + 0.5f);
-}
-
-namespace shader {
-using namespace glm;
-struct Special {
-#include "core/lighting/special.glsl"
-};
-}  // namespace shader
-
-TEST(SkyMap, ReachesAsFarAsTheShadersThink) {
-    EXPECT_EQ(shader::Special().kSkyMapReach, kSkyMapExtent);
 }
 
 TEST(SkyMap, LevelsAreMeansDownToTheMeanOfAll) {

@@ -185,6 +185,43 @@ TEST(Plan, FingerprintFollowsTheSeaAndNotTheRangeOfFrames) {
     EXPECT_EQ(make_plan(scene).fingerprint_text().size(), 16u);
 }
 
+// A bake that took hours isn't done again for another sun.
+TEST(Plan, FingerprintKnowsNoLightAndOnlyAGridOfTheCameraKnowsTheCamera) {
+    const std::vector<void (*)(Scene&)> light{[](Scene& s) { s.light.sun_elevation_deg = 5.0; },
+                                              [](Scene& s) { s.light.sun_azimuth_deg = 5.0; },
+                                              [](Scene& s) { s.light.sky = "noon.exr"; },
+                                              [](Scene& s) { s.light.turbidity = 6.0; },
+                                              [](Scene& s) { s.water.type = WaterType::Turbid; },
+                                              [](Scene& s) { s.water.chlorophyll_mg_m3 = 2.0; }};
+    const std::vector<void (*)(Scene&)> camera{
+        [](Scene& s) { s.camera.position_m.x = 3.0; },
+        [](Scene& s) { s.camera.look_at_m.x = 3.0; },
+        [](Scene& s) { s.camera.fov_deg = 49.0; },
+        [](Scene& s) {
+            s.camera.resolution = {1280, 736};
+        },
+        [](Scene& s) {
+            s.camera.keys = {{.frame = 9, .position_m = {1.0, 2.0, 3.0}}};
+        },
+        [](Scene& s) { s.surface.cell_px = 9.0; }};
+    const auto changed = [](Scene scene, void (*change)(Scene&)) {
+        const auto before = make_plan(scene).fingerprint;
+        change(scene);
+        return make_plan(scene).fingerprint != before;
+    };
+    Scene patch = scene_with({}), grid = patch, maps_alone = patch;
+    grid.surface.kind = maps_alone.surface.kind = SurfaceKind::ProjectedGrid;
+    maps_alone.output.mesh = MeshFormat::None;
+    maps_alone.output.maps = {MapKind::Normal};
+    for (std::size_t i = 0; i < light.size(); ++i)
+        for (const Scene& scene : {patch, grid, maps_alone}) EXPECT_FALSE(changed(scene, light[i])) << i;
+    for (std::size_t i = 0; i < camera.size(); ++i) {
+        EXPECT_FALSE(changed(patch, camera[i])) << i;
+        EXPECT_FALSE(changed(maps_alone, camera[i])) << i;
+        EXPECT_TRUE(changed(grid, camera[i])) << i;
+    }
+}
+
 TEST(Plan, AnswersAtOnceForTheLargestSea) {
     Scene scene;
     scene.waves.cascades = {{4000.0, 8192}, {150.0, 8192}};

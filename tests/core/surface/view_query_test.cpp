@@ -212,5 +212,38 @@ TEST(Extent, HoldsTheSeaAndNotMuchMore) {
     EXPECT_EQ(expected_extent(scene).reach_m, 0.0);
 }
 
+// From a calm to a hurricane, in a puddle and over an abyss, up to looping crests: bounds that a grid can
+// use.
+TEST(Extent, HardCasesStayFinite) {
+    for (const double wind_mps : {0.0, 0.1, 80.0})
+        for (const double depth_m : {0.01, 10.0, 1e9})
+            for (const double choppiness : {0.0, 1.0, 10.0}) {
+                Scene scene;
+                scene.sea.wind_speed_mps = wind_mps;
+                scene.sea.depth_m = depth_m;
+                scene.waves.choppiness = choppiness;
+                const Extent extent = expected_extent(scene);
+                EXPECT_TRUE(std::isfinite(extent.height_m) && std::isfinite(extent.reach_m));
+                EXPECT_EQ(extent.height_m > 0.0, wind_mps > 0.0);
+                EXPECT_EQ(extent.reach_m > 0.0, wind_mps > 0.0 && choppiness > 0.0);
+                const ProjectedGridNeeds needs =
+                    projected_grid_needs(view_at(scene.camera, 1.0), projected_grid_options(scene));
+                EXPECT_TRUE(std::isfinite(needs.finest_cell_m) && needs.finest_cell_m > 0.0);
+                EXPECT_TRUE(std::isfinite(needs.finest_pixel_m) && needs.finest_pixel_m > 0.0);
+            }
+}
+
+// However near a camera looks, the wave trains are those of the bake.
+TEST(ViewQuery, DoesNotDecideWhichTrainsThereAre) {
+    Scene scene;
+    scene.waves.model = WaveModel::Trochoid;
+    const Plan baked = make_plan(scene);
+    for (const double finest_pixel_m : {0.0, 1e-4, 0.1, 10.0}) {
+        const Plan seen = make_plan(scene, {view_query(scene, {.finest_pixel_m = finest_pixel_m})});
+        EXPECT_EQ(seen.trains->shortest_m, baked.trains->shortest_m) << finest_pixel_m;
+        EXPECT_EQ(seen.trains->longest_m, baked.trains->longest_m) << finest_pixel_m;
+    }
+}
+
 }  // namespace
 }  // namespace pelagic

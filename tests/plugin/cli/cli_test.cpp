@@ -41,8 +41,8 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
     for (const char* flag : {"--help", "-h"}) {
         const Ended ended = cli({flag});
         EXPECT_EQ(ended.status, 0);
-        for (const char* part :
-             {"  bake ", "  explain ", "  validate ", "  keys ", "Examples:", "Exit status"})
+        for (const char* part : {"  bake ", "  render ", "  preview ", "  explain ", "  validate ", "  keys ",
+                                 "Examples:", "Exit status"})
             EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
         EXPECT_EQ(ended.err, "");
     }
@@ -51,6 +51,12 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
 TEST_F(Cli, HelpOfEachVerbNamesEachOption) {
     const std::vector<std::pair<std::string, std::vector<std::string>>> verbs{
         {"bake", {"SHOT.toml", "--out", "--frames", "--threads", "--help", "folder in the working folder"}},
+        {"render",
+         {"SHOT.toml", "--out", "--frames", "--size", "--exposure", "--samples", "--sky-quality", "--terms",
+          "--threads", "--help", "sun, sky, sea and foam"}},
+        {"preview",
+         {"SHOT.toml", "--offscreen", "--frame", "--size", "--quality", "--scale", "--screenshot", "--after",
+          "--threads", "--help", "F1"}},
         {"explain", {"SHOT.toml", "--measure", "--threads", "--help"}},
         {"validate", {"SHOT.toml", "--help"}},
         {"keys", {"--help"}}};
@@ -77,7 +83,7 @@ TEST_F(Cli, WrongUsageIsStatus2AndSaysWhatIsAccepted) {
     };
     const std::vector<Case> cases{
         {{}, {"a verb is missing", "pelagic --help"}},
-        {{"paint", "small.toml"}, {"'paint' is not a verb", "bake, explain, "}},
+        {{"paint", "small.toml"}, {"'paint' is not a verb", "bake, render, preview, explain, "}},
         {{"baek", "small.toml"}, {"'baek' is not a verb", "did you mean bake?"}},
         {{"bake"}, {"SHOT.toml is required", "pelagic bake --help"}},
         {{"bake", "small.toml", "--frame", "3"}, {"'--frame' is not an option", "did you mean --frames?"}},

@@ -80,11 +80,27 @@ std::string why_torn_usd(const std::string& text) {
     return {};
 }
 
+// The format: eight bytes, then chunks of length, name, content and a sum, to the one that says that it is
+// the last.
+std::string why_torn_png(const std::string& bytes) {
+    if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return "does not begin as a PNG";
+    for (std::size_t at = 8; at + 12 <= bytes.size();) {
+        std::size_t length = 0;
+        for (std::size_t i = at; i < at + 4; ++i) length = length << 8 | static_cast<unsigned char>(bytes[i]);
+        const bool is_last = bytes.compare(at + 4, 4, "IEND") == 0;
+        at += 12 + length;
+        if (is_last) return at == bytes.size() ? "" : "has more after its end";
+    }
+    return "ends in the middle";
+}
+
 std::string why_torn(const fs::path& file) {
     const std::string extension = file.extension();
     if (extension == ".usda") return why_torn_usd(read_file(file));
     if (extension == ".json") return nlohmann::json::accept(read_file(file)) ? "" : "is not JSON";
     if (extension == ".exr") return Imf::checkOpenEXRFile(file.c_str()) ? "is not a whole OpenEXR file" : "";
+    if (extension == ".png") return why_torn_png(read_file(file));
+    if (extension == ".toml") return {};  // a test's own
     return "is of an unknown kind";
 }
 

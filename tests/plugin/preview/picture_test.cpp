@@ -9,43 +9,11 @@
 
 #include "plugin/preview/offscreen.h"
 #include "plugin/render/render.h"
+#include "tests/plugin/preview/compare.h"
 #include "tests/plugin/preview/gpu.h"
 
 namespace pelagic {
 namespace {
-
-struct Difference {
-    double median = 0.0, last_percent = 0.0, silhouettes = 0.0;
-};
-
-// Relative differences of the whole radiance over pixels that show the same, sea or sky, as all of their
-// neighbours in both pictures.
-Difference compare(const Picture& a, const Picture& b) {
-    const int width = a.resolution.x, height = a.resolution.y;
-    std::vector<double> differences;
-    for (int y = 1; y + 1 < height; ++y)
-        for (int x = 1; x + 1 < width; ++x) {
-            const auto at = [&](int i, int j) { return static_cast<std::size_t>((y + j) * width + x + i); };
-            bool alike = true;
-            for (int j = -1; j <= 1; ++j)
-                for (int i = -1; i <= 1; ++i)
-                    alike = alike && a.sea[at(i, j)] == a.sea[at(0, 0)] && b.sea[at(i, j)] == a.sea[at(0, 0)];
-            if (!alike) continue;
-            const glm::vec3 first = radiance_of(a.layers[at(0, 0)]), second = radiance_of(b.layers[at(0, 0)]);
-            double worst = 0.0;
-            for (int c = 0; c < 3; ++c)
-                worst = std::max(worst, static_cast<double>(std::abs(first[c] - second[c])) /
-                                            std::max(static_cast<double>(std::abs(first[c])), 1e-6));
-            differences.push_back(std::isfinite(worst) ? worst : 1e30);
-        }
-    Difference difference;
-    if (differences.empty()) return difference;
-    std::sort(differences.begin(), differences.end());
-    difference.median = differences[differences.size() / 2];
-    difference.last_percent = differences[differences.size() * 99 / 100];
-    difference.silhouettes = 1.0 - static_cast<double>(differences.size()) / (width - 2) / (height - 2);
-    return difference;
-}
 
 void compare_frame(const char* name, Scene scene) {
     gpu::need_context();
@@ -154,6 +122,65 @@ TEST(PreviewsPicture, WithoutLayersIsTheirSum) {
         for (int c = 0; c < 3; ++c)  // rounding of three additions
             ASSERT_NEAR(radiance_of(sum.layers[i])[c], expected[c], 4e-7f * expected[c]);
     }
+}
+
+// In place of the light: the grid's lines, and what each pixel's filter does.
+TEST(PreviewsPicture, OfWiresAndFalseColoursShowsWhatTheySay) {
+    gpu::need_context();
+    Scene scene = scene_of({0.0, -60.0, 8.0}, {0.0, 0.0, 0.0});
+    scene.sea.wind_speed_mps = 15.0;
+    scene.camera.resolution = {160, 90};
+    const auto sea = std::make_shared<const Sea<float>>(scene, picture_plan(scene));
+    Frame<float> frame(sea);
+    frame.set(1.0);
+    PackedFrame packed(sea, 0);
+    packed.pack(frame);
+    SeaRenderer renderer;
+    renderer.set_sky(make_sky(scene), make_water(scene));
+    renderer.upload(packed);
+    const View view = view_at(scene.camera, 1);
+    const ProjectedGrid grid = projected_grid(view, projected_grid_options(scene));
+    const auto drawn = [&](const DrawOptions& options) {
+        renderer.draw(view, grid, options);
+        return renderer.read_layers();
+    };
+    const auto with = [&](FalseColour colour) { return drawn({.lighting = {}, .false_colour = colour}); };
+    const Picture light = drawn({.lighting = {}, .layers = true}),
+                  wires = drawn({.lighting = {}, .wireframe = true}), levels = with(FalseColour::FilterLevel),
+                  hidden = with(FalseColour::HiddenVariance), coverage = with(FalseColour::Coverage);
+    int on_wires = 0, sea_pixels = 0, foam = 0;
+    for (std::size_t i = 0; i < light.layers.size(); ++i) {
+        const glm::vec3 wire = radiance_of(wires.layers[i]);
+        EXPECT_TRUE(wire == glm::vec3(0.0f) || wire == glm::vec3(1.0f));
+        on_wires += wire.x > 0.0f;
+        sea_pixels += light.sea[i];
+        for (const Picture* picture : {&levels, &hidden, &coverage}) {
+            EXPECT_EQ(picture->sea[i], light.sea[i]);
+            if (light.sea[i] == 0) {
+                EXPECT_EQ(radiance_of(picture->layers[i]), glm::vec3(0.0f)) << "black sky";
+            }
+        }
+        // Foam is where there is coverage, and nowhere else.
+        EXPECT_EQ(coverage.layers[i].sea.x > 0.0f, light.layers[i].foam.x > 0.0f) << i;
+        foam += coverage.layers[i].sea.x > 0.1f;
+    }
+    // Cells of 8 pixels with one diagonal: three lines a cell, some 3 · 8 of its 64 pixels, more far away.
+    EXPECT_GT(on_wires, sea_pixels / 5);
+    EXPECT_LT(on_wires, sea_pixels);
+    EXPECT_GT(foam, 0);
+    // A pixel hides more the farther away it is: levels go from blue to red, and the hidden variance grows.
+    const auto row = [&](const Picture& picture, int y) {
+        glm::vec3 sum(0.0f);
+        for (int x = 0; x < 160; ++x)
+            sum += radiance_of(picture.layers[static_cast<std::size_t>(y * 160 + x)]);
+        return sum / 160.0f;
+    };
+    int horizon = 0;
+    while (light.sea[static_cast<std::size_t>(horizon * 160)] == 0) ++horizon;
+    const glm::vec3 far_level = row(levels, horizon + 1), near_level = row(levels, 89);
+    EXPECT_GT(far_level.x, 0.5f);
+    EXPECT_GT(near_level.z, 0.5f);
+    EXPECT_GT(row(hidden, horizon + 1).x, 1.5f * row(hidden, 89).x);
 }
 
 TEST(PackedFrame, RefusesWhatIsNotAPicturesOwn) {

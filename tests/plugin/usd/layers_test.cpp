@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace pelagic::usd {
 namespace {
@@ -127,30 +128,34 @@ TEST(UsdValues, ArraysAreAsLongAsPoints) {
 
 TEST(UsdTopology, GridCoversItsSquareOnceAndLooksUp) {
     // Dyadic, so that every st and every area below is exact.
-    constexpr int kQuads = 8;
-    const GridFaces grid = grid_faces(kQuads);
-    ASSERT_EQ(grid.counts.size(), 64u);
-    ASSERT_EQ(grid.st.size(), 81u);
-    EXPECT_EQ(grid.st.front(), glm::vec2(0, 0));
-    EXPECT_EQ(grid.st[kQuads], glm::vec2(1, 0));  // x fastest
-    EXPECT_EQ(grid.st.back(), glm::vec2(1, 1));
-    for (std::size_t face = 0; face < grid.counts.size(); ++face) {
-        EXPECT_EQ(grid.counts[face], 4);
-        // The shoelace formula: the signed area is positive for a counter-clockwise face.
-        float area = 0.0f;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const glm::vec2 a = grid.st[static_cast<std::size_t>(grid.indices[4 * face + i])];
-            const glm::vec2 b = grid.st[static_cast<std::size_t>(grid.indices[4 * face + (i + 1) % 4])];
-            area += 0.5f * (a.x * b.y - b.x * a.y);
+    for (const auto& [columns, rows] : {std::pair{8, 8}, {8, 4}, {2, 16}}) {
+        const GridFaces grid = grid_faces(columns, rows);
+        ASSERT_EQ(grid.counts.size(), std::size_t(columns * rows));
+        ASSERT_EQ(grid.st.size(), std::size_t((columns + 1) * (rows + 1)));
+        EXPECT_EQ(grid.st.front(), glm::vec2(0, 0));
+        EXPECT_EQ(grid.st[std::size_t(columns)], glm::vec2(1, 0));  // columns fastest
+        EXPECT_EQ(grid.st.back(), glm::vec2(1, 1));
+        for (std::size_t face = 0; face < grid.counts.size(); ++face) {
+            EXPECT_EQ(grid.counts[face], 4);
+            // The shoelace formula: the signed area is positive for a counter-clockwise face.
+            float area = 0.0f;
+            for (std::size_t i = 0; i < 4; ++i) {
+                const glm::vec2 a = grid.st[static_cast<std::size_t>(grid.indices[4 * face + i])];
+                const glm::vec2 b = grid.st[static_cast<std::size_t>(grid.indices[4 * face + (i + 1) % 4])];
+                area += 0.5f * (a.x * b.y - b.x * a.y);
+            }
+            EXPECT_EQ(area, 1.0f / static_cast<float>(columns * rows));
+            // The faces come in the order of their lowest corners.
+            const auto lowest = static_cast<std::size_t>(grid.indices[4 * face]), n = std::size_t(columns);
+            EXPECT_EQ(lowest, face / n * (n + 1) + face % n);
         }
-        EXPECT_EQ(area, 1.0f / (kQuads * kQuads));
-        // The faces come in the order of their lowest corners.
-        const auto lowest = static_cast<std::size_t>(grid.indices[4 * face]);
-        EXPECT_EQ(lowest, face / kQuads * (kQuads + 1) + face % kQuads);
+        EXPECT_NO_THROW(
+            check({.face_vertex_counts = grid.counts, .face_vertex_indices = grid.indices, .st = grid.st}));
     }
-    EXPECT_NO_THROW(
-        check({.face_vertex_counts = grid.counts, .face_vertex_indices = grid.indices, .st = grid.st}));
+    EXPECT_EQ(grid_faces(3).indices, grid_faces(3, 3).indices);
     EXPECT_THROW(grid_faces(0), std::invalid_argument);
+    EXPECT_THROW(grid_faces(4, 0), std::invalid_argument);
+    EXPECT_THROW(grid_faces(1 << 15, 1 << 14), std::invalid_argument);  // 2^29
     EXPECT_THROW(grid_faces(1000000000), std::invalid_argument);
 }
 

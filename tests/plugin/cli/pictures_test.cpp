@@ -1,0 +1,298 @@
+// pelagic render and pelagic preview --offscreen, run as people run them: the files that they leave, what
+// they refuse, and that nothing half is ever under a name. What is in the pictures is tested with their
+// libraries.
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "tests/plugin/cli/program.h"
+
+namespace pelagic::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+// A shot whose pictures take a moment.
+std::string small_shot(const std::string& quality = "draft") {
+    return "[shot]\nname = \"small\"\nframes = [1, 4]\n"
+           "[waves]\ncascades = [ { size_m = 100.0, resolution = 32 } ]\n"
+           "[camera]\nresolution = [48, 27]\n"
+           "[quality]\nlevel = \"" +
+           quality + "\"\n";
+}
+
+// Width and height of a PNG.
+std::pair<int, int> png_size(const fs::path& file) {
+    const std::string bytes = read_file(file);
+    const auto number = [&](std::size_t at) {
+        int value = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            value = value * 256 + static_cast<unsigned char>(bytes.at(at + i));
+        return value;
+    };
+    return {number(16), number(20)};
+}
+
+std::pair<int, int> exr_size(const fs::path& file) {
+    const Imf::InputFile exr(file.c_str());
+    const auto window = exr.header().dataWindow();
+    return {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
+}
+
+std::set<std::string> exr_channels(const fs::path& file) {
+    const Imf::InputFile exr(file.c_str());
+    std::set<std::string> names;
+    for (auto c = exr.header().channels().begin(); c != exr.header().channels().end(); ++c)
+        names.insert(c.name());
+    return names;
+}
+
+// As design.md has them: the picture, and a layer for each term.
+const std::set<std::string> kChannels{"R",     "G",     "B",      "sun.R",  "sun.G",
+                                      "sun.B", "sky.R", "sky.G",  "sky.B",  "sea.R",
+                                      "sea.G", "sea.B", "foam.R", "foam.G", "foam.B"};
+
+// The largest value in a layer; 0: it is black.
+float brightest(const fs::path& file, const std::string& layer) {
+    Imf::InputFile exr(file.c_str());
+    const auto [width, height] = exr_size(file);
+    std::vector<float> values(static_cast<std::size_t>(width) * height);
+    Imf::FrameBuffer buffer;
+    buffer.insert(layer + ".G", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float),
+                                           sizeof(float) * static_cast<std::size_t>(width)));
+    exr.setFrameBuffer(buffer);
+    exr.readPixels(0, height - 1);
+    return *std::max_element(values.begin(), values.end());
+}
+
+class Pictures : public ::testing::Test {
+  protected:
+    void SetUp() override { write_file(folder() / "small.toml", small_shot()); }
+    const fs::path& folder() const { return folder_.path(); }
+    Ended cli(std::vector<std::string> arguments) const {
+        return run({.arguments = std::move(arguments), .folder = folder()});
+    }
+    std::vector<std::string> files_in(const std::string& out) const {
+        std::vector<std::string> names;
+        for (const auto& [path, bytes] : files_below(folder() / out)) names.push_back(path);
+        return names;
+    }
+    // Refused with this status and all of these words, and nothing was begun: no file, no folder.
+    void refused(const std::vector<std::string>& arguments, int status,
+                 const std::vector<std::string>& says) {
+        const auto entries = [&] {
+            return std::distance(fs::directory_iterator(folder()), fs::directory_iterator());
+        };
+        const auto before = entries();
+        const Ended ended = cli(arguments);
+        const std::string line = ended.err + "(" + arguments.at(0) + " … " + arguments.back() + ")";
+        EXPECT_EQ(ended.status, status) << line;
+        EXPECT_EQ(ended.out, "") << line;
+        for (const std::string& part : says) EXPECT_TRUE(has(ended.err, part)) << part << "\n" << line;
+        EXPECT_EQ(entries(), before) << "something was begun: " << line;
+    }
+
+  private:
+    TempFolder folder_;
+};
+
+TEST_F(Pictures, RenderLeavesAnExrWithLayersAndAPngForEachFrame) {
+    const Ended ended = cli({"render", "small.toml", "--frames", "1-4x2"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(files_in("small"), (std::vector<std::string>{"small.0001.exr", "small.0001.png",
+                                                           "small.0003.exr", "small.0003.png"}));
+    EXPECT_EQ(torn_files(folder() / "small"), "");
+    EXPECT_EQ(exr_channels(folder() / "small/small.0003.exr"), kChannels);
+    EXPECT_EQ(exr_size(folder() / "small/small.0003.exr"), std::pair(48, 27));
+    EXPECT_EQ(png_size(folder() / "small/small.0003.png"), std::pair(48, 27));
+    EXPECT_TRUE(has(ended.out, "small/small.0001.exr")) << ended.out;
+    EXPECT_TRUE(has(ended.out, "2 frames rendered")) << ended.out;
+}
+
+TEST_F(Pictures, RenderTakesSizeSamplesTermsAndExposure) {
+    ASSERT_EQ(cli({"render", "small.toml", "--frames", "2", "--out", "deep/as", "--size", "20x11"}).status,
+              0);
+    EXPECT_EQ(files_in("deep/as"), (std::vector<std::string>{"small.0002.exr", "small.0002.png"}));
+    EXPECT_EQ(exr_size(folder() / "deep/as/small.0002.exr"), std::pair(20, 11));
+    EXPECT_GT(brightest(folder() / "deep/as/small.0002.exr", "sun"), 0.0f);
+
+    ASSERT_EQ(cli({"render", "small.toml", "--frames", "2", "--out", "sea", "--size", "20x11", "--terms",
+                   "sea", "--samples", "2", "--exposure", "1"})
+                  .status,
+              0);
+    const fs::path sea = folder() / "sea/small.0002.exr";
+    EXPECT_EQ(exr_channels(sea), kChannels) << "layers that are off are black, not missing";
+    EXPECT_EQ(exr_size(sea), std::pair(20, 11));
+    EXPECT_GT(brightest(sea, "sea"), 0.0f);
+    for (const char* off : {"sun", "sky", "foam"}) EXPECT_EQ(brightest(sea, off), 0.0f) << off;
+
+    // The exposure is the PNG's; the radiance is what it is.
+    ASSERT_EQ(cli({"render", "small.toml", "--frames", "2", "--out", "dark", "--size", "20x11", "--terms",
+                   "sea", "--samples", "2", "--exposure", "-1"})
+                  .status,
+              0);
+    EXPECT_EQ(brightest(folder() / "dark/small.0002.exr", "sea"), brightest(sea, "sea"));
+    EXPECT_NE(read_file(folder() / "dark/small.0002.png"), read_file(folder() / "sea/small.0002.png"));
+}
+
+TEST_F(Pictures, FramesAreTheSameAloneAndOnAnyNumberOfThreads) {
+    ASSERT_EQ(cli({"render", "small.toml", "--out", "all", "--threads", "2"}).status, 0);
+    ASSERT_EQ(cli({"render", "small.toml", "--out", "one", "--threads", "1", "--frames", "3"}).status, 0);
+    EXPECT_EQ(files_in("all").size(), 8u);
+    EXPECT_EQ(files_in("one"), (std::vector<std::string>{"small.0003.exr", "small.0003.png"}));
+    for (const std::string& file : files_in("one"))
+        EXPECT_EQ(read_file(folder() / "all" / file), read_file(folder() / "one" / file)) << file;
+}
+
+TEST_F(Pictures, RenderRefusesWhatItCannotDoBeforeItBegins) {
+    for (const char* size : {"640", "640x", "x360", "0x360", "640x-1", "640x360x2", "640 x 360", "",
+                             "65537x4", "99999999999x4"}) {
+        refused({"render", "small.toml", std::string("--size=") + size}, 2, {"--size"});
+        refused({"preview", "small.toml", "--offscreen", "a.png", std::string("--size=") + size}, 2,
+                {"--size"});
+    }
+    refused({"render", "small.toml", "--size", "640"}, 2,
+            {"640 is no size", "like 1280x720", "render --help"});
+    for (const char* terms : {"", "sun,", "moon", "sun sea", "Sun"})
+        refused({"render", "small.toml", "--terms", terms}, 2,
+                {std::string("terms \"") + terms + "\"", "accepted: any of sun, sky, sea, foam"});
+    for (const char* samples : {"0", "17", "-1"})
+        refused({"render", "small.toml", std::string("--samples=") + samples}, 2,
+                {std::string("samples ") + samples, "accepted: 1 to 16"});
+    for (const char* samples : {"1.5", "many"})
+        refused({"render", "small.toml", std::string("--samples=") + samples}, 2, {"--samples"});
+    refused({"render", "small.toml", "--sky-quality", "ten"}, 2,
+            {"\"ten\"", "accepted: one, nine, integral"});
+    for (const char* stops : {"31", "-31", "nan", "inf"})
+        refused({"render", "small.toml", std::string("--exposure=") + stops}, 2, {"exposure", "-30 to 30"});
+    for (const char* frames : {"0", "5", "3-1", "x"})
+        refused({"render", "small.toml", "--frames", frames}, 2, {std::string("\"") + frames + "\"", "1-4"});
+    refused({"render", "small.toml", "--out", ""}, 2, {"--out", "accepted: "});
+    refused({"render", "small.toml", "--threads", "0"}, 2, {"--threads"});
+    refused({"render"}, 2, {"SHOT.toml is required", "pelagic render --help"});
+    refused({"render", "small.toml", "--sample", "2"}, 2, {"'--sample' is not an option", "--samples?"});
+    // 65536 · 16 samples a side are more than a picture can have.
+    refused({"render", "small.toml", "--size", "65536x1", "--samples", "16"}, 1,
+            {"small.toml: ", "fewer samples"});
+    refused({"render", "missing.toml"}, 1, {"missing.toml: the shot file does not exist"});
+}
+
+TEST_F(Pictures, ASkyThatCantBeReadIsRefusedBeforeAnythingIsWritten) {
+    write_file(folder() / "torn.exr", "no picture at all");
+    write_file(folder() / "small.toml", small_shot() + "[light]\nsky = \"torn.exr\"\n");
+    refused({"render", "small.toml", "--out", "out"}, 1, {"torn.exr' can't be read as an OpenEXR picture"});
+    refused({"preview", "small.toml", "--offscreen", "new/a.png"}, 1,
+            {"torn.exr' can't be read as an OpenEXR picture"});
+}
+
+TEST_F(Pictures, PreviewRefusesWhatItCannotDoBeforeItBegins) {
+    for (const char* file : {"a.jpg", "a", ".png", "a.png/", "", "a.PNG"})
+        refused({"preview", "small.toml", "--offscreen", file}, 2,
+                {std::string("--offscreen \"") + file + "\"", ".png, .exr", "pelagic preview --help"});
+    refused({"preview", "small.toml", "--screenshot", "a.exr"}, 2, {"--screenshot \"a.exr\"", ".png"});
+    for (const char* frame : {"0", "5"})
+        refused({"preview", "small.toml", "--offscreen", "a.png", "--frame", frame}, 2,
+                {std::string("\"") + frame + "\"", "1-4"});
+    refused({"preview", "small.toml", "--offscreen", "a.png", "--frame", "1.5"}, 2, {"--frame"});
+    refused({"preview", "small.toml", "--offscreen", "a.png", "--quality", "best"}, 2,
+            {"\"best\"", "accepted: draft, preview, final, reference"});
+    refused({"preview", "small.toml", "--offscreen", "a.png", "--screenshot", "b.png"}, 2,
+            {"--screenshot", "--offscreen"});
+    refused({"preview", "small.toml", "--scale", "3"}, 2, {"--scale"});
+    refused({"preview", "small.toml", "--after", "3"}, 2, {"--after", "--screenshot"});
+    refused({"preview"}, 2, {"SHOT.toml is required", "pelagic preview --help"});
+}
+
+TEST_F(Pictures, PreviewDrawsWithoutADisplay) {
+    const Ended png = cli({"preview", "small.toml", "--offscreen", "new/a.png", "--frame", "3"});
+    ASSERT_EQ(png.status, 0) << png.err;
+    EXPECT_EQ(png.err, "");
+    EXPECT_TRUE(has(png.out, "picture: new/a.png\ndrawn by ")) << png.out;
+    EXPECT_EQ(png_size(folder() / "new/a.png"), std::pair(48, 27));
+    const Ended exr = cli({"preview", "small.toml", "--offscreen", "b.exr", "--size", "30x20"});
+    ASSERT_EQ(exr.status, 0) << exr.err;
+    EXPECT_EQ(exr_size(folder() / "b.exr"), std::pair(30, 20));
+    EXPECT_EQ(exr_channels(folder() / "b.exr"), kChannels);
+    for (const char* layer : {"sun", "sky", "sea"})
+        EXPECT_GT(brightest(folder() / "b.exr", layer), 0.0f) << layer;
+    EXPECT_EQ(torn_files(folder()), "");
+    EXPECT_TRUE(leftovers(folder()).empty());
+}
+
+TEST_F(Pictures, PreviewSaysThatItsReferenceIsOfSinglePrecision) {
+    const Ended ended =
+        cli({"preview", "small.toml", "--offscreen", "a.png", "--size", "8x6", "--quality", "reference"});
+    ASSERT_EQ(ended.status, 0) << ended.err;
+    EXPECT_TRUE(has(ended.err, "single precision")) << ended.err;
+    EXPECT_TRUE(has(ended.err, "pelagic render")) << ended.err;
+}
+
+// What stands in the way is a file, which stops even a superuser.
+TEST_F(Pictures, AFolderThatCantBeMadeIsSaid) {
+    write_file(folder() / "in-the-way", "a file");
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"render", "small.toml", "--frames", "1", "--out", "in-the-way/out"},
+          std::vector<std::string>{"render", "small.toml", "--frames", "1", "--out", "in-the-way"},
+          std::vector<std::string>{"preview", "small.toml", "--offscreen", "in-the-way/a.png"}}) {
+        const Ended ended = cli(arguments);
+        EXPECT_EQ(ended.status, 1) << ended.err;
+        EXPECT_EQ(ended.out, "");
+        EXPECT_TRUE(has(ended.err, "in-the-way")) << ended.err;
+    }
+    EXPECT_EQ(read_file(folder() / "in-the-way"), "a file");
+    EXPECT_EQ(files_below(folder()).size(), 2u);
+}
+
+TEST_F(Pictures, AFullDiskIsSaidAndWhatIsThereIsWhole) {
+    fs::create_directory(folder() / "disk");
+    const std::string problem = mount_disk({.folder = folder() / "disk", .size = "64k"});
+    if (!problem.empty()) GTEST_SKIP() << "this machine lets us mount nothing: " << problem;
+    const Ended ended = cli({"render", "small.toml", "--out", "disk", "--size", "96x54"});
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_TRUE(has(ended.err, "disk is full") || has(ended.err, "space")) << ended.err;
+    EXPECT_EQ(torn_files(folder() / "disk"), "");
+    EXPECT_TRUE(leftovers(folder() / "disk").empty());
+}
+
+// Many frames, stopped when the first is there.
+TEST_F(Pictures, AnInterruptedRenderLeavesWholeFilesAndSaysHowMany) {
+    std::string text = small_shot();
+    text.replace(text.find("[1, 4]"), 6, "[1, 9000]");
+    write_file(folder() / "small.toml", text);
+    Running render({.arguments = {"render", "small.toml", "--out", "out"}, .folder = folder()});
+    while (!fs::exists(folder() / "out/small.0001.exr")) {
+        ASSERT_FALSE(render.has_ended()) << render.messages();
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    render.send(SIGINT);
+    const Ended ended = render.wait();
+    EXPECT_EQ(ended.status, 128 + SIGINT) << ended.err;
+    EXPECT_FALSE(ended.killed) << "it ends by itself";
+    EXPECT_EQ(ended.out, "");
+    const std::vector<std::string> left = files_in("out");
+    const auto exrs = std::count_if(left.begin(), left.end(),
+                                    [](const std::string& file) { return file.ends_with(".exr"); });
+    EXPECT_GE(exrs, 1);
+    EXPECT_LT(exrs, 9000);
+    EXPECT_EQ(left.size(), 2u * static_cast<std::size_t>(exrs)) << "a .png with each .exr, and nothing else";
+    EXPECT_TRUE(has(ended.err, std::to_string(exrs) + " of the 9000 frames asked for are whole"))
+        << ended.err;
+    EXPECT_EQ(torn_files(folder() / "out"), "");
+}
+
+}  // namespace
+}  // namespace pelagic::test

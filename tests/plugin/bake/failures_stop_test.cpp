@@ -85,8 +85,9 @@ TEST_P(BakeStopped, AtRandomMomentsNothingIsTornAndTheNextRunFinishes) {
 
     std::mt19937 random(20190206);
     int stops = 0, with_new_frames = 0;
-    for (int round = 0; round < kMostRounds && stops < kStops; ++round) {
-        const double moment_s = std::uniform_real_distribution<double>(0.0, whole.seconds)(random);
+    double whole_s = whole.seconds;  // the last whole run's: other work on the machine comes and goes
+    for (int round = 0; round < kMostRounds && (stops < kStops || with_new_frames == 0); ++round) {
+        const double moment_s = std::uniform_real_distribution<double>(0.0, whole_s)(random);
         const auto when = [&] { return "stopped after " + std::to_string(moment_s) + " s"; };
         Running running(bake("two.toml", "out"));
         std::this_thread::sleep_for(std::chrono::duration<double>(moment_s));
@@ -106,10 +107,11 @@ TEST_P(BakeStopped, AtRandomMomentsNothingIsTornAndTheNextRunFinishes) {
 
         const Ended finished = run(bake("one.toml", "out"));
         ASSERT_EQ(finished.status, 0) << finished.err;
+        whole_s = finished.seconds;
         ASSERT_EQ(leftovers(out), std::vector<std::string>()) << when();
         ASSERT_EQ(differences(out, undisturbed), "") << when();
     }
-    EXPECT_EQ(stops, kStops) << "the program was too quick to be stopped";
+    EXPECT_GE(stops, kStops) << "the program was too quick to be stopped";
     EXPECT_GT(with_new_frames, 0) << "no stop came after the first frame";
 }
 

@@ -62,28 +62,38 @@ TEST(PreviewsPicture, IsTheCpusOfTrains) {
     compare_frame("of trains", scene);
 }
 
+// A scene's sea at one second, ready to be drawn.
+struct Stage {
+    explicit Stage(const Scene& scene)
+        : view(view_at(scene.camera, 1)), grid(projected_grid(view, projected_grid_options(scene))) {
+        const auto sea = std::make_shared<const Sea<float>>(scene, picture_plan(scene));
+        Frame<float> frame(sea);
+        frame.set(1.0);
+        PackedFrame packed(sea, 0);
+        packed.pack(frame);
+        renderer.set_sky(make_sky(scene), make_water(scene));
+        renderer.upload(packed);
+    }
+    Picture drawn(const DrawOptions& options) {
+        renderer.draw(view, grid, options);
+        return renderer.read_layers();
+    }
+
+    View view;
+    ProjectedGrid grid;
+    SeaRenderer renderer;
+};
+
 // A term that is off is black, and the others are as they were.
 TEST(PreviewsPicture, OfATermThatIsOffHasNoneOfIt) {
     gpu::need_context();
     Scene scene = scene_of({0.0, -60.0, 4.0}, {0.0, 0.0, 0.0});
     scene.camera.resolution = {64, 36};
-    const auto sea = std::make_shared<const Sea<float>>(scene, picture_plan(scene));
-    Frame<float> frame(sea);
-    frame.set(1.0);
-    PackedFrame packed(sea, 0);
-    packed.pack(frame);
-    SeaRenderer renderer;
-    const Sky sky = make_sky(scene);
-    renderer.set_sky(sky, make_water(scene));
-    renderer.upload(packed);
-    const View view = view_at(scene.camera, 1);
-    const ProjectedGrid grid = projected_grid(view, projected_grid_options(scene));
+    Stage stage(scene);
     DrawOptions options{.lighting = {}, .layers = true};
-    renderer.draw(view, grid, options);
-    const Picture all = renderer.read_layers();
+    const Picture all = stage.drawn(options);
     options.lighting.sun = options.lighting.whitecaps = false;
-    renderer.draw(view, grid, options);
-    const Picture some = renderer.read_layers();
+    const Picture some = stage.drawn(options);
     double sun = 0.0, foam = 0.0;
     for (std::size_t i = 0; i < all.layers.size(); ++i) {
         if (!all.sea[i]) continue;
@@ -103,20 +113,9 @@ TEST(PreviewsPicture, WithoutLayersIsTheirSum) {
     gpu::need_context();
     Scene scene = scene_of({0.0, -60.0, 4.0}, {0.0, 0.0, 0.0});
     scene.camera.resolution = {64, 36};
-    const auto sea = std::make_shared<const Sea<float>>(scene, picture_plan(scene));
-    Frame<float> frame(sea);
-    frame.set(1.0);
-    PackedFrame packed(sea, 0);
-    packed.pack(frame);
-    SeaRenderer renderer;
-    renderer.set_sky(make_sky(scene), make_water(scene));
-    renderer.upload(packed);
-    const View view = view_at(scene.camera, 1);
-    const ProjectedGrid grid = projected_grid(view, projected_grid_options(scene));
-    renderer.draw(view, grid, {.lighting = {}, .layers = true});
-    const Picture layers = renderer.read_layers();
-    renderer.draw(view, grid, {.lighting = {}});
-    const Picture sum = renderer.read_layers();
+    Stage stage(scene);
+    const Picture layers = stage.drawn({.lighting = {}, .layers = true});
+    const Picture sum = stage.drawn({.lighting = {}});
     for (std::size_t i = 0; i < layers.layers.size(); ++i) {
         const glm::vec3 expected = radiance_of(layers.layers[i]);
         for (int c = 0; c < 3; ++c)  // rounding of three additions
@@ -130,24 +129,14 @@ TEST(PreviewsPicture, OfWiresAndFalseColoursShowsWhatTheySay) {
     Scene scene = scene_of({0.0, -60.0, 8.0}, {0.0, 0.0, 0.0});
     scene.sea.wind_speed_mps = 15.0;
     scene.camera.resolution = {160, 90};
-    const auto sea = std::make_shared<const Sea<float>>(scene, picture_plan(scene));
-    Frame<float> frame(sea);
-    frame.set(1.0);
-    PackedFrame packed(sea, 0);
-    packed.pack(frame);
-    SeaRenderer renderer;
-    renderer.set_sky(make_sky(scene), make_water(scene));
-    renderer.upload(packed);
-    const View view = view_at(scene.camera, 1);
-    const ProjectedGrid grid = projected_grid(view, projected_grid_options(scene));
-    const auto drawn = [&](const DrawOptions& options) {
-        renderer.draw(view, grid, options);
-        return renderer.read_layers();
+    Stage stage(scene);
+    const auto with = [&](FalseColour colour) {
+        return stage.drawn({.lighting = {}, .false_colour = colour});
     };
-    const auto with = [&](FalseColour colour) { return drawn({.lighting = {}, .false_colour = colour}); };
-    const Picture light = drawn({.lighting = {}, .layers = true}),
-                  wires = drawn({.lighting = {}, .wireframe = true}), levels = with(FalseColour::FilterLevel),
-                  hidden = with(FalseColour::HiddenVariance), coverage = with(FalseColour::Coverage);
+    const Picture light = stage.drawn({.lighting = {}, .layers = true}),
+                  wires = stage.drawn({.lighting = {}, .wireframe = true}),
+                  levels = with(FalseColour::FilterLevel), hidden = with(FalseColour::HiddenVariance),
+                  coverage = with(FalseColour::Coverage);
     int on_wires = 0, sea_pixels = 0, foam = 0;
     for (std::size_t i = 0; i < light.layers.size(); ++i) {
         const glm::vec3 wire = radiance_of(wires.layers[i]);

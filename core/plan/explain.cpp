@@ -10,7 +10,6 @@
 #include "core/plan/plan.h"
 #include "core/plan/tables.h"
 #include "core/scene/names.h"
-#include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/viscous_cutoff.h"
 
 namespace pelagic {
@@ -91,8 +90,9 @@ std::string trains_text(const Plan& plan) {
 
 }  // namespace
 
-std::string explain(const Scene& scene, const Plan& plan) {
-    const DirectionalSpectrum spectrum(scene.sea);
+std::string explain(const Plan& plan) {
+    const Scene& scene = plan.from->scene;
+    const DirectionalSpectrum& spectrum = plan.from->spectrum;
     std::string page = "Sea\n";
     page += format("  wind %g m/s towards %g°, spectrum %s, Hs %.3g m", scene.sea.wind_speed_mps,
                    scene.sea.wind_direction_deg, std::string(word_of(scene.sea.spectrum)).c_str(),
@@ -105,7 +105,7 @@ std::string explain(const Scene& scene, const Plan& plan) {
         page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m, plan.filter.n_min) +
                 "\n";
         if (!planned.query.map && scene.surface.kind == SurfaceKind::ProjectedGrid) {
-            const ProjectedGridSize size = projected_grid_needs(scene).size;
+            const ProjectedGridSize size = projected_grid_needs(*plan.from).size;
             page += format(
                 "    what the camera sees: %d × %d cells of at most %g pixels, cast onto the sea at each "
                 "frame;\n"

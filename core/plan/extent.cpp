@@ -3,13 +3,11 @@
 
 #include <cmath>
 
-#include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/gauss.h"
 
 namespace pelagic {
 
-Extent expected_extent(const Scene& scene) {
-    const DirectionalSpectrum spectrum(scene.sea);
+Extent expected_extent(const DirectionalSpectrum& spectrum, double choppiness) {
     // Var|D| = λ² ∫ S coth²(kd) dk (Tessendorf 2001, Eq. 29, in water of depth d).
     double squares_m2 = 0.0;
     const auto panels = spectrum.panels();
@@ -19,7 +17,7 @@ Extent expected_extent(const Scene& scene) {
             return spectrum.omnidirectional(k) * ratio * ratio;
         });
     return {.height_m = kExtentDeviations * std::sqrt(spectrum.m0()),
-            .reach_m = kExtentDeviations * scene.waves.choppiness * std::sqrt(squares_m2),
+            .reach_m = kExtentDeviations * choppiness * std::sqrt(squares_m2),
             .significant_height_m = 4.0 * std::sqrt(spectrum.m0())};
 }
 

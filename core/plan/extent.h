@@ -1,7 +1,7 @@
 // How far the sea's surface goes from its rest, by expectation: what a view must look beyond its border for.
 #pragma once
 
-#include "core/scene/scene.h"
+#include "core/spectrum/directional_spectrum.h"
 
 namespace pelagic {
 
@@ -18,7 +18,7 @@ struct Extent {
 
 inline constexpr double kExtentDeviations = 5.0;
 
-// Of everything that the scene's spectrum holds; 0 for a calm. The scene must be valid.
-Extent expected_extent(const Scene& scene);
+// Of everything that the spectrum holds, with this choppiness; 0 for a calm.
+Extent expected_extent(const DirectionalSpectrum& spectrum, double choppiness);
 
 }  // namespace pelagic

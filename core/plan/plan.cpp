@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/plan/extent.h"
@@ -18,7 +19,6 @@
 #include "core/plan/tables.h"
 #include "core/scene/canonical.h"
 #include "core/scene/cascade_bands.h"
-#include "core/spectrum/directional_spectrum.h"
 
 namespace pelagic {
 namespace {
@@ -178,7 +178,8 @@ std::uint64_t fnv1a(std::string_view text) {  // Fowler, Noll, Vo: 64-bit FNV-1a
 
 // The scene's canonical text without what frames don't hold: a new lens, another sun or other water leaves
 // each of them as it is. Unless the mesh is the camera's own.
-std::string what_frames_hold(const Scene& scene) {
+std::string what_frames_hold(const PreparedScene& prepared) {
+    const Scene& scene = prepared.scene;
     const bool camera_shapes_mesh =
         scene.surface.kind == SurfaceKind::ProjectedGrid && scene.output.mesh != MeshFormat::None;
     const auto is_held = [&](const std::string& line) {
@@ -191,7 +192,7 @@ std::string what_frames_hold(const Scene& scene) {
         if (is_held(line)) text += "\n" + line;
     // The grid is as large as the shot's widest frame asks for: the range decides, too.
     if (camera_shapes_mesh) {
-        const ProjectedGridSize size = projected_grid_needs(scene).size;
+        const ProjectedGridSize size = projected_grid_needs(prepared).size;
         text += "\n" + std::to_string(size.columns) + " × " + std::to_string(size.rows);
     }
     return text;
@@ -214,7 +215,8 @@ FieldSet fields_of(ProductSet wanted) {
     return needed;
 }
 
-std::vector<CascadeSize> resolve_cascades(const Scene& scene, double finest_footprint_m) {
+std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double finest_footprint_m) {
+    const Scene& scene = prepared.scene;
     if (!scene.waves.cascades.empty() || scene.waves.model == WaveModel::Trochoid)
         return scene.waves.cascades;
     // Ten of the longest peak waves fit into the first tile (their m0 then varies by some 7 % from seed to
@@ -223,7 +225,7 @@ std::vector<CascadeSize> resolve_cascades(const Scene& scene, double finest_foot
     constexpr double kPeakWaves = 10.0;
     constexpr double kRatio = 4.23606797749979;
     constexpr int kCascades = 4, kLargestResolution = 2048, kUnfilteredResolution = 512;
-    const double peak = DirectionalSpectrum(scene.sea).longest_peak_wavenumber();
+    const double peak = prepared.spectrum.longest_peak_wavenumber();
     std::vector<CascadeSize> cascades(kCascades);
     std::vector<double> sizes;
     for (int i = 0; i < kCascades; ++i) sizes.push_back(kPeakWaves * kTwoPi / peak / std::pow(kRatio, i));
@@ -287,19 +289,19 @@ void add_map_queries(std::vector<Query>& queries, const Scene& scene, double siz
 
 }  // namespace
 
-Query view_query(const Scene& scene, const ViewQueryOptions& options) {
+Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options) {
     Query query;
     query.name = "view";
     query.is_view = true;
     query.products = options.products;
     if (query.products.none()) {
         query.products = products(Product::Position, Product::Normal, Product::SlopeVariance);
-        if (scene.effects.whitecaps) query.products.set(index(Product::Coverage));
+        if (prepared.scene.effects.whitecaps) query.products.set(index(Product::Coverage));
     }
     query.points = options.points;
     const FootprintFilter filter;
     query.pixel_m = {options.finest_pixel_m};
-    const auto cascades = resolve_cascades(scene, options.finest_pixel_m);
+    const auto cascades = resolve_cascades(prepared, options.finest_pixel_m);
     if (!cascades.empty()) {
         // Where the finest cascade's shortest wave is still whole; finer footprints change nothing.
         const CascadeSize& finest = cascades.back();
@@ -317,15 +319,16 @@ Query view_query(const Scene& scene, const ViewQueryOptions& options) {
     return query;
 }
 
-ProjectedGridOptions projected_grid_options(const Scene& scene) {
-    const Extent extent = expected_extent(scene);
-    return {.cell_px = scene.surface.cell_px,
+ProjectedGridOptions projected_grid_options(const PreparedScene& prepared) {
+    const Extent& extent = prepared.extent;
+    return {.cell_px = prepared.scene.surface.cell_px,
             .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
             .significant_height_m = extent.significant_height_m};
 }
 
-ProjectedGridNeeds projected_grid_needs(const Scene& scene) {
-    const ProjectedGridOptions options = projected_grid_options(scene);
+ProjectedGridNeeds projected_grid_needs(const PreparedScene& prepared) {
+    const Scene& scene = prepared.scene;
+    const ProjectedGridOptions options = projected_grid_options(prepared);
     const Camera& camera = scene.camera;
     // Before its first key and after its last the camera stands still.
     const auto last_key = [&](int frame) {
@@ -344,7 +347,8 @@ ProjectedGridNeeds projected_grid_needs(const Scene& scene) {
         together);
 }
 
-std::vector<Query> bake_queries(const Scene& scene) {
+std::vector<Query> bake_queries(const PreparedScene& prepared) {
+    const Scene& scene = prepared.scene;
     const Output& output = scene.output;
     const Surface& surface = scene.surface;
     const double spacing_m = surface.size_m / surface.resolution;
@@ -360,11 +364,11 @@ std::vector<Query> bake_queries(const Scene& scene) {
         mesh.products &= ~outputs_gone(scene);
         if (surface.kind == SurfaceKind::ProjectedGrid) {
             // A file's vertices are its only samples: cells filter normals, too, as in a patch.
-            const ProjectedGridNeeds needs = projected_grid_needs(scene);
-            mesh = view_query(scene, {.products = mesh.products,
-                                      .finest_cell_m = needs.finest_cell_m,
-                                      .finest_pixel_m = needs.finest_cell_m,
-                                      .points = points_of(needs.size)});
+            const ProjectedGridNeeds needs = projected_grid_needs(prepared);
+            mesh = view_query(prepared, {.products = mesh.products,
+                                         .finest_cell_m = needs.finest_cell_m,
+                                         .finest_pixel_m = needs.finest_cell_m,
+                                         .points = points_of(needs.size)});
             mesh.name = "mesh";
             finest_m = needs.finest_cell_m;
         } else {
@@ -378,18 +382,21 @@ std::vector<Query> bake_queries(const Scene& scene) {
     if (!output.maps.empty()) finest_m = std::min(finest_m, surface.size_m / output.map_resolution);
     add_map_queries(queries, scene, surface.size_m, output.map_resolution, std::nullopt);
     if (output.cascade_tiles) {
-        const auto cascades = resolve_cascades(scene, finest_m);
+        const auto cascades = resolve_cascades(prepared, finest_m);
         for (int i = 0; i < static_cast<int>(cascades.size()); ++i)
             add_map_queries(queries, scene, cascades[i].size_m, cascades[i].resolution, i);
     }
     return queries;
 }
 
-Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
+Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Query>& queries) {
     Plan plan;
+    plan.from = std::move(from);
+    const PreparedScene& prepared = *plan.from;
+    const Scene& scene = prepared.scene;
     plan.knobs = knobs_of(scene.quality.level);
     plan.choppiness = scene.waves.choppiness;
-    plan.fingerprint = fnv1a(what_frames_hold(scene));
+    plan.fingerprint = fnv1a(what_frames_hold(prepared));
 
     double finest_m = std::numeric_limits<double>::infinity(), trains_finest_m = finest_m;
     for (const Query& query : queries) {
@@ -421,12 +428,12 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
         plan.closure.push_back({std::string("no ") + row.name, row.why_off});
     }
     const double finest_footprint_m = std::isfinite(finest_m) ? finest_m : 0.0;
-    if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(scene, trains_finest_m);
-    const auto sizes = resolve_cascades(scene, finest_footprint_m);
+    if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(prepared, trains_finest_m);
+    const auto sizes = resolve_cascades(prepared, finest_footprint_m);
     std::vector<double> sizes_m;
     for (const CascadeSize& cascade : sizes) sizes_m.push_back(cascade.size_m);
     const auto edges = lower_edges(sizes_m);
-    const DirectionalSpectrum spectrum(scene.sea);
+    const DirectionalSpectrum& spectrum = prepared.spectrum;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
         CascadePlan cascade;
         cascade.size_m = sizes[i].size_m;
@@ -444,6 +451,15 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
                                              : "the spectrum has no energy in its band";
     }
     return plan;
+}
+
+Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
+    return make_plan(prepare(scene), queries);
+}
+
+Plan make_plan(const Scene& scene) {
+    const auto prepared = prepare(scene);
+    return make_plan(prepared, bake_queries(*prepared));
 }
 
 bool CascadePlan::moves() const {

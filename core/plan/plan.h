@@ -6,12 +6,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/plan/fields.h"
 #include "core/plan/filter.h"
+#include "core/plan/prepared_scene.h"
 #include "core/plan/trains.h"
 #include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
@@ -105,6 +107,7 @@ struct Reason {
 };
 
 struct Plan {
+    std::shared_ptr<const PreparedScene> from;  // what was planned
     Knobs knobs;
     FootprintFilter filter;
     double choppiness = 1.0;
@@ -128,7 +131,7 @@ struct Plan {
 };
 
 // What baking this scene asks of the sea: the mesh and the maps, in the order of the shot file, tiles last.
-std::vector<Query> bake_queries(const Scene&);
+std::vector<Query> bake_queries(const PreparedScene&);
 
 struct ViewQueryOptions {
     // None: what a picture's light needs, that is positions, normals, what pixels hide of the slopes, and
@@ -142,24 +145,24 @@ struct ViewQueryOptions {
 // A query for points at all distances from a camera: a ladder of footprints, each the double of the one
 // before, from the finest up to where no cascade has a wave to show. The ladder of the cells is a part of
 // that of the pixels, so that they share what they can. Named "view".
-Query view_query(const Scene&, const ViewQueryOptions& options = {});
+Query view_query(const PreparedScene&, const ViewQueryOptions& options = {});
 
 // The projected grid of the shot's camera.
-ProjectedGridOptions projected_grid_options(const Scene&);
+ProjectedGridOptions projected_grid_options(const PreparedScene&);
 // What it needs at each of the shot's frames together.
-ProjectedGridNeeds projected_grid_needs(const Scene&);
+ProjectedGridNeeds projected_grid_needs(const PreparedScene&);
 
-// The scene must be valid (core/scene/validate.h). Throws std::invalid_argument when a query is malformed.
+// Throws std::invalid_argument when a query is malformed.
+Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&);
+// The same of a scene that nobody has prepared yet; without queries those of its bake.
 Plan make_plan(const Scene&, const std::vector<Query>&);
-inline Plan make_plan(const Scene& scene) {
-    return make_plan(scene, bake_queries(scene));
-}
+Plan make_plan(const Scene&);
 
 // The cascades in force, largest first: the scene's own, or "auto" resolved for the finest footprint asked
 // for; none for a sea of trains alone.
-std::vector<CascadeSize> resolve_cascades(const Scene&, double finest_footprint_m);
+std::vector<CascadeSize> resolve_cascades(const PreparedScene&, double finest_footprint_m);
 
 // A page of text: each output, product, field, transform with its size, bytes held, and why.
-std::string explain(const Scene&, const Plan&);
+std::string explain(const Plan&);
 
 }  // namespace pelagic

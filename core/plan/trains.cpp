@@ -8,7 +8,6 @@
 #include "core/plan/fields.h"
 #include "core/plan/filter.h"
 #include "core/scene/cascade_bands.h"
-#include "core/spectrum/directional_spectrum.h"
 #include "core/spectrum/gauss.h"
 #include "core/spectrum/spectral_moments.h"
 
@@ -64,9 +63,9 @@ std::size_t TrainsPlan::sea_bytes(bool double_precision) const {
            (3 * trains + 2) * sizeof(SpectralMoments) + (2 * trains + 1) * kHidden * scalar;
 }
 
-TrainsPlan resolve_trains(const Scene& scene, double finest_footprint_m) {
-    const Waves& waves = scene.waves;
-    const DirectionalSpectrum spectrum(scene.sea);
+TrainsPlan resolve_trains(const PreparedScene& prepared, double finest_footprint_m) {
+    const Waves& waves = prepared.scene.waves;
+    const DirectionalSpectrum& spectrum = prepared.spectrum;
     const double nyquist_m = FootprintFilter{}.n_min * finest_footprint_m;
     TrainsPlan plan{.count = waves.trains};
     plan.longest_m = waves.longest_m.value_or(longest_with_energy_m(spectrum));

@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-#include "core/scene/scene.h"
+#include "core/plan/prepared_scene.h"
 
 namespace pelagic {
 
@@ -35,6 +35,6 @@ struct TrainsPlan {
 // A scene that gives one end keeps it, and the other stays a factor of ten away. A given range may leave
 // fewer than ten trains, or none, below the pixel: then what a pixel hides is mostly the integrated
 // remainder. finest_footprint_m ≥ 0, of all queries; 0 (nothing is filtered) or infinite: nobody looks, 2 cm.
-TrainsPlan resolve_trains(const Scene& scene, double finest_footprint_m);
+TrainsPlan resolve_trains(const PreparedScene& prepared, double finest_footprint_m);
 
 }  // namespace pelagic

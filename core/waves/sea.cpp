@@ -5,12 +5,12 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/base/random.h"
 #include "core/plan/mode_lattice.h"
 #include "core/spectrum/cell_energy.h"
-#include "core/spectrum/directional_spectrum.h"
 #include "core/waves/loop.h"
 #include "core/waves/whitecaps.h"
 
@@ -26,12 +26,12 @@ struct LevelPair {
 }  // namespace
 
 template <class T>
-Sea<T>::Sea(const Scene& scene, const Plan& plan)
-    : plan_(plan), loop_s_(scene.shot.exact_loop_s()), extent_(expected_extent(scene)) {
-    const DirectionalSpectrum spectrum(scene.sea);
+Sea<T>::Sea(Plan plan) : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.exact_loop_s()) {
+    const Scene& scene = plan_.from->scene;
+    const DirectionalSpectrum& spectrum = plan_.from->spectrum;
     const double choppiness = scene.waves.choppiness;
     if (plan_.trains) {
-        trains_ = make_trains<T>(scene, *plan_.trains, spectrum);
+        trains_ = make_trains<T>(*plan_.from, *plan_.trains);
         total_ = pelagic::total(trains_);
     } else {
         total_ = moments(spectrum, 0.0, std::numeric_limits<double>::infinity());

@@ -48,8 +48,8 @@ struct QueryStatistics {
 template <class T>
 class Sea {
   public:
-    // The scene must be valid and the plan made from it. Seconds for the largest; progress is not reported.
-    Sea(const Scene&, const Plan&);
+    // Seconds for the largest; progress is not reported.
+    explicit Sea(Plan);
 
     const Plan& plan() const { return plan_; }
     std::span<const Cascade<T>> cascades() const { return cascades_; }
@@ -59,7 +59,7 @@ class Sea {
     const SpectralMoments& total() const { return total_; }
     const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
     // How far the surface goes from its rest, by expectation (core/plan/extent.h).
-    const Extent& extent() const { return extent_; }
+    const Extent& extent() const { return plan_.from->extent; }
     // What a query's finest pixels show of total(), cascades and trains.
     SpectralMoments shown(int query) const;
     // J below this is foam (core/waves/whitecaps.h).
@@ -71,7 +71,6 @@ class Sea {
   private:
     Plan plan_;
     double loop_s_;
-    Extent extent_;
     SpectralMoments total_;
     double whitecap_threshold_;
     std::vector<Cascade<T>> cascades_;

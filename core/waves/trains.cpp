@@ -122,7 +122,8 @@ double fraction_of_product(double a, double b) {
 }  // namespace
 
 template <class T>
-Trains<T> make_trains(const Scene& scene, const TrainsPlan& plan, const DirectionalSpectrum& spectrum) {
+Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
+    const auto& [scene, spectrum, extent] = prepared;
     const double choppiness = scene.waves.choppiness, loop_s = scene.shot.exact_loop_s();
     const Dispersion& dispersion = spectrum.dispersion();
     Trains<T> trains;
@@ -253,8 +254,8 @@ std::vector<double> phases_at(const Trains<T>& trains, glm::dvec2 origin_m, doub
     return cycles;
 }
 
-template Trains<float> make_trains(const Scene&, const TrainsPlan&, const DirectionalSpectrum&);
-template Trains<double> make_trains(const Scene&, const TrainsPlan&, const DirectionalSpectrum&);
+template Trains<float> make_trains(const PreparedScene&, const TrainsPlan&);
+template Trains<double> make_trains(const PreparedScene&, const TrainsPlan&);
 template SpectralMoments total(const Trains<float>&);
 template SpectralMoments total(const Trains<double>&);
 template SpectralMoments resolved(const Trains<float>&, const FootprintFilter&, double);

@@ -61,10 +61,10 @@ struct Trains {
     std::size_t count() const { return height_m.size(); }
 };
 
-// The plan must be the scene's (resolve_trains), the spectrum that of scene.sea. Σh²/2 is m0 of the range to
+// The plan must be the scene's (resolve_trains). Σh²/2 is m0 of the range to
 // 1e-6. The same scene gives the same trains, to the bit.
 template <class T>
-Trains<T> make_trains(const Scene& scene, const TrainsPlan& plan, const DirectionalSpectrum& spectrum);
+Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan);
 
 // Everything: all trains and what is outside their range. Jacobian moments times choppiness².
 // A train's slope variance along k̂ is (kh)²/(1 + √(1 − k²H²)) (appendix A, for H ≠ h, and without the

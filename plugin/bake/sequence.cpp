@@ -160,7 +160,7 @@ template <class T>
 class SequenceOf final : public Sequence {
   public:
     SequenceOf(const Scene& scene, const Plan& plan)
-        : scene_(scene), sea_(std::make_shared<const Sea<T>>(scene, plan)), frame_(sea_) {
+        : scene_(scene), sea_(std::make_shared<const Sea<T>>(plan)), frame_(sea_) {
         for (int q = 0; q < static_cast<int>(plan.queries.size()); ++q) {
             const Query& query = plan.queries[q].query;
             if (query.map) {
@@ -168,8 +168,8 @@ class SequenceOf final : public Sequence {
             } else {
                 mesh_query_ = q;
                 if (follows_camera()) {
-                    grid_options_ = projected_grid_options(scene);
-                    grid_options_.size = projected_grid_needs(scene).size;
+                    grid_options_ = projected_grid_options(*plan.from);
+                    grid_options_.size = projected_grid_needs(*plan.from).size;
                 } else {
                     mesh_square_ = square_of<T>(scene.surface.resolution + 1, scene.surface.size_m,
                                                 scene.surface.resolution);

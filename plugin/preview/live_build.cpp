@@ -29,10 +29,11 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene) {
         problems += (problems.empty() ? "" : "\n") + text_of(problem);
     if (!problems.empty()) throw std::invalid_argument(problems);
     const auto start = std::chrono::steady_clock::now();
+    const auto prepared = prepare(scene);
     LiveBuild made;
     made.scene = scene;
-    made.sea = std::make_shared<const Sea<float>>(scene, make_plan(scene, {view_query(scene)}));
-    made.grid = projected_grid_options(scene);
+    made.sea = std::make_shared<const Sea<float>>(make_plan(prepared, {view_query(*prepared)}));
+    made.grid = projected_grid_options(*prepared);
     made.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::make_shared<const LiveBuild>(std::move(made));
 }

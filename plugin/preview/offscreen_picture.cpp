@@ -8,7 +8,7 @@ namespace pelagic {
 OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame, glm::ivec2 size) {
     Scene seen = scene;
     if (size.x > 0 && size.y > 0) seen.camera.resolution = size;
-    const auto sea = std::make_shared<const Sea<float>>(seen, picture_plan(seen));
+    const auto sea = std::make_shared<const Sea<float>>(picture_plan(seen));
     Frame<float> state(sea);
     state.set(seen.shot.time_s(frame));
     PackedFrame packed(sea, 0);
@@ -18,7 +18,7 @@ OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame,
     renderer.set_sky(sky, make_water(seen));
     renderer.upload(packed);
     const View view = view_at(seen.camera, frame);
-    const ProjectedGrid grid = projected_grid(view, projected_grid_options(seen));
+    const ProjectedGrid grid = projected_grid(view, projected_grid_options(*sea->plan().from));
     renderer.draw(view, grid, {.lighting = render_options(seen).lighting, .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (sea->plan().knobs.double_precision)

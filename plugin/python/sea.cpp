@@ -101,7 +101,7 @@ PythonSea build_sea(const Scene& scene, const SeaRequest& request) {
     const py::gil_scoped_release others_may_run;
     Plan plan = make_plan(kept, {query});
     plan.knobs.double_precision = false;  // whatever the level: arrays are float32
-    return {std::make_shared<const Sea<float>>(kept, plan)};
+    return {std::make_shared<const Sea<float>>(plan)};
 }
 
 // ---- Frame

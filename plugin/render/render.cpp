@@ -73,9 +73,9 @@ class RendererOf final : public Impl {
           options_(options),
           sky_(std::move(sky)),
           water_(make_water(scene)),
-          sea_(std::make_shared<const Sea<T>>(scene, plan)),
+          sea_(std::make_shared<const Sea<T>>(plan)),
           frame_(sea_),
-          grid_options_(projected_grid_options(scene)) {}
+          grid_options_(projected_grid_options(*plan.from)) {}
 
     const Plan& plan() const override { return sea_->plan(); }
     const Sky& sky() const override { return sky_; }
@@ -316,11 +316,12 @@ RenderOptions render_options(const Scene& scene) {
 }
 
 Plan picture_plan(const Scene& scene) {
-    const ProjectedGridNeeds needs = projected_grid_needs(scene);
-    return make_plan(scene, {view_query(scene, {.products = {},
-                                                .finest_cell_m = needs.finest_cell_m,
-                                                .finest_pixel_m = needs.finest_pixel_m,
-                                                .points = points_of(needs.size)})});
+    const auto prepared = prepare(scene);
+    const ProjectedGridNeeds needs = projected_grid_needs(*prepared);
+    return make_plan(prepared, {view_query(*prepared, {.products = {},
+                                                       .finest_cell_m = needs.finest_cell_m,
+                                                       .finest_pixel_m = needs.finest_pixel_m,
+                                                       .points = points_of(needs.size)})});
 }
 
 void check_render(const Scene& scene, const RenderOptions& options) {

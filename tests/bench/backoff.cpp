@@ -41,7 +41,7 @@ class Patch {
           sky_(daylight_sky({.sun_elevation_deg = scene.light.sun_elevation_deg,
                              .sun_azimuth_deg = scene.light.sun_azimuth_deg})),
           water_(water_body({})),
-          frame_(std::make_shared<const Sea<float>>(scene, make_plan(scene, {query(scene)}))),
+          frame_(std::make_shared<const Sea<float>>(make_plan(scene, {query(scene)}))),
           rest_(rest_points<float>(
               {.per_side = kPoints, .spacing_m = kPatch_m / kPoints, .first_m = -0.5 * kPatch_m})) {
         frame_.set(3.0);
@@ -91,8 +91,9 @@ class Patch {
 
   private:
     static Query query(const Scene& scene) {
-        return view_query(scene, {.products = products(Product::Normal, Product::SlopeVariance,
-                                                       Product::Coverage, Product::JacobianMoments)});
+        return view_query(*prepare(scene),
+                          {.products = products(Product::Normal, Product::SlopeVariance, Product::Coverage,
+                                                Product::JacobianMoments)});
     }
 
     glm::vec3 to_eye_;

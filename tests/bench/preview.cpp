@@ -63,9 +63,9 @@ void pictures() {
 class Drawn {
   public:
     Drawn(const Scene& scene, const LightingChoice& lighting)
-        : sea_(std::make_shared<const Sea<float>>(scene, picture_plan(scene))),
+        : sea_(std::make_shared<const Sea<float>>(picture_plan(scene))),
           view_(view_at(scene.camera, 1)),
-          grid_(projected_grid(view_, projected_grid_options(scene))) {
+          grid_(projected_grid(view_, projected_grid_options(*prepare(scene)))) {
         options_.lighting = lighting;
         Frame<float> frame(sea_);
         frame.set(1.0);

@@ -54,7 +54,7 @@ struct Level {
     std::vector<T> coverage;
 
     Level(const Case& at, QualityLevel level)
-        : frame(std::make_shared<const Sea<T>>(at.scene, at.plan(level))),
+        : frame(std::make_shared<const Sea<T>>(at.plan(level))),
           points(rest_points<T>(at.patch)),
           position(points.size()),
           normal(points.size()),

@@ -42,7 +42,7 @@ std::shared_ptr<const Sea<T>> sea_on_own_grids(const OwnGrids& wanted) {
         query.only_cascade = c;
         queries.push_back(std::move(query));
     }
-    return std::make_shared<const Sea<T>>(scene, make_plan(scene, queries));
+    return std::make_shared<const Sea<T>>(make_plan(scene, queries));
 }
 
 }  // namespace pelagic::bench

@@ -42,9 +42,9 @@ void table(int n) {
     const auto make_frame = [&](std::vector<Query> queries) {
         // The plain cost of a whole cascade: nothing filtered away.
         for (Query& query : queries) query.cell_m = query.pixel_m = {0.0};
-        return Frame<float>(std::make_shared<const Sea<float>>(scene, make_plan(scene, queries)));
+        return Frame<float>(std::make_shared<const Sea<float>>(make_plan(scene, queries)));
     };
-    std::vector<Query> on_nodes = bake_queries(scene), between = on_nodes;
+    std::vector<Query> on_nodes = bake_queries(*prepare(scene)), between = on_nodes;
     between[0].lattice.reset();
     Frame<float> node_frame = make_frame(on_nodes), spline_frame = make_frame(between);
     const auto points = rest_points<float>({.per_side = n + 1, .spacing_m = 400.0 / n, .first_m = -200.0});

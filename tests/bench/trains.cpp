@@ -80,9 +80,9 @@ void run(Load& load, const Trains<float>& trains, const std::vector<double>& sta
 void table() {
     Scene scene;
     scene.waves.model = WaveModel::Trochoid;
-    const TrainsPlan plan = resolve_trains(scene, 0.03);
-    const DirectionalSpectrum spectrum(scene.sea);
-    const auto trains = make_trains<float>(scene, plan, spectrum);
+    const auto prepared = prepare(scene);
+    const TrainsPlan plan = resolve_trains(*prepared, 0.03);
+    const auto trains = make_trains<float>(*prepared, plan);
     const auto start = phases_at(trains, {0.0, 0.0}, 1.0);
     const FieldSet all = FieldSet().set();
     const FieldSet positions = fields(Field::Height, Field::Dx, Field::Dy);

@@ -87,7 +87,7 @@ void sea(double wind_mps, int waves) {
     scene.waves.cascades = {{kTile_m, waves}, {1.02 * kBandModes * 2.0 * kTile_m / waves, kSmall}};
     const double shown_m = waves == kMap ? 0.0 : kTile_m / kMap;
     Frame<float> frame(std::make_shared<const Sea<float>>(
-        scene, make_plan(scene, {tile_query("fine", kFine, 0.0), tile_query("map", kMap, shown_m)})));
+        make_plan(scene, {tile_query("fine", kFine, 0.0), tile_query("map", kMap, shown_m)})));
     frame.set(3.0);
     std::vector<float> fine;
     for (const glm::vec3& j : moments_of(frame, 0, kFine)) fine.push_back(j.x);

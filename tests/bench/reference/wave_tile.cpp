@@ -50,8 +50,7 @@ WaveTile::WaveTile(const WaveTileOptions& options) : size_m_(options.size_m) {
         query("all waves", products(Product::Position, Product::Normal, Product::SlopeVariance), {0.0}),
         query("cells", products(Product::Position), footprints_m),
         query("pixels", products(Product::Normal, Product::SlopeVariance), footprints_m)};
-    frame_ =
-        std::make_unique<Frame<float>>(std::make_shared<const Sea<float>>(scene, make_plan(scene, queries)));
+    frame_ = std::make_unique<Frame<float>>(std::make_shared<const Sea<float>>(make_plan(scene, queries)));
     frame_->set(kTime_s);
 }
 

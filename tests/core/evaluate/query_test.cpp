@@ -55,8 +55,8 @@ TEST(Query, WritesWhereTheCallerWantsItAndNowhereElse) {
 
 TEST(Query, RefusesAFrameWithoutATime) {
     const Scene scene = small_sea();
-    const Frame<float> frame(std::make_shared<const Sea<float>>(
-        scene, make_plan(scene, {unfiltered(products(Product::Displacement))})));
+    const Frame<float> frame(
+        std::make_shared<const Sea<float>>(make_plan(scene, {unfiltered(products(Product::Displacement))})));
     EXPECT_THROW(sample(frame, 0, random_points<float>(100.0, 3)), std::invalid_argument);
 }
 

@@ -35,7 +35,7 @@ const Facets& facets() {
         query.products = products(Product::Normal);
         query.lattice = Lattice{0.0, kTile_m / kPoints};
         query.only_cascade = 0;
-        const auto sea = std::make_shared<const Sea<float>>(scene, make_plan(scene, {query}));
+        const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
         Frame<float> frame(sea);
         frame.set(0.0);
         const auto rest_m =

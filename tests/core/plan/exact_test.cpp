@@ -345,7 +345,7 @@ double median_ms(Frame<T>& frame) {
 }
 
 template <class T>
-void check(const Case& c, const Scene& scene, const Plan& plan) {
+void check(const Case& c, const Plan& plan) {
     int transforms = 0;
     long all_lines = 0;
     std::size_t frame_bytes = 0;
@@ -362,7 +362,7 @@ void check(const Case& c, const Scene& scene, const Plan& plan) {
     EXPECT_EQ(plan.sea_bytes(), modes_bytes(c) + trains_bytes(c.trains));
     EXPECT_EQ(plan.output_bytes(), c.output_bytes);
 
-    const auto sea = std::make_shared<const Sea<T>>(scene, plan);
+    const auto sea = std::make_shared<const Sea<T>>(plan);
     std::size_t in_modes = 0;
     for (const Cascade<T>& cascade : sea->cascades()) in_modes += cascade.held_bytes();
     EXPECT_EQ(in_modes, modes_bytes(c));
@@ -402,9 +402,9 @@ TEST_P(Exact, IsTheMinimumAndIsWhatIsHeldAndRun) {
     const Plan plan = c.queries.empty() ? make_plan(shot) : make_plan(shot, c.queries);
     EXPECT_EQ(plan.trains ? plan.trains->count : 0, c.trains);
     if (c.scalar == 8)
-        check<double>(c, shot, plan);
+        check<double>(c, plan);
     else
-        check<float>(c, shot, plan);
+        check<float>(c, plan);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shots, Exact, testing::ValuesIn(cases()),

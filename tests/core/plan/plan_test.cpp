@@ -77,14 +77,13 @@ TEST(Plan, AProjectedGridIsPlannedForTheCamerasOwnShot) {
     scene.surface.kind = SurfaceKind::ProjectedGrid;
     EXPECT_NE(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
     const Plan plan = make_plan(scene);
-    const ProjectedGridNeeds needs = projected_grid_needs(scene);
+    const ProjectedGridNeeds needs = projected_grid_needs(*prepare(scene));
     EXPECT_EQ(plan.queries[0].query.points, points_of(needs.size));
     EXPECT_EQ(plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
     EXPECT_FALSE(plan.queries[0].query.lattice);
-    EXPECT_NE(
-        explain(scene, plan)
-            .find(std::to_string(needs.size.columns) + " × " + std::to_string(needs.size.rows) + " cells"),
-        std::string::npos);
+    EXPECT_NE(explain(plan).find(std::to_string(needs.size.columns) + " × " +
+                                 std::to_string(needs.size.rows) + " cells"),
+              std::string::npos);
     // Higher up the finest cell is larger: fewer waves are computed.
     EXPECT_LT(with_camera_at(500.0).lines_per_frame(), plan.lines_per_frame());
     // Without a mesh the camera is the root's alone.
@@ -228,7 +227,7 @@ TEST(Plan, AnswersAtOnceForTheLargestSea) {
     scene.surface.resolution = 8192;
     const Plan plan = make_plan(scene);
     EXPECT_GT(plan.frame_bytes(), std::size_t{1} << 30);  // nothing of which was allocated
-    const std::string page = explain(scene, plan);
+    const std::string page = explain(plan);
     EXPECT_NE(page.find("8192"), std::string::npos);
 }
 

@@ -43,7 +43,7 @@ Answers ask(const Frame<T>& frame, const Points<T>& points) {
 }
 
 Frame<float> frame_of(const Scene& scene, const Query& query) {
-    Frame<float> frame(std::make_shared<const Sea<float>>(scene, make_plan(scene, {query})));
+    Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(scene, {query})));
     frame.set(7.25);
     return frame;
 }
@@ -59,7 +59,8 @@ Points<float> points_of_grid(const ProjectedGrid& grid) {
 TEST(ViewQuery, DoublesFromTheFinestUpToWhereNothingPasses) {
     const Scene scene = scene_of_two_tiles();
     for (const double finest_m : {0.0, 0.01, 0.7, 90.0}) {
-        const Query query = view_query(scene, {.finest_cell_m = 5.0 * finest_m, .finest_pixel_m = finest_m});
+        const Query query =
+            view_query(*prepare(scene), {.finest_cell_m = 5.0 * finest_m, .finest_pixel_m = finest_m});
         EXPECT_EQ(query.pixel_m.front(), finest_m);
         const std::size_t doubled = query.pixel_m[0] > 0.3 ? 1 : 2;  // finer than 80/64/4 m nothing changes
         for (std::size_t i = doubled; i < query.pixel_m.size(); ++i)
@@ -78,7 +79,7 @@ TEST(ViewQuery, DoublesFromTheFinestUpToWhereNothingPasses) {
 // A footprint through which every mode of a cascade passes whole has no grid of its own.
 TEST(ViewQuery, RunsNoTransformTwice) {
     const Scene scene = scene_of_two_tiles();
-    const Plan plan = make_plan(scene, {view_query(scene)});
+    const Plan plan = make_plan(scene, {view_query(*prepare(scene))});
     for (const CascadePlan& cascade : plan.cascades) {
         // By hand: the shortest wave is 1/64 of the tile, or at the band's end; modes a quarter of that and
         // finer are whole.
@@ -103,7 +104,7 @@ TEST(ViewQuery, RunsNoTransformTwice) {
 // On a rung the ladder is the footprint itself: the same sum in another plan, to rounding.
 TEST(ViewQuery, OnARungAnswersAsAPlanOfThatFootprintAlone) {
     const Scene scene = scene_of_two_tiles();
-    const Query ladder = view_query(scene);
+    const Query ladder = view_query(*prepare(scene));
     const Frame<float> frame = frame_of(scene, ladder);
     std::vector<glm::vec2> rest;
     for (int i = 0; i < 200; ++i)
@@ -135,10 +136,10 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
         Scene moved = scene;
         moved.camera.position_m += shift_m;
         moved.camera.look_at_m += shift_m;
-        ProjectedGridOptions options = projected_grid_options(scene);
+        ProjectedGridOptions options = projected_grid_options(*prepare(scene));
         return projected_grid(view_at(moved.camera, 1.0), options);
     };
-    const Frame<float> frame = frame_of(scene, view_query(scene));
+    const Frame<float> frame = frame_of(scene, view_query(*prepare(scene)));
     const ProjectedGrid here = seen(glm::dvec3(0.0)), there = seen({1e6, -2e6, 0.0});
     ASSERT_EQ(here.rest_m.size(), there.rest_m.size());
     const Answers a = ask(frame, points_of_grid(here)), b = ask(frame, points_of_grid(there));
@@ -166,8 +167,9 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
 // Towards the horizon everything is hidden: a flat sea whose slopes' variance is the whole spectrum's.
 TEST(ViewQuery, AtTheHorizonAllIsVariance) {
     const Scene scene = scene_of_two_tiles();
-    const Frame<float> frame = frame_of(scene, view_query(scene));
-    const ProjectedGrid grid = projected_grid(view_at(scene.camera, 1.0), projected_grid_options(scene));
+    const Frame<float> frame = frame_of(scene, view_query(*prepare(scene)));
+    const ProjectedGrid grid =
+        projected_grid(view_at(scene.camera, 1.0), projected_grid_options(*prepare(scene)));
     const Answers answers = ask(frame, points_of_grid(grid));
     const SpectralMoments& whole = frame.sea().total();
     for (std::size_t i = answers.position.size() - grid.columns - 1; i < answers.position.size(); ++i) {
@@ -183,7 +185,7 @@ TEST(ViewQuery, AtTheHorizonAllIsVariance) {
 TEST(Extent, HoldsTheSeaAndNotMuchMore) {
     Scene scene = scene_of_two_tiles();
     scene.sea.depth_m = 12.0;  // horizontal reach exceeds the vertical one there
-    const Extent extent = expected_extent(scene);
+    const Extent extent = prepare(scene)->extent;
     Query query;
     query.name = "points";
     query.products = products(Product::Displacement);
@@ -208,8 +210,8 @@ TEST(Extent, HoldsTheSeaAndNotMuchMore) {
     EXPECT_DOUBLE_EQ(extent.significant_height_m, extent.height_m * 4.0 / kExtentDeviations);
     EXPECT_EQ(frame.sea().extent().reach_m, extent.reach_m);
     scene.sea.wind_speed_mps = 0.0;
-    EXPECT_EQ(expected_extent(scene).height_m, 0.0);
-    EXPECT_EQ(expected_extent(scene).reach_m, 0.0);
+    EXPECT_EQ(prepare(scene)->extent.height_m, 0.0);
+    EXPECT_EQ(prepare(scene)->extent.reach_m, 0.0);
 }
 
 // From a calm to a hurricane, in a puddle and over an abyss, up to looping crests: bounds that a grid can
@@ -222,12 +224,12 @@ TEST(Extent, HardCasesStayFinite) {
                 scene.sea.wind_speed_mps = wind_mps;
                 scene.sea.depth_m = depth_m;
                 scene.waves.choppiness = choppiness;
-                const Extent extent = expected_extent(scene);
+                const Extent extent = prepare(scene)->extent;
                 EXPECT_TRUE(std::isfinite(extent.height_m) && std::isfinite(extent.reach_m));
                 EXPECT_EQ(extent.height_m > 0.0, wind_mps > 0.0);
                 EXPECT_EQ(extent.reach_m > 0.0, wind_mps > 0.0 && choppiness > 0.0);
                 const ProjectedGridNeeds needs =
-                    projected_grid_needs(view_at(scene.camera, 1.0), projected_grid_options(scene));
+                    projected_grid_needs(view_at(scene.camera, 1.0), projected_grid_options(*prepare(scene)));
                 EXPECT_TRUE(std::isfinite(needs.finest_cell_m) && needs.finest_cell_m > 0.0);
                 EXPECT_TRUE(std::isfinite(needs.finest_pixel_m) && needs.finest_pixel_m > 0.0);
             }
@@ -239,7 +241,7 @@ TEST(ViewQuery, DoesNotDecideWhichTrainsThereAre) {
     scene.waves.model = WaveModel::Trochoid;
     const Plan baked = make_plan(scene);
     for (const double finest_pixel_m : {0.0, 1e-4, 0.1, 10.0}) {
-        const Plan seen = make_plan(scene, {view_query(scene, {.finest_pixel_m = finest_pixel_m})});
+        const Plan seen = make_plan(scene, {view_query(*prepare(scene), {.finest_pixel_m = finest_pixel_m})});
         EXPECT_EQ(seen.trains->shortest_m, baked.trains->shortest_m) << finest_pixel_m;
         EXPECT_EQ(seen.trains->longest_m, baked.trains->longest_m) << finest_pixel_m;
     }

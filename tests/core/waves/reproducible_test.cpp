@@ -51,7 +51,7 @@ TEST(Threads, ChangeNoBit) {
 }
 
 TEST(Frames, DependOnTheirTimeAlone) {
-    const auto sea = std::make_shared<const Sea<float>>(windy(), make_plan(windy(), {everything()}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy(), {everything()}));
     const auto points = random_points<float>(300.0, 2000);
     Frame<float> alone(sea), run(sea), backwards(sea);
     alone.set(6 / 24.0);
@@ -105,7 +105,7 @@ TEST_P(TransformCount, IsTheMinimumAndIsWhatRuns) {
     // A column for each mx of the disc, two rows at a time.
     const Grid& grid = plan.cascades[0].grids[0];
     EXPECT_EQ(plan.lines_per_frame(), c.fields * (grid.radius + grid.resolution / 2));
-    Frame<float> frame(std::make_shared<const Sea<float>>(scene, plan));
+    Frame<float> frame(std::make_shared<const Sea<float>>(plan));
     EXPECT_EQ(frame.executed_transforms(), 0);
     for (int i = 1; i <= 3; ++i) {
         frame.set(0.5 * i);
@@ -153,7 +153,7 @@ TEST(ExecutedTransforms, AreThePlansOwnForWholeShots) {
                 scene.output.maps = {MapKind::Displacement, MapKind::Normal};
                 const Plan plan = make_plan(scene);
                 EXPECT_GT(plan.transforms_per_frame(), 0);
-                Frame<float> frame(std::make_shared<const Sea<float>>(scene, plan));
+                Frame<float> frame(std::make_shared<const Sea<float>>(plan));
                 for (double t : {0.0, 1.0, 1.0}) frame.set(t);
                 EXPECT_EQ(frame.executed_transforms(), 3l * plan.transforms_per_frame());
             }

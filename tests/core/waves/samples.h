@@ -28,7 +28,7 @@ namespace pelagic::test {
 template <class T>
 Frame<T> frame_of(const Scene& scene, const Plan& plan, double t_s = 0.0) {
     for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
-    Frame<T> frame(std::make_shared<const Sea<T>>(scene, plan));
+    Frame<T> frame(std::make_shared<const Sea<T>>(plan));
     frame.set(t_s);
     return frame;
 }

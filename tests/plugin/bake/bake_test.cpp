@@ -97,11 +97,11 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesWithOneTopology) {
     const Scene scene = camera_scene();
     const Plan plan = make_plan(scene);
     const auto sequence = make_sequence(scene, plan);
-    Frame<float> frame(std::make_shared<const Sea<float>>(scene, plan));
-    ProjectedGridOptions options = projected_grid_options(scene);
+    Frame<float> frame(std::make_shared<const Sea<float>>(plan));
+    ProjectedGridOptions options = projected_grid_options(*prepare(scene));
     const auto alone = [&](int f) { return projected_grid_needs(view_at(scene.camera, f), options).size; };
     ASSERT_FALSE(alone(1) == alone(2));
-    const ProjectedGridSize size = projected_grid_needs(scene).size;
+    const ProjectedGridSize size = projected_grid_needs(*prepare(scene)).size;
     EXPECT_EQ(size.columns, std::max(alone(1).columns, alone(2).columns));
     EXPECT_EQ(size.rows, std::max(alone(1).rows, alone(2).rows));
     EXPECT_EQ(plan.queries.front().query.points, points_of(size));

@@ -35,7 +35,7 @@ std::shared_ptr<const LiveBuild> small_build(const Scene& scene) {
     query.products = products(Product::Position, Product::Normal, Product::SlopeVariance);
     LiveBuild made;
     made.scene = scene;
-    made.sea = std::make_shared<const Sea<float>>(scene, make_plan(scene, {query}));
+    made.sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
     return std::make_shared<const LiveBuild>(std::move(made));
 }
 

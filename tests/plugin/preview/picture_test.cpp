@@ -65,8 +65,9 @@ TEST(PreviewsPicture, IsTheCpusOfTrains) {
 // A scene's sea at one second, ready to be drawn.
 struct Stage {
     explicit Stage(const Scene& scene)
-        : view(view_at(scene.camera, 1)), grid(projected_grid(view, projected_grid_options(scene))) {
-        const auto sea = std::make_shared<const Sea<float>>(scene, picture_plan(scene));
+        : view(view_at(scene.camera, 1)),
+          grid(projected_grid(view, projected_grid_options(*prepare(scene)))) {
+        const auto sea = std::make_shared<const Sea<float>>(picture_plan(scene));
         Frame<float> frame(sea);
         frame.set(1.0);
         PackedFrame packed(sea, 0);
@@ -175,15 +176,15 @@ TEST(PreviewsPicture, OfWiresAndFalseColoursShowsWhatTheySay) {
 TEST(PackedFrame, RefusesWhatIsNotAPicturesOwn) {
     Scene scene = scene_of({0.0, -60.0, 4.0}, {0.0, 0.0, 0.0});
     scene.waves.cascades = {{100.0, 32}};
-    const auto sea = std::make_shared<const Sea<float>>(scene, picture_plan(scene));
-    const auto other = std::make_shared<const Sea<float>>(scene, picture_plan(scene));
+    const auto sea = std::make_shared<const Sea<float>>(picture_plan(scene));
+    const auto other = std::make_shared<const Sea<float>>(picture_plan(scene));
     PackedFrame packed(sea, 0);
     Frame<float> without_time(sea), of_another(other);
     of_another.set(0.0);
     EXPECT_THROW(packed.pack(without_time), std::invalid_argument);
     EXPECT_THROW(packed.pack(of_another), std::invalid_argument);
     Scene patch = scene;
-    const auto baked = std::make_shared<const Sea<float>>(patch, make_plan(patch));
+    const auto baked = std::make_shared<const Sea<float>>(make_plan(patch));
     EXPECT_THROW(PackedFrame(baked, 0), std::invalid_argument);  // its mesh is a lattice
 }
 

@@ -71,7 +71,7 @@ struct Compared {
 };
 
 void compare(const Scene& scene, const Query& query, const Compared& at, std::size_t count = 20000) {
-    const auto sea = std::make_shared<const Sea<float>>(scene, make_plan(scene, {query}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
     Frame<float> frame(sea);
     frame.set(at.time_s);
     const Asked asked = points(count);

@@ -1,0 +1,22 @@
+// A valid scene with what follows from its weather alone: worked out once, and shared by whoever plans,
+// builds and draws the scene.
+#pragma once
+
+#include <memory>
+
+#include "core/plan/extent.h"
+#include "core/scene/scene.h"
+#include "core/spectrum/directional_spectrum.h"
+
+namespace pelagic {
+
+struct PreparedScene {
+    Scene scene;
+    DirectionalSpectrum spectrum;  // of scene.sea
+    Extent extent;                 // of the spectrum's waves at the scene's choppiness
+};
+
+// The scene must be valid (core/scene/validate.h). Some milliseconds: the spectrum's own integrals.
+std::shared_ptr<const PreparedScene> prepare(Scene scene);
+
+}  // namespace pelagic

@@ -12,7 +12,6 @@
 #include "core/base/number.h"
 #include "core/evaluate/kernels.h"
 #include "core/evaluate/trains.h"
-#include "core/plan/tables.h"
 
 namespace pelagic {
 namespace {
@@ -56,33 +55,10 @@ HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& run
             narrow(hidden.xxxy), narrow(hidden.xxyy), narrow(hidden.xyyy), narrow(hidden.yyyy)};
 }
 
-template <class T>
-ProductSet given_by(const Results<T>& results) {
-    ProductSet given;
-    given[index(Product::Position)] = static_cast<bool>(results.position);
-    given[index(Product::Displacement)] = static_cast<bool>(results.displacement);
-    given[index(Product::Normal)] = static_cast<bool>(results.normal);
-    given[index(Product::Velocity)] = static_cast<bool>(results.velocity);
-    given[index(Product::SlopeVariance)] = static_cast<bool>(results.slope_variance);
-    given[index(Product::JacobianMoments)] = static_cast<bool>(results.jacobian);
-    given[index(Product::Coverage)] = static_cast<bool>(results.coverage);
-    return given;
-}
-
-// Results beginning at a later point.
+// A view beginning at a later point.
 template <class Value>
 Strided<Value> from_point(const Strided<Value>& view, std::size_t first) {
     return view ? Strided<Value>{&view[first], view.stride_bytes} : view;
-}
-template <class T>
-Results<T> from_point(const Results<T>& results, std::size_t first) {
-    return {.position = from_point(results.position, first),
-            .displacement = from_point(results.displacement, first),
-            .normal = from_point(results.normal, first),
-            .velocity = from_point(results.velocity, first),
-            .slope_variance = from_point(results.slope_variance, first),
-            .jacobian = from_point(results.jacobian, first),
-            .coverage = from_point(results.coverage, first)};
 }
 
 // Everything about a query that is the same for all points.
@@ -97,7 +73,7 @@ class Evaluation {
           points_(points),
           results_(results),
           kernels_(evaluate_kernels<T>()) {
-        const ProductSet given = given_by(results);
+        const ProductSet given = results.given();
         needed_ = fields_of(given) & ~plan_.dropped;
         hidden_wanted_ = (given & hidden_products()).any();
         ladder_ = (points.cell_m && planned_.cell_levels.size() > 1) ||
@@ -150,7 +126,7 @@ class Evaluation {
             }
         add_own_footprints(first, chunk, hidden_of);
         kernels_.derive({.chunk = &chunk,
-                         .results = from_point(results_, first),
+                         .results = results_.from_point(first),
                          .hidden = hidden_,
                          .hidden_of = hidden_wanted_ && !uniform_hidden_ ? &hidden_of : nullptr,
                          .whitecap_threshold = static_cast<T>(frame_.sea().whitecap_threshold()),
@@ -297,7 +273,7 @@ template <class T>
 void evaluate(const Frame<T>& frame, int query_index, const Points<T>& points, const Results<T>& results) {
     const Query& query = frame.sea().plan().queries.at(query_index).query;
     if (!frame.is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
-    const ProductSet given = given_by(results);
+    const ProductSet given = results.given();
     for (const ProductRow& row : kProductTable)
         if (given[index(row.product)] && !query.products[index(row.product)])
             throw std::invalid_argument("query \"" + query.name + "\" does not hold \"" + row.name +

@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 
 #include "core/base/strided.h"
+#include "core/evaluate/results.h"
 #include "core/waves/frame.h"
 
 namespace pelagic {
@@ -22,25 +22,10 @@ struct Points {
     Strided<const T> cell_m{}, pixel_m{};
 };
 
-// Where results go: the caller's memory, any stride. An empty view is skipped; one that the query did not ask
-// for is refused. Every value written is finite if rest_m is.
-template <class T>
-struct Results {
-    Strided<glm::vec<3, T>> position;      // [m], relative to Points::origin_m; z up
-    Strided<glm::vec<3, T>> displacement;  // [m], position less rest
-    Strided<glm::vec<3, T>>
-        normal;  // unit; T_x × T_y of the displaced surface, z < 0 where it has folded over
-    Strided<glm::vec<3, T>> velocity;  // [m/s], of the point that rests here
-    Strided<glm::vec<3, T>>
-        slope_variance;  // (σxx, σyy, σxy) of what the pixel footprint hides [-], at rest positions
-    Strided<glm::vec<3, T>> jacobian;  // mean, variance ≥ 0, third cumulant of J in the pixel footprint [-]
-    Strided<T> coverage;               // whitecaps, 0 … 1
-};
-
 // `query`: index into the plan's queries; decides what is computed and how finely. Sums the components, then
 // derives once what isn't linear (normals, J, coverage). Runs on all threads of the calling arena; a point's
-// result depends on nothing but the point. Throws std::invalid_argument when something is asked that the
-// query doesn't hold.
+// result depends on nothing but the point, and is finite if rest_m is. Throws std::invalid_argument when
+// something is asked that the query doesn't hold.
 template <class T>
 void evaluate(const Frame<T>& frame, int query, const Points<T>& points, const Results<T>& results);
 

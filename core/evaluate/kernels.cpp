@@ -267,6 +267,8 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
     const D d;
     const Chunk<T>& chunk = *args.chunk;
     const Hidden<T> hidden(args);
+    const auto moments = args.results.vectors(Product::JacobianMoments);
+    const auto foam = args.results.numbers(Product::Coverage);
     alignas(64) typename Chunk<T>::Values mean, variance, third;
     for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
         const auto at = [&](Field field)
@@ -274,18 +276,16 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
         const HiddenStrain<N> strain = hidden.strain_at(i);
         const JacobianMoments<N> j = jacobian_moments(at(Field::Dxx), at(Field::Dyy), at(Field::Dxy), strain,
                                                       hidden.traces_of(strain));
-        if (args.results.jacobian)
-            Put(d, args.results.jacobian, i, chunk.count, std::array<N, 3>{j.mean, j.variance, j.third});
+        if (moments) Put(d, moments, i, chunk.count, std::array<N, 3>{j.mean, j.variance, j.third});
         hn::StoreU(j.mean.v, d, mean.data() + i);
         hn::StoreU(j.variance.v, d, variance.data() + i);
         hn::StoreU(j.third.v, d, third.data() + i);
     }
-    if (!args.results.coverage) return;
+    if (!foam) return;
     for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
         const JacobianMoments<N> j{N(hn::LoadU(d, mean.data() + i)), N(hn::LoadU(d, variance.data() + i)),
                                    N(hn::LoadU(d, third.data() + i))};
-        Put(d, args.results.coverage, i, chunk.count,
-            coverage(j, N(args.whitecap_threshold), args.third_moment));
+        Put(d, foam, i, chunk.count, coverage(j, N(args.whitecap_threshold), args.third_moment));
     }
 }
 
@@ -304,27 +304,27 @@ void Derive(const DeriveArgs<T>& args) {
         if (!out) return;
         for (std::size_t i = 0; i < count; i += hn::Lanes(d)) Put(d, out, i, count, value(i));
     };
-    each(results.displacement, [&](std::size_t i) HWY_ATTR {
+    each(results.vectors(Product::Displacement), [&](std::size_t i) HWY_ATTR {
         return Vector{at(Field::Dx, i), at(Field::Dy, i), at(Field::Height, i)};
     });
-    each(results.position, [&](std::size_t i) HWY_ATTR {
+    each(results.vectors(Product::Position), [&](std::size_t i) HWY_ATTR {
         return Vector{at(Field::Dx, i) + N(hn::LoadU(d, chunk.rest_x.data() + i)),
                       at(Field::Dy, i) + N(hn::LoadU(d, chunk.rest_y.data() + i)), at(Field::Height, i)};
     });
-    each(results.velocity, [&](std::size_t i) HWY_ATTR {
+    each(results.vectors(Product::Velocity), [&](std::size_t i) HWY_ATTR {
         return Vector{at(Field::VelocityX, i), at(Field::VelocityY, i), at(Field::VelocityZ, i)};
     });
-    each(results.normal, [&](std::size_t i) HWY_ATTR {
+    each(results.vectors(Product::Normal), [&](std::size_t i) HWY_ATTR {
         const SurfaceNormal<N> normal =
             surface_normal(at(Field::SlopeX, i), at(Field::SlopeY, i), at(Field::Dxx, i), at(Field::Dyy, i),
                            at(Field::Dxy, i));
         return Vector{normal.x, normal.y, normal.z};
     });
     const Hidden<T> hidden(args);
-    each(results.slope_variance, [&](std::size_t i) HWY_ATTR {
+    each(results.vectors(Product::SlopeVariance), [&](std::size_t i) HWY_ATTR {
         return Vector{hidden.moment_at(0, i), hidden.moment_at(2, i), hidden.moment_at(1, i)};
     });
-    if (results.jacobian || results.coverage) DeriveWhitecaps(args);
+    if (results.holds(Product::JacobianMoments) || results.holds(Product::Coverage)) DeriveWhitecaps(args);
 }
 
 EvaluateKernels<float> TableOfFloat() {

@@ -1,4 +1,4 @@
-// What can be asked of the sea, what that needs, and nothing else: the vocabulary of the plan's tables.
+// The sums of waves from which everything that can be asked of the sea is derived (core/plan/products.h).
 #pragma once
 
 #include <bitset>
@@ -12,37 +12,26 @@ enum class Field { Height, Dx, Dy, SlopeX, SlopeY, Dxx, Dyy, Dxy, VelocityX, Vel
 inline constexpr std::size_t kFieldCount = 11;
 using FieldSet = std::bitset<kFieldCount>;
 
-// What evaluate() writes per point: derived from the summed fields and from the spectrum's remainders.
-enum class Product { Position, Displacement, Normal, Velocity, SlopeVariance, JacobianMoments, Coverage };
-inline constexpr std::size_t kProductCount = 7;
-using ProductSet = std::bitset<kProductCount>;
-
 constexpr std::size_t index(Field field) {
     return static_cast<std::size_t>(field);
 }
-constexpr std::size_t index(Product product) {
-    return static_cast<std::size_t>(product);
-}
 
 template <class... E>
-FieldSet fields(E... wanted) {
-    FieldSet set;
-    (set.set(index(wanted)), ...);
-    return set;
-}
-template <class... E>
-ProductSet products(E... wanted) {
-    ProductSet set;
-    (set.set(index(wanted)), ...);
-    return set;
+constexpr FieldSet fields(E... wanted) {
+    return FieldSet((0ull | ... | (1ull << index(wanted))));
 }
 
-inline FieldSet velocity_fields() {
+// The fields that a point's cell filters (positions and velocities); its pixel filters the others.
+constexpr FieldSet cell_fields() {
+    return fields(Field::Height, Field::Dx, Field::Dy, Field::VelocityX, Field::VelocityY, Field::VelocityZ);
+}
+
+constexpr FieldSet velocity_fields() {
     return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
 }
 
 // The fields of the horizontal displacement: identically zero where the choppiness is.
-inline FieldSet horizontal_fields() {
+constexpr FieldSet horizontal_fields() {
     return fields(Field::Dx, Field::Dy, Field::Dxx, Field::Dyy, Field::Dxy, Field::VelocityX,
                   Field::VelocityY);
 }

@@ -200,21 +200,6 @@ std::string what_frames_hold(const PreparedScene& prepared) {
 
 }  // namespace
 
-FieldSet cell_fields() {
-    return fields(Field::Height, Field::Dx, Field::Dy, Field::VelocityX, Field::VelocityY, Field::VelocityZ);
-}
-
-ProductSet hidden_products() {
-    return products(Product::SlopeVariance, Product::JacobianMoments, Product::Coverage);
-}
-
-FieldSet fields_of(ProductSet wanted) {
-    FieldSet needed;
-    for (const ProductRow& row : kProductTable)
-        if (wanted[index(row.product)]) needed |= row.needs();
-    return needed;
-}
-
 std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double finest_footprint_m) {
     const Scene& scene = prepared.scene;
     if (!scene.waves.cascades.empty() || scene.waves.model == WaveModel::Trochoid)
@@ -510,10 +495,10 @@ std::size_t Plan::output_bytes() const {
         std::size_t most = 0;
         for (const PlannedQuery& planned : queries) {
             if (!planned.query.products[index(row.product)]) continue;
-            bytes += planned.query.points * row.scalars * sizeof(float);
+            bytes += planned.query.points * row.components * sizeof(float);
             most = std::max(most, planned.query.points);
         }
-        if (knobs.double_precision) bytes += most * row.scalars * sizeof(double);
+        if (knobs.double_precision) bytes += most * row.components * sizeof(double);
     }
     std::vector<std::pair<std::size_t, double>> squares;
     for (const PlannedQuery& planned : queries) {

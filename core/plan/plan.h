@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "core/plan/fields.h"
 #include "core/plan/filter.h"
 #include "core/plan/prepared_scene.h"
+#include "core/plan/products.h"
 #include "core/plan/trains.h"
 #include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"

@@ -1,40 +1,14 @@
-// The plan's tables: what each output, product and effect needs. They decide, and nothing else does.
+// The plan's tables: what each output and effect needs; what a product needs stands in products.h. They
+// decide, and nothing else does.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "core/plan/fields.h"
+#include "core/plan/products.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
-
-struct ProductRow {
-    Product product;
-    const char* name;
-    FieldSet (*needs)();
-    const char* why;
-    std::size_t scalars;  // a point
-};
-
-inline const std::array<ProductRow, kProductCount> kProductTable{{
-    {Product::Position, "position", [] { return fields(Field::Height, Field::Dx, Field::Dy); },
-     "the displaced point", 3},
-    {Product::Displacement, "displacement", [] { return fields(Field::Height, Field::Dx, Field::Dy); },
-     "the displaced point less the point at rest", 3},
-    {Product::Normal, "normal",
-     [] { return fields(Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy, Field::Dxy); },
-     "the cross product of the displaced tangents", 3},
-    {Product::Velocity, "velocity",
-     [] { return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ); }, "the sums' time derivative",
-     3},
-    {Product::SlopeVariance, "slope variance", [] { return FieldSet(); },
-     "a remainder of the spectrum: no transform", 3},
-    {Product::JacobianMoments, "Jacobian moments", [] { return fields(Field::Dxx, Field::Dyy, Field::Dxy); },
-     "J and the variance that the footprint hides", 3},
-    {Product::Coverage, "whitecap coverage", [] { return fields(Field::Dxx, Field::Dyy, Field::Dxy); },
-     "where J falls below the threshold of breaking", 1},
-}};
 
 struct AttributeRow {
     MeshAttribute attribute;
@@ -84,11 +58,5 @@ inline const std::array<EffectRow, 2> kEffectTable{{
      },
      [] { return FieldSet(); }, [] { return products(Product::JacobianMoments, Product::Coverage); }},
 }};
-
-// The fields that a point's cell filters (positions and velocities); its pixel filters the others.
-FieldSet cell_fields();
-FieldSet fields_of(ProductSet);
-// The products that count what a footprint hides.
-ProductSet hidden_products();
 
 }  // namespace pelagic

@@ -76,7 +76,7 @@ std::size_t held_bytes(const Scene& scene, const Plan& plan) {
         constexpr std::size_t kText = 18, kTexel = 32;
         std::size_t scalars = 0;
         for (const ProductRow& row : kProductTable)
-            if (planned.query.products[index(row.product)]) scalars += row.scalars;
+            if (planned.query.products[index(row.product)]) scalars += row.components;
         if (planned.query.map)
             bytes += planned.query.points * kTexel;
         else if (scene.output.mesh == MeshFormat::Usda)

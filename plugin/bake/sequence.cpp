@@ -7,10 +7,9 @@
 #include <cmath>
 #include <span>
 #include <stdexcept>
-#include <type_traits>
 
 #include "core/base/constants.h"
-#include "core/evaluate/evaluate.h"
+#include "core/evaluate/values.h"
 #include "core/plan/tables.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
@@ -74,6 +73,11 @@ Square<T> square_of(int per_side, double size_m, int intervals) {
     return {lattice, rest_points<T>(lattice)};
 }
 
+template <class T>
+Points<T> points_of(const std::vector<glm::vec<2, T>>& rest) {
+    return {.count = rest.size(), .rest_m = {rest.data()}};
+}
+
 // What a camera sees at one frame: the projected grid, in the precision of the sea. Its vertices are all that
 // the file has: what lies between them is hidden from normals as it is from positions.
 template <class T>
@@ -103,58 +107,6 @@ void move_by(std::vector<glm::vec3>& positions, glm::dvec2 origin_m) {
         p.y = static_cast<float>(origin_m.y + static_cast<double>(p.y));
     }
 }
-
-// Evaluates a query into single-precision arrays that are kept from frame to frame.
-template <class T>
-class QueryRunner {
-  public:
-    void run(const Frame<T>& frame, int query_index, const std::vector<glm::vec<2, T>>& rest, Values& out) {
-        run(frame, query_index, Points<T>{.count = rest.size(), .rest_m = {rest.data()}}, out);
-    }
-    void run(const Frame<T>& frame, int query_index, const Points<T>& points, Values& out) {
-        const Query& query = frame.sea().plan().queries.at(query_index).query;
-        Results<T> results;
-        results.position = target(query, Product::Position, points.count, out.position, position_);
-        results.displacement =
-            target(query, Product::Displacement, points.count, out.displacement, displacement_);
-        results.normal = target(query, Product::Normal, points.count, out.normal, normal_);
-        results.velocity = target(query, Product::Velocity, points.count, out.velocity, velocity_);
-        results.slope_variance =
-            target(query, Product::SlopeVariance, points.count, out.slope_variance, variance_);
-        results.jacobian = target(query, Product::JacobianMoments, points.count, out.jacobian, jacobian_);
-        results.coverage = target(query, Product::Coverage, points.count, out.coverage, coverage_);
-        evaluate(frame, query_index, points, results);
-        narrow(position_, out.position);
-        narrow(displacement_, out.displacement);
-        narrow(normal_, out.normal);
-        narrow(velocity_, out.velocity);
-        narrow(variance_, out.slope_variance);
-        narrow(jacobian_, out.jacobian);
-        narrow(coverage_, out.coverage);
-    }
-
-  private:
-    // In single precision straight into the array; in double into an array of our own, to be narrowed.
-    template <class Out, class Wide>
-    Strided<Wide> target(const Query& query, Product product, std::size_t count, std::vector<Out>& out,
-                         std::vector<Wide>& wide) {
-        const std::size_t size = asks(query, product) ? count : 0;
-        out.resize(size);
-        wide.resize(std::is_same_v<Out, Wide> ? 0 : size);
-        if (size == 0) return {};
-        if constexpr (std::is_same_v<Out, Wide>)
-            return {out.data()};
-        else
-            return {wide.data()};
-    }
-    template <class Wide, class Out>
-    static void narrow(const std::vector<Wide>& wide, std::vector<Out>& out) {
-        std::transform(wide.begin(), wide.end(), out.begin(), [](const Wide& value) { return Out(value); });
-    }
-
-    std::vector<glm::vec<3, T>> position_, displacement_, normal_, velocity_, variance_, jacobian_;
-    std::vector<T> coverage_;
-};
 
 template <class T>
 class SequenceOf final : public Sequence {
@@ -188,7 +140,7 @@ class SequenceOf final : public Sequence {
         if (mesh_query_ >= 0) compute_mesh(frame, slot.mesh);
         slot.maps.resize(maps_.size());
         for (std::size_t m = 0; m < maps_.size(); ++m) {
-            runner_.run(frame_, maps_[m].query, maps_[m].square->points, slot.maps[m].values);
+            runner_.run(frame_, maps_[m].query, points_of(maps_[m].square->points), slot.maps[m].values);
             if (maps_[m].kind == MapKind::SlopeVariance) slot.maps[m].hidden = hidden_by_level(maps_[m]);
         }
     }
@@ -204,8 +156,8 @@ class SequenceOf final : public Sequence {
             }
         });
         const auto take_coverage = [&](const Values& values) {
-            if (!values.coverage.empty() && !slot.record.coverage)
-                slot.record.coverage = mean_of(values.coverage);
+            const std::vector<float>& coverage = values.numbers(Product::Coverage);
+            if (!coverage.empty() && !slot.record.coverage) slot.record.coverage = mean_of(coverage);
         };
         take_coverage(slot.mesh);
         for (const FrameSlot::Map& map : slot.maps) take_coverage(map.values);
@@ -268,12 +220,12 @@ class SequenceOf final : public Sequence {
     // velocities are the water's at each of them.
     void compute_mesh(int frame, Values& mesh) {
         if (!follows_camera()) {
-            runner_.run(frame_, mesh_query_, mesh_square_.points, mesh);
+            runner_.run(frame_, mesh_query_, points_of(mesh_square_.points), mesh);
             return;
         }
         seen_.take(projected_grid(view_at(scene_.camera, frame), grid_options_));
         runner_.run(frame_, mesh_query_, seen_.points(), mesh);
-        move_by(mesh.position, seen_.origin_m);
+        move_by(mesh.vectors(Product::Position), seen_.origin_m);
     }
 
     bool mesh_is_text() const { return scene_.output.mesh == MeshFormat::Usda; }
@@ -283,17 +235,18 @@ class SequenceOf final : public Sequence {
         return {.frame = slot.frame,
                 .fps = scene_.shot.fps,
                 .fingerprint = slot.record.fingerprint,
-                .points = slot.mesh.position,
-                .normals = slot.mesh.normal,
-                .velocities = slot.mesh.velocity,
-                .slope_variance = slot.mesh.slope_variance,
-                .whitecap_coverage = slot.mesh.coverage};
+                .points = slot.mesh.vectors(Product::Position),
+                .normals = slot.mesh.vectors(Product::Normal),
+                .velocities = slot.mesh.vectors(Product::Velocity),
+                .slope_variance = slot.mesh.vectors(Product::SlopeVariance),
+                .whitecap_coverage = slot.mesh.numbers(Product::Coverage)};
     }
 
     void encode_mesh(FrameSlot& slot) const {
         // Of vertices that lie ever wider apart it says nothing about the sea.
         if (!follows_camera())
-            slot.record.mesh_significant_height_m = significant_height_of(slot.mesh.position);
+            slot.record.mesh_significant_height_m =
+                significant_height_of(slot.mesh.vectors(Product::Position));
         if (!mesh_is_text()) return;
         slot.mesh_text.clear();
         usd::write_frame_text(mesh_sample(slot), [&](std::string_view part) { slot.mesh_text += part; });
@@ -415,13 +368,13 @@ class SequenceOf final : public Sequence {
     std::string encoded(const MapJob<T>& job, const FrameSlot::Map& map, int frame) const {
         switch (job.kind) {
             case MapKind::Displacement: {
-                const std::vector<glm::vec3>& texels = map.values.displacement;
+                const std::vector<glm::vec3>& texels = map.values.vectors(Product::Displacement);
                 const exr::Header header = header_of(job, frame, {"displacement", "m", texels});
                 return exr::encode_scanline(header,
                                             image({job.n, texels}, {"R", "G", "B"}, exr::PixelType::Float));
             }
             case MapKind::Normal: {
-                const std::vector<glm::vec3>& texels = map.values.normal;
+                const std::vector<glm::vec3>& texels = map.values.vectors(Product::Normal);
                 const exr::Header header = header_of(job, frame, {"unit normal", "1", texels});
                 const auto below = normal_mips({.n = job.n, .texels = texels, .periodic = job.periodic});
                 std::vector<Level> levels{{job.n, texels}};
@@ -429,9 +382,9 @@ class SequenceOf final : public Sequence {
                 return encode_levels(header, levels, {"R", "G", "B"}, exr::PixelType::Half);
             }
             case MapKind::SlopeVariance: {
-                exr::Header header = header_of(
-                    job, frame,
-                    {"slope variance of the waves that a texel hides", "1", map.values.slope_variance});
+                exr::Header header = header_of(job, frame,
+                                               {"slope variance of the waves that a texel hides", "1",
+                                                map.values.vectors(Product::SlopeVariance)});
                 // The same all over a level: packed, nearly nothing.
                 header.compression = exr::Compression::Zip;
                 std::vector<std::vector<glm::vec3>> texels;
@@ -463,8 +416,9 @@ class SequenceOf final : public Sequence {
             });
         };
         std::vector<Moments> full;
-        full.reserve(map.values.jacobian.size());
-        for (const glm::vec3& j : map.values.jacobian) full.push_back({j.x, j.y, j.z});
+        full.reserve(map.values.vectors(Product::JacobianMoments).size());
+        for (const glm::vec3& j : map.values.vectors(Product::JacobianMoments))
+            full.push_back({j.x, j.y, j.z});
         add_level(full);
         for (const MipLevel<Moments>& level :
              moment_mips({.n = job.n, .texels = full, .periodic = job.periodic}))
@@ -488,7 +442,7 @@ class SequenceOf final : public Sequence {
             Points<T> point{.count = 1, .rest_m = {&rest}};
             point.pixel_m = {&footprint};
             Results<T> result;
-            result.slope_variance = {&hidden};
+            result.set(Product::SlopeVariance, {&hidden});
             evaluate(frame_, job.query, point, result);
             levels.emplace_back(hidden);
         }

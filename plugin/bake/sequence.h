@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/evaluate/values.h"
 #include "core/scene/scene.h"
 #include "plugin/bake/record.h"
 
@@ -21,12 +22,6 @@ using FileContent = std::function<void(const std::function<void(std::string_view
 // Takes a finished file: its path below DIR and its bytes; returns how many they are. Files come in the order
 // in which they are to be written.
 using FileSink = std::function<std::uintmax_t(const std::string& path, const FileContent& content)>;
-
-// What one query gives, in single precision, which is what files hold. Empty where the query doesn't ask.
-struct Values {
-    std::vector<glm::vec3> position, displacement, normal, velocity, slope_variance, jacobian;
-    std::vector<float> coverage;
-};
 
 // What one frame needs between its steps.
 struct FrameSlot {

@@ -13,6 +13,7 @@
 #include <shared_mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -30,28 +31,12 @@ namespace {
 
 namespace py = pybind11;
 
-// What evaluate() can write, under the names that Python knows it by.
-struct ProductName {
-    Product product;
-    const char* name;
-    py::ssize_t components;
-};
-constexpr std::array<ProductName, kProductCount> kProductNames{{
-    {Product::Position, "position", 3},
-    {Product::Displacement, "displacement", 3},
-    {Product::Normal, "normal", 3},
-    {Product::Velocity, "velocity", 3},
-    {Product::SlopeVariance, "slope_variance", 3},
-    {Product::JacobianMoments, "jacobian", 3},
-    {Product::Coverage, "coverage", 1},
-}};
-
-const ProductName& product_of(const std::string& name) {
+const ProductRow& product_of(const std::string& name) {
     std::vector<std::string> names;
     std::string accepted;
-    for (const ProductName& row : kProductNames) {
-        if (name == row.name) return row;
-        names.emplace_back(row.name);
+    for (const ProductRow& row : kProductTable) {
+        if (name == row.identifier) return row;
+        names.emplace_back(row.identifier);
         accepted += (accepted.empty() ? "" : " ") + names.back();
     }
     const std::string near = nearest(name, names);
@@ -111,7 +96,7 @@ constexpr Range kRest_m = limits::kCameraCoordinate_m;
 
 struct Arguments {
     py::object cell_m, pixel_m;
-    std::array<py::object, kProductCount> arrays;  // in the order of kProductNames
+    std::array<py::object, kProductCount> arrays;  // in the order of kProductTable
     std::optional<std::vector<std::string>> outputs;
 };
 
@@ -161,26 +146,19 @@ class PythonFrame {
         points.pixel_m = pixel.view;
 
         const auto arrays = with_fresh(given, count);
-        const auto vectors = [&, n = count](Product product) {
-            const py::object& array = arrays[index(product)];
-            return array.is_none() ? Strided<glm::vec3>{}
-                                   : writable_vectors(array, {kProductNames[index(product)].name, n});
-        };
         Results<float> results;
-        results.position = vectors(Product::Position);
-        results.displacement = vectors(Product::Displacement);
-        results.normal = vectors(Product::Normal);
-        results.velocity = vectors(Product::Velocity);
-        results.slope_variance = vectors(Product::SlopeVariance);
-        results.jacobian = vectors(Product::JacobianMoments);
-        if (const py::object& array = arrays[index(Product::Coverage)]; !array.is_none())
-            results.coverage = writable_numbers(array, {"coverage", count});
-        run(points, results);
-
         py::dict written;
-        for (const ProductName& row : kProductNames)
-            if (const py::object& array = arrays[index(row.product)]; !array.is_none())
-                written[row.name] = array;
+        for (const ProductRow& row : kProductTable) {
+            const py::object& array = arrays[index(row.product)];
+            if (array.is_none()) continue;
+            const Asked asked{row.identifier, count};
+            if (row.components == 1)
+                results.set(NumberProduct::checked(row.product), writable_numbers(array, asked));
+            else
+                results.set(VectorProduct::checked(row.product), writable_vectors(array, asked));
+            written[row.identifier] = array;
+        }
+        run(points, results);
         return written;
     }
 
@@ -201,17 +179,18 @@ class PythonFrame {
         else if (none_given)
             wanted = sea_->plan().queries.front().query.products;
         const ProductSet& held = sea_->plan().queries.front().query.products;
-        for (const ProductName& row : kProductNames) {
+        for (const ProductRow& row : kProductTable) {
             const bool asked = wanted[index(row.product)] || !arrays[index(row.product)].is_none();
             if (asked && !held[index(row.product)])
-                throw py::value_error(std::string(row.name) +
+                throw py::value_error(std::string(row.identifier) +
                                       ": the sea was built without it; accepted: what its products name");
         }
-        for (const ProductName& row : kProductNames) {
+        for (const ProductRow& row : kProductTable) {
             py::object& array = arrays[index(row.product)];
             if (!wanted[index(row.product)] || !array.is_none()) continue;
-            array =
-                row.components == 1 ? py::array_t<float>(count) : py::array_t<float>({count, row.components});
+            array = row.components == 1
+                        ? py::array_t<float>(count)
+                        : py::array_t<float>({count, static_cast<py::ssize_t>(row.components)});
         }
         return arrays;
     }
@@ -249,78 +228,80 @@ class PythonFrame {
     mutable std::shared_mutex mutex_;
 };
 
-constexpr const char* kSeaDoc =
-    "A sea, built once from a scene, for one kind of question: immutable, shared by threads and frames. "
-    "Single "
-    "precision.\n\n"
-    "scene: a valid Scene (ShotError otherwise); later changes to it don't matter here.\n"
-    "products: what evaluate() may be asked for, and so what each frame computes: position, displacement, "
-    "normal, "
-    "velocity, slope_variance, jacobian, coverage.\n"
-    "cell_m, pixel_m: footprints [m], of positions and velocities and of everything that comes from "
-    "derivatives: "
-    "waves too short for them are left out, and counted in slope_variance and coverage. A number for all "
-    "points, or "
-    "a rising ladder between whose rungs each point's own footprint is blended; 0 filters nothing. Default: "
-    "the "
-    "spacing of the scene's patch.\n"
-    "lattice: (first_m, spacing_m) where all points are known to lie at first + i·spacing in x and in y, "
-    "seen from "
-    "the world's origin: sampling may then be free of error. Only with points that do.";
+// The products' identifiers, and a line about each one's array.
+std::string product_names() {
+    std::string names;
+    for (const ProductRow& row : kProductTable)
+        names += (names.empty() ? "" : ", ") + std::string(row.identifier);
+    return names;
+}
+std::string product_lines() {
+    std::string lines;
+    for (const ProductRow& row : kProductTable)
+        lines += row.identifier + std::string(row.components == 1 ? ": (n,), " : ": (n, 3), ") +
+                 row.description + ".\n";
+    return lines;
+}
 
-constexpr const char* kEvaluateDoc =
+const std::string kSeaDoc =
+    "A sea, built once from a scene, for one kind of question: immutable, shared by threads and frames. "
+    "Single precision.\n\n"
+    "scene: a valid Scene (ShotError otherwise); later changes to it don't matter here.\n"
+    "products: what evaluate() may be asked for, and so what each frame computes: " +
+    product_names() +
+    ".\n"
+    "cell_m, pixel_m: footprints [m], of positions and velocities and of everything that comes from "
+    "derivatives: waves too short for them are left out, and counted in slope_variance and coverage. A "
+    "number for all points, or a rising ladder between whose rungs each point's own footprint is blended; 0 "
+    "filters nothing. Default: the spacing of the scene's patch.\n"
+    "lattice: (first_m, spacing_m) where all points are known to lie at first + i·spacing in x and in y, "
+    "seen from the world's origin: sampling may then be free of error. Only with points that do.";
+
+const std::string kEvaluateDoc =
     "The sea at points, into the caller's arrays: a dict of what was written.\n\n"
     "rest: float32 (n, 2), the points at rest [m], relative to origin.\n"
     "origin: (x, y) [m], in double precision: a sea a million metres away loses nothing.\n"
     "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's ladder; default its "
-    "first.\n"
-    "position: (n, 3) [m], relative to origin, z up.\n"
-    "displacement: (n, 3) [m], position less rest.\n"
-    "normal: (n, 3), unit; its z is negative where the surface has folded over.\n"
-    "velocity: (n, 3) [m/s], of the water that rests at the point.\n"
-    "slope_variance: (n, 3), xx, yy, xy of the slopes that the pixel footprint hides.\n"
-    "jacobian: (n, 3), mean, variance and third cumulant of J in the pixel footprint.\n"
-    "coverage: (n,), whitecaps, 0 … 1.\n"
+    "first.\n" +
+    product_lines() +
     "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
-    "sea's "
-    "products.\n\n"
+    "sea's products.\n\n"
     "Arrays are float32. Points may lie any multiple of 4 bytes apart, the components of one are adjacent; "
-    "nothing "
-    "between them is touched. Outputs must not overlap. Any thread may call; others run meanwhile.";
+    "nothing between them is touched. Outputs must not overlap. Any thread may call; others run meanwhile.";
 
 // An output's array by its name, None where it isn't wanted.
 py::object none() {
     return py::none();
 }
 
+// evaluate() with an argument for each product's array, under its identifier: a parameter for each number in
+// the pack.
+template <std::size_t>
+using ArrayArgument = const py::object&;
+template <std::size_t... kProducts>
+void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kProducts...>) {
+    frame.def(
+        "evaluate",
+        [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
+           const py::object& cell_m, const py::object& pixel_m, ArrayArgument<kProducts>... arrays,
+           const std::optional<std::vector<std::string>>& outputs) {
+            return self.evaluate(rest, origin, {cell_m, pixel_m, {arrays...}, outputs});
+        },
+        py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(), py::arg("cell_m") = none(),
+        py::arg("pixel_m") = none(), (py::arg(kProductTable[kProducts].identifier) = none())...,
+        py::arg("outputs") = none(), kEvaluateDoc.c_str());
+}
+
 void add_frame(py::module_& module) {
-    py::class_<PythonFrame>(
+    py::class_<PythonFrame> frame(
         module, "Frame",
         "The state of a sea at one time. Its buffers are made once and reused: who needs two "
-        "times at once makes two frames.")
-        .def(py::init<const PythonSea&>(), py::arg("sea"))
+        "times at once makes two frames.");
+    add_evaluate(frame, std::make_index_sequence<kProductCount>());
+    frame.def(py::init<const PythonSea&>(), py::arg("sea"))
         .def(
             "set", &PythonFrame::set, py::arg("t"),
             "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile.")
-        .def(
-            "evaluate",
-            [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
-               const py::object& cell_m, const py::object& pixel_m, const py::object& position,
-               const py::object& displacement, const py::object& normal, const py::object& velocity,
-               const py::object& slope_variance, const py::object& jacobian, const py::object& coverage,
-               const std::optional<std::vector<std::string>>& outputs) {
-                return self.evaluate(
-                    rest, origin,
-                    {cell_m,
-                     pixel_m,
-                     {position, displacement, normal, velocity, slope_variance, jacobian, coverage},
-                     outputs});
-            },
-            py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(),
-            py::arg("cell_m") = none(), py::arg("pixel_m") = none(), py::arg("position") = none(),
-            py::arg("displacement") = none(), py::arg("normal") = none(), py::arg("velocity") = none(),
-            py::arg("slope_variance") = none(), py::arg("jacobian") = none(), py::arg("coverage") = none(),
-            py::arg("outputs") = none(), kEvaluateDoc)
         .def_property_readonly("sea", &PythonFrame::sea)
         .def_property_readonly("time_s", &PythonFrame::time_s, "The time that was set [s].")
         .def_property_readonly("executed_transforms", &PythonFrame::executed_transforms,
@@ -331,7 +312,7 @@ void add_frame(py::module_& module) {
 }  // namespace
 
 void add_sea(py::module_& module) {
-    py::class_<PythonSea>(module, "Sea", kSeaDoc)
+    py::class_<PythonSea>(module, "Sea", kSeaDoc.c_str())
         .def(py::init([](const Scene& scene, std::vector<std::string> products, std::optional<Ladder> cell_m,
                          std::optional<Ladder> pixel_m, std::optional<std::array<double, 2>> lattice) {
                  return build_sea(scene,
@@ -356,9 +337,9 @@ void add_sea(py::module_& module) {
             "products",
             [](const PythonSea& self) {
                 py::list names;
-                for (const ProductName& row : kProductNames)
+                for (const ProductRow& row : kProductTable)
                     if (self.plan().queries.front().query.products[index(row.product)])
-                        names.append(row.name);
+                        names.append(row.identifier);
                 return py::tuple(names);
             },
             "What evaluate() may be asked for.")

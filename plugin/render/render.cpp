@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "core/evaluate/evaluate.h"
+#include "core/evaluate/values.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
 #include "core/surface/projected_grid.h"
@@ -34,15 +34,10 @@ struct Batch {
     std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
     std::vector<T> pixel_m;
     std::vector<glm::vec3> to_eye;
-    std::vector<glm::vec<3, T>> normal, slope_variance;
-    std::vector<T> coverage;
+    Values answers;
     std::vector<SeaPoint> points;
     std::vector<SeaRadiance> lit;
 };
-
-bool asks(const Query& query, Product product) {
-    return query.products[index(product)];
-}
 
 }  // namespace
 
@@ -111,7 +106,7 @@ class RendererOf final : public Impl {
         cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());
         position_.resize(count);
         Results<T> results;
-        results.position = {position_.data()};
+        results.set(Product::Position, {position_.data()});
         evaluate(frame_, kQuery,
                  Points<T>{.origin_m = grid_.origin_m,
                            .count = count,
@@ -178,38 +173,33 @@ class RendererOf final : public Impl {
         const std::size_t count = batch_.sea.size();
         if (count == 0) return;
         find_places(first_row);
-        const Query& query = plan().queries[kQuery].query;
-        const auto wanted = [&]<class Value>(Product product, std::vector<Value>& values) {
-            values.resize(asks(query, product) ? count : 0);
-            return Strided<Value>{values.empty() ? nullptr : values.data()};
-        };
-        Results<T> results;
-        results.normal = wanted(Product::Normal, batch_.normal);
-        results.slope_variance = wanted(Product::SlopeVariance, batch_.slope_variance);
-        results.coverage = wanted(Product::Coverage, batch_.coverage);
-        evaluate(frame_, kQuery,
-                 Points<T>{.origin_m = grid_.origin_m,
-                           .count = count,
-                           .rest_m = {batch_.rest.data()},
-                           .pixel_m = {batch_.pixel_m.data()}},
-                 results);
+        ProductSet wanted = plan().queries[kQuery].query.products;
+        wanted.reset(index(Product::Position));  // the triangles have them
+        runner_.run(frame_, kQuery,
+                    Points<T>{.origin_m = grid_.origin_m,
+                              .count = count,
+                              .rest_m = {batch_.rest.data()},
+                              .pixel_m = {batch_.pixel_m.data()}},
+                    wanted, batch_.answers);
+        const std::vector<glm::vec3>& normal = batch_.answers.vectors(Product::Normal);
+        const std::vector<glm::vec3>& slope_variance = batch_.answers.vectors(Product::SlopeVariance);
+        const std::vector<float>& coverage = batch_.answers.numbers(Product::Coverage);
         batch_.points.resize(count);
         batch_.lit.resize(count);
-        tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
-            [&](const tbb::blocked_range<std::size_t>& range) {
-                for (std::size_t i = range.begin(); i < range.end(); ++i)
-                    batch_.points[i] = {
-                        .to_eye = batch_.to_eye[i],
-                        .normal = glm::vec3(batch_.normal[i]),
-                        .slope_variance = glm::vec3(batch_.slope_variance[i]),
-                        .coverage = batch_.coverage.empty() ? 0.0f : static_cast<float>(batch_.coverage[i])};
-                const auto points = std::span(batch_.points).subspan(range.begin(), range.size());
-                const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
-                shade_sea(options_.lighting, sky_, water_, points, lit);
-                for (std::size_t i = range.begin(); i < range.end(); ++i)
-                    batch_.radiance[batch_.sea[i]] = batch_.lit[i];
-            });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  batch_.points[i] = {.to_eye = batch_.to_eye[i],
+                                                      .normal = normal[i],
+                                                      .slope_variance = slope_variance[i],
+                                                      .coverage = coverage.empty() ? 0.0f : coverage[i]};
+                              const auto points =
+                                  std::span(batch_.points).subspan(range.begin(), range.size());
+                              const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
+                              shade_sea(options_.lighting, sky_, water_, points, lit);
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  batch_.radiance[batch_.sea[i]] = batch_.lit[i];
+                          });
     }
 
     // The place at rest that each sample of the sea shows, its footprint and the way to the eye.
@@ -284,6 +274,7 @@ class RendererOf final : public Impl {
     std::vector<glm::vec<3, T>> position_;
     std::vector<glm::dvec4> clip_;
     Rasteriser raster_;
+    QueryRunner<T> runner_;
     Batch<T> batch_;
 };
 

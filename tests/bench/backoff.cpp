@@ -57,10 +57,10 @@ class Patch {
         const float pixel_m = static_cast<float>(kPixelTangent * height_m / sine / sine);
         const std::vector<float> pixels(rest_.size(), pixel_m);
         Results<float> results;
-        results.normal = {&points_[0].normal, sizeof(SeaPoint)};
-        results.slope_variance = {&points_[0].slope_variance, sizeof(SeaPoint)};
-        results.coverage = {&points_[0].coverage, sizeof(SeaPoint)};
-        results.jacobian = {jacobian_.data()};
+        results.set(Product::Normal, {&points_[0].normal, sizeof(SeaPoint)});
+        results.set(Product::SlopeVariance, {&points_[0].slope_variance, sizeof(SeaPoint)});
+        results.set(Product::Coverage, {&points_[0].coverage, sizeof(SeaPoint)});
+        results.set(Product::JacobianMoments, {jacobian_.data()});
         evaluate(frame_, 0,
                  Points<float>{.count = rest_.size(), .rest_m = {rest_.data()}, .pixel_m = {pixels.data()}},
                  results);

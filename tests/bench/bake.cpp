@@ -92,13 +92,14 @@ std::vector<PackedMap> maps_to_pack() {
                                 {"normal, half, levels", exr::PixelType::Half, {}},
                                 {"whitecaps, float, levels", exr::PixelType::Float, {}},
                                 {"slope variance, float, levels", exr::PixelType::Float, {}}};
-    maps[0].levels.push_back({kN, slot.maps[0].values.displacement});
-    const std::vector<glm::vec3>& normal = slot.maps[1].values.normal;
+    maps[0].levels.push_back({kN, slot.maps[0].values.vectors(Product::Displacement)});
+    const std::vector<glm::vec3>& normal = slot.maps[1].values.vectors(Product::Normal);
     maps[1].levels = normal_mips({.n = kN, .texels = normal, .periodic = true});
     maps[1].levels.insert(maps[1].levels.begin(), {kN, normal});
 
     std::vector<JacobianMoments<float>> full;
-    for (const glm::vec3& j : slot.maps[2].values.jacobian) full.push_back({j.x, j.y, j.z});
+    for (const glm::vec3& j : slot.maps[2].values.vectors(Product::JacobianMoments))
+        full.push_back({j.x, j.y, j.z});
     auto moments = moment_mips({.n = kN, .texels = full, .periodic = true});
     moments.insert(moments.begin(), {kN, full});
     const auto threshold = static_cast<float>(sequence->whitecap_threshold());

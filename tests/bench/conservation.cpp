@@ -25,9 +25,9 @@ Means means_of(const Scene& scene) {
     std::vector<glm::vec3> normal(points.size()), variance(points.size());
     std::vector<float> whitecaps(points.size());
     Results<float> results;
-    results.normal = {normal.data()};
-    results.slope_variance = {variance.data()};
-    results.coverage = {whitecaps.data()};
+    results.set(Product::Normal, {normal.data()});
+    results.set(Product::SlopeVariance, {variance.data()});
+    results.set(Product::Coverage, {whitecaps.data()});
     evaluate(frame, 0, Points<float>{.count = points.size(), .rest_m = {points.data()}}, results);
     Means means;
     means.spectrum_mss = frame.sea().total().mss();

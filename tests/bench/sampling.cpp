@@ -63,10 +63,10 @@ struct Level {
     void set() { frame.set(kTime_s); }
     void sample() {
         Results<T> results;
-        results.position = {position.data()};
-        results.normal = {normal.data()};
-        results.slope_variance = {variance.data()};
-        results.coverage = {coverage.data()};
+        results.set(Product::Position, {position.data()});
+        results.set(Product::Normal, {normal.data()});
+        results.set(Product::SlopeVariance, {variance.data()});
+        results.set(Product::Coverage, {coverage.data()});
         evaluate(frame, 0, Points<T>{.count = points.size(), .rest_m = {points.data()}}, results);
     }
     Answers answers() const {

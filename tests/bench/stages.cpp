@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/base/constants.h"
-#include "core/evaluate/evaluate.h"
+#include "core/evaluate/values.h"
 #include "core/surface/patch.h"
 #include "plugin/exr/exr.h"
 #include "plugin/usd/layers.h"
@@ -18,22 +18,6 @@
 
 namespace pelagic::bench {
 namespace {
-
-struct VertexArrays {
-    std::vector<glm::vec3> position, normal, velocity, variance;
-    std::vector<float> coverage;
-
-    explicit VertexArrays(std::size_t n) : position(n), normal(n), velocity(n), variance(n), coverage(n) {}
-    Results<float> views() {
-        return {.position = {position.data()},
-                .displacement = {},
-                .normal = {normal.data()},
-                .velocity = {velocity.data()},
-                .slope_variance = {variance.data()},
-                .jacobian = {},
-                .coverage = {coverage.data()}};
-    }
-};
 
 void table(int n) {
     Scene scene;
@@ -49,15 +33,18 @@ void table(int n) {
     Frame<float> node_frame = make_frame(on_nodes), spline_frame = make_frame(between);
     const auto points = rest_points<float>({.per_side = n + 1, .spacing_m = 400.0 / n, .first_m = -200.0});
     const Points<float> rest{.count = points.size(), .rest_m = {points.data()}};
-    VertexArrays out(points.size());
+    Values out;
+    out.resize(products(Product::Position, Product::Normal, Product::Velocity, Product::SlopeVariance,
+                        Product::Coverage),
+               points.size());
 
     double t = 0.0;
     const auto text = [&] {
-        usd::write_frame_text({.points = out.position,
-                               .normals = out.normal,
-                               .velocities = out.velocity,
-                               .slope_variance = out.variance,
-                               .whitecap_coverage = out.coverage},
+        usd::write_frame_text({.points = out.vectors(Product::Position),
+                               .normals = out.vectors(Product::Normal),
+                               .velocities = out.vectors(Product::Velocity),
+                               .slope_variance = out.vectors(Product::SlopeVariance),
+                               .whitecap_coverage = out.numbers(Product::Coverage)},
                               [](std::string_view) {});
     };
     const auto exr_map = [&] {
@@ -65,16 +52,16 @@ void table(int n) {
         for (int c = 0; c < 3; ++c)
             image.channels.push_back(
                 {.name = std::string(1, "BGR"[c]),
-                 .data = &out.position.data()->x + c,
+                 .data = &out.vectors(Product::Position).data()->x + c,
                  .pixel_stride_bytes = sizeof(glm::vec3),
                  .row_stride_bytes = static_cast<std::ptrdiff_t>(sizeof(glm::vec3)) * (n + 1)});
         exr::encode_scanline({}, image);
     };
     std::vector<Timed> stages{
         {"set: spectrum and transforms", [&] { node_frame.set(t += 0.04); }},
-        {"evaluate every vertex at its node", [&] { evaluate(node_frame, 0, rest, out.views()); }},
+        {"evaluate every vertex at its node", [&] { evaluate(node_frame, 0, rest, out.results()); }},
         {"set, oversampled for the spline", [&] { spline_frame.set(t += 0.04); }},
-        {"evaluate every vertex by spline", [&] { evaluate(spline_frame, 0, rest, out.views()); }},
+        {"evaluate every vertex by spline", [&] { evaluate(spline_frame, 0, rest, out.results()); }},
         {"USD text of the mesh, one thread", text},
         {"OpenEXR of the displacement, one thread", exr_map},
     };

@@ -42,7 +42,7 @@ std::vector<glm::vec3> moments_of(const Frame<float>& frame, int query, int n) {
         rest_points<float>({.per_side = n, .spacing_m = kTile_m / n, .first_m = -0.5 * kTile_m});
     std::vector<glm::vec3> moments(points.size());
     Results<float> results;
-    results.jacobian = {moments.data()};
+    results.set(Product::JacobianMoments, {moments.data()});
     evaluate(frame, query, Points<float>{.count = points.size(), .rest_m = {points.data()}}, results);
     return moments;
 }

@@ -112,7 +112,7 @@ class Tracer {
             for (std::size_t i = 0; i < paths.size(); ++i) normals[i] = paths[i].hit.facet_normal;
         else {
             Results<float> results;
-            results.normal = {normals.data()};
+            results.set(Product::Normal, {normals.data()});
             evaluate(tile_.frame(), kWhole, Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}},
                      results);
         }

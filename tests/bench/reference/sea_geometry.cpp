@@ -68,7 +68,7 @@ FinestSea::FinestSea(const WaveTile& tile, const View& view, double reach_m, int
         for (std::size_t i = 0; i < side; ++i)
             rest_m[j * side + i] = cell_m_ * glm::vec2(static_cast<float>(i), static_cast<float>(j));
     Results<float> results;
-    results.position = {vertices};
+    results.set(Product::Position, {vertices});
     evaluate(tile.frame(), kWhole, Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}}, results);
     const auto patches = static_cast<std::size_t>(patches_);
     auto* grids = static_cast<RTCGrid*>(
@@ -128,7 +128,7 @@ ProjectedSea::ProjectedSea(const WaveTile& tile, const View& view, double cell_p
     auto* vertices = static_cast<glm::vec3*>(
         buffer(mesh, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), grid_.rest_m.size()));
     Results<float> results;
-    results.position = {vertices};
+    results.set(Product::Position, {vertices});
     evaluate(tile.frame(), kCells,
              Points<float>{.origin_m = grid_.origin_m,
                            .count = grid_.rest_m.size(),

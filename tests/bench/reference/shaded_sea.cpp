@@ -44,8 +44,8 @@ SeaPixels sea_pixels(const WaveTile& tile, const View& view, const PixelOptions&
     }
     pixels.first.push_back(rest_m.size());
     Results<float> results;
-    results.normal = {&pixels.points.front().normal, sizeof(SeaPoint)};
-    results.slope_variance = {&pixels.points.front().slope_variance, sizeof(SeaPoint)};
+    results.set(Product::Normal, {&pixels.points.front().normal, sizeof(SeaPoint)});
+    results.set(Product::SlopeVariance, {&pixels.points.front().slope_variance, sizeof(SeaPoint)});
     evaluate(
         tile.frame(), kPixels,
         Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}, .pixel_m = {footprints_m.data()}},

@@ -18,7 +18,7 @@ double mean_coverage(double wind_mps, int quads, QualityLevel level = QualityLev
     scene.output.attributes = {MeshAttribute::Whitecaps};
     const auto points =
         rest_points<float>({.per_side = quads, .spacing_m = 1000.0 / quads, .first_m = -500.0});
-    return mean_of(sample(frame_of<float>(scene, make_plan(scene), 3.0), 0, points).coverage,
+    return mean_of(sample(frame_of<float>(scene, make_plan(scene), 3.0), 0, points).numbers(Coverage),
                    [](float w) { return w; });
 }
 
@@ -54,8 +54,8 @@ TEST(WhitecapCoverage, OfOtherSpectraIsTheObservedOneToo) {
         scene.sea.spectrum = kind;
         scene.sea.wind_speed_mps = 12.0;
         const auto frame = frame_of<float>(scene, {filtered(products(Product::Coverage), 2.0)});
-        const double baked =
-            mean_of(sample(frame, 0, tile_points<float>(1000.0, 300)).coverage, [](float w) { return w; });
+        const double baked = mean_of(sample(frame, 0, tile_points<float>(1000.0, 300)).numbers(Coverage),
+                                     [](float w) { return w; });
         const double observed = 2.95e-6 * std::pow(12.0, 3.52);
         EXPECT_GT(baked, 0.5 * observed);
         EXPECT_LT(baked, 2.0 * observed);
@@ -70,12 +70,13 @@ TEST(WhitecapCoverage, FallsWithTheJacobian) {
         frame_of<float>(scene, {filtered(products(Product::Coverage, Product::JacobianMoments), 0.5)});
     const auto samples = sample(frame, 0, random_points<float>(500.0, 20000));
     double weighted = 0.0, coverage = 0.0;
-    for (std::size_t i = 0; i < samples.coverage.size(); ++i) {
-        weighted += double(samples.coverage[i]) * samples.jacobian[i].x;
-        coverage += samples.coverage[i];
+    for (std::size_t i = 0; i < samples.numbers(Coverage).size(); ++i) {
+        weighted += double(samples.numbers(Coverage)[i]) * samples.vectors(JacobianMoments)[i].x;
+        coverage += samples.numbers(Coverage)[i];
     }
     ASSERT_GT(coverage, 0.0);
-    EXPECT_LT(weighted / coverage, mean_of(samples.jacobian, [](auto j) { return j.x; }) - 0.1);
+    EXPECT_LT(weighted / coverage,
+              mean_of(samples.vectors(JacobianMoments), [](auto j) { return j.x; }) - 0.1);
 }
 
 }  // namespace

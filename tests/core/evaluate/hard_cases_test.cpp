@@ -11,7 +11,7 @@ namespace {
 using namespace test;
 
 template <class T>
-void expect_sound(const Samples<T>& samples, const std::string& what) {
+void expect_sound(const ProductArrays<T>& samples, const std::string& what) {
     const auto finite = [](auto v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
     const auto all = [&](const auto& values, auto&& is, const char* name) {
         ASSERT_FALSE(values.empty());
@@ -19,24 +19,24 @@ void expect_sound(const Samples<T>& samples, const std::string& what) {
         for (const auto& value : values) bad += is(value) ? 0 : 1;
         EXPECT_EQ(bad, 0u) << name << " of " << what;
     };
-    all(samples.position, finite, "position");
-    all(samples.displacement, finite, "displacement");
-    all(samples.velocity, finite, "velocity");
+    all(samples.vectors(Position), finite, "position");
+    all(samples.vectors(Displacement), finite, "displacement");
+    all(samples.vectors(Velocity), finite, "velocity");
     // Rounding of a unit vector's three components.
     all(
-        samples.normal,
+        samples.vectors(Normal),
         [&](auto n) { return finite(n) && std::abs(std::hypot(n.x, n.y, n.z) - T(1)) < T(1e-6); }, "normal");
     all(
-        samples.slope_variance,
+        samples.vectors(SlopeVariance),
         [&](auto v) {
             // A covariance: positive semi-definite, to rounding.
             return finite(v) && v.x >= T(0) && v.y >= T(0) && v.z * v.z <= v.x * v.y * (T(1) + T(1e-5));
         },
         "slope variance");
     all(
-        samples.jacobian, [&](auto j) { return finite(j) && j.y >= T(0); }, "Jacobian");
+        samples.vectors(JacobianMoments), [&](auto j) { return finite(j) && j.y >= T(0); }, "Jacobian");
     all(
-        samples.coverage, [](T w) { return w >= T(0) && w <= T(1); }, "coverage");
+        samples.numbers(Coverage), [](T w) { return w >= T(0) && w <= T(1); }, "coverage");
 }
 
 struct HardCase {
@@ -138,13 +138,13 @@ TEST(Calm, IsExactlyFlat) {
     all.set();
     const auto samples =
         sample(frame_of<float>(scene, {filtered(all, 1.0)}, 5.0), 0, random_points<float>(100.0, 50));
-    for (std::size_t i = 0; i < samples.normal.size(); ++i) {
-        EXPECT_EQ(samples.displacement[i], glm::vec3(0.0f));
-        EXPECT_EQ(samples.velocity[i], glm::vec3(0.0f));
-        EXPECT_EQ(samples.normal[i], glm::vec3(0.0f, 0.0f, 1.0f));
-        EXPECT_EQ(samples.slope_variance[i], glm::vec3(0.0f));
-        EXPECT_EQ(samples.jacobian[i], glm::vec3(1.0f, 0.0f, 0.0f));
-        EXPECT_EQ(samples.coverage[i], 0.0f);
+    for (std::size_t i = 0; i < samples.vectors(Normal).size(); ++i) {
+        EXPECT_EQ(samples.vectors(Displacement)[i], glm::vec3(0.0f));
+        EXPECT_EQ(samples.vectors(Velocity)[i], glm::vec3(0.0f));
+        EXPECT_EQ(samples.vectors(Normal)[i], glm::vec3(0.0f, 0.0f, 1.0f));
+        EXPECT_EQ(samples.vectors(SlopeVariance)[i], glm::vec3(0.0f));
+        EXPECT_EQ(samples.vectors(JacobianMoments)[i], glm::vec3(1.0f, 0.0f, 0.0f));
+        EXPECT_EQ(samples.numbers(Coverage)[i], 0.0f);
     }
 }
 
@@ -155,13 +155,13 @@ TEST(NoChoppiness, HasAJacobianOfOneAndNoHorizontalMotion) {
     all.set();
     const auto samples =
         sample(frame_of<float>(scene, {filtered(all, 1.0)}, 5.0), 0, random_points<float>(100.0, 50));
-    for (std::size_t i = 0; i < samples.normal.size(); ++i) {
-        EXPECT_EQ(samples.displacement[i].x, 0.0f);
-        EXPECT_EQ(samples.displacement[i].y, 0.0f);
-        EXPECT_NE(samples.displacement[i].z, 0.0f);
-        EXPECT_EQ(samples.velocity[i].x, 0.0f);
-        EXPECT_EQ(samples.jacobian[i], glm::vec3(1.0f, 0.0f, 0.0f));
-        EXPECT_EQ(samples.coverage[i], 0.0f);
+    for (std::size_t i = 0; i < samples.vectors(Normal).size(); ++i) {
+        EXPECT_EQ(samples.vectors(Displacement)[i].x, 0.0f);
+        EXPECT_EQ(samples.vectors(Displacement)[i].y, 0.0f);
+        EXPECT_NE(samples.vectors(Displacement)[i].z, 0.0f);
+        EXPECT_EQ(samples.vectors(Velocity)[i].x, 0.0f);
+        EXPECT_EQ(samples.vectors(JacobianMoments)[i], glm::vec3(1.0f, 0.0f, 0.0f));
+        EXPECT_EQ(samples.numbers(Coverage)[i], 0.0f);
     }
 }
 

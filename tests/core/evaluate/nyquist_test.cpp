@@ -61,14 +61,14 @@ TEST(Mesh, HoldsNothingBeyondItsNyquist) {
     mesh.lattice = Lattice{0.0, spacing_m};
     const auto frame = frame_of<double>(scene, {mesh, dense}, 1.0);
     const auto dense_points = tile_points<double>(kPatch_m, kDense);
-    const auto fine = sample(frame, 1, dense_points).displacement;
+    const auto fine = sample(frame, 1, dense_points).vectors(Displacement);
     for (int axis = 0; axis < 3; ++axis)
         EXPECT_LT(share_beyond<glm::dvec3>(fine, kDense, kQuads / 2, [&](const auto& d) { return d[axis]; }),
                   1e-6)
             << axis;
 
     // And the mesh is that surface, at its own points.
-    const auto coarse = sample(frame, 0, tile_points<double>(kPatch_m, kQuads)).displacement;
+    const auto coarse = sample(frame, 0, tile_points<double>(kPatch_m, kQuads)).vectors(Displacement);
     double error = 0.0, energy = 0.0;
     for (int y = 0; y < kQuads; ++y)
         for (int x = 0; x < kQuads; ++x) {
@@ -89,7 +89,7 @@ TEST(Mesh, HasNoSlopesBeyondItsNyquist) {
     scene.waves.choppiness = 0.0;
     scene.waves.cascades = {{200.0, 96}, {50.0, 96}, {12.5, 128}};
     const auto frame = frame_of<double>(scene, {filtered(products(Product::Normal), kPatch_m / kQuads)}, 1.0);
-    const auto normals = sample(frame, 0, tile_points<double>(kPatch_m, kDense)).normal;
+    const auto normals = sample(frame, 0, tile_points<double>(kPatch_m, kDense)).vectors(Normal);
     for (int axis = 0; axis < 2; ++axis)
         EXPECT_LT(share_beyond<glm::dvec3>(normals, kDense, kQuads / 2,
                                            [&](const auto& n) { return n[axis] / n.z; }),
@@ -109,11 +109,11 @@ TEST(Mesh, ReadAtNodesHoldsNothingBeyondItsNyquistToRounding) {
     const auto frame = frame_of<double>(scene, {shown, all}, 1.0);
     const auto points = tile_points<double>(50.0, 4 * kTileQuads);
     const auto height = [](const glm::dvec3& d) { return d.z; };
-    EXPECT_LT(share_beyond<glm::dvec3>(sample(frame, 0, points).displacement, 4 * kTileQuads, kTileQuads / 2,
-                                       height),
+    EXPECT_LT(share_beyond<glm::dvec3>(sample(frame, 0, points).vectors(Displacement), 4 * kTileQuads,
+                                       kTileQuads / 2, height),
               1e-20);
-    EXPECT_GT(share_beyond<glm::dvec3>(sample(frame, 1, points).displacement, 4 * kTileQuads, kTileQuads / 2,
-                                       height),
+    EXPECT_GT(share_beyond<glm::dvec3>(sample(frame, 1, points).vectors(Displacement), 4 * kTileQuads,
+                                       kTileQuads / 2, height),
               1e-4);
 }
 

@@ -33,12 +33,12 @@ TEST(SinglePrecision, IsWithinARoundingOfDouble) {
                 const auto larger = [&](double& worst, double x, double y) {
                     worst = std::max(worst, std::abs(x - y));
                 };
-                larger(displacement, a.displacement[i][axis], b.displacement[i][axis]);
-                larger(normal, a.normal[i][axis], b.normal[i][axis]);
-                larger(velocity, a.velocity[i][axis], b.velocity[i][axis]);
-                larger(jacobian, a.jacobian[i][axis], b.jacobian[i][axis]);
+                larger(displacement, a.vectors(Displacement)[i][axis], b.vectors(Displacement)[i][axis]);
+                larger(normal, a.vectors(Normal)[i][axis], b.vectors(Normal)[i][axis]);
+                larger(velocity, a.vectors(Velocity)[i][axis], b.vectors(Velocity)[i][axis]);
+                larger(jacobian, a.vectors(JacobianMoments)[i][axis], b.vectors(JacobianMoments)[i][axis]);
             }
-            coverage = std::max(coverage, std::abs(double(a.coverage[i]) - b.coverage[i]));
+            coverage = std::max(coverage, std::abs(double(a.numbers(Coverage)[i]) - b.numbers(Coverage)[i]));
         }
         RecordProperty("displacement_over_hs", std::to_string(displacement / hs * 1e6) + "e-6");
         EXPECT_LT(displacement, 1e-6 * hs);

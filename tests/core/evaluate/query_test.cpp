@@ -37,19 +37,19 @@ TEST(Query, WritesWhereTheCallerWantsItAndNowhereElse) {
     };
     std::vector<Vertex> vertices(points.size());
     Results<float> results;
-    results.position = {&vertices[0].position, sizeof(Vertex)};
-    results.normal = {&vertices[0].normal, sizeof(Vertex)};
-    results.coverage = {&vertices[0].coverage, sizeof(Vertex)};
+    results.set(Product::Position, {&vertices[0].position, sizeof(Vertex)});
+    results.set(Product::Normal, {&vertices[0].normal, sizeof(Vertex)});
+    results.set(Product::Coverage, {&vertices[0].coverage, sizeof(Vertex)});
     evaluate(frame, 0,
              {.origin_m = {}, .count = points.size(), .rest_m = {points.data()}, .cell_m = {}, .pixel_m = {}},
              results);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        EXPECT_EQ(vertices[i].position, packed.position[i]);
-        EXPECT_EQ(vertices[i].normal, packed.normal[i]);
-        EXPECT_EQ(vertices[i].coverage, packed.coverage[i]);
+        EXPECT_EQ(vertices[i].position, packed.vectors(Position)[i]);
+        EXPECT_EQ(vertices[i].normal, packed.vectors(Normal)[i]);
+        EXPECT_EQ(vertices[i].coverage, packed.numbers(Coverage)[i]);
         EXPECT_EQ(vertices[i].before, -7.0f);
         EXPECT_EQ(vertices[i].after, -7.0f);
-        EXPECT_EQ(packed.position[i], packed.displacement[i] + glm::vec3(points[i], 0.0f));
+        EXPECT_EQ(packed.vectors(Position)[i], packed.vectors(Displacement)[i] + glm::vec3(points[i], 0.0f));
     }
 }
 
@@ -71,12 +71,12 @@ TEST(Query, StaysInsideItsGridsWhateverThePlace) {
         const float far = 1e16f * std::pow(1.01f, static_cast<float>(i % 1000));
         points.emplace_back(i < 1000 ? far : -far, 0.37f * far);
     }
-    for (const glm::vec3& d : sample(frame, 0, points).displacement)
+    for (const glm::vec3& d : sample(frame, 0, points).vectors(Displacement))
         for (int axis = 0; axis < 3; ++axis) ASSERT_LT(std::abs(d[axis]), 100.0f);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::vector<glm::vec3> normal(1);
     Results<float> results;
-    results.normal = {normal.data()};
+    results.set(Product::Normal, {normal.data()});
     evaluate(frame, 0,
              {.origin_m = {}, .count = 1, .rest_m = {points.data()}, .cell_m = {&nan}, .pixel_m = {&nan}},
              results);
@@ -86,22 +86,14 @@ TEST(Query, StaysInsideItsGridsWhateverThePlace) {
 TEST(Query, RefusesWhatItDoesNotHold) {
     const auto frame = frame_of<float>(small_sea(), {unfiltered(products(Product::Displacement))});
     const auto points = random_points<float>(100.0, 3);
-    std::vector<glm::vec3> vectors(3);
-    std::vector<float> numbers(3);
     const Points<float> at{
         .origin_m = {}, .count = 3, .rest_m = {points.data()}, .cell_m = {}, .pixel_m = {}};
-    const auto refused = [&](auto member, auto view) {
-        Results<float> results;
-        results.*member = view;
-        EXPECT_THROW(evaluate(frame, 0, at, results), std::invalid_argument);
-    };
-    const Strided<glm::vec3> vector_view{vectors.data()};
-    refused(&Results<float>::position, vector_view);
-    refused(&Results<float>::normal, vector_view);
-    refused(&Results<float>::velocity, vector_view);
-    refused(&Results<float>::slope_variance, vector_view);
-    refused(&Results<float>::jacobian, vector_view);
-    refused(&Results<float>::coverage, Strided<float>{numbers.data()});
+    for (const ProductRow& row : kProductTable) {
+        if (row.product == Product::Displacement) continue;
+        Values values;
+        values.resize(products(row.product), 3);
+        EXPECT_THROW(evaluate(frame, 0, at, values.results()), std::invalid_argument) << row.name;
+    }
     EXPECT_THROW(evaluate(frame, 1, at, {}), std::exception);
     EXPECT_THROW(evaluate(frame, -1, at, {}), std::exception);
     EXPECT_NO_THROW(evaluate(frame, 0, at, {}));
@@ -115,9 +107,9 @@ TEST(Query, AnswersEachPointByItself) {
     const auto together = sample(frame, 0, points);
     for (std::size_t i = 0; i < points.size(); i += 191) {
         const auto alone = sample(frame, 0, {points[i]});
-        EXPECT_EQ(alone.position[0], together.position[i]);
-        EXPECT_EQ(alone.normal[0], together.normal[i]);
-        EXPECT_EQ(alone.coverage[0], together.coverage[i]);
+        EXPECT_EQ(alone.vectors(Position)[0], together.vectors(Position)[i]);
+        EXPECT_EQ(alone.vectors(Normal)[0], together.vectors(Normal)[i]);
+        EXPECT_EQ(alone.numbers(Coverage)[0], together.numbers(Coverage)[i]);
     }
 }
 
@@ -145,14 +137,19 @@ TEST(Ladder, IsTheUniformQueryOnItsRungs) {
         const auto blended = at(c.footprint), uniform = sample(frame, c.query, points);
         for (std::size_t i = 0; i < points.size(); ++i) {
             for (int axis = 0; axis < 3; ++axis) {
-                EXPECT_NEAR(blended.displacement[i][axis], uniform.displacement[i][axis], 1e-5)
+                EXPECT_NEAR(blended.vectors(Displacement)[i][axis], uniform.vectors(Displacement)[i][axis],
+                            1e-5)
                     << c.footprint;
-                EXPECT_NEAR(blended.normal[i][axis], uniform.normal[i][axis], 1e-5) << c.footprint;
-                EXPECT_NEAR(blended.slope_variance[i][axis], uniform.slope_variance[i][axis], 1e-7)
+                EXPECT_NEAR(blended.vectors(Normal)[i][axis], uniform.vectors(Normal)[i][axis], 1e-5)
                     << c.footprint;
-                EXPECT_NEAR(blended.jacobian[i][axis], uniform.jacobian[i][axis], 1e-5) << c.footprint;
+                EXPECT_NEAR(blended.vectors(SlopeVariance)[i][axis], uniform.vectors(SlopeVariance)[i][axis],
+                            1e-7)
+                    << c.footprint;
+                EXPECT_NEAR(blended.vectors(JacobianMoments)[i][axis],
+                            uniform.vectors(JacobianMoments)[i][axis], 1e-5)
+                    << c.footprint;
             }
-            EXPECT_NEAR(blended.coverage[i], uniform.coverage[i], 1e-4) << c.footprint;
+            EXPECT_NEAR(blended.numbers(Coverage)[i], uniform.numbers(Coverage)[i], 1e-4) << c.footprint;
         }
     }
     // Across a rung: no step. The blend's slope is bounded by the rungs' own difference, some 0.5 per
@@ -160,9 +157,9 @@ TEST(Ladder, IsTheUniformQueryOnItsRungs) {
     for (float rung : {1.0f, 2.0f}) {
         const auto below = at(rung * (1.0f - 1e-5f)), above = at(rung * (1.0f + 1e-5f));
         for (std::size_t i = 0; i < points.size(); ++i) {
-            EXPECT_NEAR(below.displacement[i].z, above.displacement[i].z, 1e-4);
-            EXPECT_NEAR(below.normal[i].x, above.normal[i].x, 1e-4);
-            EXPECT_NEAR(below.slope_variance[i].x, above.slope_variance[i].x, 1e-6);
+            EXPECT_NEAR(below.vectors(Displacement)[i].z, above.vectors(Displacement)[i].z, 1e-4);
+            EXPECT_NEAR(below.vectors(Normal)[i].x, above.vectors(Normal)[i].x, 1e-4);
+            EXPECT_NEAR(below.vectors(SlopeVariance)[i].x, above.vectors(SlopeVariance)[i].x, 1e-6);
         }
     }
 }
@@ -184,12 +181,12 @@ TEST(Ladder, ConservesSlopeVarianceBetweenItsRungs) {
             const std::vector<float> same(points.size(), footprint);
             const auto samples = sample(frame, 0, points, {.origin_m = {}, .cell_m = same, .pixel_m = same});
             const auto moment = [&](int a, int b) {
-                return mean_of(samples.normal,
+                return mean_of(samples.vectors(Normal),
                                [&](auto n) { return double(n[a] / n.z) * double(n[b] / n.z); });
             };
-            sum_xx += (moment(0, 0) + samples.slope_variance[0].x) / 8.0;
-            sum_yy += (moment(1, 1) + samples.slope_variance[0].y) / 8.0;
-            sum_xy += (moment(0, 1) + samples.slope_variance[0].z) / 8.0;
+            sum_xx += (moment(0, 0) + samples.vectors(SlopeVariance)[0].x) / 8.0;
+            sum_yy += (moment(1, 1) + samples.vectors(SlopeVariance)[0].y) / 8.0;
+            sum_xy += (moment(0, 1) + samples.vectors(SlopeVariance)[0].z) / 8.0;
             spectrum = moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
         }
         EXPECT_NEAR((sum_xx + sum_yy) / spectrum.mss(), 1.0, 0.03) << footprint;

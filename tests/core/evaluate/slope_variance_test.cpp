@@ -32,11 +32,11 @@ TEST(SlopeVariance, ResolvedAndResidualAreTheSpectrumsForEveryGrid) {
             scene.shot.seed = seed;
             const auto samples = sample(frame_of<float>(scene, make_plan(scene), 0.5), 0, points);
             const auto moment = [&](int a, int b) {
-                return mean_of(samples.normal,
+                return mean_of(samples.vectors(Normal),
                                [&](auto n) { return double(n[a] / n.z) * double(n[b] / n.z); });
             };
             const auto residual = [&](int a) {
-                return mean_of(samples.slope_variance, [&](auto v) { return v[a]; });
+                return mean_of(samples.vectors(SlopeVariance), [&](auto v) { return v[a]; });
             };
             resolved += (moment(0, 0) + moment(1, 1)) / 8.0;
             xx += (moment(0, 0) + residual(0)) / 8.0;
@@ -63,10 +63,10 @@ TEST(SlopeVariance, OfAHugeFootprintIsTheWholeSpectrum) {
     const auto frame =
         frame_of<double>(scene, {filtered(products(Product::Normal, Product::SlopeVariance), 1e5)});
     const auto samples = sample(frame, 0, std::vector<glm::dvec2>{{3.0, 4.0}});
-    EXPECT_NEAR(samples.slope_variance[0].x / spectrum.xx, 1.0, 1e-6);
-    EXPECT_NEAR(samples.slope_variance[0].y / spectrum.yy, 1.0, 1e-6);
-    EXPECT_NEAR(samples.slope_variance[0].z / spectrum.xy, 1.0, 1e-6);
-    EXPECT_EQ(samples.normal[0], glm::dvec3(0.0, 0.0, 1.0));
+    EXPECT_NEAR(samples.vectors(SlopeVariance)[0].x / spectrum.xx, 1.0, 1e-6);
+    EXPECT_NEAR(samples.vectors(SlopeVariance)[0].y / spectrum.yy, 1.0, 1e-6);
+    EXPECT_NEAR(samples.vectors(SlopeVariance)[0].z / spectrum.xy, 1.0, 1e-6);
+    EXPECT_EQ(samples.vectors(Normal)[0], glm::dvec3(0.0, 0.0, 1.0));
 }
 
 // The residual turns with the wind, as a tensor does.
@@ -75,7 +75,7 @@ TEST(SlopeVariance, TurnsWithTheWind) {
     const auto at = [&](double direction_deg, double footprint_m) {
         scene.sea.wind_direction_deg = direction_deg;
         const auto frame = frame_of<double>(scene, {filtered(products(Product::SlopeVariance), footprint_m)});
-        return sample(frame, 0, std::vector<glm::dvec2>{{0.0, 0.0}}).slope_variance[0];
+        return sample(frame, 0, std::vector<glm::dvec2>{{0.0, 0.0}}).vectors(SlopeVariance)[0];
     };
     const auto all = at(0.0, 1e6);
     EXPECT_GT(all.x, 1.1 * all.y);
@@ -94,14 +94,14 @@ TEST(SlopeVariance, IsTheSameAskedForAloneOrTogether) {
     const std::vector<glm::dvec2> origin{{0.0, 0.0}};
     const auto of = [&](ProductSet wanted) {
         const auto frame = frame_of<double>(scene, {filtered(wanted, 0.4)});
-        return sample(frame, 0, origin).slope_variance[0];
+        return sample(frame, 0, origin).vectors(SlopeVariance)[0];
     };
     const auto alone = of(products(Product::SlopeVariance));
     EXPECT_EQ(alone, of(products(Product::SlopeVariance, Product::Normal)));
     EXPECT_EQ(alone, of(products(Product::SlopeVariance, Product::Position)));
     // And it is not everything: waves of more than 1.6 m show.
     const auto all = frame_of<double>(scene, {filtered(products(Product::SlopeVariance), 1e6)});
-    EXPECT_LT(alone.x, 0.8 * sample(all, 0, origin).slope_variance[0].x);
+    EXPECT_LT(alone.x, 0.8 * sample(all, 0, origin).vectors(SlopeVariance)[0].x);
 }
 
 // A cascade's own tile hides its own band: what the tiles hide adds up to what the sea hides.
@@ -113,9 +113,9 @@ TEST(SlopeVariance, OfTheTilesAddsUp) {
         queries.push_back(tile(products(Product::SlopeVariance), i, scene.waves.cascades[i].size_m, 16));
     const auto frame = frame_of<double>(scene, queries);
     const std::vector<glm::dvec2> origin{{0.0, 0.0}};
-    const auto whole = sample(frame, 0, origin).slope_variance[0];
-    const auto tiles =
-        sample(frame, 1, origin).slope_variance[0] + sample(frame, 2, origin).slope_variance[0];
+    const auto whole = sample(frame, 0, origin).vectors(SlopeVariance)[0];
+    const auto tiles = sample(frame, 1, origin).vectors(SlopeVariance)[0] +
+                       sample(frame, 2, origin).vectors(SlopeVariance)[0];
     // A mode's slope is that at the centre of its cell, so that a band's modes may hold a little more than
     // its integral, which then counts as nothing hidden and not as less: measured 1.05e-3 of the whole.
     EXPECT_NEAR(tiles.x / whole.x, 1.0, 3e-3);

@@ -56,8 +56,8 @@ TEST(TwoModels, TrainsAloneAreTheirSumAndTakeNoTransform) {
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const Sum sum = by_hand(frame.sea().trains(), rest[i] + glm::dvec2(1000.0, -500.0), 3.7);
         for (int a = 0; a < 3; ++a) {  // phases of up to 1e5 cycles in double: 1e-10 of a metre's waves
-            ASSERT_NEAR(samples.displacement[i][a], sum.displacement[a], 1e-9);
-            ASSERT_NEAR(samples.velocity[i][a], sum.velocity[a], 1e-9);
+            ASSERT_NEAR(samples.vectors(Displacement)[i][a], sum.displacement[a], 1e-9);
+            ASSERT_NEAR(samples.vectors(Velocity)[i][a], sum.velocity[a], 1e-9);
         }
     }
 }
@@ -78,8 +78,9 @@ TEST(TwoModels, TogetherAreTheSumOfBoth) {
     const auto all = sample(frame, 0, rest), large = sample(frame, 1, rest), small = sample(frame, 2, rest);
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const Sum sum = by_hand(frame.sea().trains(), rest[i], 2.0);
-        const glm::dvec3 expected = sum.displacement + large.displacement[i] + small.displacement[i];
-        for (int a = 0; a < 3; ++a) ASSERT_NEAR(all.displacement[i][a], expected[a], 1e-9) << i;
+        const glm::dvec3 expected =
+            sum.displacement + large.vectors(Displacement)[i] + small.vectors(Displacement)[i];
+        for (int a = 0; a < 3; ++a) ASSERT_NEAR(all.vectors(Displacement)[i][a], expected[a], 1e-9) << i;
     }
     // The tiles' waves begin where the trains end.
     EXPECT_DOUBLE_EQ(frame.sea().plan().cascades[0].k_lower, kTwoPi / 2.0);
@@ -108,8 +109,9 @@ TEST(TwoModels, ShownAndHiddenAddUpToTheWholeAtEveryFootprint) {
             const SpectralMoments cascades = frame.sea().statistics(0).resolved[i];
             const Where<double> own{.origin_m = {}, .cell_m = {footprint_m}, .pixel_m = {footprint_m}};
             const std::vector<glm::dvec2> point{{1.0, 2.0}};
-            for (const auto& hidden : {sample(frame, 0, point, own).slope_variance[0],
-                                       sample(frame, static_cast<int>(i) + 1, point).slope_variance[0]}) {
+            for (const auto& hidden :
+                 {sample(frame, 0, point, own).vectors(SlopeVariance)[0],
+                  sample(frame, static_cast<int>(i) + 1, point).vectors(SlopeVariance)[0]}) {
                 // Sampled modes against the integral over the cascades' band: 1e-3 of what they hold.
                 const double room = 1e-12 + 1e-3 * cascades.mss();
                 EXPECT_NEAR(hidden.x + trains.xx + cascades.xx, whole.xx, room) << footprint_m;
@@ -127,7 +129,7 @@ TEST(TwoModels, AgreeOnEveryInstructionSet) {
     for (const Scene& scene : {Scene{}, trains_alone(), trains_and_cascades()}) {
         const Query between = filtered(kEverything, 0.5);
         const auto rest = random_points<float>(150.0, 700);
-        std::vector<Samples<float>> answers;
+        std::vector<ProductArrays<float>> answers;
         std::vector<std::string> names;
         double height_m = 0.0;
         for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
@@ -146,10 +148,12 @@ TEST(TwoModels, AgreeOnEveryInstructionSet) {
             };
             for (std::size_t i = 0; i < rest.size(); ++i)
                 for (int a = 0; a < 3; ++a) {
-                    compare(answers[s].displacement[i][a], answers[0].displacement[i][a], 1e-5 * height_m);
-                    compare(answers[s].velocity[i][a], answers[0].velocity[i][a], 2e-5 * height_m);
-                    compare(answers[s].normal[i][a], answers[0].normal[i][a], 1e-5);
-                    compare(answers[s].coverage[i], answers[0].coverage[i], 1e-5);
+                    compare(answers[s].vectors(Displacement)[i][a], answers[0].vectors(Displacement)[i][a],
+                            1e-5 * height_m);
+                    compare(answers[s].vectors(Velocity)[i][a], answers[0].vectors(Velocity)[i][a],
+                            2e-5 * height_m);
+                    compare(answers[s].vectors(Normal)[i][a], answers[0].vectors(Normal)[i][a], 1e-5);
+                    compare(answers[s].numbers(Coverage)[i], answers[0].numbers(Coverage)[i], 1e-5);
                 }
             EXPECT_TRUE(names[s] == names[0] || worst > 0.0) << names[s] << " is " << names[0];
         }

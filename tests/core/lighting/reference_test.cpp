@@ -43,7 +43,7 @@ const Facets& facets() {
         Facets result;
         result.normals.resize(rest_m.size());
         Results<float> results;
-        results.normal = {result.normals.data()};
+        results.set(Product::Normal, {result.normals.data()});
         evaluate(frame, 0, Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}}, results);
         const SpectralMoments shown = sea->shown(0);
         result.slope_variance = glm::vec3(shown.xx, shown.yy, shown.xy);

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluate/evaluate.h"
+#include "core/evaluate/values.h"
 #include "core/plan/plan.h"
 #include "core/scene/validate.h"
 #include "core/surface/patch.h"
@@ -295,40 +295,16 @@ std::size_t trains_bytes(int trains) {
 }
 
 template <class T>
-class Answers {
-  public:
-    Answers(const Query& query, std::size_t count) {
-        const auto room = [&](Product product, auto& values) -> Strided<std::decay_t<decltype(values[0])>> {
-            if (!query.products[index(product)]) return {};
-            values.resize(count);
-            return {values.data()};
-        };
-        results.position = room(Product::Position, position_);
-        results.displacement = room(Product::Displacement, displacement_);
-        results.normal = room(Product::Normal, normal_);
-        results.velocity = room(Product::Velocity, velocity_);
-        results.slope_variance = room(Product::SlopeVariance, variance_);
-        results.jacobian = room(Product::JacobianMoments, jacobian_);
-        results.coverage = room(Product::Coverage, coverage_);
-    }
-    Results<T> results;
-
-  private:
-    std::vector<glm::vec<3, T>> position_, displacement_, normal_, velocity_, variance_, jacobian_;
-    std::vector<T> coverage_;
-};
-
-template <class T>
 double median_ms(Frame<T>& frame) {
     const Plan& plan = frame.sea().plan();
     std::vector<std::vector<glm::vec<2, T>>> rest;
-    std::vector<Answers<T>> answers;
+    std::vector<ProductArrays<T>> answers;
     for (const PlannedQuery& planned : plan.queries) {
         const auto side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(planned.query.points))));
         const Lattice at = planned.query.lattice.value_or(Lattice{-100.0, 3.126});
         rest.push_back(rest_points<T>({.per_side = side, .spacing_m = at.spacing_m, .first_m = at.first_m}));
         EXPECT_EQ(rest.back().size(), planned.query.points);
-        answers.emplace_back(planned.query, planned.query.points);
+        answers.emplace_back().resize(planned.query.products, planned.query.points);
     }
     std::vector<double> ms;
     for (int i = 0; i < 9; ++i) {
@@ -336,7 +312,7 @@ double median_ms(Frame<T>& frame) {
         frame.set(0.25 * i);
         for (std::size_t q = 0; q < rest.size(); ++q)
             evaluate(frame, static_cast<int>(q), {.count = rest[q].size(), .rest_m = {rest[q].data()}},
-                     answers[q].results);
+                     answers[q].results());
         ms.push_back(
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }

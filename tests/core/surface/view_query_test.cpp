@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/evaluate/evaluate.h"
+#include "core/evaluate/values.h"
 #include "core/plan/plan.h"
 #include "core/plan/tables.h"
 #include "core/scene/validate.h"
@@ -21,25 +21,10 @@ Scene scene_of_two_tiles() {
     return scene;
 }
 
-struct Answers {
-    std::vector<glm::vec3> position, normal, slope_variance;
-    std::vector<float> coverage;
-};
-
-template <class T>
-Answers ask(const Frame<T>& frame, const Points<T>& points) {
-    Answers a;
-    a.position.resize(points.count);
-    a.normal.resize(points.count);
-    a.slope_variance.resize(points.count);
-    a.coverage.resize(points.count);
-    Results<T> results;
-    results.position = {a.position.data()};
-    results.normal = {a.normal.data()};
-    results.slope_variance = {a.slope_variance.data()};
-    results.coverage = {a.coverage.data()};
-    evaluate(frame, 0, points, results);
-    return a;
+Values ask(const Frame<float>& frame, const Points<float>& points) {
+    Values answers;
+    QueryRunner<float>().run(frame, 0, points, answers);
+    return answers;
 }
 
 Frame<float> frame_of(const Scene& scene, const Query& query) {
@@ -118,12 +103,17 @@ TEST(ViewQuery, OnARungAnswersAsAPlanOfThatFootprintAlone) {
         const Points<float> points{.count = rest.size(), .rest_m = {rest.data()}};
         Points<float> varied = points;
         varied.cell_m = varied.pixel_m = {footprints.data()};
-        const Answers a = ask(frame, varied), b = ask(frame_of(scene, alone), points);
+        const Values a = ask(frame, varied), b = ask(frame_of(scene, alone), points);
         for (std::size_t i = 0; i < rest.size(); ++i) {
             // Single precision: heights of 3 m, sums of thousands of modes.
-            EXPECT_LE(glm::length(a.position[i] - b.position[i]), 2e-5f) << "rung " << rung;
-            EXPECT_LE(glm::length(a.normal[i] - b.normal[i]), 2e-5f) << "rung " << rung;
-            EXPECT_LE(glm::length(a.slope_variance[i] - b.slope_variance[i]), 1e-6f) << "rung " << rung;
+            EXPECT_LE(glm::length(a.vectors(Product::Position)[i] - b.vectors(Product::Position)[i]), 2e-5f)
+                << "rung " << rung;
+            EXPECT_LE(glm::length(a.vectors(Product::Normal)[i] - b.vectors(Product::Normal)[i]), 2e-5f)
+                << "rung " << rung;
+            EXPECT_LE(
+                glm::length(a.vectors(Product::SlopeVariance)[i] - b.vectors(Product::SlopeVariance)[i]),
+                1e-6f)
+                << "rung " << rung;
         }
     }
 }
@@ -142,7 +132,7 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
     const Frame<float> frame = frame_of(scene, view_query(*prepare(scene)));
     const ProjectedGrid here = seen(glm::dvec3(0.0)), there = seen({1e6, -2e6, 0.0});
     ASSERT_EQ(here.rest_m.size(), there.rest_m.size());
-    const Answers a = ask(frame, points_of_grid(here)), b = ask(frame, points_of_grid(there));
+    const Values a = ask(frame, points_of_grid(here)), b = ask(frame, points_of_grid(there));
     double waves_m2 = 0.0;
     for (std::size_t i = 0; i < here.rest_m.size(); ++i) {
         const glm::vec2 rest = here.rest_m[i];
@@ -151,16 +141,20 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
         const float digit = 4e-7f * (1.0f + glm::length(rest));
         EXPECT_LE(glm::length(rest - there.rest_m[i]), digit);
         if (glm::length(rest) > 1000.0f) continue;  // beyond, a digit is more than the waves that are left
-        EXPECT_LE(glm::length(a.position[i] - b.position[i]), 3.0f * digit + 3e-5f);
-        EXPECT_LE(glm::length(a.normal[i] - b.normal[i]), 5.0f * digit + 3e-5f);
-        waves_m2 += std::pow(static_cast<double>(a.position[i].z), 2);
+        EXPECT_LE(glm::length(a.vectors(Product::Position)[i] - b.vectors(Product::Position)[i]),
+                  3.0f * digit + 3e-5f);
+        EXPECT_LE(glm::length(a.vectors(Product::Normal)[i] - b.vectors(Product::Normal)[i]),
+                  5.0f * digit + 3e-5f);
+        waves_m2 += std::pow(static_cast<double>(a.vectors(Product::Position)[i].z), 2);
     }
     EXPECT_GT(waves_m2, 1.0);
-    for (const Answers* answers : {&a, &b})
+    for (const Values* answers : {&a, &b})
         for (std::size_t i = 0; i < here.rest_m.size(); ++i) {
-            const glm::vec3 p = answers->position[i], n = answers->normal[i], s = answers->slope_variance[i];
-            ASSERT_TRUE(
-                std::isfinite(p.x + p.y + p.z + n.x + n.y + n.z + s.x + s.y + s.z + answers->coverage[i]));
+            const glm::vec3 p = answers->vectors(Product::Position)[i],
+                            n = answers->vectors(Product::Normal)[i],
+                            s = answers->vectors(Product::SlopeVariance)[i];
+            ASSERT_TRUE(std::isfinite(p.x + p.y + p.z + n.x + n.y + n.z + s.x + s.y + s.z +
+                                      answers->numbers(Product::Coverage)[i]));
         }
 }
 
@@ -170,13 +164,14 @@ TEST(ViewQuery, AtTheHorizonAllIsVariance) {
     const Frame<float> frame = frame_of(scene, view_query(*prepare(scene)));
     const ProjectedGrid grid =
         projected_grid(view_at(scene.camera, 1.0), projected_grid_options(*prepare(scene)));
-    const Answers answers = ask(frame, points_of_grid(grid));
+    const Values answers = ask(frame, points_of_grid(grid));
     const SpectralMoments& whole = frame.sea().total();
-    for (std::size_t i = answers.position.size() - grid.columns - 1; i < answers.position.size(); ++i) {
-        EXPECT_EQ(answers.position[i].z, 0.0f);
-        EXPECT_EQ(answers.normal[i], glm::vec3(0.0f, 0.0f, 1.0f));
-        EXPECT_NEAR(answers.slope_variance[i].x, whole.xx, 1e-6);
-        EXPECT_NEAR(answers.slope_variance[i].y, whole.yy, 1e-6);
+    for (std::size_t i = answers.vectors(Product::Position).size() - grid.columns - 1;
+         i < answers.vectors(Product::Position).size(); ++i) {
+        EXPECT_EQ(answers.vectors(Product::Position)[i].z, 0.0f);
+        EXPECT_EQ(answers.vectors(Product::Normal)[i], glm::vec3(0.0f, 0.0f, 1.0f));
+        EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].x, whole.xx, 1e-6);
+        EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].y, whole.yy, 1e-6);
     }
 }
 
@@ -195,7 +190,7 @@ TEST(Extent, HoldsTheSeaAndNotMuchMore) {
         rest.emplace_back(4.0f * static_cast<float>(i % 100), 4.0f * static_cast<float>(i / 100));
     std::vector<glm::vec3> moved(rest.size());
     Results<float> results;
-    results.displacement = {moved.data()};
+    results.set(Product::Displacement, {moved.data()});
     evaluate(frame, 0, Points<float>{.count = rest.size(), .rest_m = {rest.data()}}, results);
     double height_m = 0.0, reach_m = 0.0;
     for (const glm::vec3& d : moved) {

@@ -149,7 +149,8 @@ TEST(HeightMap, HasTheVarianceOfItsRealisation) {
                                            t);
         for (int c = 0; c < 2; ++c) {
             const double size_m = c == 0 ? 300.0 : 60.0;
-            const auto map = sample(frame, c, tile_points<float>(size_m, c == 0 ? 128 : 96)).displacement;
+            const auto map =
+                sample(frame, c, tile_points<float>(size_m, c == 0 ? 128 : 96)).vectors(Displacement);
             const double mean = mean_of(map, [](auto d) { return d.z; });
             const double variance = mean_of(map, [](auto d) { return double(d.z) * d.z; });
             EXPECT_NEAR(variance / frame.realisation(c).m0, 1.0, 1e-5) << "cascade " << c << " at " << t;
@@ -174,7 +175,7 @@ TEST(HeightMap, HasTheSignificantHeightOfTheSpectrum) {
     for (int seed = 1; seed <= 16; ++seed) {
         scene.shot.seed = seed;
         const auto frame = frame_of<float>(scene, {tile(products(Product::Displacement), 0, 800.0, 160)});
-        variances.push_back(mean_of(sample(frame, 0, tile_points<float>(800.0, 160)).displacement,
+        variances.push_back(mean_of(sample(frame, 0, tile_points<float>(800.0, 160)).vectors(Displacement),
                                     [](auto d) { return double(d.z) * d.z; }));
     }
     // The band ends at k = 0.62 rad/m; beyond it is 1 % of m0.

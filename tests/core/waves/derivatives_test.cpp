@@ -110,7 +110,7 @@ TEST_P(Derivatives, GiveNormalsAndJacobianOfTheDisplacedSurface) {
     const auto samples = sample(frame_, 0, tile_points<double>(kSize, kNodes));
     const auto component = [&](int axis) {
         std::vector<double> values;
-        for (const auto& d : samples.displacement) values.push_back(d[axis]);
+        for (const auto& d : samples.vectors(Displacement)) values.push_back(d[axis]);
         return values;
     };
     std::vector<double> by_x[3], by_y[3];
@@ -119,14 +119,14 @@ TEST_P(Derivatives, GiveNormalsAndJacobianOfTheDisplacedSurface) {
         by_y[axis] = difference_in_space(component(axis), 0, 1);
     }
     double least_j = 1.0;
-    for (std::size_t i = 0; i < samples.normal.size(); ++i) {
+    for (std::size_t i = 0; i < samples.vectors(Normal).size(); ++i) {
         const glm::dvec3 tx(1.0 + by_x[0][i], by_x[1][i], by_x[2][i]),
             ty(by_y[0][i], 1.0 + by_y[1][i], by_y[2][i]);
         const glm::dvec3 n(tx.y * ty.z - tx.z * ty.y, tx.z * ty.x - tx.x * ty.z, tx.x * ty.y - tx.y * ty.x);
         const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
         for (int axis = 0; axis < 3; ++axis)
-            ASSERT_NEAR(samples.normal[i][axis], n[axis] / length, tolerance);
-        ASSERT_NEAR(samples.jacobian[i].x, n.z, tolerance);
+            ASSERT_NEAR(samples.vectors(Normal)[i][axis], n[axis] / length, tolerance);
+        ASSERT_NEAR(samples.vectors(JacobianMoments)[i].x, n.z, tolerance);
         least_j = std::min(least_j, n.z);
     }
     EXPECT_LT(least_j, 0.8);  // the cross terms were there to be wrong

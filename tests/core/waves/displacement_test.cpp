@@ -24,11 +24,12 @@ TEST(HeightTimesJacobian, IsMinusChoppinessTimesSumOfWavenumberTimesEnergy) {
                 scene, {tile(products(Product::Displacement, Product::JacobianMoments), 0, 600.0, 96)});
             const auto map = sample(frame, 0, tile_points<float>(600.0, 96));
             double sum = 0.0, expected = 0.0;
-            for (std::size_t i = 0; i < map.displacement.size(); ++i)
-                sum += double(map.displacement[i].z) * (double(map.jacobian[i].x) - 1.0);
+            for (std::size_t i = 0; i < map.vectors(Displacement).size(); ++i)
+                sum += double(map.vectors(Displacement)[i].z) *
+                       (double(map.vectors(JacobianMoments)[i].x) - 1.0);
             for (const Mode& mode : modes_of(frame.sea(), 0, 0.0))
                 expected -= choppiness * 2.0 * mode.k * std::norm(mode.height);
-            relative.push_back(sum / static_cast<double>(map.displacement.size()) / expected);
+            relative.push_back(sum / static_cast<double>(map.vectors(Displacement).size()) / expected);
             EXPECT_GT(relative.back(), 0.0);
         }
         const Estimate mean = estimate(relative);
@@ -68,7 +69,7 @@ TEST(OneWaveAlone, IsTheTrochoid) {
         const OneWave wave = one_wave(kLength, c.depth_m, c.choppiness);
         auto points = tile_points<double>(kLength, 512);
         points.resize(512);  // the row y = 0
-        const auto row = sample(wave.frame, 0, points).displacement;
+        const auto row = sample(wave.frame, 0, points).vectors(Displacement);
         const double level = mean_of(row, [](auto d) { return d.z; });
         std::complex<double> harmonic = 0.0;
         for (std::size_t i = 0; i < row.size(); ++i)

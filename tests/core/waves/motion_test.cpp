@@ -45,7 +45,7 @@ TEST(Crest, MovesAtThePhaseSpeed) {
             points.resize(256);
             const auto crest = [&](double t) {
                 frame.set(t);
-                const auto row = sample(frame, 0, points).displacement;
+                const auto row = sample(frame, 0, points).vectors(Displacement);
                 std::size_t top = 0;
                 for (std::size_t i = 0; i < row.size(); ++i)
                     if (row[i].z > row[top].z) top = i;
@@ -152,9 +152,10 @@ TEST(Loop, RepeatsToTheBitAndFreezesNothing) {
         for (int turns : {1, 2, -1}) {
             frame.set((f - 1 + turns * 240) / 24.0);
             const auto again = sample(frame, 0, points);
-            EXPECT_TRUE(same_bits(first.displacement, again.displacement))
+            EXPECT_TRUE(same_bits(first.vectors(Displacement), again.vectors(Displacement)))
                 << "frame " << f << " turns " << turns;
-            EXPECT_TRUE(same_bits(first.velocity, again.velocity)) << "frame " << f << " turns " << turns;
+            EXPECT_TRUE(same_bits(first.vectors(Velocity), again.vectors(Velocity)))
+                << "frame " << f << " turns " << turns;
         }
     }
     for (const Cascade<float>& cascade : frame.sea().cascades())
@@ -167,9 +168,9 @@ TEST(Loop, RepeatsToTheBitAndFreezesNothing) {
     // Nothing stands still: a quarter of the loop apart, two heights of a wave that makes one turn are
     // independent.
     frame.set(0.0);
-    const auto early = sample(frame, 0, points).displacement;
+    const auto early = sample(frame, 0, points).vectors(Displacement);
     frame.set(2.5);
-    const auto late = sample(frame, 0, points).displacement;
+    const auto late = sample(frame, 0, points).vectors(Displacement);
     double change = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i) change += std::pow(late[i].z - early[i].z, 2);
     EXPECT_GT(change / static_cast<double>(points.size()), frame.realisation(0).m0);  // 2 m0 in expectation
@@ -188,8 +189,8 @@ TEST(LateTimes, AreAsExactAsEarlyOnes) {
         single.set(t);
         reference.set(t);
         const auto modes = modes_of(reference.sea(), 0, t);
-        const auto map = sample(single, 0, points).displacement;
-        const auto map_d = sample(reference, 0, points_d).displacement;
+        const auto map = sample(single, 0, points).vectors(Displacement);
+        const auto map_d = sample(reference, 0, points_d).vectors(Displacement);
         const double hs = 4.0 * std::sqrt(reference.realisation(0).m0);
         for (std::size_t i = 0; i < points.size(); i += 97) {
             const double height = direct_height(modes, 150.0, points_d[i]);
@@ -224,13 +225,13 @@ TEST(FarFromTheOrigin, NothingIsLost) {
         sample(frame, 0, moved, {.origin_m = {1e6 + 17.25, -1e6 - 8.5}, .cell_m = {}, .pixel_m = {}});
     for (std::size_t i = 0; i < points.size(); ++i)
         for (int axis = 0; axis < 3; ++axis) {
-            EXPECT_NEAR(far.displacement[i][axis], near.displacement[i][axis], 1e-6);
-            EXPECT_NEAR(far.normal[i][axis], near.normal[i][axis], 1e-6);
-            EXPECT_NEAR(far.velocity[i][axis], near.velocity[i][axis], 1e-6);
+            EXPECT_NEAR(far.vectors(Displacement)[i][axis], near.vectors(Displacement)[i][axis], 1e-6);
+            EXPECT_NEAR(far.vectors(Normal)[i][axis], near.vectors(Normal)[i][axis], 1e-6);
+            EXPECT_NEAR(far.vectors(Velocity)[i][axis], near.vectors(Velocity)[i][axis], 1e-6);
             // Moving a single-precision position of 30 m rounds it by 2e-6 m; slopes and velocities below 10
             // a metre.
-            EXPECT_NEAR(told.displacement[i][axis], near.displacement[i][axis], 1e-5);
-            EXPECT_NEAR(told.normal[i][axis], near.normal[i][axis], 1e-4);
+            EXPECT_NEAR(told.vectors(Displacement)[i][axis], near.vectors(Displacement)[i][axis], 1e-5);
+            EXPECT_NEAR(told.vectors(Normal)[i][axis], near.vectors(Normal)[i][axis], 1e-4);
         }
 }
 

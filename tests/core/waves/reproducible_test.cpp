@@ -16,15 +16,17 @@ template <class V>
 bool same_bits(const std::vector<V>& a, const std::vector<V>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(V)) == 0;
 }
-void expect_same_bits(const Samples<float>& a, const Samples<float>& b, const char* what) {
-    ASSERT_FALSE(a.position.empty());
-    EXPECT_TRUE(same_bits(a.position, b.position)) << what;
-    EXPECT_TRUE(same_bits(a.displacement, b.displacement)) << what;
-    EXPECT_TRUE(same_bits(a.normal, b.normal)) << what;
-    EXPECT_TRUE(same_bits(a.velocity, b.velocity)) << what;
-    EXPECT_TRUE(same_bits(a.slope_variance, b.slope_variance)) << what;
-    EXPECT_TRUE(same_bits(a.jacobian, b.jacobian)) << what;
-    EXPECT_TRUE(same_bits(a.coverage, b.coverage)) << what;
+void expect_same_bits(const ProductArrays<float>& a, const ProductArrays<float>& b, const char* what) {
+    for (const ProductRow& row : kProductTable) {
+        ASSERT_GT(a.size(row.product), 0u) << row.name;
+        if (row.components == 1) {
+            const auto product = NumberProduct::checked(row.product);
+            EXPECT_TRUE(same_bits(a.numbers(product), b.numbers(product))) << what << ": " << row.name;
+        } else {
+            const auto product = VectorProduct::checked(row.product);
+            EXPECT_TRUE(same_bits(a.vectors(product), b.vectors(product))) << what << ": " << row.name;
+        }
+    }
 }
 
 Scene windy() {
@@ -72,8 +74,9 @@ TEST(Seeds, GiveOtherSeas) {
     const auto one = sample(frame_of<float>(scene, {everything()}), 0, points);
     scene.shot.seed = 2;
     const auto two = sample(frame_of<float>(scene, {everything()}), 0, points);
-    EXPECT_FALSE(same_bits(one.position, two.position));
-    EXPECT_TRUE(same_bits(one.slope_variance, two.slope_variance));  // an expectation: no seed in it
+    EXPECT_FALSE(same_bits(one.vectors(Position), two.vectors(Position)));
+    EXPECT_TRUE(
+        same_bits(one.vectors(SlopeVariance), two.vectors(SlopeVariance)));  // an expectation: no seed in it
 }
 
 // What a shot runs, counted by hand for one cascade: the mesh alone is one grid, and two real fields share a

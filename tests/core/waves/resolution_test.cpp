@@ -87,8 +87,8 @@ TEST(DoubledResolution, ChangesNothingThatAFootprintOfTheOldLimitShows) {
     const double hs = 4.0 * std::sqrt(coarse.realisation(0).m0);
     for (std::size_t i = 0; i < points.size(); ++i)
         for (int axis = 0; axis < 3; ++axis) {
-            ASSERT_NEAR(a.displacement[i][axis], b.displacement[i][axis], 1e-4 * hs);
-            ASSERT_NEAR(a.normal[i][axis], b.normal[i][axis], 1e-3);
+            ASSERT_NEAR(a.vectors(Displacement)[i][axis], b.vectors(Displacement)[i][axis], 1e-4 * hs);
+            ASSERT_NEAR(a.vectors(Normal)[i][axis], b.vectors(Normal)[i][axis], 1e-3);
         }
 }
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/base/constants.h"
-#include "core/evaluate/evaluate.h"
+#include "core/evaluate/values.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/plan.h"
 #include "core/scene/validate.h"
@@ -24,6 +24,8 @@
 #include "core/waves/frame.h"
 
 namespace pelagic::test {
+
+using enum Product;  // samples.vectors(Displacement)
 
 template <class T>
 Frame<T> frame_of(const Scene& scene, const Plan& plan, double t_s = 0.0) {
@@ -74,37 +76,18 @@ std::vector<glm::vec<2, T>> random_points(double size_m, int count, unsigned see
     return points;
 }
 
-// Everything that the query holds, at each point.
-template <class T>
-struct Samples {
-    std::vector<glm::vec<3, T>> position, displacement, normal, velocity, slope_variance, jacobian;
-    std::vector<T> coverage;
-};
-
 template <class T>
 struct Where {
     glm::dvec2 origin_m{0.0};
     std::vector<T> cell_m, pixel_m;  // empty: the query's first
 };
 
+// Everything that the query holds, at each point.
 template <class T>
-Samples<T> sample(const Frame<T>& frame, int query, const std::vector<glm::vec<2, T>>& rest,
-                  const Where<T>& where = {}) {
-    Samples<T> samples;
-    Results<T> results;
-    const ProductSet held = frame.sea().plan().queries.at(query).query.products;
-    const auto want = [&](Product product, auto& values, auto& view) {
-        if (!held[index(product)]) return;
-        values.resize(rest.size());
-        view = {values.data()};
-    };
-    want(Product::Position, samples.position, results.position);
-    want(Product::Displacement, samples.displacement, results.displacement);
-    want(Product::Normal, samples.normal, results.normal);
-    want(Product::Velocity, samples.velocity, results.velocity);
-    want(Product::SlopeVariance, samples.slope_variance, results.slope_variance);
-    want(Product::JacobianMoments, samples.jacobian, results.jacobian);
-    want(Product::Coverage, samples.coverage, results.coverage);
+ProductArrays<T> sample(const Frame<T>& frame, int query, const std::vector<glm::vec<2, T>>& rest,
+                        const Where<T>& where = {}) {
+    ProductArrays<T> samples;
+    samples.resize(frame.sea().plan().queries.at(query).query.products, rest.size());
     Points<T> points{.origin_m = where.origin_m,
                      .count = rest.size(),
                      .rest_m = {rest.data()},
@@ -112,7 +95,7 @@ Samples<T> sample(const Frame<T>& frame, int query, const std::vector<glm::vec<2
                      .pixel_m = {}};
     if (!where.cell_m.empty()) points.cell_m = {where.cell_m.data()};
     if (!where.pixel_m.empty()) points.pixel_m = {where.pixel_m.data()};
-    evaluate(frame, query, points, results);
+    evaluate(frame, query, points, samples.results());
     return samples;
 }
 

@@ -78,7 +78,7 @@ TEST(SplineSampling, HasTheErrorOfItsImages) {
         }
         constexpr int kPoints = 2000;
         const auto points = random_points<double>(1000.0, kPoints);
-        const auto heights = sample(frame, 0, points).displacement;
+        const auto heights = sample(frame, 0, points).vectors(Displacement);
         double error = 0.0;
         for (int i = 0; i < kPoints; ++i) {
             const double difference = heights[i].z - direct_height(modes, 150.0, points[i]);
@@ -102,7 +102,7 @@ TEST(SplineSampling, KeepsTheVarianceOfTheRealisation) {
     auto points = tile_points<float>(150.0, 64);
     for (auto& point : points) point += glm::vec2(0.71f, 1.13f);
     const double variance =
-        mean_of(sample(frame, 0, points).displacement, [](auto d) { return double(d.z) * d.z; });
+        mean_of(sample(frame, 0, points).vectors(Displacement), [](auto d) { return double(d.z) * d.z; });
     // rms error 1.5e-5 of the rms height (above), its cross term with the height at most twice that.
     EXPECT_NEAR(variance / frame.realisation(0).m0, 1.0, 5e-5);
 }
@@ -114,7 +114,7 @@ TEST(SplineSampling, IsPeriodicAndContinuousAcrossTheSeam) {
     const auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});
     const std::vector<glm::vec2> points{
         {-1e-4f, 20.0f}, {0.0f, 20.0f}, {1e-4f, 20.0f}, {150.0f, 20.0f}, {-300.0f, 170.0f}};
-    const auto d = sample(frame, 0, points).displacement;
+    const auto d = sample(frame, 0, points).vectors(Displacement);
     for (std::size_t i = 1; i < points.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
             EXPECT_NEAR(d[i][axis], d[0][axis], 2e-4) << i;  // slope < 1, 2e-4 m

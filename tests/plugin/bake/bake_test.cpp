@@ -113,15 +113,16 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesWithOneTopology) {
         const std::size_t count = points_of(size);
         ASSERT_EQ(grid.rest_m.size(), count);
         for (const std::size_t got :
-             {slot.mesh.position.size(), slot.mesh.normal.size(), slot.mesh.velocity.size(),
-              slot.mesh.slope_variance.size(), slot.mesh.coverage.size()})
+             {slot.mesh.vectors(Product::Position).size(), slot.mesh.vectors(Product::Normal).size(),
+              slot.mesh.vectors(Product::Velocity).size(), slot.mesh.vectors(Product::SlopeVariance).size(),
+              slot.mesh.numbers(Product::Coverage).size()})
             EXPECT_EQ(got, count);
         std::vector<glm::vec3> position(count), normal(count), variance(count);
         frame.set(scene.shot.time_s(f));
         Results<float> results;
-        results.position = {position.data()};
-        results.normal = {normal.data()};
-        results.slope_variance = {variance.data()};
+        results.set(Product::Position, {position.data()});
+        results.set(Product::Normal, {normal.data()});
+        results.set(Product::SlopeVariance, {variance.data()});
         evaluate(frame, 0,
                  Points<float>{.origin_m = grid.origin_m,
                                .count = count,
@@ -131,20 +132,23 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesWithOneTopology) {
                  results);
         float nearest_m = 1e9f;
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::vec3 p = slot.mesh.position[i], v = slot.mesh.velocity[i];
-            ASSERT_TRUE(std::isfinite(p.x + p.y + p.z + v.x + v.y + v.z + slot.mesh.coverage[i]));
+            const glm::vec3 p = slot.mesh.vectors(Product::Position)[i],
+                            v = slot.mesh.vectors(Product::Velocity)[i];
+            ASSERT_TRUE(
+                std::isfinite(p.x + p.y + p.z + v.x + v.y + v.z + slot.mesh.numbers(Product::Coverage)[i]));
             // In the world: the camera's nadir away from where the grid has its origin; the sum is rounded
             // once.
             EXPECT_EQ(p, glm::vec3(static_cast<float>(grid.origin_m.x + static_cast<double>(position[i].x)),
                                    static_cast<float>(grid.origin_m.y + static_cast<double>(position[i].y)),
                                    position[i].z));
-            EXPECT_EQ(slot.mesh.normal[i], normal[i]);
-            EXPECT_EQ(slot.mesh.slope_variance[i], variance[i]);
+            EXPECT_EQ(slot.mesh.vectors(Product::Normal)[i], normal[i]);
+            EXPECT_EQ(slot.mesh.vectors(Product::SlopeVariance)[i], variance[i]);
             nearest_m = std::min(nearest_m, std::hypot(p.x - 2e3f, p.y - (f == 1 ? -60.0f : -50.0f)));
         }
         EXPECT_LT(nearest_m, 60.0f);
         // Far away everything is hidden, near by much is shown: footprints differ from point to point.
-        EXPECT_LT(slot.mesh.slope_variance.front().x, 0.9f * slot.mesh.slope_variance.back().x);
+        EXPECT_LT(slot.mesh.vectors(Product::SlopeVariance).front().x,
+                  0.9f * slot.mesh.vectors(Product::SlopeVariance).back().x);
     }
 }
 

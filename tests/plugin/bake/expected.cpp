@@ -43,11 +43,11 @@ void write_expected(const std::string& shot_file, const std::string& file) {
     for (int f = scene.shot.first_frame; f <= scene.shot.last_frame; ++f) {
         frame.set(scene.shot.time_s(f));
         Results<float> results;
-        results.position = {position.data()};
-        results.normal = {normal.data()};
-        results.velocity = {velocity.data()};
-        results.slope_variance = {variance.data()};
-        results.coverage = {whitecaps.data()};
+        results.set(Product::Position, {position.data()});
+        results.set(Product::Normal, {normal.data()});
+        results.set(Product::Velocity, {velocity.data()});
+        results.set(Product::SlopeVariance, {variance.data()});
+        results.set(Product::Coverage, {whitecaps.data()});
         evaluate(frame, 0, Points<float>{.count = rest.size(), .rest_m = {rest.data()}}, results);
         const auto vectors = [&](const std::vector<glm::vec3>& v) {
             return json_array(&v[0].x, 3 * v.size());

@@ -67,7 +67,7 @@ TEST_F(BakedMaps, LieAsAMapWithNorthOnTop) {
     const glm::vec2 rest(-300.0 + i * spacing_m, -300.0 + j * spacing_m);
     glm::vec3 displacement(0.0f);
     Results<float> results;
-    results.displacement = {&displacement};
+    results.set(Product::Displacement, {&displacement});
     evaluate(frame, 0, Points<float>{.count = 1, .rest_m = {&rest}}, results);
     for (int c = 0; c < 3; ++c)
         EXPECT_EQ(test::read_scanlines(file, std::string(1, "RGB"[c])).at(i, j), displacement[c])

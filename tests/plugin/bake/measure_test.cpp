@@ -9,9 +9,10 @@ namespace pelagic {
 namespace {
 
 std::size_t bytes_of(const Values& values) {
-    const auto of = [](const auto&... list) { return ((list.size() * sizeof(list[0])) + ...); };
-    return of(values.position, values.displacement, values.normal, values.velocity, values.slope_variance,
-              values.jacobian, values.coverage);
+    std::size_t bytes = 0;
+    for (const ProductRow& row : kProductTable)
+        bytes += values.size(row.product) * row.components * sizeof(float);
+    return bytes;
 }
 
 Scene small() {

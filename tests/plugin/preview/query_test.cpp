@@ -78,10 +78,10 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
     const bool asks_coverage = query.products[index(Product::Coverage)];
     Answers cpu(count);
     Results<float> results;
-    results.position = {cpu.position.data()};
-    results.normal = {cpu.normal.data()};
-    results.slope_variance = {cpu.slope_variance.data()};
-    if (asks_coverage) results.coverage = {cpu.coverage.data()};
+    results.set(Product::Position, {cpu.position.data()});
+    results.set(Product::Normal, {cpu.normal.data()});
+    results.set(Product::SlopeVariance, {cpu.slope_variance.data()});
+    if (asks_coverage) results.set(Product::Coverage, {cpu.coverage.data()});
     evaluate(frame, 0,
              Points<float>{.origin_m = at.origin_m,
                            .count = count,

@@ -1,0 +1,109 @@
+// What evaluate() gives at a point, described once: everything that lists products iterates this table. A new
+// product is an enumerator, a row and the formula in core/evaluate/kernels.cpp.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <stdexcept>
+
+#include "core/plan/fields.h"
+
+namespace pelagic {
+
+enum class Product { Position, Displacement, Normal, Velocity, SlopeVariance, JacobianMoments, Coverage };
+
+struct ProductRow {
+    Product product;
+    const char* identifier;   // in Python and in messages to programs: "slope_variance"
+    const char* name;         // for people: "slope variance"
+    std::size_t components;   // of a point's value: 3, or 1
+    FieldSet needs;           // the sums that it is derived from
+    bool counts_what_hides;   // whether it needs to know what a footprint hides
+    const char* why;          // what the sums are needed for, or why there are none
+    const char* description;  // of the values, with their unit
+};
+
+inline constexpr auto kProductTable = std::to_array<ProductRow>({
+    {Product::Position, "position", "position", 3, fields(Field::Height, Field::Dx, Field::Dy), false,
+     "the displaced point", "relative to the points' origin, z up [m]"},
+    {Product::Displacement, "displacement", "displacement", 3, fields(Field::Height, Field::Dx, Field::Dy),
+     false, "the displaced point less the point at rest", "position less rest [m]"},
+    {Product::Normal, "normal", "normal", 3,
+     fields(Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy, Field::Dxy), false,
+     "the cross product of the displaced tangents",
+     "unit; its z is negative where the surface has folded over"},
+    {Product::Velocity, "velocity", "velocity", 3,
+     fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ), false, "the sums' time derivative",
+     "of the water that rests at the point [m/s]"},
+    {Product::SlopeVariance, "slope_variance", "slope variance", 3, FieldSet(), true,
+     "a remainder of the spectrum: no transform",
+     "xx, yy, xy of the slopes that the pixel footprint hides, at rest positions"},
+    {Product::JacobianMoments, "jacobian", "Jacobian moments", 3, fields(Field::Dxx, Field::Dyy, Field::Dxy),
+     true, "J and the variance that the footprint hides",
+     "mean, variance (not negative) and third cumulant of J in the pixel footprint"},
+    {Product::Coverage, "coverage", "whitecap coverage", 1, fields(Field::Dxx, Field::Dyy, Field::Dxy), true,
+     "where J falls below the threshold of breaking", "whitecaps, 0 … 1"},
+});
+
+inline constexpr std::size_t kProductCount = kProductTable.size();
+using ProductSet = std::bitset<kProductCount>;
+
+constexpr std::size_t index(Product product) {
+    return static_cast<std::size_t>(product);
+}
+constexpr const ProductRow& row_of(Product product) {
+    return kProductTable[index(product)];
+}
+static_assert(
+    [] {
+        for (std::size_t i = 0; i < kProductCount; ++i) {
+            const ProductRow& row = kProductTable[i];
+            if (index(row.product) != i || (row.components != 1 && row.components != 3)) return false;
+        }
+        return true;
+    }(),
+    "rows stand in the order of the enumerators; a value has 1 or 3 components");
+
+template <class... E>
+constexpr ProductSet products(E... wanted) {
+    return ProductSet((0ull | ... | (1ull << index(wanted))));
+}
+
+inline FieldSet fields_of(ProductSet wanted) {
+    FieldSet needed;
+    for (const ProductRow& row : kProductTable)
+        if (wanted[index(row.product)]) needed |= row.needs;
+    return needed;
+}
+
+// The products that count what a footprint hides.
+inline ProductSet hidden_products() {
+    ProductSet hidden;
+    for (const ProductRow& row : kProductTable) hidden[index(row.product)] = row.counts_what_hides;
+    return hidden;
+}
+
+// A product whose values have this many components. Of a constant, the compiler checks it.
+template <std::size_t kComponents>
+class ProductWith {
+  public:
+    consteval ProductWith(Product product) : product_(checked(product).product_) {}
+    // Of a variable: throws std::logic_error where the number is another.
+    static constexpr ProductWith checked(Product product) {
+        if (row_of(product).components != kComponents)
+            throw std::logic_error("the product's values have another number of components");
+        return ProductWith(product, Checked());
+    }
+    constexpr operator Product() const { return product_; }
+
+  private:
+    struct Checked {};
+    constexpr ProductWith(Product product, Checked) : product_(product) {}
+
+    Product product_;
+};
+using VectorProduct = ProductWith<3>;
+using NumberProduct = ProductWith<1>;
+
+}  // namespace pelagic

@@ -5,10 +5,11 @@
 #include <string>
 
 #include "core/base/constants.h"
+#include "core/plan/fingerprint.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/plan.h"
-#include "core/plan/tables.h"
+#include "core/plan/products.h"
 #include "core/scene/names.h"
 #include "core/spectrum/viscous_cutoff.h"
 
@@ -104,22 +105,16 @@ std::string explain(const Plan& plan) {
     for (const PlannedQuery& planned : plan.queries) {
         page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m, plan.filter.n_min) +
                 "\n";
-        if (!planned.query.map && scene.surface.kind == SurfaceKind::ProjectedGrid) {
-            const ProjectedGridSize size = projected_grid_needs(*plan.from).size;
-            page += format(
-                "    what the camera sees: %d × %d cells of at most %g pixels, cast onto the sea at each "
-                "frame;\n"
-                "    %zu footprints, each point's cell between two of them\n",
-                size.columns, size.rows, scene.surface.cell_px, planned.query.pixel_m.size());
-        }
         for (const ProductRow& row : kProductTable)
             if (planned.query.products[index(row.product)])
                 page += format("    %-18s ← %s (%s)\n", row.name,
                                field_list(fields_of(products(row.product)) & ~plan.dropped).c_str(), row.why);
     }
     if (plan.queries.empty()) page += "  none: no mesh and no maps are asked for\n";
+    for (const PlannedOutput& output : plan.outputs)
+        if (output.has_surface) page += "  the mesh is " + plan.surface->describe() + "\n";
     if (scene.output.mesh != MeshFormat::None) {
-        for (const AttributeRow& row : kAttributeTable) {
+        for (const AttributeRow& row : attribute_table()) {
             bool asked = false;
             for (const MeshAttribute attribute : scene.output.attributes) asked |= attribute == row.attribute;
             if (!asked)
@@ -130,13 +125,20 @@ std::string explain(const Plan& plan) {
 
     page += "\nEffects\n";
     for (const Reason& reason : plan.closure) page += "  " + reason.what + ": " + reason.why + "\n";
-    if (scene.effects.whitecaps) {
-        bool used = false;
-        for (const PlannedQuery& planned : plan.queries)
-            used |= planned.query.products[index(Product::Coverage)];
-        page += used ? format("  whitecaps: coverage from %d moments of the Jacobian\n",
-                              plan.knobs.third_moment ? 3 : 2)
-                     : std::string("  whitecaps: on, but no output asks for them: nothing is computed\n");
+    bool has_coverage = false;
+    for (const PlannedQuery& planned : plan.queries)
+        has_coverage |= planned.query.products[index(Product::Coverage)];
+    if (has_coverage)
+        page += format("  whitecaps: coverage from %d moments of the Jacobian\n", plan.knobs.third_moment ? 3 : 2);
+    else if (!products_gone(scene)[index(Product::Coverage)])
+        page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
+    for (const PlannedEffect& effect : plan.effects) {
+        page += std::string("  ") + effect.row->name + ": " + std::to_string(effect.queries.size()) +
+                " queries of its own, " + bytes_text(effect.needs.bytes) + " a frame";
+        if (effect.needs.earlier)
+            page += format(", at %d earlier times %g s apart", effect.needs.earlier->count,
+                           effect.needs.earlier->step_s);
+        page += "\n";
     }
 
     if (plan.trains) page += "\nWave trains\n" + trains_text(plan);
@@ -185,7 +187,9 @@ std::string explain(const Plan& plan) {
                    std::string(word_of(scene.quality.level)).c_str(),
                    plan.knobs.double_precision ? "double" : "single", plan.knobs.spline_taps,
                    plan.knobs.oversampling);
-    page += "Fingerprint " + plan.fingerprint_text() + "\n";
+    for (const PlannedOutput& output : plan.outputs)
+        page += "Fingerprint of the " + plan.queries[output.query].query.name + " " +
+                output_fingerprint(plan, output) + "\n";
     return page;
 }
 

@@ -1,45 +1,33 @@
 #include "core/plan/plan.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include "core/base/constants.h"
 #include "core/plan/extent.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/mode_lattice.h"
-#include "core/plan/tables.h"
-#include "core/scene/canonical.h"
+#include "core/plan/quality.h"
+#include "core/plan/products.h"
 #include "core/scene/cascade_bands.h"
 
 namespace pelagic {
 namespace {
 
-// Raised whenever the same scene gives other bits or other files than before, so that frames of two kinds are
-// never taken for one bake.
-constexpr int kRevision = 2;
-
 Knobs knobs_of(QualityLevel level) {
-    // Errors and times of each row: tests/bench, "sampling".
-    switch (level) {
-        case QualityLevel::Draft:
-            return {.spline_taps = 4, .oversampling = 1.25};
-        case QualityLevel::Preview:
-            return {.spline_taps = 4, .oversampling = 2.0};
-        case QualityLevel::Final:
-            return {.spline_taps = 6, .oversampling = 2.0};
-        case QualityLevel::Reference:
-            return {.spline_taps = 6, .oversampling = 4.0, .third_moment = true, .double_precision = true};
-    }
-    throw std::invalid_argument("quality level out of range");
+    const QualityRow& row = quality_of(level);
+    return {.spline_taps = row.spline_taps,
+            .oversampling = row.oversampling,
+            .third_moment = true,
+            .double_precision = row.double_precision};
+}
+
+// The coarsest power of two [m] that is no coarser than the footprint: a rung of every view's ladder.
+double rung_below(double footprint_m) {
+    return std::exp2(std::floor(std::log2(footprint_m)));
 }
 
 // The smallest even number ≥ n without a prime factor above 7: FFTW has fast code for those.
@@ -73,10 +61,8 @@ bool has_energy(const DirectionalSpectrum& spectrum, double k_lower, double k_up
 
 int level_index(Plan& plan, const Level& level) {
     const auto same = [&](const Level& other) {
-        const bool lattices = level.lattice.has_value() == other.lattice.has_value() &&
-                              (!level.lattice || (level.lattice->first_m == other.lattice->first_m &&
-                                                  level.lattice->spacing_m == other.lattice->spacing_m));
-        return level.footprint_m == other.footprint_m && lattices && level.only_cascade == other.only_cascade;
+        return level.footprint_m == other.footprint_m && level.lattice == other.lattice &&
+               level.only_cascade == other.only_cascade;
     };
     const auto found = std::find_if(plan.levels.begin(), plan.levels.end(), same);
     if (found != plan.levels.end()) return static_cast<int>(found - plan.levels.begin());
@@ -129,6 +115,11 @@ void add_grids(Plan& plan, int cascade_index) {
         const Level& at = plan.levels[level];
         if (at.only_cascade && *at.only_cascade != cascade_index) continue;
         const FieldSet wanted = fields_at(plan, level);
+        // A tile shows the modes that its own nodes can hold; the cascade may have more, for a nearby camera.
+        const double resolution =
+            at.only_cascade && at.lattice
+                ? std::min<double>(cascade.resolution, std::round(cascade.size_m / at.lattice->spacing_m))
+                : cascade.resolution;
         const double cutoff = std::min(plan.filter.cutoff(at.footprint_m), cascade.k_upper);
         // A band is of cells and ends with their corners; a footprint weighs the modes themselves, and the
         // one that ends it weighs nothing: a mesh on every second node of a tile shows half of its modes, not
@@ -136,7 +127,7 @@ void add_grids(Plan& plan, int cascade_index) {
         const double filter_modes =
             std::ceil(plan.filter.cutoff(at.footprint_m) * cascade.size_m / kTwoPi * kRounding);
         const int radius = static_cast<int>(std::min(
-            {0.5 * cascade.resolution, filter_modes, modes_within(cascade.size_m, cascade.k_upper) + 1.0}));
+            {0.5 * resolution, filter_modes, modes_within(cascade.size_m, cascade.k_upper) + 1.0}));
         if (cutoff <= cascade.k_lower || radius < 2) continue;
         // What is hidden is the spectrum less what these modes hold, whether they are also asked for fields
         // or not.
@@ -170,34 +161,6 @@ void add_grids(Plan& plan, int cascade_index) {
         cascade.why_empty = "all its waves are too short for the footprints asked for: kept as variance";
 }
 
-std::uint64_t fnv1a(std::string_view text) {  // Fowler, Noll, Vo: 64-bit FNV-1a
-    std::uint64_t hash = 0xcbf29ce484222325u;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-    return hash;
-}
-
-// The scene's canonical text without what frames don't hold: a new lens, another sun or other water leaves
-// each of them as it is. Unless the mesh is the camera's own.
-std::string what_frames_hold(const PreparedScene& prepared) {
-    const Scene& scene = prepared.scene;
-    const bool camera_shapes_mesh =
-        scene.surface.kind == SurfaceKind::ProjectedGrid && scene.output.mesh != MeshFormat::None;
-    const auto is_held = [&](const std::string& line) {
-        if (line.starts_with("light.") || line.starts_with("water.")) return false;
-        return camera_shapes_mesh || !(line.starts_with("camera.") || line.starts_with("surface.cell_px "));
-    };
-    std::istringstream lines(canonical(scene));
-    std::string text = "pelagic " PELAGIC_VERSION " revision " + std::to_string(kRevision);
-    for (std::string line; std::getline(lines, line);)
-        if (is_held(line)) text += "\n" + line;
-    // The grid is as large as the shot's widest frame asks for: the range decides, too.
-    if (camera_shapes_mesh) {
-        const ProjectedGridSize size = projected_grid_needs(prepared).size;
-        text += "\n" + std::to_string(size.columns) + " × " + std::to_string(size.rows);
-    }
-    return text;
-}
-
 }  // namespace
 
 std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double finest_footprint_m) {
@@ -223,7 +186,7 @@ std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double 
         } else if (finest_footprint_m > 0.0) {
             // The finest cascade goes as far as somebody looks. Modes don't depend on it: more only adds
             // detail.
-            const double modes = FootprintFilter{}.cutoff(finest_footprint_m) * sizes[i] / (kTwoPi);
+            const double modes = FootprintFilter{}.cutoff(finest_footprint_m) * sizes[i] / kTwoPi;
             resolution =
                 static_cast<int>(std::clamp(2.0 * (std::ceil(modes) + 1.0), 16.0, 1.0 * kLargestResolution));
         }
@@ -232,75 +195,33 @@ std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double 
     return cascades;
 }
 
-namespace {
-
-// A map's levels hide more and more: the footprints of its mip pyramid, halved sizes rounded down as OpenEXR
-// does.
-std::vector<double> mip_footprints(double size_m, int n) {
-    std::vector<double> footprints_m;
-    for (; n >= 1; n /= 2) footprints_m.push_back(size_m / n);
-    return footprints_m;
-}
-
-// What the effects that are off take away from meshes and maps.
-ProductSet outputs_gone(const Scene& scene) {
-    ProductSet gone;
-    for (const EffectRow& row : kEffectTable)
-        if (!row.is_on(scene)) gone |= row.outputs_gone();
-    return gone;
-}
-
-// The queries of one square of texels for each map asked for.
-void add_map_queries(std::vector<Query>& queries, const Scene& scene, double size_m, int n,
-                     std::optional<int> cascade) {
-    for (const MapKind map : scene.output.maps)
-        for (const MapRow& row : kMapTable) {
-            if (row.map != map) continue;
-            Query query;
-            query.name =
-                (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) + row.name;
-            query.products = row.needs() & ~outputs_gone(scene);
-            query.map = map;
-            query.points = static_cast<std::size_t>(n) * n;
-            query.lattice = Lattice{-0.5 * size_m, size_m / n};
-            query.only_cascade = cascade;
-            query.pixel_m = row.asks_each_level ? mip_footprints(size_m, n) : std::vector{size_m / n};
-            // A tile's nodes carry each of its modes: there is nothing to filter out.
-            if (cascade) query.pixel_m.front() = 0.0;
-            query.cell_m = {query.pixel_m.front()};
-            queries.push_back(std::move(query));
-        }
-}
-
-}  // namespace
-
 Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options) {
     Query query;
     query.name = "view";
     query.is_view = true;
     query.products = options.products;
-    if (query.products.none()) {
-        query.products = products(Product::Position, Product::Normal, Product::SlopeVariance);
-        if (prepared.scene.effects.whitecaps) query.products.set(index(Product::Coverage));
-    }
+    if (query.products.none())
+        query.products = products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage) &
+                         ~products_gone(prepared.scene);
     query.points = options.points;
     const FootprintFilter filter;
-    query.pixel_m = {options.finest_pixel_m};
-    const auto cascades = resolve_cascades(prepared, options.finest_pixel_m);
-    if (!cascades.empty()) {
-        // Where the finest cascade's shortest wave is still whole; finer footprints change nothing.
-        const CascadeSize& finest = cascades.back();
-        const double whole_m = finest.size_m / (0.5 * finest.resolution) / filter.n_max;
-        const double none_m = cascades.front().size_m / filter.n_min;
-        double rung_m = std::max(options.finest_pixel_m, whole_m);
-        if (rung_m > options.finest_pixel_m) query.pixel_m.push_back(rung_m);
-        while (rung_m < none_m) query.pixel_m.push_back(rung_m *= 2.0);
+    const double finest_m = options.finest_pixel_m > 0.0 ? rung_below(options.finest_pixel_m) : 0.0;
+    const auto cascades = resolve_cascades(prepared, finest_m);
+    // Trains see each point's own footprints, whatever the ladder.
+    query.cell_m = query.pixel_m = {0.0};
+    if (cascades.empty()) return query;
+    // Where the finest cascade's shortest wave is still whole: finer footprints change nothing.
+    const CascadeSize& finest = cascades.back();
+    const double whole_m = rung_below(finest.size_m / (0.5 * finest.resolution) / filter.n_max);
+    const double none_m = cascades.front().size_m / filter.n_min;
+    if (finest_m > 0.0) query.pixel_m.clear();
+    for (double rung_m = std::max(finest_m, whole_m);; rung_m *= 2.0) {
+        query.pixel_m.push_back(rung_m);
+        if (rung_m >= none_m) break;
     }
     const auto coarser = std::upper_bound(query.pixel_m.begin() + 1, query.pixel_m.end(),
                                           std::max(options.finest_cell_m, options.finest_pixel_m));
     query.cell_m.assign(coarser - 1, query.pixel_m.end());
-    // The trains see each point's own cell, and nothing finer than the first rung.
-    if (cascades.empty()) query.cell_m = {std::max(options.finest_cell_m, options.finest_pixel_m)};
     return query;
 }
 
@@ -311,106 +232,67 @@ ProjectedGridOptions projected_grid_options(const PreparedScene& prepared) {
             .significant_height_m = extent.significant_height_m};
 }
 
-ProjectedGridNeeds projected_grid_needs(const PreparedScene& prepared) {
-    const Scene& scene = prepared.scene;
-    const ProjectedGridOptions options = projected_grid_options(prepared);
-    const Camera& camera = scene.camera;
-    // Before its first key and after its last the camera stands still.
-    const auto last_key = [&](int frame) {
-        return camera.keys.empty() ? scene.shot.first_frame
-                                   : std::clamp(frame, camera.keys.front().frame, camera.keys.back().frame);
+namespace {
+
+void check_footprints(const Query& query) {
+    const auto rising = [](const std::vector<double>& footprints) {
+        return !footprints.empty() && footprints.front() >= 0.0 && std::isfinite(footprints.back()) &&
+               std::adjacent_find(footprints.begin(), footprints.end(),
+                                  [](double a, double b) { return !(a < b); }) == footprints.end();
     };
-    const int first = last_key(scene.shot.first_frame), last = last_key(scene.shot.last_frame);
-    const auto needs_at = [&](int frame) { return projected_grid_needs(view_at(camera, frame), options); };
-    return tbb::parallel_reduce(
-        tbb::blocked_range<int>(first, last + 1), needs_at(first),
-        [&](const tbb::blocked_range<int>& frames, ProjectedGridNeeds needs) {
-            for (int frame = frames.begin(); frame != frames.end(); ++frame)
-                needs = together(needs, needs_at(frame));
-            return needs;
-        },
-        together);
+    if (!rising(query.cell_m) || !rising(query.pixel_m))
+        throw std::invalid_argument("query \"" + query.name +
+                                    "\": footprints must be at least one, finite, from 0 up and strictly rising");
 }
 
-std::vector<Query> bake_queries(const PreparedScene& prepared) {
-    const Scene& scene = prepared.scene;
-    const Output& output = scene.output;
-    const Surface& surface = scene.surface;
-    const double spacing_m = surface.size_m / surface.resolution;
-    double finest_m = std::numeric_limits<double>::infinity();
-    std::vector<Query> queries;
-    if (output.mesh != MeshFormat::None) {
-        Query mesh;
-        mesh.name = "mesh";
-        mesh.products = products(Product::Position);
-        for (const MeshAttribute attribute : output.attributes)
-            for (const AttributeRow& row : kAttributeTable)
-                if (row.attribute == attribute) mesh.products.set(index(row.product));
-        mesh.products &= ~outputs_gone(scene);
-        if (surface.kind == SurfaceKind::ProjectedGrid) {
-            // A file's vertices are its only samples: cells filter normals, too, as in a patch.
-            const ProjectedGridNeeds needs = projected_grid_needs(prepared);
-            mesh = view_query(prepared, {.products = mesh.products,
-                                         .finest_cell_m = needs.finest_cell_m,
-                                         .finest_pixel_m = needs.finest_cell_m,
-                                         .points = points_of(needs.size)});
-            mesh.name = "mesh";
-            finest_m = needs.finest_cell_m;
-        } else {
-            mesh.cell_m = mesh.pixel_m = {spacing_m};
-            mesh.points = (surface.resolution + std::size_t(1)) * (surface.resolution + std::size_t(1));
-            mesh.lattice = Lattice{-0.5 * surface.size_m, spacing_m};
-            finest_m = spacing_m;
+// The query with its levels, at the end of the plan's.
+int add_query(Plan& plan, const Query& query) {
+    check_footprints(query);
+    PlannedQuery planned{query, {}, {}};
+    for (double footprint_m : query.cell_m)
+        planned.cell_levels.push_back(level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
+    for (double footprint_m : query.pixel_m)
+        planned.pixel_levels.push_back(level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
+    plan.queries.push_back(std::move(planned));
+    return static_cast<int>(plan.queries.size()) - 1;
+}
+
+// What the effects add to the plan, and take from it.
+void add_effects(Plan& plan, std::span<const EffectRow> table) {
+    const Scene& scene = plan.from->scene;
+    for (const EffectRow& row : table) {
+        if (!row.is_on(scene)) {
+            plan.dropped |= row.fields_gone();
+            plan.closure.push_back({std::string("no ") + row.name, row.why_off});
+            continue;
         }
-        queries.push_back(std::move(mesh));
+        PlannedEffect effect{.row = &row, .needs = row.asks(scene), .queries = {}};
+        for (const Query& query : effect.needs.queries) effect.queries.push_back(add_query(plan, query));
+        if (!effect.queries.empty() || effect.needs.bytes > 0) plan.effects.push_back(std::move(effect));
     }
-    if (!output.maps.empty()) finest_m = std::min(finest_m, surface.size_m / output.map_resolution);
-    add_map_queries(queries, scene, surface.size_m, output.map_resolution, std::nullopt);
-    if (output.cascade_tiles) {
-        const auto cascades = resolve_cascades(prepared, finest_m);
-        for (int i = 0; i < static_cast<int>(cascades.size()); ++i)
-            add_map_queries(queries, scene, cascades[i].size_m, cascades[i].resolution, i);
-    }
-    return queries;
 }
 
-Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Query>& queries) {
+}  // namespace
+
+Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Query>& queries,
+               const PlanOptions& options) {
     Plan plan;
     plan.from = std::move(from);
     const PreparedScene& prepared = *plan.from;
     const Scene& scene = prepared.scene;
     plan.knobs = knobs_of(scene.quality.level);
+    plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
     plan.choppiness = scene.waves.choppiness;
-    plan.fingerprint = fnv1a(what_frames_hold(prepared));
+    for (const Query& query : queries) add_query(plan, query);
+    add_effects(plan, options.effects);
 
     double finest_m = std::numeric_limits<double>::infinity(), trains_finest_m = finest_m;
-    for (const Query& query : queries) {
-        const auto rising = [](const std::vector<double>& footprints) {
-            return !footprints.empty() && footprints.front() >= 0.0 && std::isfinite(footprints.back()) &&
-                   std::adjacent_find(footprints.begin(), footprints.end(),
-                                      [](double a, double b) { return !(a < b); }) == footprints.end();
-        };
-        if (!rising(query.cell_m) || !rising(query.pixel_m))
-            throw std::invalid_argument(
-                "query \"" + query.name +
-                "\": footprints must be at least one, finite, from 0 up and strictly rising");
-        PlannedQuery planned{query, {}, {}};
-        for (double footprint_m : query.cell_m)
-            planned.cell_levels.push_back(
-                level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
-        for (double footprint_m : query.pixel_m)
-            planned.pixel_levels.push_back(
-                level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
-        if (!query.only_cascade) finest_m = std::min({finest_m, query.cell_m.front(), query.pixel_m.front()});
-        if (!query.only_cascade && !query.is_view)
-            trains_finest_m = std::min({trains_finest_m, query.cell_m.front(), query.pixel_m.front()});
-        plan.queries.push_back(std::move(planned));
-    }
-
-    for (const EffectRow& row : kEffectTable) {
-        if (row.is_on(scene)) continue;
-        plan.dropped |= row.fields_gone();
-        plan.closure.push_back({std::string("no ") + row.name, row.why_off});
+    for (const PlannedQuery& planned : plan.queries) {
+        const Query& query = planned.query;
+        if (query.only_cascade) continue;
+        const double own_m = std::min(query.cell_m.front(), query.pixel_m.front());
+        finest_m = std::min(finest_m, own_m);
+        if (!query.is_view) trains_finest_m = std::min(trains_finest_m, own_m);
     }
     const double finest_footprint_m = std::isfinite(finest_m) ? finest_m : 0.0;
     if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(prepared, trains_finest_m);
@@ -438,13 +320,46 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     return plan;
 }
 
-Plan make_plan(const Scene& scene, const std::vector<Query>& queries) {
-    return make_plan(prepare(scene), queries);
+Plan make_plan(const Scene& scene, const std::vector<Query>& queries, const PlanOptions& options) {
+    return make_plan(prepare(scene), queries, options);
 }
 
-Plan make_plan(const Scene& scene) {
-    const auto prepared = prepare(scene);
-    return make_plan(prepared, bake_queries(*prepared));
+Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const int> frames) {
+    const Extent& extent = prepared->extent;
+    const std::shared_ptr<const Surface> surface =
+        make_surface(prepared->scene, {.height_m = extent.height_m,
+                                       .reach_m = extent.reach_m,
+                                       .significant_height_m = extent.significant_height_m});
+    const OutputContext context{.prepared = *prepared,
+                                .surface = *surface,
+                                .frames = frames,
+                                .gone = products_gone(prepared->scene)};
+    std::vector<OutputRequest> requests;
+    for (const OutputRow& row : output_table()) row.add(row, context, requests);
+    std::vector<Query> queries;
+    std::vector<PlannedOutput> outputs;
+    for (const OutputRequest& request : requests) {
+        PlannedOutput output{.row = request.row,
+                             .map = request.map,
+                             .cascade = request.cascade,
+                             .query = static_cast<int>(queries.size()),
+                             .has_surface = request.surface != nullptr,
+                             .feeds = request.row->feeds};
+        if (output.has_surface) output.feeds |= surface->feeds();
+        if ((request.query.products & products(Product::JacobianMoments, Product::Coverage)).any())
+            output.feeds |= feeds(Feed::Foam);
+        outputs.push_back(std::move(output));
+        queries.push_back(request.query);
+    }
+    Plan plan = make_plan(std::move(prepared), queries);
+    plan.outputs = std::move(outputs);
+    plan.surface = surface;
+    return plan;
+}
+
+Plan plan_bake(const Scene& scene) {
+    constexpr int kFrames = 64;
+    return plan_bake(prepare(scene), representative_frames(scene, kFrames));
 }
 
 bool CascadePlan::moves() const {
@@ -486,6 +401,7 @@ std::size_t Plan::frame_bytes() const {
     for (const CascadePlan& cascade : cascades)
         for (const Grid& grid : cascade.grids)
             bytes += grid.fields.count() * grid_bytes(grid.resolution, knobs.double_precision);
+    for (const PlannedEffect& effect : effects) bytes += effect.needs.bytes;
     return bytes;
 }
 
@@ -509,12 +425,6 @@ std::size_t Plan::output_bytes() const {
         bytes += square.first * 2 * (knobs.double_precision ? sizeof(double) : sizeof(float));
     }
     return bytes;
-}
-
-std::string Plan::fingerprint_text() const {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(fingerprint));
-    return text;
 }
 
 }  // namespace pelagic

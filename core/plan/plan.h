@@ -8,41 +8,21 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/plan/effects.h"
 #include "core/plan/filter.h"
+#include "core/plan/outputs.h"
 #include "core/plan/prepared_scene.h"
 #include "core/plan/products.h"
+#include "core/plan/query.h"
 #include "core/plan/trains.h"
 #include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
 
 namespace pelagic {
-
-// Points that lie at first_m + i·spacing_m in x and in y, seen from the world's origin.
-struct Lattice {
-    double first_m = 0.0;
-    double spacing_m = 1.0;
-};
-
-// A batch of points that somebody will hand to evaluate(): what is wanted there, and how fine.
-struct Query {
-    std::string name;     // for explain(): "mesh", "map normal", …
-    ProductSet products;  // evaluate() writes these and no others
-    // Footprints [m], rising: one for points that all have the same, several as a ladder between which each
-    // point's own footprint is blended. 0: nothing is filtered. `cell_m` filters positions and velocities,
-    // `pixel_m` everything that comes from derivatives.
-    std::vector<double> cell_m{0.0};
-    std::vector<double> pixel_m{0.0};
-    std::size_t points = 0;           // how many at a time, for explain()'s account of memory
-    std::optional<Lattice> lattice;   // where the points are known to lie on one: no error of sampling
-    std::optional<int> only_cascade;  // a cascade's own tile: the others count as unresolved
-    // Of a camera, whose place must not decide which wave trains there are: pictures from near and far, and
-    // bakes, are of one sea.
-    bool is_view = false;
-    std::optional<MapKind> map;  // what a bake makes of the answers; a mesh where there is none
-};
 
 // How a point finds its value in a grid of samples.
 enum class Sampling {
@@ -88,17 +68,24 @@ struct Level {
     std::optional<int> only_cascade;
 };
 
-// Quality, resolved into knobs. Each has a measured error and a measured time: tests/bench.
+// Quality, resolved into knobs (core/plan/quality.h).
 struct Knobs {
-    int spline_taps = 6;        // 4: cubic B-spline, 6: quintic
-    double oversampling = 2.0;  // grid nodes per Nyquist sample of the shortest wave, where a spline reads it
-    bool third_moment = true;   // coverage from three moments of J, or from two (Dupuy and Bruneton)
+    int spline_taps = 6;
+    double oversampling = 2.0;
+    bool third_moment = true;  // coverage from three moments of J, or from two (Dupuy and Bruneton)
     bool double_precision = false;
 };
 
 struct PlannedQuery {
     Query query;
     std::vector<int> cell_levels, pixel_levels;  // into Plan::levels, parallel to the footprints
+};
+
+// An effect that asks for something, and where its queries stand.
+struct PlannedEffect {
+    const EffectRow* row = nullptr;
+    EffectNeeds needs;
+    std::vector<int> queries;  // into Plan::queries, parallel to needs.queries
 };
 
 // A line of the closure, for people: what runs, and because of what.
@@ -117,7 +104,9 @@ struct Plan {
     std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
     FieldSet dropped;                  // fields that are zero in this scene, whoever asks: never computed
     std::vector<Reason> closure;
-    std::uint64_t fingerprint = 0;  // of everything that decides what the files hold, except which frames
+    std::vector<PlannedEffect> effects;   // those that are on and ask for something
+    std::vector<PlannedOutput> outputs;   // of a bake; each has a query
+    std::shared_ptr<const Surface> surface;  // of a bake: where the mesh's points are
 
     int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid
     long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
@@ -127,11 +116,7 @@ struct Plan {
     // Points at rest, shared by queries over the same square, and one frame's results: each query's own, in
     // single precision as files hold them; in double, besides, an array a product as long as its longest.
     std::size_t output_bytes() const;
-    std::string fingerprint_text() const;  // 16 hexadecimal digits
 };
-
-// What baking this scene asks of the sea: the mesh and the maps, in the order of the shot file, tiles last.
-std::vector<Query> bake_queries(const PreparedScene&);
 
 struct ViewQueryOptions {
     // None: what a picture's light needs, that is positions, normals, what pixels hide of the slopes, and
@@ -143,20 +128,29 @@ struct ViewQueryOptions {
 };
 
 // A query for points at all distances from a camera: a ladder of footprints, each the double of the one
-// before, from the finest up to where no cascade has a wave to show. The ladder of the cells is a part of
-// that of the pixels, so that they share what they can. Named "view".
+// before. Its rungs are powers of two in metres, whatever the scene, from the last that is no coarser than the
+// finest footprint (one of 0 before them, if nothing may be filtered) up to where no cascade has a wave to show: a point's answer depends on the two rungs beside
+// its own footprints, and never on how fine other points are. The ladder of the cells is a part of that of
+// the pixels, so that they share what they can. Named "view".
 Query view_query(const PreparedScene&, const ViewQueryOptions& options = {});
 
-// The projected grid of the shot's camera.
+// The projected grid of the shot's camera, for pictures.
 ProjectedGridOptions projected_grid_options(const PreparedScene&);
-// What it needs at each of the shot's frames together.
-ProjectedGridNeeds projected_grid_needs(const PreparedScene&);
 
-// Throws std::invalid_argument when a query is malformed.
-Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&);
-// The same of a scene that nobody has prepared yet; without queries those of its bake.
-Plan make_plan(const Scene&, const std::vector<Query>&);
-Plan make_plan(const Scene&);
+// The plan of these queries, and of what the scene's effects ask for. Without `double_precision` as the quality
+// level has it. Throws std::invalid_argument when a query is malformed.
+struct PlanOptions {
+    std::optional<bool> double_precision{};
+    std::span<const EffectRow> effects = effect_table();
+};
+Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&, const PlanOptions& = {});
+Plan make_plan(const Scene&, const std::vector<Query>&, const PlanOptions& = {});
+
+// The plan of a bake of these frames: its outputs, in the order of the table, each with its query. Which frames
+// they are decides how fine a ladder the camera's own surfaces need, and nothing about any frame's bits.
+Plan plan_bake(std::shared_ptr<const PreparedScene>, std::span<const int> frames);
+// Of representative frames (core/surface/surface.h), for who wants to know what a bake is like.
+Plan plan_bake(const Scene&);
 
 // The cascades in force, largest first: the scene's own, or "auto" resolved for the finest footprint asked
 // for; none for a sea of trains alone.

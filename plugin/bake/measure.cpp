@@ -4,7 +4,7 @@
 #include <chrono>
 #include <memory>
 
-#include "core/plan/tables.h"
+#include "core/plan/products.h"
 #include "core/scene/names.h"
 #include "plugin/bake/sequence.h"
 

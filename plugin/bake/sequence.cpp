@@ -10,7 +10,7 @@
 
 #include "core/base/constants.h"
 #include "core/evaluate/values.h"
-#include "core/plan/tables.h"
+#include "core/plan/products.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "core/surface/patch.h"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/plan/grid_layout.h"
-#include "core/plan/tables.h"
+#include "core/plan/products.h"
 #include "plugin/preview/sea_renderer.h"
 
 namespace pelagic {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/plan/tables.h"
+#include "core/plan/products.h"
 
 namespace pelagic {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/evaluate/values.h"
 #include "core/plan/plan.h"
-#include "core/plan/tables.h"
+#include "core/plan/products.h"
 #include "core/scene/validate.h"
 #include "core/surface/projected_grid.h"
 

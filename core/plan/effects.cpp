@@ -1,0 +1,48 @@
+#include "core/plan/effects.h"
+
+#include <array>
+#include <cmath>
+
+#include "core/plan/plan.h"
+
+namespace pelagic {
+namespace {
+
+constexpr auto kNothing = [](const Scene&) { return EffectNeeds{}; };
+
+const std::array kEffectTable = std::to_array<EffectRow>({
+    {"horizontal displacement", [](const Scene& scene) { return scene.waves.choppiness > 0.0; },
+     "waves.choppiness is 0", [](Scene& scene) { scene.waves.choppiness = 0.0; }, horizontal_fields,
+     [] { return ProductSet(); }, kNothing},
+    {"whitecaps", [](const Scene& scene) { return scene.effects.whitecaps; }, "effects.whitecaps is false",
+     [](Scene& scene) {
+         scene.effects.whitecaps = false;
+         std::erase(scene.output.maps, MapKind::Whitecaps);  // would be a contradiction
+     },
+     [] { return FieldSet(); }, [] { return products(Product::JacobianMoments, Product::Coverage); },
+     kNothing},
+});
+
+}  // namespace
+
+std::span<const EffectRow> effect_table() {
+    return kEffectTable;
+}
+
+ProductSet products_gone(const Scene& scene, std::span<const EffectRow> table) {
+    ProductSet gone;
+    for (const EffectRow& row : table)
+        if (!row.is_on(scene)) gone |= row.products_gone();
+    return gone;
+}
+
+std::vector<double> times_before(const TimeLattice& lattice, double t_s) {
+    // The division may round up to the next whole number: a time after t isn't one before it.
+    double last = std::floor(t_s / lattice.step_s);
+    if (last * lattice.step_s > t_s) last -= 1.0;
+    std::vector<double> times_s;
+    for (int i = 0; i < lattice.count; ++i) times_s.push_back((last - i) * lattice.step_s);
+    return times_s;
+}
+
+}  // namespace pelagic

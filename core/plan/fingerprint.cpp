@@ -1,0 +1,94 @@
+#include "core/plan/fingerprint.h"
+
+#include <cstdio>
+
+#include "core/plan/products.h"
+#include "core/scene/canonical.h"
+#include "core/scene/text.h"
+
+namespace pelagic {
+namespace {
+
+void add_vector(std::string& text, const glm::dvec3& v) {
+    for (int i = 0; i < 3; ++i) text += ' ' + number_text(v[i]);
+}
+
+}  // namespace
+
+Fingerprint& Fingerprint::add(std::string_view text) {
+    // Fowler, Noll, Vo: FNV-1a. The zero byte keeps two texts apart from one that is both.
+    const auto take = [&](unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; };
+    for (const char c : text) take(static_cast<unsigned char>(c));
+    take(0);
+    return *this;
+}
+
+std::string Fingerprint::text() const {
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash_));
+    return digits;
+}
+
+std::string plan_text(const Plan& plan, int query_index) {
+    const PlannedQuery& planned = plan.queries.at(query_index);
+    const Query& query = planned.query;
+    std::string text = "precision " + std::string(plan.knobs.double_precision ? "double" : "single") +
+                       " taps " + std::to_string(plan.knobs.spline_taps) + " oversampling " +
+                       number_text(plan.knobs.oversampling) + " third " +
+                       std::to_string(plan.knobs.third_moment) + " filter " + number_text(plan.filter.n_min) +
+                       ' ' + number_text(plan.filter.n_max) + "\nproducts " + query.products.to_string() +
+                       " dropped " + plan.dropped.to_string() + '\n';
+    if (plan.trains && !query.only_cascade)
+        text += "trains " + std::to_string(plan.trains->count) + ' ' + number_text(plan.trains->longest_m) +
+                ' ' + number_text(plan.trains->shortest_m) + '\n';
+    if (query.lattice)
+        text += "lattice " + number_text(query.lattice->first_m) + ' ' +
+                number_text(query.lattice->spacing_m) + " points " + std::to_string(query.points) + '\n';
+    if (query.only_cascade) text += "cascade " + std::to_string(*query.only_cascade) + '\n';
+    text += query.is_view ? "view\n" : "footprints";
+    if (!query.is_view) {
+        for (const auto* footprints_m : {&query.cell_m, &query.pixel_m})
+            for (const double footprint_m : *footprints_m) text += ' ' + number_text(footprint_m);
+        text += '\n';
+    }
+    for (const CascadePlan& cascade : plan.cascades) {
+        // A finer last cascade has more modes, of which no rung of this query shows any.
+        text += "tile " + number_text(cascade.size_m) + " from " + number_text(cascade.k_lower) + '\n';
+        if (query.is_view) continue;
+        for (const auto* levels : {&planned.cell_levels, &planned.pixel_levels})
+            for (const int level : *levels) {
+                const int g = cascade.grid_of_level[level];
+                if (g < 0) continue;
+                const Grid& grid = cascade.grids[g];
+                text += " grid " + std::to_string(grid.resolution) + ' ' + std::to_string(grid.radius) +
+                        (grid.sampling == Sampling::Nodes ? " nodes\n" : " spline\n");
+            }
+    }
+    return text;
+}
+
+std::string pose_text(const View& view) {
+    std::string text = "pose";
+    for (const glm::dvec3& v : {view.position_m, view.right, view.up, view.forward}) add_vector(text, v);
+    return text + ' ' + number_text(view.tan_half_width) + ' ' + std::to_string(view.resolution.x) + ' ' +
+           std::to_string(view.resolution.y);
+}
+
+std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
+    return Fingerprint()
+        .add(plan.queries[output.query].query.name)
+        .add("revision " + std::to_string(output.row->revision))
+        .add(canonical(plan.from->scene, output.feeds))
+        .add(plan_text(plan, output.query))
+        .text();
+}
+
+std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, int frame) {
+    Fingerprint hash;
+    hash.add(output_fingerprint(plan, output)).add("frame " + std::to_string(frame));
+    if (output.has_surface)
+        if (const auto view = plan.surface->shaped_by(frame)) hash.add(pose_text(*view));
+    return hash.text();
+}
+
+}  // namespace pelagic

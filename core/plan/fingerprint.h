@@ -1,0 +1,40 @@
+// What a file of a bake or a picture was made of, as one number: whoever finds the number in a file knows that
+// making the file again would give the same bits on this kind of CPU.
+//
+// It is made of the keys that feed the output, of the part of the resolved plan that the output reads, of the
+// output's revision, and, for a frame, of its number and of the camera's pose where that shapes it. It is not
+// made of anything else: not of the range of frames, of other outputs or of the program's version.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "core/plan/plan.h"
+#include "core/surface/view.h"
+
+namespace pelagic {
+
+// 16 hexadecimal digits, the hash of texts added one after another (FNV-1a, 64 bits).
+class Fingerprint {
+  public:
+    Fingerprint& add(std::string_view text);
+    std::string text() const;
+
+  private:
+    std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+// Of an output, for all frames alike.
+std::string output_fingerprint(const Plan& plan, const PlannedOutput& output);
+// Of its files of one frame.
+std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, int frame);
+
+// What of a plan decides a query's answers, exact: two plans of one text give the same bits at the same points.
+// The rungs of a view's ladder are not in it: they are the same in every plan that has them.
+std::string plan_text(const Plan& plan, int query);
+
+// A pose, exact.
+std::string pose_text(const View& view);
+
+}  // namespace pelagic

@@ -1,0 +1,126 @@
+#include "core/plan/outputs.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/plan/plan.h"
+#include "core/plan/products.h"
+#include "core/scene/names.h"
+
+namespace pelagic {
+namespace {
+
+constexpr std::array kAttributeTable = std::to_array<AttributeRow>({
+    {MeshAttribute::Normal, Product::Normal},
+    {MeshAttribute::Velocity, Product::Velocity},
+    {MeshAttribute::SlopeVariance, Product::SlopeVariance},
+    {MeshAttribute::Whitecaps, Product::Coverage},
+});
+
+const std::array kMapTable = std::to_array<MapRow>({
+    {MapKind::Displacement, [] { return products(Product::Displacement); }, false},
+    {MapKind::Normal, [] { return products(Product::Normal); }, false},
+    {MapKind::SlopeVariance, [] { return products(Product::SlopeVariance); }, true},
+    {MapKind::Whitecaps, [] { return products(Product::JacobianMoments, Product::Coverage); }, false},
+});
+
+void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {
+    const Output& output = context.prepared.scene.output;
+    if (output.mesh == MeshFormat::None) return;
+    Query query;
+    query.products = products(Product::Position);
+    for (const MeshAttribute attribute : output.attributes)
+        for (const AttributeRow& at : kAttributeTable)
+            if (at.attribute == attribute) query.products.set(index(at.product));
+    query.products &= ~context.gone;
+    const SurfaceNeeds needs = context.surface.needs(context.frames);
+    if (needs.own_footprints) {
+        query = view_query(context.prepared, {.products = query.products,
+                                              .finest_cell_m = needs.finest_cell_m,
+                                              .finest_pixel_m = needs.finest_pixel_m});
+    } else {
+        query.cell_m = {needs.finest_cell_m};
+        query.pixel_m = {needs.finest_pixel_m};
+    }
+    query.name = "mesh";
+    query.points = needs.points;
+    query.lattice = needs.lattice;
+    requests.push_back({.row = &row, .surface = &context.surface, .query = std::move(query)});
+}
+
+// A map's levels hide more and more: the footprints of its mip pyramid, halved sizes rounded down as OpenEXR
+// does.
+std::vector<double> mip_footprints(double size_m, int n) {
+    std::vector<double> footprints_m;
+    for (; n >= 1; n /= 2) footprints_m.push_back(size_m / n);
+    return footprints_m;
+}
+
+struct Square {
+    double size_m = 1.0;
+    int texels = 1;  // a side
+    std::optional<int> cascade{};
+};
+
+// The maps asked for, over one square of texels.
+void add_maps(const OutputRow& row, const OutputContext& context, const Square& square,
+              std::vector<OutputRequest>& requests) {
+    const auto [size_m, n, cascade] = square;
+    for (const MapKind map : context.prepared.scene.output.maps)
+        for (const MapRow& at : kMapTable) {
+            if (at.map != map) continue;
+            Query query;
+            query.name = (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) +
+                         std::string(word_of(map));
+            query.products = at.needs() & ~context.gone;
+            query.points = static_cast<std::size_t>(n) * n;
+            query.lattice = Lattice{-0.5 * size_m, size_m / n};
+            query.only_cascade = cascade;
+            query.pixel_m = at.asks_each_level ? mip_footprints(size_m, n) : std::vector{size_m / n};
+            // A tile's nodes carry each of its modes: there is nothing to filter out.
+            if (cascade) query.pixel_m.front() = 0.0;
+            query.cell_m = {query.pixel_m.front()};
+            requests.push_back({.row = &row, .map = map, .cascade = cascade, .query = std::move(query)});
+        }
+}
+
+void add_patch_maps(const OutputRow& row, const OutputContext& context,
+                    std::vector<OutputRequest>& requests) {
+    const Scene& scene = context.prepared.scene;
+    add_maps(row, context, {.size_m = scene.surface.size_m, .texels = scene.output.map_resolution}, requests);
+}
+
+// Tiles are as fine as the other outputs need them, but for the camera's: a tile is the same wherever the camera
+// is.
+void add_tiles(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {
+    const Scene& scene = context.prepared.scene;
+    if (!scene.output.cascade_tiles) return;
+    double finest_m = std::numeric_limits<double>::infinity();
+    for (const OutputRequest& request : requests)
+        if (!request.query.is_view) finest_m = std::min(finest_m, request.query.pixel_m.front());
+    const auto cascades = resolve_cascades(context.prepared, std::isfinite(finest_m) ? finest_m : 0.0);
+    for (int i = 0; i < static_cast<int>(cascades.size()); ++i)
+        add_maps(row, context,
+                 {.size_m = cascades[i].size_m, .texels = cascades[i].resolution, .cascade = i}, requests);
+}
+
+const std::array kOutputTable = std::to_array<OutputRow>({
+    {OutputKind::Mesh, feeds(Feed::Clock, Feed::Waves, Feed::Mesh), 3, add_mesh},
+    {OutputKind::Map, feeds(Feed::Clock, Feed::Waves, Feed::Maps), 3, add_patch_maps},
+    {OutputKind::Tile, feeds(Feed::Clock, Feed::Waves), 3, add_tiles},
+});
+
+}  // namespace
+
+std::span<const OutputRow> output_table() {
+    return kOutputTable;
+}
+std::span<const AttributeRow> attribute_table() {
+    return kAttributeTable;
+}
+std::span<const MapRow> map_table() {
+    return kMapTable;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,77 @@
+// What a bake leaves, as the plan sees it: each output is a query, the keys that feed it, and a revision. Its
+// encoder and its files are a part of plugin/bake.
+//
+// There are the mesh, maps over the patch's square, and the same maps over each cascade's own periodic tile.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/plan/products.h"
+#include "core/plan/prepared_scene.h"
+#include "core/plan/query.h"
+#include "core/scene/keys.h"
+#include "core/surface/surface.h"
+
+namespace pelagic {
+
+struct OutputRow;
+
+enum class OutputKind { Mesh, Map, Tile };
+
+// One output of a scene, and what it asks of the sea.
+struct OutputRequest {
+    const OutputRow* row = nullptr;
+    std::optional<MapKind> map{};      // of maps and tiles
+    std::optional<int> cascade{};      // of a tile: which, counting from the largest
+    const Surface* surface = nullptr;  // of the mesh
+    Query query;
+};
+
+struct OutputContext {
+    const PreparedScene& prepared;
+    const Surface& surface;
+    std::span<const int> frames;  // that will be baked
+    ProductSet gone;              // what no output holds, since its effect is off
+};
+
+// A row here and a part in plugin/bake are all that a kind of output is.
+struct OutputRow {
+    OutputKind kind;
+    // Keys whose values are in the files or change them, besides what the resolved plan says: points,
+    // footprints, products, cascades, trains and knobs follow from many keys together.
+    FeedSet feeds;
+    // Raised by hand when the same plan and keys give other bits; then no file that is there counts as whole.
+    // tests/plugin/bake/golden_test.cpp notices bits that change without it.
+    int revision;
+    // Appends those that the scene asks for; `requests` holds those of the rows before.
+    void (*add)(const OutputRow&, const OutputContext&, std::vector<OutputRequest>& requests);
+};
+std::span<const OutputRow> output_table();
+
+// What a mesh attribute carries, and what a map asks for.
+struct AttributeRow {
+    MeshAttribute attribute;
+    Product product;
+};
+std::span<const AttributeRow> attribute_table();
+
+struct MapRow {
+    MapKind map;
+    ProductSet (*needs)();
+    bool asks_each_level;  // each level of its mip pyramid has a footprint of its own
+};
+std::span<const MapRow> map_table();
+
+struct PlannedOutput {
+    const OutputRow* row = nullptr;
+    std::optional<MapKind> map{};
+    std::optional<int> cascade{};
+    int query = 0;              // into Plan::queries, whose name is the output's: "mesh", "map normal", …
+    bool has_surface = false;   // its points are Plan::surface's
+    FeedSet feeds;              // the row's, the surface's, and the foam's where it holds coverage
+};
+
+}  // namespace pelagic

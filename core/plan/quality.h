@@ -1,0 +1,37 @@
+// quality.level, resolved into knobs: the one place that says what a level means, for the waves and for the
+// light. Errors and times of each row: tests/bench, "sampling" and "optics".
+#pragma once
+
+#include <stdexcept>
+
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// How the sky's reflection is looked up: core/lighting has the three.
+enum class SkyLookups { One, Nine, Integral };
+
+struct QualityRow {
+    QualityLevel level;
+    int spline_taps;        // 4: cubic B-spline, 6: quintic
+    double oversampling;    // grid nodes per Nyquist sample of the shortest wave, where a spline reads it
+    bool double_precision;  // of the waves
+    SkyLookups sky;
+    bool fitted_fresnel;  // our fit to the exact Fresnel term, or the paper's to Schlick's
+    int samples;          // N × N a pixel
+};
+
+inline const QualityRow& quality_of(QualityLevel level) {
+    using enum SkyLookups;
+    static constexpr QualityRow kQualityTable[]{
+        {QualityLevel::Draft, 4, 1.25, false, One, false, 1},
+        {QualityLevel::Preview, 4, 2.0, false, Nine, true, 1},
+        {QualityLevel::Final, 6, 2.0, false, Nine, true, 2},
+        {QualityLevel::Reference, 6, 4.0, true, Integral, true, 4},
+    };
+    for (const QualityRow& row : kQualityTable)
+        if (row.level == level) return row;
+    throw std::invalid_argument("quality level out of range");
+}
+
+}  // namespace pelagic

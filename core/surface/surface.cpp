@@ -1,0 +1,188 @@
+#include "core/surface/surface.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "core/scene/names.h"
+#include "core/scene/text.h"
+#include "core/surface/patch.h"
+#include "core/surface/projected_grid.h"
+
+namespace pelagic {
+namespace {
+
+// A square of quads, centred on the origin.
+class Patch final : public Surface {
+  public:
+    Patch(const Scene& scene, const SeaReach&)
+        : quads_(scene.surface.resolution),
+          size_m_(scene.surface.size_m),
+          lattice_{.per_side = quads_ + 1, .spacing_m = size_m_ / quads_, .first_m = -0.5 * size_m_} {}
+
+    std::string describe() const override {
+        const std::string quads = std::to_string(quads_);
+        return "a patch of " + quads + " × " + quads + " quads over " + number_text(size_m_) + " m";
+    }
+    bool is_constant() const override { return true; }
+    bool is_even() const override { return true; }
+    std::optional<View> shaped_by(int) const override { return {}; }
+    FeedSet feeds() const override { return {}; }
+    SurfaceNeeds needs(std::span<const int>) const override {
+        const auto side = static_cast<std::size_t>(lattice_.per_side);
+        return {.finest_cell_m = lattice_.spacing_m,
+                .finest_pixel_m = lattice_.spacing_m,
+                .lattice = Lattice{lattice_.first_m, lattice_.spacing_m},
+                .points = side * side};
+    }
+    void points_at(int, RestPoints<float>& points) const override { lay_out(points); }
+    void points_at(int, RestPoints<double>& points) const override { lay_out(points); }
+    Faces faces_at(int) const override { return grid_faces(quads_, quads_); }
+
+  private:
+    template <class T>
+    void lay_out(RestPoints<T>& points) const {
+        points = {.rest_m = rest_points<T>(lattice_)};
+    }
+
+    int quads_;
+    double size_m_;
+    PatchLattice lattice_;
+};
+
+// What the camera sees. Each frame's grid has the size that its own pose asks for: a grid that served the whole
+// shot would make each frame depend on all others.
+class CameraGrid final : public Surface {
+  public:
+    CameraGrid(const Scene& scene, const SeaReach& reach)
+        : camera_(scene.camera),
+          first_frame_(scene.shot.first_frame),
+          options_{.cell_px = scene.surface.cell_px,
+                   .bounds = {.height_m = reach.height_m, .reach_m = reach.reach_m},
+                   .significant_height_m = reach.significant_height_m} {}
+
+    std::string describe() const override {
+        const ProjectedGridSize size = projected_grid_needs(view_at(camera_, first_frame_), options_).size;
+        return "the camera's projected grid, cells of at most " + number_text(options_.cell_px) +
+               " pixels: " + std::to_string(size.columns) + " × " + std::to_string(size.rows) + " quads" +
+               (camera_.keys.empty() ? "" : " at frame " + std::to_string(first_frame_) +
+                                                ", each frame as many as its camera needs");
+    }
+    bool is_constant() const override { return false; }
+    bool is_even() const override { return false; }
+    std::optional<View> shaped_by(int frame) const override { return view_at(camera_, frame); }
+    FeedSet feeds() const override { return pelagic::feeds(Feed::Grid); }
+
+    SurfaceNeeds needs(std::span<const int> frames) const override {
+        if (frames.empty()) return {.own_footprints = true};
+        const auto needs_at = [&](std::size_t i) {
+            return projected_grid_needs(view_at(camera_, frames[i]), options_);
+        };
+        // Where the camera stands still, one frame answers for its neighbours.
+        const auto still = [&](std::size_t i) {
+            const auto& keys = camera_.keys;
+            return i > 0 && (keys.empty() || frames[i] <= keys.front().frame ||
+                             frames[i - 1] >= keys.back().frame);
+        };
+        const ProjectedGridNeeds all = tbb::parallel_reduce(
+            tbb::blocked_range<std::size_t>(0, frames.size()), needs_at(0),
+            [&](const tbb::blocked_range<std::size_t>& range, ProjectedGridNeeds sum) {
+                for (std::size_t i = range.begin(); i != range.end(); ++i)
+                    if (!still(i)) sum = together(sum, needs_at(i));
+                return sum;
+            },
+            together);
+        // A file's vertices are its only samples: cells filter normals, too, as in a patch.
+        return {.finest_cell_m = all.finest_cell_m,
+                .finest_pixel_m = all.finest_cell_m,
+                .own_footprints = true,
+                .points = points_of(all.size)};
+    }
+    void points_at(int frame, RestPoints<float>& points) const override { lay_out(frame, points); }
+    void points_at(int frame, RestPoints<double>& points) const override { lay_out(frame, points); }
+    Faces faces_at(int frame) const override {
+        const ProjectedGridSize size = projected_grid_needs(view_at(camera_, frame), options_).size;
+        return grid_faces(size.columns, size.rows);
+    }
+
+  private:
+    template <class T>
+    void lay_out(int frame, RestPoints<T>& points) const {
+        const ProjectedGrid grid = projected_grid(view_at(camera_, frame), options_);
+        points.origin_m = grid.origin_m;
+        points.rest_m.assign(grid.rest_m.begin(), grid.rest_m.end());
+        points.cell_m.assign(grid.cell_m.begin(), grid.cell_m.end());
+        points.pixel_m = points.cell_m;
+    }
+
+    Camera camera_;
+    int first_frame_;
+    ProjectedGridOptions options_;
+};
+
+template <class Kind>
+std::unique_ptr<const Surface> make(const Scene& scene, const SeaReach& reach) {
+    return std::make_unique<const Kind>(scene, reach);
+}
+
+struct SurfaceRow {
+    SurfaceKind kind;
+    std::unique_ptr<const Surface> (*make)(const Scene&, const SeaReach&);
+};
+
+constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
+    {SurfaceKind::Patch, make<Patch>},
+    {SurfaceKind::ProjectedGrid, make<CameraGrid>},
+});
+
+}  // namespace
+
+Faces grid_faces(int columns, int rows) {
+    constexpr std::int64_t kMostQuads = (std::int64_t{1} << 29) - 1;
+    const std::int64_t quads = std::int64_t{columns} * rows;
+    if (columns < 1 || rows < 1 || quads > kMostQuads)
+        throw std::invalid_argument("a grid of " + std::to_string(columns) + " × " + std::to_string(rows) +
+                                    " quads: from 1 to 2^29 − 1 of them fit a mesh");
+    Faces faces;
+    faces.counts.assign(static_cast<std::size_t>(quads), 4);
+    faces.indices.reserve(static_cast<std::size_t>(4 * quads));
+    const std::int32_t stride = columns + 1;
+    for (std::int32_t row = 0; row < rows; ++row)
+        for (std::int32_t column = 0; column < columns; ++column) {
+            const std::int32_t first = row * stride + column;
+            for (const std::int32_t index : {first, first + 1, first + 1 + stride, first + stride})
+                faces.indices.push_back(index);
+        }
+    faces.st.reserve(static_cast<std::size_t>(stride) * (rows + std::size_t{1}));
+    for (int row = 0; row <= rows; ++row)
+        for (int column = 0; column <= columns; ++column)
+            faces.st.emplace_back(static_cast<float>(column) / static_cast<float>(columns),
+                                  static_cast<float>(row) / static_cast<float>(rows));
+    return faces;
+}
+
+std::unique_ptr<const Surface> make_surface(const Scene& scene, const SeaReach& reach) {
+    for (const SurfaceRow& row : kSurfaceTable)
+        if (row.kind == scene.surface.kind) return row.make(scene, reach);
+    throw std::invalid_argument("surface.kind = \"" + std::string(word_of(scene.surface.kind)) +
+                                "\": is not built yet");
+}
+
+std::vector<int> representative_frames(const Scene& scene, int most) {
+    const Shot& shot = scene.shot;
+    const auto& keys = scene.camera.keys;
+    if (keys.empty()) return {shot.first_frame};
+    // Before its first key and after its last the camera stands still.
+    const auto within = [&](int frame) { return std::clamp(frame, shot.first_frame, shot.last_frame); };
+    const int first = within(keys.front().frame), last = within(keys.back().frame);
+    const std::int64_t span = std::int64_t{last} - first;
+    const std::int64_t steps = std::min<std::int64_t>(span, most - 1);
+    std::vector<int> frames{first};
+    for (std::int64_t i = 1; i <= steps; ++i) frames.push_back(static_cast<int>(first + span * i / steps));
+    return frames;
+}
+
+}  // namespace pelagic

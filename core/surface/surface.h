@@ -1,0 +1,91 @@
+// A surface: the points at rest at which a mesh of the sea has its vertices, frame after frame.
+//
+// Each kind is a class of its own behind this interface and a row of kSurfaceTable (surface.cpp). Planning,
+// baking and explaining ask the interface, never the kind.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/scene/keys.h"
+#include "core/scene/scene.h"
+#include "core/surface/view.h"
+
+namespace pelagic {
+
+// How far the sea that lies on the surface goes from its rest, by expectation [m].
+struct SeaReach {
+    double height_m = 0.0, reach_m = 0.0, significant_height_m = 0.0;
+};
+
+// Points that lie at first_m + i·spacing_m in x and in y, i ≥ 0, seen from the world's origin.
+struct Lattice {
+    double first_m = 0.0;
+    double spacing_m = 1.0;
+    bool operator==(const Lattice&) const = default;
+};
+
+// What the query for a surface's points must be able to answer.
+struct SurfaceNeeds {
+    // The finest footprints of any point [m]: its cell (the distance to its neighbours) and its pixel.
+    double finest_cell_m = 0.0, finest_pixel_m = 0.0;
+    // Whether each point has footprints of its own, up to any size; otherwise all have the finest.
+    bool own_footprints = false;
+    std::optional<Lattice> lattice;
+    std::size_t points = 0;  // the most that a frame has
+};
+
+// The points of one frame, relative to an origin.
+template <class T>
+struct RestPoints {
+    glm::dvec2 origin_m{0.0};
+    std::vector<glm::vec<2, T>> rest_m;
+    std::vector<T> cell_m, pixel_m;  // empty: the query's own
+};
+
+// Polygons over the points: counts[i] corners each, counter-clockwise seen from above.
+struct Faces {
+    std::vector<std::int32_t> counts, indices;
+    std::vector<glm::vec2> st;  // of each point, 0 … 1
+};
+
+// columns × rows quads over (columns + 1) × (rows + 1) points, columns fastest: counter-clockwise where columns
+// run to the right and rows upwards; st = (0, 0) at the first point, (1, 1) at the last. Throws
+// std::invalid_argument without quads and beyond 2^29 − 1 of them, whose indices don't fit 32 bits.
+Faces grid_faces(int columns, int rows);
+
+class Surface {
+  public:
+    virtual ~Surface() = default;
+    // One line for people: "a patch of 256 × 256 quads over 200 m".
+    virtual std::string describe() const = 0;
+    // Whether every frame has the same points and faces.
+    virtual bool is_constant() const = 0;
+    // Whether the points are spread evenly, so that their statistics are the sea's.
+    virtual bool is_even() const = 0;
+    // The camera's pose, where it shapes the frame's points: a frame depends on nothing else of the camera.
+    virtual std::optional<View> shaped_by(int frame) const = 0;
+    // The keys that shape the points beyond what its needs say.
+    virtual FeedSet feeds() const = 0;
+    // Of these frames together. A frame that is asked for alone needs no other to be looked at.
+    virtual SurfaceNeeds needs(std::span<const int> frames) const = 0;
+    // The memory of `points` is used again.
+    virtual void points_at(int frame, RestPoints<float>& points) const = 0;
+    virtual void points_at(int frame, RestPoints<double>& points) const = 0;
+    virtual Faces faces_at(int frame) const = 0;
+};
+
+// The surface of a valid scene. Throws std::invalid_argument for a kind that isn't built.
+std::unique_ptr<const Surface> make_surface(const Scene& scene, const SeaReach& reach);
+
+// Some frames of the shot that stand for all where a look at each would take too long: those between which
+// the camera moves, evenly spaced, both ends included, at most `most`.
+std::vector<int> representative_frames(const Scene& scene, int most);
+
+}  // namespace pelagic

@@ -83,9 +83,10 @@ std::string output_fingerprint(const Plan& plan, const PlannedOutput& output) {
         .text();
 }
 
-std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, int frame) {
+std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, const std::string& whole,
+                              int frame) {
     Fingerprint hash;
-    hash.add(output_fingerprint(plan, output)).add("frame " + std::to_string(frame));
+    hash.add(whole).add("frame " + std::to_string(frame));
     if (output.has_surface)
         if (const auto view = plan.surface->shaped_by(frame)) hash.add(pose_text(*view));
     return hash.text();

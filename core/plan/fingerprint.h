@@ -27,8 +27,8 @@ class Fingerprint {
 
 // Of an output, for all frames alike.
 std::string output_fingerprint(const Plan& plan, const PlannedOutput& output);
-// Of its files of one frame.
-std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, int frame);
+// Of its file of one frame; `whole` is the output's own.
+std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, const std::string& whole, int frame);
 
 // What of a plan decides a query's answers, exact: two plans of one text give the same bits at the same points.
 // The rungs of a view's ladder are not in it: they are the same in every plan that has them.

@@ -253,6 +253,12 @@ std::size_t Frame<T>::held_bytes() const {
 
 template <class T>
 Realisation Frame<T>::realisation(int query) const {
+    const Query& asked = sea_->plan().queries.at(query).query;
+    return realisation(query, {asked.cell_m.front(), asked.pixel_m.front()});
+}
+
+template <class T>
+Realisation Frame<T>::realisation(int query, const Footprints& footprints) const {
     const Plan& plan = sea_->plan();
     const Query& asked = plan.queries.at(query).query;
     constexpr int kSums = 5;
@@ -281,8 +287,8 @@ Realisation Frame<T>::realisation(int query) const {
                               .count = static_cast<int>(end - first),
                               .kx = mx * step,
                               .step = step,
-                              .cell_m = asked.cell_m.front(),
-                              .pixel_m = asked.pixel_m.front(),
+                              .cell_m = footprints.cell_m,
+                              .pixel_m = footprints.pixel_m,
                               .n_min = plan.filter.n_min,
                               .n_max = plan.filter.n_max,
                               .sums = parts[b].data()});
@@ -291,8 +297,7 @@ Realisation Frame<T>::realisation(int query) const {
     Realisation sum;
     for (const auto& part : parts) sum += Realisation{part[0], part[1], part[2], part[3], part[4]};
     if (plan.trains && !asked.only_cascade)
-        sum +=
-            pelagic::realisation(sea_->trains(), plan.filter, {asked.cell_m.front(), asked.pixel_m.front()});
+        sum += pelagic::realisation(sea_->trains(), plan.filter, footprints);
     return sum;
 }
 

@@ -49,8 +49,10 @@ class Frame {
     // What the fields' samples take: plan().frame_bytes().
     std::size_t held_bytes() const;
 
-    // Sums over the modes at this time, filtered as `query` filters its finest positions and normals.
+    // Sums over the modes at this time that `query` may show, filtered as it filters its finest positions and
+    // normals, or with these footprints, which must be no finer.
     Realisation realisation(int query) const;
+    Realisation realisation(int query, const Footprints& footprints) const;
 
   private:
     struct GridState {

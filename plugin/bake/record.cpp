@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/base/constants.h"
+#include "core/plan/fingerprint.h"
 #include "core/plan/mode_lattice.h"
 #include "core/scene/canonical.h"
 #include "core/scene/names.h"
@@ -78,7 +79,8 @@ Json to_json(const FrameRecord& frame) {
     if (frame.mesh_significant_height_m) json["mesh_hs_m"] = *frame.mesh_significant_height_m;
     if (frame.coverage) json["whitecap_coverage"] = *frame.coverage;
     json["files"] = Json::object();
-    for (const auto& [path, size] : frame.files) json["files"][path] = size;
+    for (const auto& [path, file] : frame.files)
+        json["files"][path] = {{"bytes", file.bytes}, {"fingerprint", file.fingerprint}};
     return json;
 }
 
@@ -94,7 +96,9 @@ FrameRecord from_json(const Json& json) {
     frame.mss_residual = json.at("mss_residual").get<double>();
     if (json.contains("mesh_hs_m")) frame.mesh_significant_height_m = json.at("mesh_hs_m").get<double>();
     if (json.contains("whitecap_coverage")) frame.coverage = json.at("whitecap_coverage").get<double>();
-    for (const auto& [path, size] : json.at("files").items()) frame.files[path] = size.get<std::uintmax_t>();
+    for (const auto& [path, file] : json.at("files").items())
+        frame.files[path] = {file.at("bytes").get<std::uintmax_t>(),
+                             file.at("fingerprint").get<std::string>()};
     return frame;
 }
 
@@ -139,13 +143,16 @@ std::map<int, FrameRecord> recorded_frames(const std::filesystem::path& file) {
     return frames;
 }
 
-void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoments& total,
-                      double whitecap_threshold) {
+void Record::describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold) {
+    const Scene& scene = plan.from->scene;
+    first_frame_ = scene.shot.first_frame;
+    last_frame_ = scene.shot.last_frame;
     Json& shot = shot_;
     shot = Json::object();
     shot["pelagic"] = PELAGIC_VERSION;
     shot["name"] = scene.shot.name;
-    shot["fingerprint"] = plan.fingerprint_text();
+    for (const PlannedOutput& output : plan.outputs)
+        shot["fingerprints"][plan.queries[output.query].query.name] = output_fingerprint(plan, output);
     shot["precision"] = plan.knobs.double_precision ? "double" : "single";
     shot["frame_range"] = {scene.shot.first_frame, scene.shot.last_frame};
     shot["fps"] = scene.shot.fps;
@@ -192,11 +199,11 @@ void Record::describe(const Scene& scene, const Plan& plan, const SpectralMoment
                                        {"modes", lattice_modes(cascade.grid_radius())}});
 }
 
-bool is_whole(const FrameRecord& frame, const std::string& fingerprint, const std::filesystem::path& folder) {
-    if (frame.fingerprint != fingerprint) return false;
-    for (const auto& [path, size] : frame.files)
-        if (files::file_size(folder / path) != size || !carries(folder / path, fingerprint)) return false;
-    return true;
+bool is_whole(const FrameRecord& frame, const std::string& path, const std::string& fingerprint,
+              const std::filesystem::path& folder) {
+    const auto found = frame.files.find(path);
+    return found != frame.files.end() && found->second.fingerprint == fingerprint &&
+           files::file_size(folder / path) == found->second.bytes && carries(folder / path, fingerprint);
 }
 
 void Record::save(const std::filesystem::path& file) {
@@ -213,6 +220,7 @@ void Record::write(const std::filesystem::path& former,
     std::optional<int> last;
     const auto add = [&](int number, const FrameRecord& frame) {
         if (last && number <= *last) return;  // ours have taken its place, or somebody has mixed them up
+        if (number < first_frame_ || number > last_frame_) return;
         if (last) piece += ',';
         last = number;
         piece += lines_inside({{std::to_string(number), to_json(frame)}}, "  ");

@@ -23,11 +23,17 @@ struct WaveRecord {
     double significant_height_m = 0.0, energy_period_s = 0.0, mean_direction_deg = 0.0, mss = 0.0;
 };
 
+// A file as it was when it was whole.
+struct FileRecord {
+    std::uintmax_t bytes = 0;
+    std::string fingerprint;  // of what it was made of; it carries the same
+};
+
 // Of one frame. What nobody paid for is absent.
 struct FrameRecord {
-    std::string fingerprint;
+    std::string fingerprint;  // of what its statistics were made of
     std::string instruction_set = pelagic::instruction_set();
-    std::map<std::string, std::uintmax_t> files;  // path below DIR, with /; size in bytes
+    std::map<std::string, FileRecord> files;  // by path below DIR, with /
     double time_s = 0.0;
     std::optional<WaveRecord> waves;
     double mss_residual = 0.0;                        // the spectrum's, of what the first output hides
@@ -39,16 +45,17 @@ struct FrameRecord {
 // ours: its frames are baked again.
 std::map<int, FrameRecord> recorded_frames(const std::filesystem::path& file);
 
-// Every file of the frame is there, has its recorded size and says that it is of this fingerprint: the record
-// alone would vouch for a file that another shot has replaced since.
-bool is_whole(const FrameRecord& frame, const std::string& fingerprint, const std::filesystem::path& folder);
+// Whether the frame's file at `path` is there, has its recorded size and fingerprint, and says itself that it is
+// of this fingerprint: the record alone would vouch for a file that another shot has replaced since.
+bool is_whole(const FrameRecord& frame, const std::string& path, const std::string& fingerprint,
+              const std::filesystem::path& folder);
 
 // What a run adds to the record of its shot.
 class Record {
   public:
-    // The part that belongs to the shot and not to a frame.
-    void describe(const Scene& scene, const Plan& plan, const SpectralMoments& total,
-                  double whitecap_threshold);
+    // The part that belongs to the shot and not to a frame. Frames outside the shot's range are left out of the
+    // record from now on.
+    void describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold);
 
     void set(int frame, FrameRecord record) { unsaved_[frame] = std::move(record); }
 
@@ -61,6 +68,7 @@ class Record {
     void write(const std::filesystem::path& former, const std::function<void(std::string_view)>& sink) const;
 
     nlohmann::ordered_json shot_;
+    int first_frame_ = 0, last_frame_ = 0;
     std::map<int, FrameRecord> unsaved_;
 };
 

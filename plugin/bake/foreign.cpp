@@ -1,0 +1,91 @@
+#include "plugin/bake/foreign.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "plugin/usd/layers.h"
+
+namespace pelagic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The frame's number, if the name is one that a file of this pattern has.
+std::optional<int> frame_of(std::string_view path, const FilePattern& pattern) {
+    if (path.size() <= pattern.prefix.size() + pattern.suffix.size() || !path.starts_with(pattern.prefix) ||
+        !path.ends_with(pattern.suffix))
+        return {};
+    path.remove_prefix(pattern.prefix.size());
+    path.remove_suffix(pattern.suffix.size());
+    int frame = 0;
+    const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), frame);
+    if (error != std::errc() || end != path.data() + path.size() || usd::frame_number(frame) != path)
+        return {};
+    return frame;
+}
+
+// The name with its frame's number, the last part between dots that is one, as "####".
+std::string without_number(const std::string& path) {
+    const std::size_t suffix = path.rfind('.');
+    const std::size_t number = suffix == std::string::npos || suffix == 0 ? suffix : path.rfind('.', suffix - 1);
+    if (number == std::string::npos || number == suffix) return path;
+    const FilePattern pattern{path.substr(0, number + 1), path.substr(suffix)};
+    return frame_of(path, pattern) ? pattern.prefix + "####" + pattern.suffix : path;
+}
+
+struct Group {
+    std::string example;
+    int files = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
+                                       const std::vector<std::unique_ptr<OutputPart>>& parts,
+                                       const std::vector<std::string>& static_files) {
+    std::vector<FilePattern> patterns;
+    for (const auto& part : parts) patterns.push_back(part->pattern());
+
+    std::map<std::pair<std::string, std::string>, Group> groups;  // by name without number, and by reason
+    constexpr std::array kFolders{"", "mesh/", "maps/", "tiles/", "volumes/"};
+    for (const char* below : kFolders) {
+        std::error_code error;
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder / below, error)) {
+            if (!entry.is_regular_file(error)) continue;
+            const std::string name = entry.path().filename().string(), path = below + name;
+            const std::string extension = entry.path().extension().string();
+            // Pictures and whatever people keep beside their bakes are none of a bake's business.
+            const bool is_bakes = *below != '\0'
+                                      ? extension == ".usda" || extension == ".usdc" || extension == ".exr" ||
+                                            extension == ".vdb"
+                                      : extension == ".usda" || extension == ".json" ||
+                                            name.ends_with(".camera.usdc");
+            if (!is_bakes || name.starts_with('.')) continue;
+            if (std::find(static_files.begin(), static_files.end(), path) != static_files.end()) continue;
+            std::string reason = "of another shot";
+            if (name.starts_with(shot.name + '.')) reason = "of an output that the shot doesn't have";
+            bool is_ours = false;
+            for (const FilePattern& pattern : patterns)
+                if (const auto frame = frame_of(path, pattern)) {
+                    is_ours = *frame >= shot.first_frame && *frame <= shot.last_frame;
+                    reason = "outside the shot's frames";
+                }
+            if (is_ours) continue;
+            Group& group = groups[{without_number(path), reason}];
+            if (group.files++ == 0) group.example = path;
+        }
+    }
+    std::vector<std::string> lines;
+    for (const auto& [key, group] : groups)
+        lines.push_back(group.files == 1
+                            ? group.example + ": " + key.second
+                            : key.first + ": " + std::to_string(group.files) + " files " + key.second);
+    return lines;
+}
+
+}  // namespace pelagic

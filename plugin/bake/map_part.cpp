@@ -1,0 +1,279 @@
+// Maps and tiles: the sea over a square of texels, an OpenEXR file a frame.
+#include "plugin/bake/maps.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "core/scene/names.h"
+#include "core/scene/text.h"
+#include "plugin/bake/output_part.h"
+#include "plugin/exr/exr.h"
+
+namespace pelagic {
+namespace {
+
+struct MapSlot final : OutputSlot {
+    std::vector<glm::vec3> hidden;  // of slope variance: by mip level
+    float whitecap_threshold = 0.0f;
+    std::string file;  // encoded
+};
+
+class MapPart final : public OutputPart {
+  public:
+    MapPart(const Plan& plan, const PlannedOutput& output, std::shared_ptr<SquareCache> squares)
+        : OutputPart(plan, output),
+          squares_(std::move(squares)),
+          kind_(*output.map),
+          n_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(query().points))))),
+          size_m_(query().lattice->spacing_m * n_),
+          periodic_(output.cascade ? true : patch_is_periodic()) {}
+
+    FilePattern pattern() const override {
+        const std::string name = scene().shot.name + '.' + std::string(word_of(kind_)) + '.';
+        return {output_.cascade ? "tiles/" + name + std::to_string(*output_.cascade) + '.' : "maps/" + name,
+                ".exr"};
+    }
+    std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MapSlot>(); }
+
+    void compute(const Frame<float>& sea, int, OutputSlot& slot) override {
+        compute_as(single_, sea, static_cast<MapSlot&>(slot));
+    }
+    void compute(const Frame<double>& sea, int, OutputSlot& slot) override {
+        compute_as(wide_, sea, static_cast<MapSlot&>(slot));
+    }
+
+    void encode(int frame, OutputSlot& any_slot) const override {
+        MapSlot& slot = static_cast<MapSlot&>(any_slot);
+        const auto& coverage = slot.values.numbers(Product::Coverage);
+        slot.coverage.reset();
+        if (!coverage.empty()) slot.coverage = mean_of(coverage);
+        slot.file = std::string();  // let go before the new one is made
+        slot.file = encoded(slot, frame);
+    }
+
+    void write(int frame, const OutputSlot& any_slot, const FileSink& sink) const override {
+        const MapSlot& slot = static_cast<const MapSlot&>(any_slot);
+        sink({.path = file(frame), .fingerprint = fingerprint(frame), .content = [&](const auto& take) {
+                  take(slot.file);
+              }});
+    }
+
+  private:
+    template <class T>
+    struct State {
+        SharedPoints<T> rest;
+        QueryRunner<T> runner;
+    };
+
+    template <class T>
+    void compute_as(State<T>& state, const Frame<T>& sea, MapSlot& slot) {
+        if (!state.rest)
+            state.rest = squares_->points<T>({.per_side = n_,
+                                              .spacing_m = query().lattice->spacing_m,
+                                              .first_m = query().lattice->first_m});
+        state.runner.run(sea, output_.query,
+                         Points<T>{.count = state.rest->size(), .rest_m = {state.rest->data()}}, slot.values);
+        slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
+        if (kind_ == MapKind::SlopeVariance) slot.hidden = hidden_by_level(sea);
+    }
+
+    // Each level hides what its own texels are too coarse for: the query's ladder, asked at one point of each
+    // level.
+    template <class T>
+    std::vector<glm::vec3> hidden_by_level(const Frame<T>& sea) const {
+        std::vector<glm::vec3> levels;
+        for (const double footprint_m : query().pixel_m) {
+            const glm::vec<2, T> rest(0);
+            const T footprint = static_cast<T>(footprint_m);
+            glm::vec<3, T> hidden(0);
+            Points<T> point{.count = 1, .rest_m = {&rest}};
+            point.pixel_m = {&footprint};
+            Results<T> result;
+            result.set(Product::SlopeVariance, {&hidden});
+            evaluate(sea, output_.query, point, result);
+            levels.emplace_back(hidden);
+        }
+        return levels;
+    }
+
+    // Only if the patch is a common period of every cascade that shows in it; trains have none.
+    bool patch_is_periodic() const {
+        if (plan_.trains) return false;
+        for (const CascadePlan& cascade : plan_.cascades) {
+            const double periods = scene().surface.size_m / cascade.size_m;
+            const bool whole = std::round(periods) >= 1.0 && std::abs(periods - std::round(periods)) < 1e-9;
+            if (!cascade.grids.empty() && !whole) return false;
+        }
+        return true;
+    }
+
+    // Three values a texel, as OpenEXR wants them.
+    struct Level {
+        int n;
+        std::span<const glm::vec3> texels;
+    };
+
+    std::string encoded(const MapSlot& slot, int frame) const {
+        const std::string made_of = fingerprint(frame);
+        switch (kind_) {
+            case MapKind::Displacement: {
+                const std::vector<glm::vec3>& texels = slot.values.vectors(Product::Displacement);
+                const exr::Header header = header_of(made_of, frame, {"displacement", "m", texels});
+                return exr::encode_scanline(header,
+                                            image({n_, texels}, {"R", "G", "B"}, exr::PixelType::Float));
+            }
+            case MapKind::Normal: {
+                const std::vector<glm::vec3>& texels = slot.values.vectors(Product::Normal);
+                const exr::Header header = header_of(made_of, frame, {"unit normal", "1", texels});
+                const auto below = normal_mips({.n = n_, .texels = texels, .periodic = periodic_});
+                std::vector<Level> levels{{n_, texels}};
+                for (const MipLevel<glm::vec3>& level : below) levels.push_back({level.n, level.texels});
+                return encode_levels(header, levels, {"R", "G", "B"}, exr::PixelType::Half);
+            }
+            case MapKind::SlopeVariance: {
+                exr::Header header = header_of(made_of, frame,
+                                               {"slope variance of the waves that a texel hides", "1",
+                                                slot.values.vectors(Product::SlopeVariance)});
+                // The same all over a level: packed, nearly nothing.
+                header.compression = exr::Compression::Zip;
+                std::vector<std::vector<glm::vec3>> texels;
+                std::vector<Level> levels;
+                for (const glm::vec3& hidden : slot.hidden) {
+                    const auto level = static_cast<int>(levels.size());
+                    const int n = exr::mip_level_size(n_, n_, level).first;
+                    texels.emplace_back(static_cast<std::size_t>(n) * n, hidden);
+                    levels.push_back({n, texels.back()});
+                }
+                return encode_levels(header, levels, {"xx", "yy", "xy"}, exr::PixelType::Float);
+            }
+            case MapKind::Whitecaps:
+                return encoded_whitecaps(slot, frame);
+        }
+        throw std::logic_error("a map of no kind");
+    }
+
+    std::string encoded_whitecaps(const MapSlot& slot, int frame) const {
+        const std::string made_of = fingerprint(frame);
+        using Moments = JacobianMoments<float>;
+        const bool third = plan_.knobs.third_moment;
+        const auto threshold = slot.whitecap_threshold;
+        std::vector<std::vector<glm::vec3>> texels;
+        const auto add_level = [&](const std::vector<Moments>& moments) {
+            std::vector<glm::vec3>& level = texels.emplace_back(moments.size());
+            tbb::parallel_for(std::size_t(0), moments.size(), [&](std::size_t i) {
+                const Moments& j = moments[i];
+                level[i] = {coverage(j, threshold, third), j.mean, j.variance};
+            });
+        };
+        std::vector<Moments> full;
+        full.reserve(slot.values.vectors(Product::JacobianMoments).size());
+        for (const glm::vec3& j : slot.values.vectors(Product::JacobianMoments))
+            full.push_back({j.x, j.y, j.z});
+        add_level(full);
+        for (const MipLevel<Moments>& level :
+             moment_mips({.n = n_, .texels = full, .periodic = periodic_}))
+            add_level(level.texels);
+        std::vector<Level> levels;
+        for (std::size_t i = 0; i < texels.size(); ++i)
+            levels.push_back({exr::mip_level_size(n_, n_, static_cast<int>(i)).first, texels[i]});
+        const exr::Header header =
+            header_of(made_of, frame, {"whitecap coverage, mean and variance of the Jacobian", "1", texels[0]});
+        return encode_levels(header, levels, {"coverage", "mean", "variance"}, exr::PixelType::Float);
+    }
+
+    static exr::Image image(const Level& level, const std::array<const char*, 3>& names,
+                            exr::PixelType type) {
+        exr::Image image{.width = level.n, .height = level.n, .channels = {}};
+        for (int c = 0; c < 3; ++c)
+            image.channels.push_back({.name = names[c],
+                                      .data = &level.texels.data()->x + c,
+                                      .pixel_stride_bytes = sizeof(glm::vec3),
+                                      .type = type});
+        return image;
+    }
+
+    static std::string encode_levels(const exr::Header& header, const std::vector<Level>& levels,
+                                     const std::array<const char*, 3>& names, exr::PixelType type) {
+        std::vector<exr::Image> images;
+        for (const Level& level : levels) images.push_back(image(level, names, type));
+        return exr::encode_mipmapped(header, images);
+    }
+
+    struct Content {
+        const char* what;
+        const char* unit;
+        const std::vector<glm::vec3>& texels;
+    };
+
+    exr::Header header_of(const std::string& made_of, int frame, const Content& content) const {
+        const glm::vec3& first = content.texels.front();
+        std::array<float, 3> low{first.x, first.y, first.z}, high = low;
+        for (const glm::vec3& t : content.texels)
+            for (int c = 0; c < 3; ++c) {
+                low[c] = std::min(low[c], t[c]);
+                high[c] = std::max(high[c], t[c]);
+            }
+        const SeaState& sea = scene().sea;
+        exr::Header header;
+        header.periodic = periodic_;
+        header.attributes = {
+            {"content", std::string(content.what)},
+            {"unit", std::string(content.unit)},
+            {"space", std::string("object: metres, z up, right-handed")},
+            {"axisOrder", std::string("xyz")},
+            {"sampling", std::string("pixel corners: column i is x = -L/2 + i L/N, the bottom row is "
+                                     "y = -L/2, rows upwards are +y")},
+            {"size", size_m_},
+            {"min", low},
+            {"max", high},
+            {"time", scene().shot.time_s(frame)},
+            {"fps", scene().shot.fps},
+            {"frame", frame},
+            {"seed", std::to_string(scene().shot.seed)},
+            {"windSpeed_mps", sea.wind_speed_mps},
+            {"windTowards_deg", sea.wind_direction_deg},
+            {"spectrum", std::string(word_of(sea.spectrum))},
+            {"fingerprint", made_of},
+            {"software", std::string("pelagic " PELAGIC_VERSION)}};
+        if (periodic_) header.attributes.push_back({"period", size_m_});  // absent: it does not repeat
+        if (scene().shot.loop_s > 0.0) header.attributes.push_back({"loop", scene().shot.exact_loop_s()});
+        if (!sea.swell.empty()) header.attributes.push_back({"swell", swell_text()});
+        if (sea.measured) {
+            header.attributes.push_back({"station", sea.measured->station});
+            header.attributes.push_back({"measuredAt", sea.measured->time});
+        }
+        return header;
+    }
+
+    // "1.6 m 11 s towards 110 deg, …"
+    std::string swell_text() const {
+        std::string text;
+        for (const Swell& swell : scene().sea.swell)
+            text += (text.empty() ? "" : ", ") + number_text(swell.height_m) + " m " +
+                    number_text(swell.period_s) + " s towards " + number_text(swell.direction_deg) + " deg";
+        return text;
+    }
+
+    std::shared_ptr<SquareCache> squares_;
+    MapKind kind_;
+    int n_;
+    double size_m_;
+    bool periodic_;  // whether its square is a common period of the waves
+    State<float> single_;
+    State<double> wide_;
+};
+
+}  // namespace
+
+std::unique_ptr<OutputPart> make_map_part(const Plan& plan, const PlannedOutput& output,
+                                          const std::shared_ptr<SquareCache>& squares) {
+    return std::make_unique<MapPart>(plan, output, squares);
+}
+
+}  // namespace pelagic

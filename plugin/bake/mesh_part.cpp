@@ -1,0 +1,160 @@
+// The mesh: a layer for each frame, as a crate or as text, and beside them the layers that say what varies.
+#include <algorithm>
+#include <cmath>
+
+#include "core/scene/names.h"
+#include "plugin/bake/output_part.h"
+#include "plugin/usd/crate.h"
+#include "plugin/usd/layers.h"
+#include "plugin/usd/text.h"
+
+namespace pelagic {
+namespace {
+
+// 4 × the standard deviation of the heights.
+double significant_height_of(const std::vector<glm::vec3>& points) {
+    double mean = 0.0, squares = 0.0;
+    for (const glm::vec3& p : points) mean += static_cast<double>(p.z);
+    mean /= static_cast<double>(points.size());
+    for (const glm::vec3& p : points)
+        squares += (static_cast<double>(p.z) - mean) * (static_cast<double>(p.z) - mean);
+    return 4.0 * std::sqrt(squares / static_cast<double>(points.size()));
+}
+
+// Positions relative to an origin, put into the world.
+void move_by(std::vector<glm::vec3>& positions, glm::dvec2 origin_m) {
+    if (origin_m == glm::dvec2(0.0)) return;
+    for (glm::vec3& p : positions) {
+        p.x = static_cast<float>(origin_m.x + static_cast<double>(p.x));
+        p.y = static_cast<float>(origin_m.y + static_cast<double>(p.y));
+    }
+}
+
+struct MeshSlot final : OutputSlot {
+    Faces faces;       // where they vary
+    std::string text;  // of a mesh in text; a crate needs none, its arrays are the values
+};
+
+class MeshPart final : public OutputPart {
+  public:
+    MeshPart(const Plan& plan, const PlannedOutput& output)
+        : OutputPart(plan, output),
+          attributes_{.normals = asks(Product::Normal),
+                      .velocities = asks(Product::Velocity),
+                      .slope_variance = asks(Product::SlopeVariance),
+                      .whitecap_coverage = asks(Product::Coverage),
+                      .faces = !plan.surface->is_constant()} {}
+
+    FilePattern pattern() const override {
+        return {"mesh/" + scene().shot.name + '.', '.' + std::string(word_of(scene().output.mesh))};
+    }
+    std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MeshSlot>(); }
+
+    void compute(const Frame<float>& sea, int frame, OutputSlot& slot) override {
+        compute_as(single_, sea, frame, static_cast<MeshSlot&>(slot));
+    }
+    void compute(const Frame<double>& sea, int frame, OutputSlot& slot) override {
+        compute_as(wide_, sea, frame, static_cast<MeshSlot&>(slot));
+    }
+
+    void encode(int frame, OutputSlot& any_slot) const override {
+        MeshSlot& slot = static_cast<MeshSlot&>(any_slot);
+        const auto& coverage = slot.values.numbers(Product::Coverage);
+        slot.coverage.reset();
+        slot.significant_height_m.reset();
+        if (!coverage.empty()) slot.coverage = mean_of(coverage);
+        if (plan_.surface->is_even())
+            slot.significant_height_m = significant_height_of(slot.values.vectors(Product::Position));
+        slot.text.clear();
+        if (!is_text()) return;
+        usd::write_frame_text(sample(frame, fingerprint(frame), slot),
+                              [&](std::string_view piece) { slot.text += piece; });
+    }
+
+    void write(int frame, const OutputSlot& any_slot, const FileSink& sink) const override {
+        const MeshSlot& slot = static_cast<const MeshSlot&>(any_slot);
+        const std::string made_of = fingerprint(frame);
+        sink({.path = file(frame), .fingerprint = made_of, .content = [&](const usd::Sink& take) {
+                  if (is_text())
+                      take(slot.text);
+                  else
+                      usd::write_frame_crate(sample(frame, made_of, slot), take);
+              }});
+    }
+
+    void write_static(const FileSink& sink) const override {
+        const Shot& shot = scene().shot;
+        usd::Topology topology{.fps = shot.fps, .attributes = attributes_};
+        Faces faces;
+        if (plan_.surface->is_constant()) {
+            faces = plan_.surface->faces_at(shot.first_frame);
+            topology.face_vertex_counts = faces.counts;
+            topology.face_vertex_indices = faces.indices;
+            topology.st = faces.st;
+        }
+        sink({.path = usd::topology_file(shot.name, word_of(scene().output.mesh)),
+              .fingerprint = {},
+              .content = [&](const usd::Sink& take) {
+                  if (is_text())
+                      usd::write_topology_text(topology, take);
+                  else
+                      usd::write_topology_crate(topology, take);
+              }});
+        sink({.path = usd::manifest_file(shot.name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
+                  take(usd::manifest_text({.fps = shot.fps, .attributes = attributes_}));
+              }});
+    }
+
+  private:
+    template <class T>
+    struct State {
+        RestPoints<T> points;
+        bool is_laid_out = false;
+        QueryRunner<T> runner;
+    };
+
+    bool asks(Product product) const { return query().products[index(product)]; }
+    bool is_text() const { return scene().output.mesh == MeshFormat::Usda; }
+
+    template <class T>
+    void compute_as(State<T>& state, const Frame<T>& sea, int frame, MeshSlot& slot) {
+        const Surface& surface = *plan_.surface;
+        if (!state.is_laid_out || !surface.is_constant()) surface.points_at(frame, state.points);
+        state.is_laid_out = true;
+        if (!surface.is_constant()) slot.faces = surface.faces_at(frame);
+        const RestPoints<T>& at = state.points;
+        Points<T> points{.origin_m = at.origin_m, .count = at.rest_m.size(), .rest_m = {at.rest_m.data()}};
+        if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};
+        if (!at.pixel_m.empty()) points.pixel_m = {at.pixel_m.data()};
+        state.runner.run(sea, output_.query, points, slot.values);
+        move_by(slot.values.vectors(Product::Position), at.origin_m);
+    }
+
+    usd::MeshSample sample(int frame, const std::string& made_of, const MeshSlot& slot) const {
+        usd::MeshSample sample{.frame = frame,
+                               .fps = scene().shot.fps,
+                               .fingerprint = made_of,
+                               .points = slot.values.vectors(Product::Position),
+                               .normals = slot.values.vectors(Product::Normal),
+                               .velocities = slot.values.vectors(Product::Velocity),
+                               .slope_variance = slot.values.vectors(Product::SlopeVariance),
+                               .whitecap_coverage = slot.values.numbers(Product::Coverage)};
+        if (attributes_.faces)
+            sample.faces = usd::Faces{
+                .counts = slot.faces.counts, .indices = slot.faces.indices, .st = slot.faces.st};
+        return sample;
+    }
+
+    usd::AttributeSet attributes_;
+    State<float> single_;
+    State<double> wide_;
+};
+
+}  // namespace
+
+std::unique_ptr<OutputPart> make_mesh_part(const Plan& plan, const PlannedOutput& output,
+                                           const std::shared_ptr<SquareCache>&) {
+    return std::make_unique<MeshPart>(plan, output);
+}
+
+}  // namespace pelagic

@@ -1,0 +1,111 @@
+// A part of a bake: one output of the plan, what it keeps of a frame, how it becomes bytes and which files
+// they go to. Each kind is a class of its own behind this interface and a row of make_parts() (output_part.cpp).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "core/evaluate/values.h"
+#include "core/plan/fingerprint.h"
+#include "core/plan/plan.h"
+#include "core/surface/patch.h"
+#include "core/waves/frame.h"
+
+namespace pelagic {
+
+// Hands the bytes of a file over, piece after piece.
+using FileContent = std::function<void(const std::function<void(std::string_view)>&)>;
+
+// A file that is to be written: its path below DIR, with /, its bytes, and what they were made of.
+struct FileJob {
+    std::string path;
+    std::string fingerprint;
+    FileContent content;
+};
+// Takes a finished file. Files come in the order in which they are to be written.
+using FileSink = std::function<void(const FileJob&)>;
+
+// The files of an output at all frames: `prefix`, the frame's number (usd::frame_number), `suffix`.
+struct FilePattern {
+    std::string prefix, suffix;  // "mesh/sea.", ".usdc"
+};
+
+// What an output keeps of one frame between its steps. Slots are used again for other frames.
+struct OutputSlot {
+    virtual ~OutputSlot() = default;
+    Values values;
+    // Of the frame's record; absent where the output says nothing about it.
+    std::optional<double> coverage, significant_height_m;
+};
+
+class OutputPart {
+  public:
+    // The plan must outlive the part.
+    OutputPart(const Plan& plan, const PlannedOutput& output);
+    virtual ~OutputPart() = default;
+
+    const Query& query() const { return plan_.queries[output_.query].query; }
+    virtual FilePattern pattern() const = 0;
+    std::string file(int frame) const;
+    // What the file of a frame is made of (core/plan/fingerprint.h), and the output for all frames alike.
+    std::string fingerprint(int frame) const { return frame_fingerprint(plan_, output_, base_, frame); }
+    const std::string& fingerprint() const { return base_; }
+
+    virtual std::unique_ptr<OutputSlot> make_slot() const { return std::make_unique<OutputSlot>(); }
+    // The frame's values. One frame at a time.
+    virtual void compute(const Frame<float>& sea, int frame, OutputSlot& slot) = 0;
+    virtual void compute(const Frame<double>& sea, int frame, OutputSlot& slot) = 0;
+    // The bytes that aren't the values as they are. Different slots side by side, also while another frame is
+    // computed.
+    virtual void encode(int frame, OutputSlot& slot) const = 0;
+    // Hands the frame's file to the sink; what that throws passes through. As encode().
+    virtual void write(int frame, const OutputSlot& slot, const FileSink& sink) const = 0;
+    // The files that belong to no frame.
+    virtual void write_static(const FileSink&) const {}
+
+  protected:
+    const Scene& scene() const { return plan_.from->scene; }
+
+    const Plan& plan_;
+    PlannedOutput output_;
+    std::string base_;
+};
+
+// Points at rest over squares, the same for every output that has the same square.
+template <class T>
+using SharedPoints = std::shared_ptr<const std::vector<glm::vec<2, T>>>;
+class SquareCache {
+  public:
+    template <class T>
+    SharedPoints<T> points(const PatchLattice& lattice) {
+        auto& known = std::get<std::map<Square, SharedPoints<T>>>(known_);
+        SharedPoints<T>& points = known[{lattice.per_side, lattice.spacing_m, lattice.first_m}];
+        if (!points) points = std::make_shared<const std::vector<glm::vec<2, T>>>(rest_points<T>(lattice));
+        return points;
+    }
+
+  private:
+    using Square = std::tuple<int, double, double>;
+    std::tuple<std::map<Square, SharedPoints<float>>, std::map<Square, SharedPoints<double>>> known_;
+};
+
+std::unique_ptr<OutputPart> make_mesh_part(const Plan& plan, const PlannedOutput& output,
+                                           const std::shared_ptr<SquareCache>&);
+std::unique_ptr<OutputPart> make_map_part(const Plan& plan, const PlannedOutput& output,
+                                          const std::shared_ptr<SquareCache>& squares);
+
+// The mean of at least one value.
+double mean_of(std::span<const float> values);
+
+// The parts of the plan's outputs, in their order.
+std::vector<std::unique_ptr<OutputPart>> make_parts(const Plan& plan);
+
+}  // namespace pelagic

@@ -1,0 +1,117 @@
+#include "plugin/bake/stage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "core/plan/hidden_slopes.h"
+#include "core/scene/keys.h"
+#include "core/scene/names.h"
+#include "core/surface/view.h"
+#include "plugin/usd/camera.h"
+#include "plugin/usd/text.h"
+
+namespace pelagic {
+namespace {
+
+// UsdPreviewSurface's roughness: α² = 2σ² with σ² = mss/2 along each axis, roughness = √α.
+double preview_roughness(double mss) {
+    return std::min(std::sqrt(std::sqrt(std::max(mss, 0.0))), 1.0);
+}
+
+// What the finest cells of the shot's first frame hide: the stage has one material for all frames, which must not
+// depend on which of them are baked.
+double roughness(const Plan& plan) {
+    const std::array first{plan.from->scene.shot.first_frame};
+    return preview_roughness(hidden_mean_square_slope(plan.from->spectrum, plan.filter,
+                                                      plan.surface->needs(first).finest_pixel_m));
+}
+
+// A key's value in the stage's metadata: the key's path with _ for dots and brackets.
+std::string identifier(std::string_view path) {
+    std::string name(path);
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == '.' || c == '[' || c == ']'; }, '_');
+    return name;
+}
+
+usd::CustomValue custom_value(const std::string& path, const KeyValue& value) {
+    return std::visit(
+        [&]<class Value>(const Value& v) -> usd::CustomValue {
+            if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::int64_t> ||
+                          std::is_same_v<Value, double> || std::is_same_v<Value, std::string> ||
+                          std::is_same_v<Value, std::vector<double>>) {
+                return v;
+            } else if constexpr (std::is_same_v<Value, std::vector<std::int64_t>>) {
+                return std::vector<double>(v.begin(), v.end());
+            } else {
+                const Key* key = find_key(path);
+                return key ? value_text(*key, value) : std::string();
+            }
+        },
+        value);
+}
+
+usd::Camera camera_of(const Scene& scene, std::string_view fingerprint) {
+    return {.fps = scene.shot.fps,
+            .fingerprint = fingerprint,
+            .first_frame = scene.shot.first_frame,
+            .last_frame = scene.shot.last_frame,
+            .pose_at =
+                [&scene](int frame) {
+                    const View view = view_at(scene.camera, frame);
+                    return usd::CameraPose{view.position_m, view.right, view.up, -view.forward};
+                },
+            .fov_deg = scene.camera.fov_deg,
+            .resolution = scene.camera.resolution};
+}
+
+usd::Stage stage_of(const Plan& plan, const OutputPart& mesh) {
+    const Scene& scene = plan.from->scene;
+    const Shot& shot = scene.shot;
+    const ProductSet& products = mesh.query().products;
+    usd::Stage stage;
+    stage.name = shot.name;
+    stage.first_frame = shot.first_frame;
+    stage.last_frame = shot.last_frame;
+    stage.fps = shot.fps;
+    stage.attributes = {.normals = products[index(Product::Normal)],
+                        .velocities = products[index(Product::Velocity)],
+                        .slope_variance = products[index(Product::SlopeVariance)],
+                        .whitecap_coverage = products[index(Product::Coverage)],
+                        .faces = !plan.surface->is_constant()};
+    stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));
+    stage.material.roughness = roughness(plan);
+    stage.has_camera = true;
+    // Its upper edge sets half a degree after its centre has.
+    if (constexpr double kDiscRadius_deg = 0.27; scene.light.sun_elevation_deg > -kDiscRadius_deg)
+        stage.sun = usd::Sun{.elevation_deg = scene.light.sun_elevation_deg,
+                             .azimuth_deg = scene.light.sun_azimuth_deg};
+    stage.sky = usd::Sky{};
+    stage.custom_data = {
+        {"version", std::string(PELAGIC_VERSION)},
+        {"fingerprint", mesh.fingerprint()},
+        {"significant_height_m", 4.0 * std::sqrt(plan.from->spectrum.m0())},
+    };
+    for (const auto& [path, value] : described(scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam)))
+        stage.custom_data.push_back({identifier(path), custom_value(path, value)});
+    return stage;
+}
+
+}  // namespace
+
+void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink) {
+    const std::string& name = plan.from->scene.shot.name;
+    sink({.path = usd::camera_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
+              usd::write_camera_crate(camera_of(plan.from->scene, {}), take);
+          }});
+    sink({.path = usd::root_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
+              take(usd::root_text(stage_of(plan, mesh)));
+          }});
+}
+
+}  // namespace pelagic

@@ -3,14 +3,19 @@
 
 #include <string>
 
+#include "core/scene/keys.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
 
-// Every value of the scene, one "key = value" a line, numbers in their shortest exact form, measured bins
-// included. Scenes of the same text give the same frames under the same names. Left out is the range of
-// frames alone: a frame is what it is whatever the range that was asked for, and a longer range must not make
-// a bake do its finished frames again.
+// Every key that feeds one of these parts and has a value, one "key = value" a line, in the order of the
+// table of keys, numbers in their shortest exact form. A measured spectrum stands with all its bins in the
+// line of its file, whose path does not count. Scenes of the same text are the same sea as far as these parts
+// go.
+std::string canonical(const Scene& scene, FeedSet parts);
+
+// The same of all keys but the range of frames: a frame is what it is whatever the range that was asked for,
+// and a longer range must not make a bake do its finished frames again.
 std::string canonical(const Scene& scene);
 
 }  // namespace pelagic

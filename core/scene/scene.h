@@ -1,8 +1,9 @@
 // What the artist asks for, as a plain value: the first link of Scene → Plan → Sea → Frame → evaluate.
 //
-// Each struct mirrors a table of the shot file, each member the key of the same name; the defaults here *are*
-// the shot file's defaults. Nothing in a Scene depends on a file: a measured spectrum is in it as data,
-// already parsed. validate() (scene/validate.h) says whether the values make sense together.
+// Each struct mirrors a table of the shot file, each member the key of the same name (scene/keys.h describes
+// them); the defaults here *are* the shot file's defaults. Nothing in a Scene depends on a file: a measured
+// spectrum is in it as data, already parsed. validate() (scene/validate.h) says whether the values make sense
+// together.
 #pragma once
 
 #include <cmath>
@@ -63,6 +64,7 @@ struct MeasuredSpectrum {
     std::vector<Bin> bins;  // by rising frequency, at least two
     std::string station;    // for messages and the record, e.g. "41010"
     std::string time;       // e.g. "2019-02-06T00:40:00Z"
+    std::string file = {};  // where it was read; what a shot depends on is the content
 };
 
 // [sea]

@@ -36,7 +36,7 @@ std::string quoted_text(std::string_view text) {
             out += '\\';
             out += c;
         } else if (byte < 0x20 || byte == 0x7f) {
-            out += "\\x";
+            out += "\\u00";
             out += kHexDigits[byte >> 4];
             out += kHexDigits[byte & 15];
         } else {

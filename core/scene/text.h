@@ -9,8 +9,8 @@ namespace pelagic {
 // The shortest text that reads back as the same double: "24", "0.1", "1e8", "inf", "nan".
 std::string number_text(double value);
 
-// The text between quotes, with quotes, backslashes and control characters escaped: one line, whatever is in
-// it.
+// The text between quotes, with quotes, backslashes and control characters escaped as TOML and JSON do: one
+// line, whatever is in it.
 std::string quoted_text(std::string_view text);
 
 }  // namespace pelagic

@@ -1,13 +1,16 @@
-// Whether the values of a Scene make sense. See validate.h.
+// Whether the values of a Scene make sense: each alone, by the table of keys, then what they mean together.
+// See validate.h.
 #include "core/scene/validate.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <set>
 #include <utility>
 
 #include "core/scene/cascade_bands.h"
+#include "core/scene/keys.h"
 #include "core/scene/limits.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
@@ -31,41 +34,141 @@ std::string choice_text(Choice choice) {
 
 class Checker {
   public:
-    void refuse(Problem problem) { problems_.push_back(std::move(problem)); }
-
-    // Whether the value is in range; refused if not.
-    bool in_range(const std::string& key, double value, Range range) {
-        if (range.holds(value)) return true;
-        refuse({key, number_text(value), std::isnan(value) ? "is not a number" : "is outside the range",
-                text_of(range)});
-        return false;
+    void refuse(Problem problem) {
+        refused_.insert(problem.key);
+        problems_.push_back(std::move(problem));
     }
 
-    bool in_range(const std::string& key, int value, Range range) {
-        if (range.holds(value)) return true;
-        refuse({key, std::to_string(value), "is outside the range", text_of(range)});
-        return false;
-    }
+    // Whether nothing is known against the value of this key.
+    bool is_good(const std::string& key) const { return !refused_.contains(key); }
 
-    template <class Choice>
-    void no_duplicates(const std::string& key, const std::vector<Choice>& list) {
-        for (std::size_t i = 0; i < list.size(); ++i) {
-            if (std::find(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(i), list[i]) !=
-                list.begin() + static_cast<std::ptrdiff_t>(i)) {
-                refuse({indexed(key, i), choice_text(list[i]), "is in the list twice", "each word once"});
-            }
-        }
+    // In the order of the shot file's tables.
+    std::vector<Problem> take() {
+        const auto table_of = [](const Problem& problem) {
+            const std::span<const KeyTable> tables = key_tables();
+            const std::string name = problem.key.substr(0, problem.key.find('.'));
+            return std::find_if(tables.begin(), tables.end(),
+                                [&](const KeyTable& table) { return table.name == name; }) -
+                   tables.begin();
+        };
+        std::stable_sort(problems_.begin(), problems_.end(),
+                         [&](const Problem& a, const Problem& b) { return table_of(a) < table_of(b); });
+        return std::move(problems_);
     }
-
-    void not_built(const std::string& key, std::string value, std::string meanwhile) {
-        refuse({key, std::move(value), "is not built yet", std::move(meanwhile)});
-    }
-
-    std::vector<Problem> take() { return std::move(problems_); }
 
   private:
+    std::set<std::string> refused_;
     std::vector<Problem> problems_;
 };
+
+// ---- Each value alone
+
+bool is_in_range(const Key& key, double value) {
+    return !key.range || key.range->holds(value) || (key.may_be_infinite && std::isinf(value) && value > 0.0);
+}
+
+// What would be right for a number; for lists of numbers, all of what is accepted.
+std::string range_text(const Key& key) {
+    if (key.type != KeyType::Number && key.type != KeyType::Integer) return key.accepted;
+    return text_of(*key.range) + (key.may_be_infinite ? ", or inf" : "");
+}
+
+// The words that are built, or else the value that doesn't ask for any.
+std::string built_text(const Key& key) {
+    std::string text;
+    for (const KeyChoice& choice : key.choices)
+        if (choice.is_built) text += (text.empty() ? "" : " or ") + quoted_text(choice.word);
+    return text.empty() ? value_text(key, key.fallback) : text;
+}
+
+struct Place {
+    const Key& key;
+    std::string path;
+};
+
+void check_value(Checker& check, const Place& at, const KeyValue& value);
+
+struct ValueCheck {
+    Checker& check;
+    const Place& at;
+
+    void refuse(const KeyValue& value, const char* problem) const {
+        check.refuse({at.path, value_text(at.key, value), problem, range_text(at.key)});
+    }
+    void word(const std::string& path, const std::string& word) const {
+        const auto choice = std::find_if(at.key.choices.begin(), at.key.choices.end(),
+                                         [&](const KeyChoice& each) { return each.word == word; });
+        if (choice != at.key.choices.end() && !choice->is_built)
+            check.refuse({path, quoted_text(word), "is not built yet", built_text(at.key)});
+    }
+
+    void operator()(std::monostate) const {}
+    void operator()(bool) const {}
+    void operator()(std::int64_t value) const {
+        if (!is_in_range(at.key, static_cast<double>(value))) refuse(value, "is outside the range");
+    }
+    void operator()(double value) const {
+        if (!is_in_range(at.key, value))
+            refuse(value, std::isnan(value) ? "is not a number" : "is outside the range");
+    }
+    void operator()(const std::string& value) const {
+        if (at.key.type == KeyType::Word) word(at.path, value);
+    }
+    template <class Number>
+    void operator()(const std::vector<Number>& list) const {
+        const auto is_good = [&](Number value) { return is_in_range(at.key, static_cast<double>(value)); };
+        if (!std::all_of(list.begin(), list.end(), is_good)) refuse(list, "is outside the range");
+    }
+    void operator()(const std::vector<std::string>& list) const {
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const auto here = list.begin() + static_cast<std::ptrdiff_t>(i);
+            if (std::find(list.begin(), here, *here) != here)
+                check.refuse(
+                    {indexed(at.path, i), quoted_text(*here), "is in the list twice", "each word once"});
+            word(indexed(at.path, i), *here);
+        }
+    }
+    void operator()(const std::vector<KeyEntry>& list) const {
+        if (list.size() > at.key.most_entries) {
+            check.refuse({at.path, std::to_string(list.size()) + " entries", "is too many",
+                          "at most " + std::to_string(at.key.most_entries)});
+            return;
+        }
+        for (std::size_t i = 0; i < list.size(); ++i)
+            for (std::size_t k = 0; k < list[i].values.size(); ++k) {
+                const Key& inner = at.key.entry_keys[k];
+                check_value(check, {inner, indexed(at.path, i) + '.' + inner.name}, list[i].values[k].second);
+            }
+    }
+};
+
+void check_value(Checker& check, const Place& at, const KeyValue& value) {
+    std::visit(ValueCheck{check, at}, value);
+}
+
+// A key that nothing uses yet: refused, rather than ignored, where it isn't the default.
+void check_unused(Checker& check, const Key& key, const KeyValue& value) {
+    if (value == key.fallback) return;
+    const auto* number = std::get_if<double>(&value);
+    if (number && !std::isfinite(*number)) {
+        check.refuse({key.path, value_text(key, value), "is not a finite number",
+                      value_text(key, key.fallback) + ", the only value built so far"});
+    } else {
+        check.refuse({key.path, value_text(key, value), "is not built yet", value_text(key, key.fallback)});
+    }
+}
+
+void check_each_value(Checker& check, const Scene& scene) {
+    for (const Key& key : keys()) {
+        if (!key.has_value()) continue;
+        if (key.is_built)
+            check_value(check, {key, key.path}, value_of(scene, key));
+        else
+            check_unused(check, key, value_of(scene, key));
+    }
+}
+
+// ---- What no range says, and what the values mean together
 
 void check_shot(Checker& check, const Shot& shot) {
     const auto allowed = [](char c) {
@@ -85,22 +188,19 @@ void check_shot(Checker& check, const Shot& shot) {
         check.refuse({"shot.name", quoted_text(shot.name), "is too long for a file name", kNameRule});
     }
 
-    const std::string frames =
-        '[' + std::to_string(shot.first_frame) + ", " + std::to_string(shot.last_frame) + ']';
-    if (!limits::kFrame.holds(shot.first_frame) || !limits::kFrame.holds(shot.last_frame)) {
-        check.refuse({"shot.frames", frames, "is outside the range", "frames of " + text_of(limits::kFrame)});
-    } else if (shot.last_frame < shot.first_frame) {
+    if (check.is_good("shot.frames") && shot.last_frame < shot.first_frame) {
+        const std::string frames =
+            '[' + std::to_string(shot.first_frame) + ", " + std::to_string(shot.last_frame) + ']';
         check.refuse(
             {"shot.frames", frames, "runs backwards", "[first, last] with first ≤ last, both included"});
     }
 
-    const bool fps_is_good = check.in_range("shot.fps", shot.fps, limits::kFps);
-    constexpr auto kLargestSeed = ~std::uint64_t{0} >> 1;  // what a shot file can hold
-    if (shot.seed > kLargestSeed) {
+    const auto largest_seed = static_cast<std::uint64_t>(key_of("shot.seed").largest);
+    if (shot.seed > largest_seed) {
         check.refuse({"shot.seed", std::to_string(shot.seed), "is outside the range",
-                      "0 … " + std::to_string(kLargestSeed)});
+                      "0 … " + std::to_string(largest_seed)});
     }
-    if (check.in_range("shot.loop_s", shot.loop_s, limits::kLoop_s) && fps_is_good && shot.loop_s > 0.0) {
+    if (check.is_good("shot.loop_s") && check.is_good("shot.fps") && shot.loop_s > 0.0) {
         const double frames_a_loop = shot.loop_s * shot.fps;
         const double whole = std::max(1.0, std::round(frames_a_loop));
         if (!(std::abs(frames_a_loop - whole) <= limits::kLoopTolerance_frames)) {
@@ -143,25 +243,6 @@ void check_measured(Checker& check, const MeasuredSpectrum& measured) {
 }
 
 void check_sea(Checker& check, const SeaState& sea) {
-    check.in_range("sea.wind_speed_mps", sea.wind_speed_mps, limits::kWindSpeed_mps);
-    check.in_range("sea.wind_direction_deg", sea.wind_direction_deg, limits::kAngle_deg);
-    check.in_range("sea.fetch_m", sea.fetch_m, limits::kFetch_m);
-    const bool infinitely_deep = std::isinf(sea.depth_m) && sea.depth_m > 0.0;
-    if (!infinitely_deep && !limits::kDepth_m.holds(sea.depth_m)) {
-        check.refuse({"sea.depth_m", number_text(sea.depth_m),
-                      std::isnan(sea.depth_m) ? "is not a number" : "is outside the range",
-                      text_of(limits::kDepth_m) + ", or inf"});
-    }
-    if (sea.swell.size() > static_cast<std::size_t>(limits::kSwells)) {
-        check.refuse({"sea.swell", std::to_string(sea.swell.size()) + " swells", "is too many",
-                      "at most " + std::to_string(limits::kSwells)});
-    }
-    for (std::size_t i = 0; i < sea.swell.size(); ++i) {
-        const std::string key = indexed("sea.swell", i);
-        check.in_range(key + ".height_m", sea.swell[i].height_m, limits::kSwellHeight_m);
-        check.in_range(key + ".period_s", sea.swell[i].period_s, limits::kSwellPeriod_s);
-        check.in_range(key + ".direction_deg", sea.swell[i].direction_deg, limits::kAngle_deg);
-    }
     const bool wants_file = sea.spectrum == SpectrumKind::File;
     if (wants_file && !sea.measured) {
         check.refuse({"sea.spectrum", choice_text(sea.spectrum), "comes without a measured spectrum",
@@ -200,11 +281,7 @@ void check_bands(Checker& check, const std::vector<CascadeSize>& cascades) {
 }
 
 void check_trains(Checker& check, const Waves& waves) {
-    check.in_range("waves.trains", waves.trains, limits::kTrains);
-    bool all_good = true;
-    for (const auto& [key, end_m] :
-         {std::pair{"waves.shortest_m", waves.shortest_m}, std::pair{"waves.longest_m", waves.longest_m}})
-        if (end_m) all_good = check.in_range(key, *end_m, limits::kTrain_m) && all_good;
+    const bool all_good = check.is_good("waves.shortest_m") && check.is_good("waves.longest_m");
     if (all_good && waves.shortest_m && waves.longest_m && !(*waves.shortest_m < *waves.longest_m)) {
         check.refuse({"waves.shortest_m", number_text(*waves.shortest_m),
                       "is not shorter than longest_m, " + number_text(*waves.longest_m),
@@ -228,6 +305,7 @@ void check_trains(Checker& check, const Waves& waves) {
 
 void check_no_trains(Checker& check, const Waves& waves) {
     const auto refuse = [&](const char* key, std::string value) {
+        if (!check.is_good(key)) return;
         check.refuse({key, std::move(value), "speaks of wave trains, and the model has none",
                       "model = \"trochoid\", or a file without this key"});
     };
@@ -242,23 +320,16 @@ void check_waves(Checker& check, const Waves& waves) {
     } else {
         check_no_trains(check, waves);
     }
-    check.in_range("waves.choppiness", waves.choppiness, limits::kChoppiness);
-    if (waves.cascades.size() > static_cast<std::size_t>(limits::kCascades)) {
-        check.refuse({"waves.cascades", std::to_string(waves.cascades.size()) + " cascades", "is too many",
-                      "at most " + std::to_string(limits::kCascades)});
-        return;
-    }
+    if (!check.is_good("waves.cascades")) return;
     bool all_good = true;
     for (std::size_t i = 0; i < waves.cascades.size(); ++i) {
         const CascadeSize& cascade = waves.cascades[i];
         const std::string key = indexed("waves.cascades", i);
-        all_good = check.in_range(key + ".size_m", cascade.size_m, limits::kCascadeSize_m) && all_good;
-        if (!limits::kCascadeResolution.holds(cascade.resolution) || cascade.resolution % 2 != 0) {
+        if (check.is_good(key + ".resolution") && cascade.resolution % 2 != 0)
             check.refuse({key + ".resolution", std::to_string(cascade.resolution),
                           "is no grid for a transform",
                           "an even number, " + text_of(limits::kCascadeResolution)});
-            all_good = false;
-        }
+        all_good = check.is_good(key + ".size_m") && check.is_good(key + ".resolution") && all_good;
         if (i > 0 && !(cascade.size_m < waves.cascades[i - 1].size_m)) {
             const bool same = cascade.size_m == waves.cascades[i - 1].size_m;
             check.refuse({key + ".size_m", number_text(cascade.size_m),
@@ -269,23 +340,6 @@ void check_waves(Checker& check, const Waves& waves) {
         }
     }
     if (all_good) check_bands(check, waves.cascades);
-}
-
-void check_surface(Checker& check, const Surface& surface) {
-    if (surface.kind != SurfaceKind::Patch && surface.kind != SurfaceKind::ProjectedGrid) {
-        check.not_built("surface.kind", choice_text(surface.kind), "\"patch\" or \"projected-grid\"");
-    }
-    check.in_range("surface.size_m", surface.size_m, limits::kSurfaceSize_m);
-    check.in_range("surface.resolution", surface.resolution, limits::kSurfaceResolution);
-    check.in_range("surface.cell_px", surface.cell_px, limits::kCell_px);
-}
-
-bool check_point(Checker& check, const std::string& key, const glm::dvec3& point_m) {
-    const Range range = limits::kCameraCoordinate_m;
-    if (range.holds(point_m.x) && range.holds(point_m.y) && range.holds(point_m.z)) return true;
-    check.refuse(
-        {key, vector_text(point_m), "is outside the range", "three numbers, each " + text_of(range)});
-    return false;
 }
 
 // The least distance from the origin to the segment from a to b.
@@ -299,10 +353,8 @@ double distance_to_origin(const glm::dvec3& a, const glm::dvec3& b) {
 constexpr const char* kOffTarget = "a target at least 1e-6 m away from the camera's position";
 
 void check_camera(Checker& check, const Camera& camera) {
-    const bool position_is_good = check_point(check, "camera.position_m", camera.position_m);
-    const bool target_is_good = check_point(check, "camera.look_at_m", camera.look_at_m);
-    // With keys, the two points above are not used.
-    if (position_is_good && target_is_good && camera.keys.empty() &&
+    // With keys, the camera's own two points are not used.
+    if (check.is_good("camera.position_m") && check.is_good("camera.look_at_m") && camera.keys.empty() &&
         glm::distance(camera.position_m, camera.look_at_m) < limits::kOnTarget_m) {
         check.refuse({"camera.look_at_m", vector_text(camera.look_at_m),
                       "is where the camera itself is, so that it looks nowhere", kOffTarget});
@@ -311,9 +363,7 @@ void check_camera(Checker& check, const Camera& camera) {
     for (std::size_t i = 0; i < camera.keys.size(); ++i) {
         const CameraKey& here = camera.keys[i];
         const std::string key = indexed("camera.keys", i);
-        check.in_range(key + ".frame", here.frame, limits::kFrame);
-        bool good = check_point(check, key + ".position_m", here.position_m);
-        good = check_point(check, key + ".look_at_m", here.look_at_m) && good;
+        bool good = check.is_good(key + ".position_m") && check.is_good(key + ".look_at_m");
         if (good && glm::distance(here.position_m, here.look_at_m) < limits::kOnTarget_m) {
             check.refuse({key + ".look_at_m", vector_text(here.look_at_m),
                           "is where the camera itself is, so that it looks nowhere", kOffTarget});
@@ -336,32 +386,9 @@ void check_camera(Checker& check, const Camera& camera) {
         }
         previous_is_good = good;
     }
-    check.in_range("camera.fov_deg", camera.fov_deg, limits::kFov_deg);
-    if (!limits::kImageResolution.holds(camera.resolution.x) ||
-        !limits::kImageResolution.holds(camera.resolution.y)) {
-        check.refuse(
-            {"camera.resolution",
-             '[' + std::to_string(camera.resolution.x) + ", " + std::to_string(camera.resolution.y) + ']',
-             "is outside the range", "[width, height], each " + text_of(limits::kImageResolution)});
-    }
 }
 
-// A number that nothing uses yet: refused, rather than ignored, where it isn't the default.
-void check_unused_number(Checker& check, const std::string& key,
-                         std::pair<double, double> value_and_default) {
-    const auto [value, fallback] = value_and_default;
-    if (value == fallback) return;
-    if (!std::isfinite(value)) {
-        check.refuse({key, number_text(value), "is not a finite number",
-                      number_text(fallback) + ", the only value built so far"});
-    } else {
-        check.not_built(key, number_text(value), number_text(fallback));
-    }
-}
-
-void check_light_and_water(Checker& check, const Light& light, const Water& water) {
-    check.in_range("light.sun_elevation_deg", light.sun_elevation_deg, limits::kSunElevation_deg);
-    check.in_range("light.sun_azimuth_deg", light.sun_azimuth_deg, limits::kAngle_deg);
+void check_light(Checker& check, const Light& light) {
     const auto is_exr = [](std::string_view path) {
         constexpr std::string_view kExr = ".exr";
         return path.size() > kExr.size() &&
@@ -372,8 +399,6 @@ void check_light_and_water(Checker& check, const Light& light, const Water& wate
         check.refuse({"light.sky", quoted_text(light.sky), "is neither a sky's name nor a picture",
                       "\"daylight\", or the path of a lat-long picture, an .exr"});
     }
-    check.in_range("light.turbidity", light.turbidity, limits::kTurbidity);
-    check.in_range("water.chlorophyll_mg_m3", water.chlorophyll_mg_m3, limits::kChlorophyll_mg_m3);
 }
 
 void check_tiles(Checker& check, const Output& output, const Waves& waves) {
@@ -384,10 +409,7 @@ void check_tiles(Checker& check, const Output& output, const Waves& waves) {
     }
 }
 
-void check_effects_and_output(Checker& check, const Effects& effects, const Output& output) {
-    if (effects.spray) check.not_built("effects.spray", "true", "false");
-    check_unused_number(check, "effects.spray_gain", {effects.spray_gain, Effects{}.spray_gain});
-
+void check_output(Checker& check, const Effects& effects, const Output& output) {
     if (output.mesh == MeshFormat::None && output.maps.empty()) {
         check.refuse({"output.mesh", choice_text(output.mesh),
                       "leaves nothing to bake: there are no maps either",
@@ -397,8 +419,6 @@ void check_effects_and_output(Checker& check, const Effects& effects, const Outp
         check.refuse({"output.cascade_tiles", "true", "asks for tiles of no map",
                       "true together with at least one map in output.maps, or false"});
     }
-    check.no_duplicates("output.attributes", output.attributes);
-    check.no_duplicates("output.maps", output.maps);
     for (std::size_t i = 0; i < output.maps.size(); ++i) {
         if (output.maps[i] == MapKind::Whitecaps && !effects.whitecaps) {
             check.refuse({indexed("output.maps", i), choice_text(output.maps[i]),
@@ -406,14 +426,6 @@ void check_effects_and_output(Checker& check, const Effects& effects, const Outp
                           "effects.whitecaps = true, or no such map"});
         }
     }
-    check.in_range("output.map_resolution", output.map_resolution, limits::kMapResolution);
-    if (output.mesh_scheme != MeshScheme::None) {
-        check.not_built("output.mesh_scheme", choice_text(output.mesh_scheme), "\"none\"");
-    }
-    for (std::size_t i = 0; i < output.volumes.size(); ++i) {
-        check.not_built(indexed("output.volumes", i), choice_text(output.volumes[i]), "an empty list, []");
-    }
-    check_unused_number(check, "output.voxel_m", {output.voxel_m, Output{}.voxel_m});
 }
 
 }  // namespace
@@ -428,13 +440,13 @@ std::string text_of(const Problem& problem) {
 
 std::vector<Problem> validate(const Scene& scene) {
     Checker check;
+    check_each_value(check, scene);
     check_shot(check, scene.shot);
     check_sea(check, scene.sea);
     check_waves(check, scene.waves);
-    check_surface(check, scene.surface);
     check_camera(check, scene.camera);
-    check_light_and_water(check, scene.light, scene.water);
-    check_effects_and_output(check, scene.effects, scene.output);
+    check_light(check, scene.light);
+    check_output(check, scene.effects, scene.output);
     check_tiles(check, scene.output, scene.waves);
     return check.take();
 }

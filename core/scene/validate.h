@@ -2,23 +2,12 @@
 // one adds the place (plugin/shot).
 #pragma once
 
-#include <string>
 #include <vector>
 
+#include "core/scene/problem.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
-
-// One refused value, as the parts of one sentence.
-struct Problem {
-    std::string key;       // the shot file's path of it: "waves.cascades[1].resolution", counting from 0
-    std::string value;     // as the shot file would write it
-    std::string problem;   // what is wrong: "is outside the range"
-    std::string accepted;  // what would be right: "0 … 80"
-};
-
-// "sea.wind_speed_mps = -3: is outside the range; accepted: 0 … 80"
-std::string text_of(const Problem& problem);
 
 // Every problem of the scene, in the order of the shot file's tables; empty: the scene can be planned.
 //

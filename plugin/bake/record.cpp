@@ -9,7 +9,7 @@
 #include "core/base/constants.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/mode_lattice.h"
-#include "core/scene/canonical.h"
+#include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/viscous_cutoff.h"
@@ -26,25 +26,30 @@ Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-// The canonical lines: numbers as numbers, words as text, a key of several lines (swells, cascades, …) as a
-// list.
-Json settings(const Scene& scene) {
-    Json lines = Json::object();
-    std::istringstream text(canonical(scene));
-    for (std::string line; std::getline(text, line);) {
-        const std::size_t equals = line.find(" = ");
-        if (equals == std::string::npos) continue;
-        const std::string key = line.substr(0, equals), words = line.substr(equals + 3);
-        Json value = Json::parse(words, nullptr, false);
-        if (value.is_discarded()) value = words;
-        if (!lines.contains(key)) {
-            lines[key] = value;
-        } else {
-            if (!lines[key].is_array()) lines[key] = Json::array({lines[key]});
-            lines[key].push_back(value);
+// What is not given is null.
+struct ToJson {
+    Json operator()(std::monostate) const { return nullptr; }
+    Json operator()(double value) const { return number(value); }
+    Json operator()(const std::vector<KeyEntry>& entries) const {
+        Json list = Json::array();
+        for (const KeyEntry& entry : entries) {
+            Json& made = list.emplace_back(Json::object());
+            for (const auto& [name, inner] : entry.values) made[std::string(name)] = std::visit(*this, inner);
         }
+        return list;
     }
-    return lines;
+    template <class Plain>
+    Json operator()(const Plain& value) const {
+        return value;
+    }
+};
+
+// Every key that a scene has a value of, by its path.
+Json settings(const Scene& scene) {
+    Json json = Json::object();
+    for (const Key& key : keys())
+        if (key.has_value()) json[key.path] = std::visit(ToJson{}, value_of(scene, key));
+    return json;
 }
 
 // Whether the fingerprint stands near one end of the file: maps and layers in text carry it among their first

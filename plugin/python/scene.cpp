@@ -1,21 +1,17 @@
-// pelagic.Scene and its tables: the shot file's keys as attributes, documented in the words of the shot
-// file's help.
+// pelagic.Scene and its tables: the keys of core/scene/keys.h as attributes, documented in the words of the
+// shot file's help.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <array>
 #include <memory>
-#include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "core/scene/canonical.h"
+#include "core/scene/keys.h"
 #include "core/scene/names.h"
-#include "core/scene/text.h"
 #include "core/scene/validate.h"
 #include "plugin/python/bindings.h"
-#include "plugin/shot/keys.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::python {
@@ -24,226 +20,234 @@ namespace {
 namespace py = pybind11;
 
 // "how far the wind has blown over water [m]; a number, 1 … 1e8; default 300000"
-std::string doc_of(const std::string& path) {
-    for (const KeyHelp& key : all_keys()) {
-        if (key.path != path) continue;
-        std::string text = key.help;
-        if (!key.unit.empty()) text += " [" + key.unit + "]";
-        if (!key.accepted.empty()) text += "; " + key.accepted;
-        if (!key.fallback.empty()) text += "; default " + key.fallback;
-        return text;
+std::string doc_of(const Key& key) {
+    std::string text = key.help;
+    if (!key.unit.empty()) text += " [" + key.unit + "]";
+    if (!key.accepted.empty()) text += "; " + key.accepted;
+    const std::string fallback = key.is_required ? "" : value_text(key, key.fallback);
+    if (!fallback.empty()) text += "; default " + fallback;
+    if (!key.is_built) text += "; not built yet";
+    return text;
+}
+
+// ---- Values: words are strings, vectors and lists are tuples, a list's entries named tuples
+
+// The class of a list's entries: an attribute of the module.
+py::object entry_class(const Key& key) {
+    return py::module_::import("pelagic").attr(key.entry_name.c_str());
+}
+
+// Tuples, because a list would be a copy whose append() is lost.
+struct ToPython {
+    const Key& key;
+    py::object operator()(std::monostate) const { return py::none(); }
+    py::object operator()(const std::vector<KeyEntry>& entries) const {
+        const py::object made = entry_class(key);
+        py::tuple out(entries.size());
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            py::tuple values(entries[i].values.size());
+            for (std::size_t k = 0; k < values.size(); ++k)
+                values[k] = std::visit(ToPython{key.entry_keys[k]}, entries[i].values[k].second);
+            out[i] = made(*values);
+        }
+        return out;
     }
-    throw std::logic_error("the shot file has no key " + path);
+    template <class Element>
+    py::object operator()(const std::vector<Element>& list) const {
+        return py::tuple(py::cast(list));
+    }
+    template <class Plain>
+    py::object operator()(const Plain& value) const {
+        return py::cast(value);
+    }
+};
+
+py::object to_python(const Key& key, const KeyValue& value) {
+    return std::visit(ToPython{key}, value);
 }
 
-// "[sea]: the weather", "An entry of sea.swell."
-std::string class_doc(const std::string& path) {
-    if (path.ends_with("[]")) return "An entry of " + path.substr(0, path.size() - 2) + ".";
-    return "[" + path + "]: " + doc_of(path);
+[[noreturn]] void refuse_type(const Key& key, const std::string& path, py::handle given) {
+    throw py::type_error(text_of(Problem{
+        path, py::repr(given),
+        "is of type " + std::string(py::str(py::type::handle_of(given).attr("__name__"))), key.accepted}));
 }
-
-// ---- How values look in Python: choices are the shot file's words, vectors and lists are tuples
 
 template <class Value>
-struct Face {
-    static const Value& to_python(const Value& value) { return value; }
-    using Given = Value;
-    static Value from_python(const Given& given, const std::string&) { return given; }
-};
+KeyValue cast_to(const Key& key, const std::string& path, py::handle given, bool convert = true) {
+    py::detail::make_caster<Value> caster;
+    if (!caster.load(given, convert)) refuse_type(key, path, given);
+    return py::detail::cast_op<Value>(caster);
+}
 
-template <class Choice>
-requires std::is_enum_v<Choice>
-struct Face<Choice> {
-    static std::string to_python(Choice choice) { return std::string(word_of(choice)); }
-    using Given = std::string;
-    static Choice from_python(const Given& word, const std::string& path) {
-        if (const auto choice = choice_of<Choice>(word)) return *choice;
-        const auto words = all_words<Choice>();
-        std::string accepted;
-        for (const std::string& one : words) accepted += (accepted.empty() ? "" : " ") + quoted_text(one);
-        const std::string near = nearest(word, words);
-        throw ShotError(text_of(
-            Problem{path, quoted_text(word),
-                    "is not one of the words" + (near.empty() ? "" : ", the nearest is " + quoted_text(near)),
-                    "one of " + accepted}));
+KeyValue from_python(const Key& key, const std::string& path, py::handle given);
+
+// An entry: anything that has the keys as items, as dictionaries do, or as attributes.
+KeyEntry entry_from_python(const Key& list, const std::string& path, py::handle given) {
+    KeyEntry entry;
+    const bool is_dict = py::isinstance<py::dict>(given);
+    for (const Key& key : list.entry_keys) {
+        const py::str name(key.name);
+        const bool has_key = is_dict ? given.contains(name) : py::hasattr(given, name);
+        if (!has_key || (is_dict && py::len(given) != list.entry_keys.size())) refuse_type(list, path, given);
+        const py::object value = is_dict ? py::object(given[name]) : py::object(given.attr(name));
+        entry.values.emplace_back(key.name, from_python(key, path + '.' + key.name, value));
     }
-};
+    return entry;
+}
 
-template <>
-struct Face<glm::dvec3> {
-    static std::array<double, 3> numbers(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-    static py::tuple to_python(const glm::dvec3& v) { return py::make_tuple(v.x, v.y, v.z); }
-    using Given = std::array<double, 3>;
-    static glm::dvec3 from_python(const Given& v, const std::string&) { return {v[0], v[1], v[2]}; }
-};
-
-template <>
-struct Face<glm::ivec2> {
-    static py::tuple to_python(const glm::ivec2& v) { return py::make_tuple(v.x, v.y); }
-    using Given = std::array<int, 2>;
-    static glm::ivec2 from_python(const Given& v, const std::string&) { return {v[0], v[1]}; }
-};
-
-// A tuple, because a list would be a copy whose append() is lost.
-template <class Element>
-struct Face<std::vector<Element>> {
-    static py::tuple to_python(const std::vector<Element>& list) {
-        py::tuple tuple(list.size());
-        for (std::size_t i = 0; i < list.size(); ++i) tuple[i] = py::cast(Face<Element>::to_python(list[i]));
-        return tuple;
+KeyValue from_python(const Key& key, const std::string& path, py::handle given) {
+    if (key.is_optional && given.is_none()) return {};
+    switch (key.type) {
+        case KeyType::Truth:
+            return cast_to<bool>(key, path, given, false);
+        case KeyType::Integer:
+            return cast_to<std::int64_t>(key, path, given);
+        case KeyType::Number:
+            return cast_to<double>(key, path, given);
+        case KeyType::Point:
+            return cast_to<std::vector<double>>(key, path, given);
+        case KeyType::Pair:
+            return cast_to<std::vector<std::int64_t>>(key, path, given);
+        case KeyType::Words:
+            return cast_to<std::vector<std::string>>(key, path, given);
+        case KeyType::Entries:
+            break;
+        case KeyType::Text:
+        case KeyType::Word:
+        case KeyType::DataFile:
+        case KeyType::DataTime:
+            return cast_to<std::string>(key, path, given);
     }
-    using Given = std::vector<typename Face<Element>::Given>;
-    static std::vector<Element> from_python(const Given& given, const std::string& path) {
-        std::vector<Element> list;
-        for (std::size_t i = 0; i < given.size(); ++i)
-            list.push_back(Face<Element>::from_python(given[i], path + '[' + std::to_string(i) + ']'));
-        return list;
-    }
+    if (!key.empty_word.empty() && py::isinstance<py::str>(given) &&
+        std::string(py::str(given)) == key.empty_word)
+        return std::vector<KeyEntry>();
+    if (py::isinstance<py::str>(given) || !py::isinstance<py::sequence>(given)) refuse_type(key, path, given);
+    std::vector<KeyEntry> entries;
+    for (const py::handle element : given)
+        entries.push_back(entry_from_python(key, path + '[' + std::to_string(entries.size()) + ']', element));
+    return entries;
+}
+
+void set_from_python(Scene& scene, const Key& key, py::handle given) {
+    if (const auto problem = set_value(scene, key, from_python(key, key.path, given)))
+        throw ShotError(text_of(*problem));
+}
+
+// ---- Classes out of the table of keys
+
+// A table of a scene, which it keeps alive; the base of a class for each table.
+struct TableOfScene {
+    std::shared_ptr<Scene> scene;
 };
 
-// ---- Classes out of structs
+py::object property(const py::object& get, const py::object& set, const std::string& doc) {
+    return py::module_::import("builtins").attr("property")(get, set, py::none(), doc);
+}
 
-// A table, or an entry of a list ("sea.swell[]"): its keys become attributes.
-template <class Table>
-class Binder {
-  public:
-    Binder(py::module_& module, const char* name, std::string path)
-        : path_(std::move(path)), class_(module, name, class_doc(path_).c_str()) {
-        class_.def("__repr__", [class_name = std::string(name), this_names = names_](const py::object& self) {
-            std::string text;
-            for (const std::string& key : *this_names)
-                text +=
-                    (text.empty() ? "" : ", ") + key + "=" + std::string(py::repr(self.attr(key.c_str())));
-            return class_name + "(" + text + ")";
+// The attributes of a table's class that aren't keys.
+void add_methods(const std::string& table, const py::object& base, py::dict& members) {
+    if (table == "shot")
+        members["time_s"] = py::cpp_function(
+            [](const TableOfScene& self, double frame) { return (frame - 1.0) / self.scene->shot.fps; },
+            py::arg("frame"), py::is_method(base),
+            "The time that a frame shows [s], also between frames: t = (frame - 1)/fps, whatever the range.");
+    if (table != "sea") return;
+    members["is_measured"] = property(
+        py::cpp_function([](const TableOfScene& self) { return self.scene->sea.measured.has_value(); }),
+        py::none(), "Whether a buoy's hour is in it, from Scene.from_file.");
+    members["forget_measured"] = py::cpp_function(
+        [](const TableOfScene& self) { self.scene->sea.measured.reset(); }, py::is_method(base),
+        "Lets the buoy's hour go, so that spectrum can be another than \"file\".");
+}
+
+std::string repr_of(const KeyTable& table, const Scene& scene) {
+    std::string text;
+    for (const Key& key : table.keys)
+        if (key.has_value())
+            text += (text.empty() ? "" : ", ") + key.name + "=" +
+                    std::string(py::repr(to_python(key, value_of(scene, key))));
+    return table.name + "(" + text + ")";
+}
+
+// "ShotTable", "SeaTable", …
+py::object add_table_class(py::module_& module, const py::object& base, const KeyTable& table) {
+    py::dict members;
+    members["__module__"] = "pelagic";
+    members["__slots__"] = py::tuple();  // a misspelt key is refused, not added
+    members["__doc__"] = "[" + table.name + "]: " + table.help;
+    members["__repr__"] = py::cpp_function(
+        [&table](const TableOfScene& self) { return repr_of(table, *self.scene); }, py::is_method(base));
+    for (const Key& key : table.keys) {
+        if (!key.has_value()) continue;
+        const py::cpp_function get(
+            [&key](const TableOfScene& self) { return to_python(key, value_of(*self.scene, key)); });
+        const py::cpp_function set([&key](const TableOfScene& self, const py::object& value) {
+            set_from_python(*self.scene, key, value);
         });
+        members[key.name.c_str()] = property(get, key.set ? py::object(set) : py::none(), doc_of(key));
     }
-
-    template <class Value>
-    Binder& key(const char* name, Value Table::*member) {
-        using Shown = Face<Value>;
-        const std::string path = path_ + '.' + name;
-        names_->push_back(name);
-        class_.def_property(
-            name, [member](const Table& table) { return Shown::to_python(table.*member); },
-            [member, path](Table& table, const typename Shown::Given& given) {
-                table.*member = Shown::from_python(given, path);
-            },
-            doc_of(path).c_str());
-        return *this;
-    }
-
-    py::class_<Table>& python() { return class_; }
-    void add_name(const char* name) { names_->push_back(name); }
-
-  private:
-    std::string path_;
-    std::shared_ptr<std::vector<std::string>> names_ = std::make_shared<std::vector<std::string>>();
-    py::class_<Table> class_;
-};
-
-void add_lists(py::module_& module) {
-    Binder<Swell>(module, "Swell", "sea.swell[]")
-        .key("height_m", &Swell::height_m)
-        .key("period_s", &Swell::period_s)
-        .key("direction_deg", &Swell::direction_deg)
-        .python()
-        .def(py::init([](double height_m, double period_s, double direction_deg) {
-                 return Swell{height_m, period_s, direction_deg};
-             }),
-             py::kw_only(), py::arg("height_m"), py::arg("period_s"), py::arg("direction_deg"));
-    Binder<CascadeSize>(module, "CascadeSize", "waves.cascades[]")
-        .key("size_m", &CascadeSize::size_m)
-        .key("resolution", &CascadeSize::resolution)
-        .python()
-        .def(py::init([](double size_m, int resolution) {
-                 return CascadeSize{size_m, resolution};
-             }),
-             py::kw_only(), py::arg("size_m"), py::arg("resolution"));
-    Binder<CameraKey>(module, "CameraKey", "camera.keys[]")
-        .key("frame", &CameraKey::frame)
-        .key("position_m", &CameraKey::position_m)
-        .key("look_at_m", &CameraKey::look_at_m)
-        .python()
-        .def(py::init([](int frame, std::array<double, 3> at, std::array<double, 3> target) {
-                 return CameraKey{frame, {at[0], at[1], at[2]}, {target[0], target[1], target[2]}};
-             }),
-             py::kw_only(), py::arg("frame"), py::arg("position_m"), py::arg("look_at_m"));
+    add_methods(table.name, base, members);
+    std::string name = table.name + "Table";
+    name.front() += 'A' - 'a';
+    const py::object made = py::type::of(base)(name, py::make_tuple(base), members);
+    module.attr(name.c_str()) = made;
+    return made;
 }
 
-void add_shot(py::module_& module) {
-    Binder<Shot> shot(module, "Shot", "shot");
-    shot.key("name", &Shot::name);
-    shot.add_name("frames");
-    shot.python().def_property(
-        "frames", [](const Shot& self) { return py::make_tuple(self.first_frame, self.last_frame); },
-        [](Shot& self, std::array<int, 2> frames) {
-            self.first_frame = frames[0];
-            self.last_frame = frames[1];
-        },
-        doc_of("shot.frames").c_str());
-    shot.key("fps", &Shot::fps).key("seed", &Shot::seed).key("loop_s", &Shot::loop_s);
-    shot.python().def(
-        "time_s", [](const Shot& self, double frame) { return (frame - 1.0) / self.fps; }, py::arg("frame"),
-        "The time that a frame shows [s], also between frames: t = (frame - 1)/fps, whatever the range.");
+// Named tuples: an attribute that is assigned would be lost with the copy that it belongs to.
+void add_entry_class(py::module_& module, const Key& key) {
+    py::list names;
+    for (const Key& inner : key.entry_keys) names.append(inner.name);
+    const py::object made = py::module_::import("collections")
+                                .attr("namedtuple")(key.entry_name, names, py::arg("module") = "pelagic");
+    made.attr("__doc__") = "An entry of " + key.path + ".";
+    for (const Key& inner : key.entry_keys) made.attr(inner.name.c_str()).attr("__doc__") = doc_of(inner);
+    module.attr(key.entry_name.c_str()) = made;
 }
 
-void add_tables(py::module_& module) {
-    add_shot(module);
-    Binder<SeaState>(module, "SeaState", "sea")
-        .key("wind_speed_mps", &SeaState::wind_speed_mps)
-        .key("wind_direction_deg", &SeaState::wind_direction_deg)
-        .key("fetch_m", &SeaState::fetch_m)
-        .key("depth_m", &SeaState::depth_m)
-        .key("spectrum", &SeaState::spectrum)
-        .key("spreading", &SeaState::spreading)
-        .key("swell", &SeaState::swell)
-        .python()
-        .def_property_readonly(
-            "is_measured", [](const SeaState& self) { return self.measured.has_value(); },
-            "Whether a buoy's hour is in it, from Scene.from_file.")
-        .def(
-            "forget_measured", [](SeaState& self) { self.measured.reset(); },
-            "Lets the buoy's hour go, so that spectrum can be another than \"file\".");
-    Binder<Waves>(module, "Waves", "waves")
-        .key("model", &Waves::model)
-        .key("choppiness", &Waves::choppiness)
-        .key("cascades", &Waves::cascades)
-        .key("trains", &Waves::trains)
-        .key("shortest_m", &Waves::shortest_m)
-        .key("longest_m", &Waves::longest_m);
-    Binder<Surface>(module, "Surface", "surface")
-        .key("kind", &Surface::kind)
-        .key("size_m", &Surface::size_m)
-        .key("resolution", &Surface::resolution)
-        .key("cell_px", &Surface::cell_px);
-    Binder<Camera>(module, "Camera", "camera")
-        .key("position_m", &Camera::position_m)
-        .key("look_at_m", &Camera::look_at_m)
-        .key("keys", &Camera::keys)
-        .key("fov_deg", &Camera::fov_deg)
-        .key("resolution", &Camera::resolution);
-    Binder<Light>(module, "Light", "light")
-        .key("sun_elevation_deg", &Light::sun_elevation_deg)
-        .key("sun_azimuth_deg", &Light::sun_azimuth_deg)
-        .key("sky", &Light::sky)
-        .key("turbidity", &Light::turbidity);
-    Binder<Water>(module, "Water", "water")
-        .key("type", &Water::type)
-        .key("chlorophyll_mg_m3", &Water::chlorophyll_mg_m3);
-    Binder<Effects>(module, "Effects", "effects")
-        .key("whitecaps", &Effects::whitecaps)
-        .key("spray", &Effects::spray)
-        .key("spray_gain", &Effects::spray_gain);
-    Binder<Quality>(module, "Quality", "quality").key("level", &Quality::level);
-    Binder<Output>(module, "Output", "output")
-        .key("mesh", &Output::mesh)
-        .key("attributes", &Output::attributes)
-        .key("maps", &Output::maps)
-        .key("map_resolution", &Output::map_resolution)
-        .key("cascade_tiles", &Output::cascade_tiles)
-        .key("mesh_scheme", &Output::mesh_scheme)
-        .key("volumes", &Output::volumes)
-        .key("voxel_m", &Output::voxel_m);
+// ---- The table itself
+
+py::object range_of(const Key& key) {
+    if (key.range) return py::make_tuple(key.range->low, key.range->high);
+    if (key.type == KeyType::Integer) return py::make_tuple(key.least, key.largest);
+    return py::none();
+}
+
+py::dict described_key(const Key& key) {
+    py::list choices, feeds, inner;
+    for (const KeyChoice& choice : key.choices) {
+        py::dict made;
+        made["word"] = choice.word;
+        made["built"] = choice.is_built;
+        choices.append(made);
+    }
+    for (std::size_t part = 0; part < kFeeds; ++part)
+        if (key.feeds[part]) feeds.append(text_of(FeedSet(1ull << part)));
+    for (const Key& each : key.entry_keys) inner.append(described_key(each));
+    py::dict out;
+    out["path"] = key.path;
+    out["name"] = key.name;
+    out["label"] = key.label;
+    out["type"] = std::string(word_of(key.type));
+    out["unit"] = key.unit;
+    out["help"] = key.help;
+    out["accepted"] = key.accepted;
+    out["default"] = key.is_required ? py::none() : to_python(key, key.fallback);
+    out["required"] = key.is_required;
+    out["range"] = range_of(key);
+    out["soft_range"] = key.soft ? py::make_tuple(key.soft->low, key.soft->high) : py::object(py::none());
+    out["logarithmic"] = key.soft && key.soft->is_logarithmic;
+    out["choices"] = choices;
+    out["feeds"] = feeds;
+    out["built"] = key.is_built;
+    out["keys"] = inner;
+    return out;
+}
+
+py::list described_keys() {
+    py::list out;
+    for (const Key& key : keys()) out.append(described_key(key));
+    return out;
 }
 
 std::vector<std::string> problem_lines(const Scene& scene) {
@@ -261,38 +265,46 @@ void require_valid(const Scene& scene) {
 }
 
 void add_scene(py::module_& module) {
-    add_lists(module);
-    add_tables(module);
-    py::class_<Scene> scene(
+    for (const Key& key : keys())
+        if (!key.entry_keys.empty()) add_entry_class(module, key);
+    py::class_<Scene, std::shared_ptr<Scene>> scene(
         module, "Scene",
-        "What the artist asks for: the tables of a shot file, each with its keys as "
-        "attributes.\n\n"
-        "Scene() has the defaults. Words are strings, vectors and lists are tuples: assign a new "
-        "one to change it.");
+        "What the artist asks for: the tables of a shot file, each with its keys as attributes.\n\n"
+        "Scene() has the defaults. Words are strings, vectors and lists are tuples: assign a new one to "
+        "change "
+        "it. pelagic.keys() describes every key.");
     scene.def(py::init<>())
-        .def_static("from_file", &load_shot, py::arg("path"),
-                    "The scene that a shot file describes. ShotError with every problem of the file.")
+        .def_static(
+            "from_file",
+            [](const std::filesystem::path& path) { return std::make_shared<Scene>(load_shot(path)); },
+            py::arg("path"),
+            "The scene that a shot file describes. ShotError with every problem of the file.")
         .def("validate", &problem_lines,
              "Every problem of the scene, a line each: KEY = VALUE: PROBLEM; accepted: WHAT IS. Empty: it "
              "can be "
              "planned.")
-        .def("__copy__", [](const Scene& self) { return self; })
+        .def("__copy__", [](const Scene& self) { return std::make_shared<Scene>(self); })
         .def(
-            "__deepcopy__", [](const Scene& self, const py::dict&) { return self; }, py::arg("memo"))
-        .def("__str__", &canonical);
-    const auto table = [&scene](const char* name, auto member) {
-        scene.def_readwrite(name, member, doc_of(name).c_str());
-    };
-    table("shot", &Scene::shot);
-    table("sea", &Scene::sea);
-    table("waves", &Scene::waves);
-    table("surface", &Scene::surface);
-    table("camera", &Scene::camera);
-    table("light", &Scene::light);
-    table("water", &Scene::water);
-    table("effects", &Scene::effects);
-    table("quality", &Scene::quality);
-    table("output", &Scene::output);
+            "__deepcopy__", [](const Scene& self, const py::dict&) { return std::make_shared<Scene>(self); },
+            py::arg("memo"))
+        .def("__str__", [](const Scene& self) { return canonical(self); });
+    py::class_<TableOfScene> base(module, "Table", "A table of a scene: its keys are the attributes.");
+    base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }));
+    for (const KeyTable& table : key_tables()) {
+        const py::object made = add_table_class(module, base, table);
+        scene.def_property(
+            table.name.c_str(), [made](const std::shared_ptr<Scene>& self) { return made(self); },
+            [&table](Scene& self, const TableOfScene& other) {
+                const Scene from = *other.scene;
+                table.copy(from, self);
+            },
+            ("[" + table.name + "]: " + table.help).c_str());
+    }
+    module.def(
+        "keys", &described_keys,
+        "Every key of a shot file as a dictionary: path, name, label, type, unit, help, accepted, default, "
+        "required, range, soft_range (of a slider), logarithmic, choices, feeds (what depends on it), built, "
+        "and the keys of a list's entries.");
 }
 
 }  // namespace pelagic::python

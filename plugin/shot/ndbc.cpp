@@ -263,7 +263,8 @@ MeasuredSpectrum load_ndbc(const std::filesystem::path& w_file, std::chrono::sys
     constexpr Column kSpread{"directional coefficient × 100", {0.0, 100.0}};
     constexpr std::array kColumns{kDirection, kDirection, kSpread, kSpread};
 
-    MeasuredSpectrum spectrum{.bins = {}, .station = name.station, .time = time_text(time)};
+    MeasuredSpectrum spectrum{
+        .bins = {}, .station = name.station, .time = time_text(time), .file = w_file.string()};
     for (std::size_t f = 0; f < densities.frequencies_hz.size(); ++f) {
         const std::optional<double> density = value_at(densities, density_row, f, kDensity);
         std::array<std::optional<double>, 4> values;

@@ -6,8 +6,8 @@
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
-#include "plugin/shot/keys.h"
 #include "plugin/shot/ndbc.h"
+#include "plugin/shot/read_scene.h"
 #include "plugin/shot/reader.h"
 #include "plugin/shot/text_file.h"
 

@@ -1,5 +1,5 @@
-// Shot files: TOML in, a validated Scene out. The keys, their defaults and what they accept are described
-// once, in keys.cpp; the ranges are core's (core/scene/limits.h).
+// Shot files: TOML in, a validated Scene out. The keys, their defaults and what they accept are core's
+// (core/scene/keys.h).
 #pragma once
 
 #include <filesystem>
@@ -28,8 +28,8 @@ Scene load_shot(const std::filesystem::path& file);
 // paths from.
 Scene parse_shot(std::string_view text, const std::filesystem::path& file);
 
-// Help: every table and key, with its default, unit, what it accepts and what it does; the words that the
-// parser uses.
+// Help: every table and key, with its default, unit, what it accepts, what it does and what depends on it;
+// the words that the parser uses.
 std::string describe_keys();
 
 }  // namespace pelagic

@@ -39,7 +39,7 @@ TEST(Text, NumbersReadBackAsTheSameBits) {
 
 TEST(Text, QuotedTextStaysOnOneLine) {
     EXPECT_EQ(quoted_text("sea"), "\"sea\"");
-    EXPECT_EQ(quoted_text("a\"b\\c\nd\x7f"), "\"a\\\"b\\\\c\\x0ad\\x7f\"");
+    EXPECT_EQ(quoted_text("a\"b\\c\nd\x7f"), "\"a\\\"b\\\\c\\u000ad\\u007f\"");
     EXPECT_EQ(quoted_text("é"), "\"é\"");
 }
 

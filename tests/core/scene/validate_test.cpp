@@ -240,7 +240,7 @@ TEST(Validate, CascadesReachEachOther) {
         },
         {"waves.cascades[0].resolution", "8192", "put a cascade between, of about 31.62 m"});
     expect_refused([](Scene& s) { s.waves.cascades = std::vector<CascadeSize>(17); },
-                   {"waves.cascades", "17 cascades", "at most 16"});
+                   {"waves.cascades", "17 entries", "at most 16"});
     expect_refused(
         [](Scene& s) {
             s.waves.cascades = {{50.0, 512}, {50.0, 512}};

@@ -1,0 +1,344 @@
+// How rows of the table of keys are made from the members of a struct. Used by keys.cpp alone.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <limits>
+#include <memory>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "core/scene/keys.h"
+#include "core/scene/member_count.h"
+#include "core/scene/names.h"
+
+namespace pelagic {
+
+// ---- Members as values, and back. take() is false, and changes nothing, where the value is of another type.
+
+template <class Member>
+struct Member_ {};
+
+template <>
+struct Member_<bool> {
+    static constexpr KeyType kType = KeyType::Truth;
+    static KeyValue value(bool member) { return member; }
+    static bool take(const KeyValue& value, bool& member) {
+        if (const auto* truth = std::get_if<bool>(&value)) return member = *truth, true;
+        return false;
+    }
+};
+
+template <std::integral Integer>
+requires(!std::same_as<Integer, bool>) struct Member_<Integer> {
+    static constexpr KeyType kType = KeyType::Integer;
+    static constexpr std::int64_t kLeast = std::numeric_limits<Integer>::min();
+    static constexpr std::int64_t kLargest =  // a shot file's integers have 63 bits and a sign
+        std::cmp_less(std::numeric_limits<Integer>::max(), std::numeric_limits<std::int64_t>::max())
+            ? static_cast<std::int64_t>(std::numeric_limits<Integer>::max())
+            : std::numeric_limits<std::int64_t>::max();
+    static KeyValue value(Integer member) {
+        return static_cast<std::int64_t>(std::cmp_greater(member, kLargest) ? static_cast<Integer>(kLargest)
+                                                                            : member);
+    }
+    static bool take(const KeyValue& value, Integer& member) {
+        const auto* integer = std::get_if<std::int64_t>(&value);
+        if (!integer || !std::in_range<Integer>(*integer)) return false;
+        member = static_cast<Integer>(*integer);
+        return true;
+    }
+};
+
+template <>
+struct Member_<double> {
+    static constexpr KeyType kType = KeyType::Number;
+    static KeyValue value(double member) { return member; }
+    static bool take(const KeyValue& value, double& member) {
+        if (const auto* number = std::get_if<double>(&value)) return member = *number, true;
+        if (const auto* integer = std::get_if<std::int64_t>(&value))
+            return member = static_cast<double>(*integer), true;
+        return false;
+    }
+};
+
+template <>
+struct Member_<std::optional<double>> {
+    static constexpr KeyType kType = KeyType::Number;
+    static KeyValue value(const std::optional<double>& member) {
+        return member ? KeyValue(*member) : KeyValue();
+    }
+    static bool take(const KeyValue& value, std::optional<double>& member) {
+        if (std::holds_alternative<std::monostate>(value)) return member.reset(), true;
+        double number = 0.0;
+        if (!Member_<double>::take(value, number)) return false;
+        return member = number, true;
+    }
+};
+
+template <>
+struct Member_<std::string> {
+    static constexpr KeyType kType = KeyType::Text;
+    static KeyValue value(const std::string& member) { return member; }
+    static bool take(const KeyValue& value, std::string& member) {
+        if (const auto* text = std::get_if<std::string>(&value)) return member = *text, true;
+        return false;
+    }
+};
+
+template <class Choice>
+requires std::is_enum_v<Choice>
+struct Member_<Choice> {
+    static constexpr KeyType kType = KeyType::Word;
+    static KeyValue value(Choice member) { return std::string(word_of(member)); }
+    static bool take(const KeyValue& value, Choice& member) {
+        const auto* word = std::get_if<std::string>(&value);
+        const std::optional<Choice> choice = word ? choice_of<Choice>(*word) : std::nullopt;
+        if (choice) member = *choice;
+        return choice.has_value();
+    }
+};
+
+template <class Choice>
+requires std::is_enum_v<Choice>
+struct Member_<std::vector<Choice>> {
+    static constexpr KeyType kType = KeyType::Words;
+    static KeyValue value(const std::vector<Choice>& member) {
+        std::vector<std::string> words;
+        for (const Choice choice : member) words.emplace_back(word_of(choice));
+        return words;
+    }
+    static bool take(const KeyValue& value, std::vector<Choice>& member) {
+        const auto* words = std::get_if<std::vector<std::string>>(&value);
+        if (!words) return false;
+        std::vector<Choice> choices;
+        for (const std::string& word : *words) {
+            const std::optional<Choice> choice = choice_of<Choice>(word);
+            if (!choice) return false;
+            choices.push_back(*choice);
+        }
+        member = std::move(choices);
+        return true;
+    }
+};
+
+template <>
+struct Member_<glm::dvec3> {
+    static constexpr KeyType kType = KeyType::Point;
+    static KeyValue value(const glm::dvec3& member) {
+        return std::vector<double>{member.x, member.y, member.z};
+    }
+    static bool take(const KeyValue& value, glm::dvec3& member) {
+        const auto* numbers = std::get_if<std::vector<double>>(&value);
+        if (!numbers || numbers->size() != 3) return false;
+        member = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+        return true;
+    }
+};
+
+template <>
+struct Member_<std::array<int, 2>> {
+    static constexpr KeyType kType = KeyType::Pair;
+    static constexpr std::int64_t kLeast = Member_<int>::kLeast, kLargest = Member_<int>::kLargest;
+    static KeyValue value(const std::array<int, 2>& member) {
+        return std::vector<std::int64_t>{member[0], member[1]};
+    }
+    static bool take(const KeyValue& value, std::array<int, 2>& member) {
+        const auto* numbers = std::get_if<std::vector<std::int64_t>>(&value);
+        if (!numbers || numbers->size() != 2 || !std::in_range<int>((*numbers)[0]) ||
+            !std::in_range<int>((*numbers)[1]))
+            return false;
+        member = {static_cast<int>((*numbers)[0]), static_cast<int>((*numbers)[1])};
+        return true;
+    }
+};
+
+template <>
+struct Member_<glm::ivec2> {
+    static constexpr KeyType kType = KeyType::Pair;
+    static constexpr std::int64_t kLeast = Member_<int>::kLeast, kLargest = Member_<int>::kLargest;
+    static KeyValue value(const glm::ivec2& member) {
+        return Member_<std::array<int, 2>>::value({member.x, member.y});
+    }
+    static bool take(const KeyValue& value, glm::ivec2& member) {
+        std::array<int, 2> numbers{};
+        if (!Member_<std::array<int, 2>>::take(value, numbers)) return false;
+        member = {numbers[0], numbers[1]};
+        return true;
+    }
+};
+
+// ---- Rows
+
+// What is said about a key, besides what its member says.
+struct About {
+    const char* name;
+    const char* help;
+    const char* unit = "";
+    std::optional<Range> range = {};
+    std::optional<SoftRange> soft = {};
+    const char* form = "";      // of texts and pairs: "a string, of letters"
+    const char* accepted = "";  // instead of what type and range say
+    FeedSet feeds = {};
+    bool may_be_infinite = false;
+    bool is_built = true;
+    std::vector<std::string> unbuilt_choices = {};
+    const char* empty_word = "";
+    std::size_t most_entries = ~std::size_t{0};
+    bool are_entries_independent = true;
+    const char* entry_name = "";
+};
+
+// A key of the struct Owner that describes so many of its members.
+template <class Owner_, std::size_t kMembers_>
+struct Row {
+    using Owner = Owner_;
+    static constexpr std::size_t kMembers = kMembers_;
+    Key key;
+    std::function<KeyValue(const Owner&)> get;
+    std::function<bool(Owner&, const KeyValue&)> set;
+};
+
+template <class Pointer>
+struct Pointee;
+template <class Owner_, class Value_>
+struct Pointee<Value_ Owner_::*> {
+    using Owner = Owner_;
+    using Value = Value_;
+};
+
+// What a shot file may say for this key, from its type, range and choices.
+std::string accepted_text(const Key& key, const About& about);
+
+// "wind_speed_mps" → "Wind speed": without the unit, which the key names besides.
+std::string label_of(std::string_view name, bool has_unit);
+
+Key key_about(const About& about, KeyType type);
+
+template <class Value>
+Key key_of_member(const About& about) {
+    Key key = key_about(about, Member_<Value>::kType);
+    if constexpr (requires { Member_<Value>::kLeast; }) {
+        key.least = Member_<Value>::kLeast;
+        key.largest = Member_<Value>::kLargest;
+    }
+    key.is_optional = std::same_as<Value, std::optional<double>>;
+    const auto add_choices = [&]<class Choice>(Choice) {
+        for (const Word<Choice>& entry : words_of(Choice{})) {
+            const bool is_built = std::find(about.unbuilt_choices.begin(), about.unbuilt_choices.end(),
+                                            entry.word) == about.unbuilt_choices.end();
+            key.choices.push_back({std::string(entry.word), is_built});
+        }
+    };
+    if constexpr (std::is_enum_v<Value>) add_choices(Value{});
+    if constexpr (requires { typename Value::value_type; }) {
+        if constexpr (std::is_enum_v<typename Value::value_type>) add_choices(typename Value::value_type{});
+    }
+    key.accepted = accepted_text(key, about);
+    return key;
+}
+
+// A key that is a member of its struct.
+template <auto kMember, class Owner = typename Pointee<decltype(kMember)>::Owner,
+          class Value = typename Pointee<decltype(kMember)>::Value>
+Row<Owner, 1> row(const About& about) {
+    return {key_of_member<Value>(about),
+            [](const Owner& owner) { return Member_<Value>::value(owner.*kMember); },
+            [](Owner& owner, const KeyValue& value) { return Member_<Value>::take(value, owner.*kMember); }};
+}
+
+// The same in the entries of a list, where it has no default: an entry without it means nothing.
+template <auto kMember>
+auto required(const About& about) {
+    auto made = row<kMember>(about);
+    made.key.is_required = true;
+    return made;
+}
+
+// A key whose feature comes later: known, so that its name is taken, and refused, saying what to do
+// meanwhile.
+template <class Owner>
+Row<Owner, 0> not_built(const About& about, const char* meanwhile) {
+    Row<Owner, 0> made{key_about(about, KeyType::Number), {}, {}};
+    made.key.is_built = false;
+    made.key.meanwhile = meanwhile;
+    return made;
+}
+
+// A list of tables, whose keys are rows of the entries' struct.
+template <auto kMember, class... Rows>
+auto entries(const About& about, Rows... rows) {
+    using Owner = typename Pointee<decltype(kMember)>::Owner;
+    using List = typename Pointee<decltype(kMember)>::Value;
+    using Entry = typename List::value_type;
+    static_assert((Rows::kMembers + ...) == member_count<Entry>(), "a member without a key");
+    Key key = key_about(about, KeyType::Entries);
+    (key.entry_keys.push_back(rows.key), ...);
+    key.accepted = accepted_text(key, about);
+    const Entry first{};
+    std::size_t index = 0;
+    ((key.entry_keys[index++].fallback = rows.get(first)), ...);
+    // The names of keys are literals; entries point at copies that the rows hold for as long as the program
+    // runs.
+    const auto shared = std::make_shared<const std::tuple<Rows...>>(std::move(rows)...);
+    const auto get = [shared](const Owner& owner) {
+        std::vector<KeyEntry> out;
+        for (const Entry& entry : owner.*kMember) {
+            KeyEntry& made = out.emplace_back();
+            std::apply(
+                [&](const Rows&... each) {
+                    (made.values.emplace_back(std::string_view(each.key.name), each.get(entry)), ...);
+                },
+                *shared);
+        }
+        return KeyValue(std::move(out));
+    };
+    const auto set = [shared](Owner& owner, const KeyValue& value) {
+        const auto* given = std::get_if<std::vector<KeyEntry>>(&value);
+        if (!given) return false;
+        List list;
+        for (const KeyEntry& entry : *given) {
+            Entry made{};
+            const auto take = [&](const auto& each) {
+                const auto found =
+                    std::find_if(entry.values.begin(), entry.values.end(),
+                                 [&](const auto& pair) { return pair.first == each.key.name; });
+                return found != entry.values.end() && each.set(made, found->second);
+            };
+            if (entry.values.size() != sizeof...(Rows) ||
+                !std::apply([&](const Rows&... each) { return (take(each) && ...); }, *shared))
+                return false;
+            list.push_back(made);
+        }
+        owner.*kMember = std::move(list);
+        return true;
+    };
+    return Row<Owner, 1>{std::move(key), get, set};
+}
+
+// A table of the scene, its rows' access moved from the table's struct to the scene.
+template <auto kTable, class... Rows>
+void add_table(std::vector<KeyTable>& tables, std::vector<Key>& keys, KeyTable about, Rows... rows) {
+    using Table = typename Pointee<decltype(kTable)>::Value;
+    static_assert((Rows::kMembers + ...) == member_count<Table>(), "a member without a key");
+    const auto add = [&]<class Any>(Any made) {
+        Key key = std::move(made.key);
+        key.path = about.name + '.' + key.name;
+        for (Key& inner : key.entry_keys) inner.path = key.path + "[]." + inner.name;
+        if (made.get) {
+            key.get = [get = std::move(made.get)](const Scene& scene) { return get(scene.*kTable); };
+            key.fallback = key.get(Scene{});
+        }
+        if (made.set)
+            key.set = [set = std::move(made.set)](Scene& scene, const KeyValue& value) {
+                return set(scene.*kTable, value);
+            };
+        keys.push_back(std::move(key));
+    };
+    (add(std::move(rows)), ...);
+    about.copy = [](const Scene& from, Scene& to) { to.*kTable = from.*kTable; };
+    tables.push_back(std::move(about));
+}
+
+}  // namespace pelagic

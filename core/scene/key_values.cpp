@@ -1,0 +1,241 @@
+// Keys by their paths, and values of any key as text and into a scene. See keys.h.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "core/scene/key_rows.h"
+#include "core/scene/text.h"
+
+namespace pelagic {
+
+namespace {
+
+constexpr std::array<std::string_view, kFeeds> kFeedWords{"name",    "range", "clock", "waves",   "foam",
+                                                          "surface", "grid",  "view",  "light",   "water",
+                                                          "quality", "mesh",  "maps",  "volumes", "choice"};
+
+constexpr std::array<std::string_view, 11> kTypeWords{"truth",   "integer",   "number",   "text",
+                                                      "word",    "point",     "pair",     "words",
+                                                      "entries", "data file", "data time"};
+
+std::string words_text(const std::vector<KeyChoice>& choices) {
+    std::string out;
+    for (const KeyChoice& choice : choices) out += (out.empty() ? "" : " ") + quoted_text(choice.word);
+    return out;
+}
+
+std::string names_text(const std::vector<Key>& keys) {
+    std::string out;
+    for (const Key& key : keys) out += (out.empty() ? "" : ", ") + key.name;
+    return out;
+}
+
+std::string type_text(const KeyValue& value) {
+    struct Visitor {
+        std::string operator()(std::monostate) const { return "nothing"; }
+        std::string operator()(bool) const { return "true or false"; }
+        std::string operator()(std::int64_t) const { return "an integer"; }
+        std::string operator()(double) const { return "a number with a point"; }
+        std::string operator()(const std::string&) const { return "a string"; }
+        std::string operator()(const std::vector<double>&) const { return "a list of numbers"; }
+        std::string operator()(const std::vector<std::int64_t>&) const { return "a list of integers"; }
+        std::string operator()(const std::vector<std::string>&) const { return "a list of words"; }
+        std::string operator()(const std::vector<KeyEntry>&) const { return "a list of tables"; }
+    };
+    return std::visit(Visitor{}, value);
+}
+
+template <class Element, class Text>
+std::string list_text(const std::vector<Element>& list, const Text& text) {
+    std::string out = "[";
+    for (const Element& element : list) out += (out.size() == 1 ? "" : ", ") + text(element);
+    return out + ']';
+}
+
+}  // namespace
+
+// ---- Lookup
+
+const Key* find_key(std::string_view path) {
+    for (const Key& key : keys()) {
+        if (key.path == path) return &key;
+        if (key.entry_keys.empty() || !path.starts_with(key.path)) continue;
+        for (const Key& inner : key.entry_keys)
+            if (inner.path == path) return &inner;
+    }
+    return nullptr;
+}
+
+const Key& key_of(std::string_view path) {
+    if (const Key* key = find_key(path)) return *key;
+    throw std::logic_error("the shot file has no key " + std::string(path));
+}
+
+std::string_view word_of(KeyType type) {
+    return kTypeWords.at(static_cast<std::size_t>(type));
+}
+
+std::string text_of(FeedSet set) {
+    std::string out;
+    for (std::size_t part = 0; part < kFeeds; ++part)
+        if (set[part]) out += (out.empty() ? "" : ", ") + std::string(kFeedWords[part]);
+    return out;
+}
+
+bool KeyEntry::operator==(const KeyEntry& other) const {
+    return values == other.values;
+}
+
+// ---- What a row says
+
+std::string accepted_text(const Key& key, const About& about) {
+    if (*about.accepted != '\0') return about.accepted;
+    const std::string range = key.range ? text_of(*key.range) + (key.may_be_infinite ? ", or inf" : "") : "";
+    const std::string and_range = range.empty() ? "" : ", " + range;
+    switch (key.type) {
+        case KeyType::Truth:
+            return "true or false";
+        case KeyType::Integer:
+            return "an integer" + and_range;
+        case KeyType::Number:
+            return "a number" + and_range;
+        case KeyType::Word:
+            return "one of " + words_text(key.choices);
+        case KeyType::Words:
+            return "a list of " + words_text(key.choices);
+        case KeyType::Point:
+            return "[x, y, z], three numbers, each " + range;
+        case KeyType::Pair:
+            return about.form + range;
+        case KeyType::Entries:
+            return (key.empty_word.empty() ? "" : quoted_text(key.empty_word) + ", or ") + "a list of { " +
+                   names_text(key.entry_keys) + " }";
+        case KeyType::Text:
+        case KeyType::DataFile:
+        case KeyType::DataTime:
+            break;
+    }
+    return "a string";
+}
+
+std::string label_of(std::string_view name, bool has_unit) {
+    std::string label(name);
+    if (has_unit) {
+        for (const std::string_view suffix : {"_mg_m3", "_mps", "_deg", "_px", "_ms", "_m", "_s"})
+            if (label.ends_with(suffix)) {
+                label.erase(label.size() - suffix.size());
+                break;
+            }
+    }
+    std::replace(label.begin(), label.end(), '_', ' ');
+    if (label.front() >= 'a' && label.front() <= 'z') label.front() += 'A' - 'a';
+    return label;
+}
+
+Key key_about(const About& about, KeyType type) {
+    Key key;
+    key.name = about.name;
+    key.unit = about.unit;
+    key.label = label_of(key.name, !key.unit.empty());
+    key.type = type;
+    key.help = about.help;
+    key.range = about.range;
+    key.soft = about.soft;
+    if (!key.soft && key.range && (type == KeyType::Number || type == KeyType::Integer))
+        key.soft = SoftRange{key.range->low, key.range->high};
+    key.may_be_infinite = about.may_be_infinite;
+    key.most_entries = about.most_entries;
+    key.are_entries_independent = about.are_entries_independent;
+    key.empty_word = about.empty_word;
+    key.entry_name = about.entry_name;
+    key.feeds = about.feeds;
+    key.is_built = about.is_built;
+    key.accepted = about.accepted;
+    return key;
+}
+
+// ---- Values
+
+KeyValue value_of(const Scene& scene, const Key& key) {
+    if (!key.get) throw std::logic_error("a scene has no value of " + key.path);
+    return key.get(scene);
+}
+
+Problem unknown_word(const Key& key, const std::string& path, std::string_view word) {
+    std::vector<std::string> words;
+    for (const KeyChoice& choice : key.choices) words.push_back(choice.word);
+    const std::string near = nearest(word, words);
+    return {path, quoted_text(word),
+            "is not one of the words" + (near.empty() ? "" : ", the nearest is " + quoted_text(near)),
+            "one of " + words_text(key.choices)};
+}
+
+std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& value) {
+    if (!key.set)
+        return Problem{key.path, value_text(key, value), key.is_built ? "can't be set" : "is not built yet",
+                       key.accepted};
+    if (key.set(scene, value)) return std::nullopt;
+    const auto is_unknown = [&](const std::string& word) {
+        return std::none_of(key.choices.begin(), key.choices.end(),
+                            [&](const KeyChoice& choice) { return choice.word == word; });
+    };
+    if (const auto* word = std::get_if<std::string>(&value); word && key.type == KeyType::Word)
+        return unknown_word(key, key.path, *word);
+    if (const auto* words = std::get_if<std::vector<std::string>>(&value);
+        words && key.type == KeyType::Words) {
+        const auto first = std::find_if(words->begin(), words->end(), is_unknown);
+        if (first != words->end())
+            return unknown_word(key, key.path + '[' + std::to_string(first - words->begin()) + ']', *first);
+    }
+    if (std::holds_alternative<std::int64_t>(value) && key.type == KeyType::Integer)
+        return Problem{key.path, value_text(key, value), "is outside the range", key.accepted};
+    return Problem{key.path, value_text(key, value), "is " + type_text(value), key.accepted};
+}
+
+std::string value_text(const Key& key, const KeyValue& value) {
+    struct Visitor {
+        const Key& key;
+        std::string operator()(std::monostate) const { return {}; }
+        std::string operator()(bool truth) const { return truth ? "true" : "false"; }
+        std::string operator()(std::int64_t integer) const { return std::to_string(integer); }
+        std::string operator()(double number) const { return number_text(number); }
+        std::string operator()(const std::string& text) const {
+            return key.type == KeyType::DataTime ? text : quoted_text(text);
+        }
+        std::string operator()(const std::vector<double>& list) const { return list_text(list, number_text); }
+        std::string operator()(const std::vector<std::int64_t>& list) const {
+            return list_text(list, [](std::int64_t integer) { return std::to_string(integer); });
+        }
+        std::string operator()(const std::vector<std::string>& list) const {
+            return list_text(list, [](const std::string& word) { return quoted_text(word); });
+        }
+        std::string operator()(const std::vector<KeyEntry>& list) const {
+            if (list.empty() && !key.empty_word.empty()) return quoted_text(key.empty_word);
+            return list_text(list, [&](const KeyEntry& entry) {
+                std::string out = "{ ";
+                for (std::size_t i = 0; i < entry.values.size(); ++i) {
+                    const auto& [name, inner] = entry.values[i];
+                    out += (i == 0 ? "" : ", ") + std::string(name) + " = " + value_text(key, inner);
+                }
+                return out + " }";
+            });
+        }
+    };
+    return std::visit(Visitor{key}, value);
+}
+
+std::vector<std::pair<std::string, KeyValue>> described(const Scene& scene, FeedSet parts) {
+    std::vector<std::pair<std::string, KeyValue>> out;
+    for (const Key& key : keys()) {
+        if (!key.has_value() || (key.feeds & parts).none()) continue;
+        if (key.type == KeyType::DataFile) {
+            if (scene.sea.measured) out.emplace_back("sea.spectrum_station", scene.sea.measured->station);
+            continue;
+        }
+        KeyValue value = key.get(scene);
+        if (!std::holds_alternative<std::monostate>(value)) out.emplace_back(key.path, std::move(value));
+    }
+    return out;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,405 @@
+// Every key of a shot file. See keys.h; the types of rows are in key_rows.h.
+#include "core/scene/keys.h"
+
+#include "core/scene/key_rows.h"
+
+namespace pelagic {
+
+namespace {
+
+constexpr Range kEach_m = limits::kCameraCoordinate_m;
+constexpr SoftRange kTurn{-180.0, 180.0};
+
+struct Built {
+    std::vector<KeyTable> tables;
+    std::vector<Key> keys;
+};
+
+void add_shot(Built& out) {
+    const auto frames_of = [](const Shot& shot) {
+        return Member_<std::array<int, 2>>::value({shot.first_frame, shot.last_frame});
+    };
+    const auto set_frames = [](Shot& shot, const KeyValue& value) {
+        std::array<int, 2> frames{};
+        if (!Member_<std::array<int, 2>>::take(value, frames)) return false;
+        shot.first_frame = frames[0];
+        shot.last_frame = frames[1];
+        return true;
+    };
+    const Row<Shot, 2> frames{key_of_member<std::array<int, 2>>(
+                                  {.name = "frames",
+                                   .help = "both included; frame f shows t = (f - 1)/fps, whatever the range",
+                                   .range = limits::kFrame,
+                                   .form = "[first, last], two integers of ",
+                                   .feeds = feeds(Feed::Range)}),
+                              frames_of, set_frames};
+    add_table<&Scene::shot>(
+        out.tables, out.keys, {"shot", "what is made", {}, {}},
+        row<&Shot::name>({.name = "name",
+                          .help = "names the files and the stage's root prim",
+                          .accepted = "a string, of letters, digits, _ and -, at most 200",
+                          .feeds = feeds(Feed::Name)}),
+        frames,
+        row<&Shot::fps>({.name = "fps",
+                         .help = "frames a second",
+                         .unit = "1/s",
+                         .range = limits::kFps,
+                         .soft = SoftRange{1.0, 120.0},
+                         .feeds = feeds(Feed::Clock)}),
+        row<&Shot::seed>({.name = "seed",
+                          .help = "another seed, another sea of the same weather",
+                          .accepted = "an integer, 0 … 9223372036854775807",
+                          .feeds = feeds(Feed::Waves)}),
+        row<&Shot::loop_s>(
+            {.name = "loop_s",
+             .help = "above 0: the sea repeats exactly after this long, a whole number of frames",
+             .unit = "s",
+             .range = limits::kLoop_s,
+             .soft = SoftRange{0.0, 60.0},
+             .feeds = feeds(Feed::Waves, Feed::Clock)}));
+}
+
+void add_sea(Built& out) {
+    constexpr FeedSet kWaves = feeds(Feed::Waves);
+    // A measured spectrum is one member and two keys; the host that read the file has set it.
+    Row<SeaState, 1> file{
+        key_about({.name = "spectrum_file",
+                   .help = "with spectrum = \"file\": the densities; the files d, i, j and k lie beside it",
+                   .accepted = "a string, the path of NDBC's w file, from the shot file's folder",
+                   .feeds = kWaves},
+                  KeyType::DataFile),
+        [](const SeaState& sea) { return sea.measured ? KeyValue(sea.measured->file) : KeyValue(); },
+        {}};
+    // A zone has to be said: the buoys' times are UTC, and a time without one would be taken for local time
+    // by many.
+    Row<SeaState, 0> time{
+        key_about({.name = "spectrum_time",
+                   .help = "with spectrum = \"file\": one of the file's times, which are UTC",
+                   .accepted = "a date and time with its zone, such as 2019-02-06T00:40:00Z",
+                   .feeds = kWaves},
+                  KeyType::DataTime),
+        [](const SeaState& sea) { return sea.measured ? KeyValue(sea.measured->time) : KeyValue(); },
+        {}};
+    file.key.is_optional = time.key.is_optional = true;
+    add_table<&Scene::sea>(
+        out.tables, out.keys, {"sea", "the weather", {}, {}},
+        row<&SeaState::wind_speed_mps>({.name = "wind_speed_mps",
+                                        .help = "10 m above the sea",
+                                        .unit = "m/s",
+                                        .range = limits::kWindSpeed_mps,
+                                        .soft = SoftRange{0.0, 40.0},
+                                        .feeds = kWaves}),
+        row<&SeaState::wind_direction_deg>({.name = "wind_direction_deg",
+                                            .help = "blowing towards, counter-clockwise from +x (east)",
+                                            .unit = "degrees",
+                                            .range = limits::kAngle_deg,
+                                            .soft = kTurn,
+                                            .feeds = kWaves}),
+        row<&SeaState::fetch_m>(
+            {.name = "fetch_m",
+             .help = "how far the wind has blown over water: little gives a short, steep sea",
+             .unit = "m",
+             .range = limits::kFetch_m,
+             .soft = SoftRange{1e3, 3e6, true},
+             .feeds = kWaves}),
+        row<&SeaState::depth_m>({.name = "depth_m",
+                                 .help = "of the water",
+                                 .unit = "m",
+                                 .range = limits::kDepth_m,
+                                 .soft = SoftRange{1.0, 1e4, true},
+                                 .feeds = kWaves,
+                                 .may_be_infinite = true}),
+        row<&SeaState::spectrum>(
+            {.name = "spectrum", .help = "how the energy is shared among the wavelengths", .feeds = kWaves}),
+        row<&SeaState::spreading>(
+            {.name = "spreading", .help = "how it is shared among the directions", .feeds = kWaves}),
+        entries<&SeaState::swell>(
+            {.name = "swell",
+             .help = "waves of far storms, each a narrow spectrum of its own",
+             .feeds = kWaves,
+             .most_entries = limits::kSwells,
+             .entry_name = "Swell"},
+            required<&Swell::height_m>({.name = "height_m",
+                                        .help = "significant height, 4 times the root of the variance",
+                                        .unit = "m",
+                                        .range = limits::kSwellHeight_m,
+                                        .soft = SoftRange{0.0, 10.0}}),
+            required<&Swell::period_s>({.name = "period_s",
+                                        .help = "period of the peak",
+                                        .unit = "s",
+                                        .range = limits::kSwellPeriod_s,
+                                        .soft = SoftRange{3.0, 25.0}}),
+            required<&Swell::direction_deg>({.name = "direction_deg",
+                                             .help = "travelling towards, counter-clockwise from +x",
+                                             .unit = "degrees",
+                                             .range = limits::kAngle_deg,
+                                             .soft = kTurn})),
+        file, time);
+}
+
+void add_waves(Built& out) {
+    constexpr FeedSet kWaves = feeds(Feed::Waves);
+    add_table<&Scene::waves>(
+        out.tables, out.keys, {"waves", "how waves are made from it", {}, {}},
+        row<&Waves::model>({.name = "model",
+                            .help = "fft: periodic tiles; trochoid: a sum of wave trains",
+                            .feeds = kWaves}),
+        row<&Waves::choppiness>(
+            {.name = "choppiness",
+             .help = "sharpness of the crests; 1 is the trochoid's own, 0 leaves them round",
+             .range = limits::kChoppiness,
+             .soft = SoftRange{0.0, 2.0},
+             .feeds = kWaves}),
+        entries<&Waves::cascades>(
+            {.name = "cascades",
+             .help = "the periodic tiles; auto: four, from the spectrum's peak down, and none with trochoid. "
+                     "Their bands depend on the sizes alone; a resolution that leaves a gap is refused",
+             .feeds = kWaves,
+             .empty_word = "auto",
+             .most_entries = limits::kCascades,
+             .are_entries_independent = false,
+             .entry_name = "CascadeSize"},
+            required<&CascadeSize::size_m>({.name = "size_m",
+                                            .help = "the tile's period; all sizes differ",
+                                            .unit = "m",
+                                            .range = limits::kCascadeSize_m,
+                                            .soft = SoftRange{1.0, 4000.0, true}}),
+            required<&CascadeSize::resolution>({.name = "resolution",
+                                                .help = "samples a side, even",
+                                                .range = limits::kCascadeResolution,
+                                                .soft = SoftRange{16.0, 2048.0, true}})),
+        row<&Waves::trains>({.name = "trains",
+                             .help = "with trochoid: how many, their wavelengths in geometric progression",
+                             .range = limits::kTrains,
+                             .soft = SoftRange{1.0, 1000.0, true},
+                             .feeds = kWaves}),
+        row<&Waves::shortest_m>(
+            {.name = "shortest_m",
+             .help =
+                 "with trochoid: the shortest train; what is shorter counts as variance, or is left to the "
+                 "cascades if there are any. Without it: 2 cm, or shorter so that ten trains are below a "
+                 "pixel; with cascades an eighth of the largest tile; at most a tenth of longest_m",
+             .unit = "m",
+             .range = limits::kTrain_m,
+             .soft = SoftRange{1e-3, 10.0, true},
+             .feeds = kWaves}),
+        row<&Waves::longest_m>(
+            {.name = "longest_m",
+             .help = "with trochoid: the longest train; what is longer is not on the surface and counts as "
+                     "variance. Without it: all but 0.1 % of the energy is shorter; at least ten times "
+                     "shortest_m",
+             .unit = "m",
+             .range = limits::kTrain_m,
+             .soft = SoftRange{1.0, 2000.0, true},
+             .feeds = kWaves}));
+}
+
+void add_surface(Built& out) {
+    constexpr FeedSet kSurface = feeds(Feed::Surface);
+    constexpr const char* kMeanwhile = "use kind = \"patch\"";
+    add_table<&Scene::surface>(
+        out.tables, out.keys, {"surface", "where the sea is looked at", {}, {}},
+        row<&Surface::kind>({.name = "kind",
+                             .help = "what is baked: a square patch, or the projected grid of the camera. "
+                                     "Pictures show the sea to the horizon, whatever stands here",
+                             .feeds = kSurface,
+                             .unbuilt_choices = {"near-far", "cage", "planet"}}),
+        row<&Surface::size_m>({.name = "size_m",
+                               .help = "side of the patch, centred on the origin, and of the maps",
+                               .unit = "m",
+                               .range = limits::kSurfaceSize_m,
+                               .soft = SoftRange{10.0, 5000.0, true},
+                               .feeds = feeds(Feed::Surface, Feed::Maps)}),
+        row<&Surface::resolution>({.name = "resolution",
+                                   .help = "quads a side",
+                                   .range = limits::kSurfaceResolution,
+                                   .soft = SoftRange{1.0, 2048.0, true},
+                                   .feeds = kSurface}),
+        row<&Surface::cell_px>({.name = "cell_px",
+                                .help = "side of the projected grid's cells, in pictures and bakes: smaller "
+                                        "shows finer silhouettes, and is slower",
+                                .unit = "pixels",
+                                .range = limits::kCell_px,
+                                .soft = SoftRange{2.0, 32.0},
+                                .feeds = feeds(Feed::Grid)}),
+        not_built<Surface>(
+            {.name = "earth_curvature", .help = "whether the far sea bends away", .feeds = kSurface},
+            kMeanwhile),
+        not_built<Surface>({.name = "cage_file", .help = "a coarse surface to refine", .feeds = kSurface},
+                           kMeanwhile),
+        not_built<Surface>({.name = "cage_level", .help = "how often it is refined", .feeds = kSurface},
+                           kMeanwhile));
+}
+
+void add_camera(Built& out) {
+    constexpr FeedSet kView = feeds(Feed::View);
+    add_table<&Scene::camera>(
+        out.tables, out.keys, {"camera", "from where", {}, {}},
+        row<&Camera::position_m>(
+            {.name = "position_m", .help = "z is up", .unit = "m", .range = kEach_m, .feeds = kView}),
+        row<&Camera::look_at_m>({.name = "look_at_m",
+                                 .help = "up is z; looking along z, +y",
+                                 .unit = "m",
+                                 .range = kEach_m,
+                                 .feeds = kView}),
+        entries<&Camera::keys>(
+            {.name = "keys",
+             .help = "for a moving camera: linear between keys, still outside",
+             .feeds = kView,
+             .are_entries_independent = false,
+             .entry_name = "CameraKey"},
+            required<&CameraKey::frame>(
+                {.name = "frame", .help = "rising from key to key", .range = limits::kFrame}),
+            required<&CameraKey::position_m>(
+                {.name = "position_m", .help = "as above", .unit = "m", .range = kEach_m}),
+            required<&CameraKey::look_at_m>(
+                {.name = "look_at_m", .help = "as above", .unit = "m", .range = kEach_m})),
+        row<&Camera::fov_deg>({.name = "fov_deg",
+                               .help = "horizontal angle of view",
+                               .unit = "degrees",
+                               .range = limits::kFov_deg,
+                               .soft = SoftRange{5.0, 120.0},
+                               .feeds = kView}),
+        row<&Camera::resolution>({.name = "resolution",
+                                  .help = "of the picture",
+                                  .unit = "pixels",
+                                  .range = limits::kImageResolution,
+                                  .form = "[width, height], two integers, each ",
+                                  .feeds = kView}));
+}
+
+void add_light_and_water(Built& out) {
+    constexpr FeedSet kLight = feeds(Feed::Light), kWater = feeds(Feed::Water);
+    add_table<&Scene::light>(
+        out.tables, out.keys, {"light", "sun and sky", {}, {}},
+        row<&Light::sun_elevation_deg>({.name = "sun_elevation_deg",
+                                        .help = "above the horizon",
+                                        .unit = "degrees",
+                                        .range = limits::kSunElevation_deg,
+                                        .soft = SoftRange{-10.0, 90.0},
+                                        .feeds = kLight}),
+        row<&Light::sun_azimuth_deg>({.name = "sun_azimuth_deg",
+                                      .help = "towards the sun, counter-clockwise from +x (east)",
+                                      .unit = "degrees",
+                                      .range = limits::kAngle_deg,
+                                      .soft = kTurn,
+                                      .feeds = kLight}),
+        row<&Light::sky>({.name = "sky",
+                          .help =
+                              "clear daylight, or a picture of a sky: lat-long, middle column +x, azimuth "
+                              "growing to the left, top row the zenith; its sun is found in it",
+                          .accepted = "\"daylight\", or the path of an .exr, from the shot file's folder",
+                          .feeds = kLight}),
+        row<&Light::turbidity>({.name = "turbidity",
+                                .help = "haze of the daylight's air; 2 is very clear, 6 is hazy",
+                                .range = limits::kTurbidity,
+                                .feeds = kLight}));
+    add_table<&Scene::water>(
+        out.tables, out.keys, {"water", "the water body", {}, {}},
+        row<&Water::type>({.name = "type",
+                           .help = "what the water holds besides plankton: nothing, some silt, much of it",
+                           .feeds = kWater}),
+        row<&Water::chlorophyll_mg_m3>({.name = "chlorophyll_mg_m3",
+                                        .help = "plankton: greens the water",
+                                        .unit = "mg/m³",
+                                        .range = limits::kChlorophyll_mg_m3,
+                                        .soft = SoftRange{0.01, 30.0, true},
+                                        .feeds = kWater}));
+}
+
+void add_effects_and_quality(Built& out) {
+    constexpr FeedSet kQuality = feeds(Feed::Quality);
+    add_table<&Scene::effects>(
+        out.tables, out.keys, {"effects", "what comes on top of the waves; off costs nothing", {}, {}},
+        row<&Effects::whitecaps>(
+            {.name = "whitecaps",
+             .help = "foam where waves break; off, no output has coverage and none is computed",
+             .feeds = feeds(Feed::Foam)}),
+        row<&Effects::spray>({.name = "spray",
+                              .help = "droplets over breaking crests",
+                              .feeds = feeds(Feed::Volumes),
+                              .is_built = false}),
+        row<&Effects::spray_gain>({.name = "spray_gain",
+                                   .help = "how much spray there is; 1 is nature's",
+                                   .feeds = feeds(Feed::Volumes),
+                                   .is_built = false}));
+    add_table<&Scene::quality>(
+        out.tables, out.keys, {"quality", "accuracy against time", {}, {}},
+        row<&Quality::level>({.name = "level", .help = "how much time accuracy may take", .feeds = kQuality}),
+        not_built<Quality>({.name = "max_error", .help = "a budget of error", .feeds = kQuality},
+                           "use level"),
+        not_built<Quality>({.name = "frame_ms", .help = "a budget of time", .unit = "ms", .feeds = kQuality},
+                           "use level"));
+}
+
+void add_output(Built& out) {
+    constexpr FeedSet kMesh = feeds(Feed::Mesh), kChoice = feeds(Feed::Choice);
+    add_table<&Scene::output>(
+        out.tables, out.keys, {"output", "what a bake writes", {}, {}},
+        row<&Output::mesh>({.name = "mesh",
+                            .help = "how the mesh is written: as binary crates, as text, or not",
+                            .feeds = kMesh}),
+        row<&Output::attributes>(
+            {.name = "attributes", .help = "what the mesh carries per vertex", .feeds = kMesh}),
+        row<&Output::maps>(
+            {.name = "maps", .help = "images over the patch, a file a frame", .feeds = kChoice}),
+        row<&Output::map_resolution>({.name = "map_resolution",
+                                      .help = "of the maps, a side",
+                                      .unit = "pixels",
+                                      .range = limits::kMapResolution,
+                                      .soft = SoftRange{16.0, 4096.0, true},
+                                      .feeds = feeds(Feed::Maps)}),
+        row<&Output::cascade_tiles>(
+            {.name = "cascade_tiles", .help = "each cascade's own periodic tile as well", .feeds = kChoice}),
+        row<&Output::mesh_scheme>({.name = "mesh_scheme",
+                                   .help = "none: every vertex lies on the sea; catmullClark: a cage of it",
+                                   .feeds = kMesh,
+                                   .unbuilt_choices = {"catmullClark"}}),
+        row<&Output::volumes>({.name = "volumes",
+                               .help = "spray as droplets' density, and the sea as a level set",
+                               .feeds = kChoice,
+                               .unbuilt_choices = {"spray", "level-set"}}),
+        row<&Output::voxel_m>({.name = "voxel_m",
+                               .help = "of the volumes",
+                               .unit = "m",
+                               .feeds = feeds(Feed::Volumes),
+                               .is_built = false}));
+}
+
+Built build() {
+    Built out;
+    add_shot(out);
+    add_sea(out);
+    add_waves(out);
+    add_surface(out);
+    add_camera(out);
+    add_light_and_water(out);
+    add_effects_and_quality(out);
+    add_output(out);
+    static_assert(member_count<Scene>() == 10, "a table without keys: add it above");
+    // The keys of a table stand side by side.
+    for (KeyTable& table : out.tables) {
+        const auto of_table = [&](const Key& key) { return key.path.starts_with(table.name + '.'); };
+        const auto first = std::find_if(out.keys.begin(), out.keys.end(), of_table);
+        const auto last = std::find_if_not(first, out.keys.end(), of_table);
+        table.keys = std::span<const Key>(first, last);
+    }
+    return out;
+}
+
+const Built& built() {
+    static const Built all = build();
+    return all;
+}
+
+}  // namespace
+
+std::span<const KeyTable> key_tables() {
+    return built().tables;
+}
+
+std::span<const Key> keys() {
+    return built().keys;
+}
+
+}  // namespace pelagic

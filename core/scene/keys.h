@@ -1,0 +1,180 @@
+// The keys of a shot file, each described once: what it is called, what it may be, what it means and what
+// depends on it. Everything that handles keys one after another reads this table: the reader of shot files,
+// range checks, fingerprints, help, records, the headers of files, Python, the panels of windows.
+//
+// A key is added here (core/scene/keys.cpp) and as a member of its struct in scene.h; one without the other
+// doesn't compile.
+#pragma once
+
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/scene/limits.h"
+#include "core/scene/problem.h"
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// ---- What depends on a key
+
+// The parts of the work that a key can change. An output's fingerprint is made of the keys that feed it.
+enum class Feed {
+    Name,     // the names of files and of the stage's root prim
+    Range,    // which frames are made; none of them depends on it
+    Clock,    // the time that a frame shows
+    Waves,    // the sea's motion
+    Foam,     // whitecaps
+    Surface,  // the points of the baked surface, where they don't follow the camera
+    Grid,     // the cells of projected grids, baked and in pictures
+    View,     // the camera: pictures, and grids that are projected from it
+    Light,    // sun and sky
+    Water,    // the water body's colour
+    Quality,  // the accuracy of waves and light
+    Mesh,     // what a mesh carries, and the format of its files
+    Maps,     // what is in a map, besides the sea
+    Volumes,  // spray and level sets
+    Choice,   // whether an output exists; what is in it does not depend on the key
+};
+inline constexpr std::size_t kFeeds = 15;
+using FeedSet = std::bitset<kFeeds>;
+
+template <class... Feeds>
+constexpr FeedSet feeds(Feeds... parts) {
+    return FeedSet((0ull | ... | (1ull << static_cast<unsigned>(parts))));
+}
+
+inline FeedSet all_feeds() {
+    return FeedSet().set();
+}
+
+// "waves, clock"
+std::string text_of(FeedSet set);
+
+// ---- Values of any type
+
+struct KeyEntry;
+
+// A key's value: nothing (not given, and no default), a truth, an integer, a number, a text or word, three
+// numbers, two integers, words, or the entries of a list.
+using KeyValue = std::variant<std::monostate, bool, std::int64_t, double, std::string, std::vector<double>,
+                              std::vector<std::int64_t>, std::vector<std::string>, std::vector<KeyEntry>>;
+
+// An entry of a list such as sea.swell: its keys' names, in the order of the table, and values.
+struct KeyEntry {
+    std::vector<std::pair<std::string_view, KeyValue>> values;
+    bool operator==(const KeyEntry&) const;
+};
+
+// ---- One key
+
+enum class KeyType {
+    Truth,
+    Integer,
+    Number,
+    Text,
+    Word,      // one of the choices
+    Point,     // [x, y, z]
+    Pair,      // two integers
+    Words,     // a list of choices
+    Entries,   // a list of tables, whose keys are entry_keys
+    DataFile,  // the path of a file that is data of the scene; its content counts, not its path
+    DataTime,  // which of the data's times: "2019-02-06T00:40:00Z"
+};
+
+// "integer", "point", …
+std::string_view word_of(KeyType type);
+
+struct KeyChoice {
+    std::string word;
+    bool is_built = true;
+};
+
+// What a slider shows: the useful part of a range.
+struct SoftRange {
+    double low = 0.0, high = 1.0;
+    bool is_logarithmic = false;
+};
+
+struct Key {
+    std::string path;   // "sea.wind_speed_mps"; in the entries of a list "sea.swell[].height_m"
+    std::string name;   // the path's last part
+    std::string label;  // for panels: "Wind speed"
+    KeyType type = KeyType::Number;
+    std::string unit;  // "m/s"; empty: none
+    std::string help;
+    std::string accepted;  // what a shot file may say: "a number, 0 … 80"
+
+    std::optional<Range> range;      // of the number, or of each one
+    std::optional<SoftRange> soft;   // of a number
+    bool may_be_infinite = false;    // besides what is in the range
+    bool is_optional = false;        // a number that may be left out, and has no default
+    bool is_required = false;        // in an entry: it has no default
+    std::int64_t least = 0;          // of an integer, or each of two: what its member holds
+    std::int64_t largest = 0;        // likewise
+    std::vector<KeyChoice> choices;  // of words
+    std::vector<Key> entry_keys;     // of entries
+    std::string entry_name;          // of entries: "Swell"
+    std::size_t most_entries = ~std::size_t{0};
+    bool are_entries_independent = true;  // none is judged by another one
+    std::string empty_word;               // of entries: the word that stands for none of them, "auto"
+
+    KeyValue fallback;  // the value that a Scene begins with
+    FeedSet feeds;
+    bool is_built = true;
+    std::string meanwhile;  // where it isn't built, and no value of it is: what to do instead
+
+    std::function<KeyValue(const Scene&)> get;         // empty: not built, or a key of entries
+    std::function<bool(Scene&, const KeyValue&)> set;  // empty: likewise, and for data, which hosts load
+
+    // Whether a scene has a value of this key.
+    bool has_value() const { return get != nullptr; }
+};
+
+// A table of the shot file and the keys in it.
+struct KeyTable {
+    std::string name;  // "sea"
+    std::string help;
+    std::span<const Key> keys;
+    std::function<void(const Scene& from, Scene& to)> copy;  // the whole table
+};
+
+// All tables and all their keys, in the order of the shot file's documentation. Keys that aren't built are
+// among them: their names are taken.
+std::span<const KeyTable> key_tables();
+std::span<const Key> keys();
+
+// The key of a path, "sea.fetch_m", "sea.swell[].height_m"; null: there is none.
+const Key* find_key(std::string_view path);
+
+// The same for a path that is known to be one. Throws std::logic_error.
+const Key& key_of(std::string_view path);
+
+// ---- Values in a scene
+
+// Throws std::logic_error for a key that has none.
+KeyValue value_of(const Scene& scene, const Key& key);
+
+// Puts a value into the scene. An integer does for a number. The problem, if the value isn't of the key's
+// type or is a word that isn't one of the choices; the scene is then as it was. Ranges are validate()'s.
+std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& value);
+
+// A word that isn't one of the key's choices, with the nearest that is. `path` may name an element of a list.
+Problem unknown_word(const Key& key, const std::string& path, std::string_view word);
+
+// As a shot file writes it: "10", "[0, -60, 4]", "\"auto\"", "[{ height_m = 1.5, … }]". Nothing: "".
+std::string value_text(const Key& key, const KeyValue& value);
+
+// What the scene says about these parts, for the headers of files: path and value of each key that has one.
+// A measured spectrum is described by its station and time, not by its file.
+std::vector<std::pair<std::string, KeyValue>> described(const Scene& scene, FeedSet parts);
+
+}  // namespace pelagic

@@ -14,8 +14,8 @@ namespace pelagic {
 
 struct Query;
 
-// The absolute times n·step_s with n·step_s ≤ t, the latest `count` of them: what an effect that remembers adds
-// up over. They don't depend on the shot's range, so that a frame alone equals that frame of a run.
+// The absolute times n·step_s with n·step_s ≤ t, the latest `count` of them: what an effect that remembers
+// adds up over. They don't depend on the shot's range, so that a frame alone equals that frame of a run.
 struct TimeLattice {
     double step_s = 1.0;
     int count = 0;

@@ -129,7 +129,8 @@ std::string explain(const Plan& plan) {
     for (const PlannedQuery& planned : plan.queries)
         has_coverage |= planned.query.products[index(Product::Coverage)];
     if (has_coverage)
-        page += format("  whitecaps: coverage from %d moments of the Jacobian\n", plan.knobs.third_moment ? 3 : 2);
+        page += format("  whitecaps: coverage from %d moments of the Jacobian\n",
+                       plan.knobs.third_moment ? 3 : 2);
     else if (!products_gone(scene)[index(Product::Coverage)])
         page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
     for (const PlannedEffect& effect : plan.effects) {

@@ -1,5 +1,5 @@
-// What a file of a bake or a picture was made of, as one number: whoever finds the number in a file knows that
-// making the file again would give the same bits on this kind of CPU.
+// What a file of a bake or a picture was made of, as one number: whoever finds the number in a file knows
+// that making the file again would give the same bits on this kind of CPU.
 //
 // It is made of the keys that feed the output, of the part of the resolved plan that the output reads, of the
 // output's revision, and, for a frame, of its number and of the camera's pose where that shapes it. It is not
@@ -28,10 +28,11 @@ class Fingerprint {
 // Of an output, for all frames alike.
 std::string output_fingerprint(const Plan& plan, const PlannedOutput& output);
 // Of its file of one frame; `whole` is the output's own.
-std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, const std::string& whole, int frame);
+std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, const std::string& whole,
+                              int frame);
 
-// What of a plan decides a query's answers, exact: two plans of one text give the same bits at the same points.
-// The rungs of a view's ladder are not in it: they are the same in every plan that has them.
+// What of a plan decides a query's answers, exact: two plans of one text give the same bits at the same
+// points. The rungs of a view's ladder are not in it: they are the same in every plan that has them.
 std::string plan_text(const Plan& plan, int query);
 
 // A pose, exact.

@@ -7,8 +7,8 @@
 namespace pelagic {
 
 // The mean square slope that is not shown where every wave counts with its footprint's weight w:
-// ∫ k² S(k) (1 − w²) dk [-], S the omnidirectional spectrum (Bruneton, Neyret, Holzschuch 2010, §7.1: total less
-// resolved). footprint_m ≥ 0.
+// ∫ k² S(k) (1 − w²) dk [-], S the omnidirectional spectrum (Bruneton, Neyret, Holzschuch 2010, §7.1: total
+// less resolved). footprint_m ≥ 0.
 double hidden_mean_square_slope(const DirectionalSpectrum& spectrum, const FootprintFilter& filter,
                                 double footprint_m);
 

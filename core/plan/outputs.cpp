@@ -91,8 +91,8 @@ void add_patch_maps(const OutputRow& row, const OutputContext& context,
     add_maps(row, context, {.size_m = scene.surface.size_m, .texels = scene.output.map_resolution}, requests);
 }
 
-// Tiles are as fine as the other outputs need them, but for the camera's: a tile is the same wherever the camera
-// is.
+// Tiles are as fine as the other outputs need them, but for the camera's: a tile is the same wherever the
+// camera is.
 void add_tiles(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {
     const Scene& scene = context.prepared.scene;
     if (!scene.output.cascade_tiles) return;
@@ -101,8 +101,8 @@ void add_tiles(const OutputRow& row, const OutputContext& context, std::vector<O
         if (!request.query.is_view) finest_m = std::min(finest_m, request.query.pixel_m.front());
     const auto cascades = resolve_cascades(context.prepared, std::isfinite(finest_m) ? finest_m : 0.0);
     for (int i = 0; i < static_cast<int>(cascades.size()); ++i)
-        add_maps(row, context,
-                 {.size_m = cascades[i].size_m, .texels = cascades[i].resolution, .cascade = i}, requests);
+        add_maps(row, context, {.size_m = cascades[i].size_m, .texels = cascades[i].resolution, .cascade = i},
+                 requests);
 }
 
 const std::array kOutputTable = std::to_array<OutputRow>({

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/plan/products.h"
 #include "core/plan/prepared_scene.h"
+#include "core/plan/products.h"
 #include "core/plan/query.h"
 #include "core/scene/keys.h"
-#include "core/surface/surface.h"
+#include "core/surface/rest_surface.h"
 
 namespace pelagic {
 
@@ -24,15 +24,15 @@ enum class OutputKind { Mesh, Map, Tile };
 // One output of a scene, and what it asks of the sea.
 struct OutputRequest {
     const OutputRow* row = nullptr;
-    std::optional<MapKind> map{};      // of maps and tiles
-    std::optional<int> cascade{};      // of a tile: which, counting from the largest
-    const Surface* surface = nullptr;  // of the mesh
+    std::optional<MapKind> map{};          // of maps and tiles
+    std::optional<int> cascade{};          // of a tile: which, counting from the largest
+    const RestSurface* surface = nullptr;  // of the mesh
     Query query;
 };
 
 struct OutputContext {
     const PreparedScene& prepared;
-    const Surface& surface;
+    const RestSurface& surface;
     std::span<const int> frames;  // that will be baked
     ProductSet gone;              // what no output holds, since its effect is off
 };
@@ -69,9 +69,9 @@ struct PlannedOutput {
     const OutputRow* row = nullptr;
     std::optional<MapKind> map{};
     std::optional<int> cascade{};
-    int query = 0;              // into Plan::queries, whose name is the output's: "mesh", "map normal", …
-    bool has_surface = false;   // its points are Plan::surface's
-    FeedSet feeds;              // the row's, the surface's, and the foam's where it holds coverage
+    int query = 0;             // into Plan::queries, whose name is the output's: "mesh", "map normal", …
+    bool has_surface = false;  // its points are Plan::surface's
+    FeedSet feeds;             // the row's, the surface's, and the foam's where it holds coverage
 };
 
 }  // namespace pelagic

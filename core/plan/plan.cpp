@@ -10,8 +10,8 @@
 #include "core/plan/extent.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/mode_lattice.h"
-#include "core/plan/quality.h"
 #include "core/plan/products.h"
+#include "core/plan/quality.h"
 #include "core/scene/cascade_bands.h"
 
 namespace pelagic {
@@ -126,8 +126,8 @@ void add_grids(Plan& plan, int cascade_index) {
         // one more.
         const double filter_modes =
             std::ceil(plan.filter.cutoff(at.footprint_m) * cascade.size_m / kTwoPi * kRounding);
-        const int radius = static_cast<int>(std::min(
-            {0.5 * resolution, filter_modes, modes_within(cascade.size_m, cascade.k_upper) + 1.0}));
+        const int radius = static_cast<int>(
+            std::min({0.5 * resolution, filter_modes, modes_within(cascade.size_m, cascade.k_upper) + 1.0}));
         if (cutoff <= cascade.k_lower || radius < 2) continue;
         // What is hidden is the spectrum less what these modes hold, whether they are also asked for fields
         // or not.
@@ -201,8 +201,9 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
     query.is_view = true;
     query.products = options.products;
     if (query.products.none())
-        query.products = products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage) &
-                         ~products_gone(prepared.scene);
+        query.products =
+            products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage) &
+            ~products_gone(prepared.scene);
     query.points = options.points;
     const FootprintFilter filter;
     const double finest_m = options.finest_pixel_m > 0.0 ? rung_below(options.finest_pixel_m) : 0.0;
@@ -241,8 +242,9 @@ void check_footprints(const Query& query) {
                                   [](double a, double b) { return !(a < b); }) == footprints.end();
     };
     if (!rising(query.cell_m) || !rising(query.pixel_m))
-        throw std::invalid_argument("query \"" + query.name +
-                                    "\": footprints must be at least one, finite, from 0 up and strictly rising");
+        throw std::invalid_argument(
+            "query \"" + query.name +
+            "\": footprints must be at least one, finite, from 0 up and strictly rising");
 }
 
 // The query with its levels, at the end of the plan's.
@@ -326,14 +328,12 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries, const Plan
 
 Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const int> frames) {
     const Extent& extent = prepared->extent;
-    const std::shared_ptr<const Surface> surface =
+    const std::shared_ptr<const RestSurface> surface =
         make_surface(prepared->scene, {.height_m = extent.height_m,
                                        .reach_m = extent.reach_m,
                                        .significant_height_m = extent.significant_height_m});
-    const OutputContext context{.prepared = *prepared,
-                                .surface = *surface,
-                                .frames = frames,
-                                .gone = products_gone(prepared->scene)};
+    const OutputContext context{
+        .prepared = *prepared, .surface = *surface, .frames = frames, .gone = products_gone(prepared->scene)};
     std::vector<OutputRequest> requests;
     for (const OutputRow& row : output_table()) row.add(row, context, requests);
     std::vector<Query> queries;

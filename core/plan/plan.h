@@ -104,9 +104,9 @@ struct Plan {
     std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
     FieldSet dropped;                  // fields that are zero in this scene, whoever asks: never computed
     std::vector<Reason> closure;
-    std::vector<PlannedEffect> effects;   // those that are on and ask for something
-    std::vector<PlannedOutput> outputs;   // of a bake; each has a query
-    std::shared_ptr<const Surface> surface;  // of a bake: where the mesh's points are
+    std::vector<PlannedEffect> effects;          // those that are on and ask for something
+    std::vector<PlannedOutput> outputs;          // of a bake; each has a query
+    std::shared_ptr<const RestSurface> surface;  // of a bake: where the mesh's points are
 
     int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid
     long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
@@ -128,17 +128,18 @@ struct ViewQueryOptions {
 };
 
 // A query for points at all distances from a camera: a ladder of footprints, each the double of the one
-// before. Its rungs are powers of two in metres, whatever the scene, from the last that is no coarser than the
-// finest footprint (one of 0 before them, if nothing may be filtered) up to where no cascade has a wave to show: a point's answer depends on the two rungs beside
-// its own footprints, and never on how fine other points are. The ladder of the cells is a part of that of
-// the pixels, so that they share what they can. Named "view".
+// before. Its rungs are powers of two in metres, whatever the scene, from the last that is no coarser than
+// the finest footprint (one of 0 before them, if nothing may be filtered) up to where no cascade has a wave
+// to show: a point's answer depends on the two rungs beside its own footprints, and never on how fine other
+// points are. The ladder of the cells is a part of that of the pixels, so that they share what they can.
+// Named "view".
 Query view_query(const PreparedScene&, const ViewQueryOptions& options = {});
 
 // The projected grid of the shot's camera, for pictures.
 ProjectedGridOptions projected_grid_options(const PreparedScene&);
 
-// The plan of these queries, and of what the scene's effects ask for. Without `double_precision` as the quality
-// level has it. Throws std::invalid_argument when a query is malformed.
+// The plan of these queries, and of what the scene's effects ask for. Without `double_precision` as the
+// quality level has it. Throws std::invalid_argument when a query is malformed.
 struct PlanOptions {
     std::optional<bool> double_precision{};
     std::span<const EffectRow> effects = effect_table();
@@ -146,10 +147,11 @@ struct PlanOptions {
 Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&, const PlanOptions& = {});
 Plan make_plan(const Scene&, const std::vector<Query>&, const PlanOptions& = {});
 
-// The plan of a bake of these frames: its outputs, in the order of the table, each with its query. Which frames
-// they are decides how fine a ladder the camera's own surfaces need, and nothing about any frame's bits.
+// The plan of a bake of these frames: its outputs, in the order of the table, each with its query. Which
+// frames they are decides how fine a ladder the camera's own surfaces need, and nothing about any frame's
+// bits.
 Plan plan_bake(std::shared_ptr<const PreparedScene>, std::span<const int> frames);
-// Of representative frames (core/surface/surface.h), for who wants to know what a bake is like.
+// Of representative frames (core/surface/rest_surface.h), for who wants to know what a bake is like.
 Plan plan_bake(const Scene&);
 
 // The cascades in force, largest first: the scene's own, or "auto" resolved for the finest footprint asked

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/plan/products.h"
-#include "core/surface/surface.h"
+#include "core/surface/rest_surface.h"
 
 namespace pelagic {
 

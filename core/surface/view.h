@@ -16,6 +16,8 @@ struct View {
     double tan_half_width = 0.4663;  // of the horizontal field of view's half
     glm::ivec2 resolution{1280, 720};
 
+    bool operator==(const View&) const = default;
+
     // Square pixels: tangents per pixel, across and up alike.
     double pixel_tangent() const { return 2.0 * tan_half_width / resolution.x; }
     // The unit direction through picture point (x, y) in pixels: (0, 0) is the top left corner, pixel (i,

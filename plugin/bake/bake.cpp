@@ -4,9 +4,18 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
 
+#include "core/plan/plan.h"
 #include "core/scene/validate.h"
+#include "plugin/bake/foreign.h"
+#include "plugin/bake/output_part.h"
 #include "plugin/bake/record.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/files/files.h"
@@ -32,21 +41,72 @@ void refuse_invalid(const Scene& scene, const std::vector<int>& frames) {
                                         ": frames must rise and lie within the shot's range");
 }
 
-// The folders that the plan's files lie in, checked before hours are spent.
-void prepare_folders(const std::filesystem::path& out, const Scene& scene) {
-    std::vector<std::filesystem::path> folders{out};
-    if (scene.output.mesh != MeshFormat::None) folders.push_back(out / "mesh");
-    if (!scene.output.maps.empty()) folders.push_back(out / "maps");
-    if (!scene.output.maps.empty() && scene.output.cascade_tiles) folders.push_back(out / "tiles");
+using Parts = std::vector<std::unique_ptr<OutputPart>>;
+
+// The folders that the files lie in, checked before hours are spent.
+void prepare_folders(const std::filesystem::path& out, const Parts& parts) {
+    std::set<std::filesystem::path> folders{out};
+    for (const auto& part : parts) folders.insert((out / part->pattern().prefix).parent_path());
     for (const auto& folder : folders) {
         files::ensure_folder(folder);
         files::remove_stale_temporaries(folder);
     }
 }
 
+// What is to be done of one frame.
+struct FrameJob {
+    int frame = 0;
+    std::vector<bool> wanted;  // by part
+    FrameRecord kept;          // the files of the other parts
+};
+
+std::optional<FrameJob> job_of(int frame, const Parts& parts, const FrameRecord* recorded,
+                               const std::filesystem::path& folder) {
+    FrameJob job{.frame = frame, .wanted = std::vector<bool>(parts.size(), true), .kept = {}};
+    if (!recorded) return job;
+    bool all_whole = true;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        const std::string file = parts[p]->file(frame);
+        if (is_whole(*recorded, file, parts[p]->fingerprint(frame), folder)) {
+            job.wanted[p] = false;
+            job.kept.files[file] = recorded->files.at(file);
+        } else {
+            all_whole = false;
+        }
+    }
+    const bool same_files = recorded->files.size() == parts.size();
+    if (all_whole && same_files && recorded->fingerprint == statistics_fingerprint(parts, frame)) return {};
+    return job;
+}
+
+// The frame's record with the files that were kept, and what the first outputs that know it say of the frame.
+void complete(FrameRecord& record, const FrameJob& job, const Parts& parts) {
+    record.files.insert(job.kept.files.begin(), job.kept.files.end());
+    for (const auto& part : parts) {
+        const FileRecord& file = record.files.at(part->file(job.frame));
+        if (!record.coverage) record.coverage = file.coverage;
+        if (!record.mesh_significant_height_m) record.mesh_significant_height_m = file.significant_height_m;
+    }
+}
+
+// Whether the file has exactly these bytes.
+bool holds(const std::filesystem::path& path, const FileContent& content) {
+    std::ifstream stream(path, std::ios::binary);
+    bool same = stream.is_open();
+    std::string there;
+    content([&](std::string_view piece) {
+        if (!same) return;
+        there.resize(piece.size());
+        stream.read(there.data(), static_cast<std::streamsize>(piece.size()));
+        same = stream.gcount() == static_cast<std::streamsize>(piece.size()) && there == piece;
+    });
+    return same && stream.peek() == std::ifstream::traits_type::eof();
+}
+
 }  // namespace
 
 BakeReport bake(const Scene& scene, const BakeOptions& options) {
+    const auto start = std::chrono::steady_clock::now();
     refuse_invalid(scene, options.frames);
     std::vector<int> frames = options.frames;
     for (int frame = scene.shot.first_frame; options.frames.empty() && frame <= scene.shot.last_frame;
@@ -64,40 +124,47 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     };
 
     report_progress(BakeStage::Planning);
-    const Plan plan = make_plan(scene);
-    const std::string fingerprint = plan.fingerprint_text();
-    prepare_folders(options.out, scene);
+    const Plan plan = plan_bake(prepare(scene), frames);
+    if (plan.outputs.empty())
+        throw std::invalid_argument("the shot asks for no output: accepted: output.mesh, output.maps");
+    const Parts parts = make_parts(plan);
+    prepare_folders(options.out, parts);
 
     BakeReport report;
     report.total = progress.total;
     report.record = options.out / (scene.shot.name + ".json");
-    std::vector<int> missing;
+    std::vector<FrameJob> jobs;
     {
         const std::map<int, FrameRecord> recorded = recorded_frames(report.record);
-        for (const int frame : frames)
-            if (const auto found = recorded.find(frame);
-                found == recorded.end() || !is_whole(found->second, fingerprint, options.out))
-                missing.push_back(frame);
+        for (const int frame : frames) {
+            const auto found = recorded.find(frame);
+            if (auto job =
+                    job_of(frame, parts, found == recorded.end() ? nullptr : &found->second, options.out))
+                jobs.push_back(std::move(*job));
+        }
         for (const auto& [frame, entry] : recorded)
-            if (entry.fingerprint != fingerprint && frame >= scene.shot.first_frame &&
-                frame <= scene.shot.last_frame && !std::binary_search(frames.begin(), frames.end(), frame))
+            if (entry.fingerprint != statistics_fingerprint(parts, frame) &&
+                frame >= scene.shot.first_frame && frame <= scene.shot.last_frame &&
+                !std::binary_search(frames.begin(), frames.end(), frame))
                 report.stale.push_back(frame);
     }
-    progress.kept = report.kept = static_cast<int>(frames.size() - missing.size());
+    progress.kept = report.kept = static_cast<int>(frames.size() - jobs.size());
 
     report_progress(BakeStage::Building);
-    const auto start = std::chrono::steady_clock::now();
-    const auto write = [&](const std::string& path, const FileContent& content) {
+    std::vector<std::string> static_files{report.record.filename().string()};
+    const auto write_static = [&](const FileJob& file) {
         stop_if_cancelled();
-        return files::write_atomically(options.out / path, content);
+        static_files.push_back(file.path);
+        if (!holds(options.out / file.path, file.content))
+            files::write_atomically(options.out / file.path, file.content);
     };
     try {
         stop_if_cancelled();
-        const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan);
+        const std::unique_ptr<Sequence> sequence = make_sequence(plan);
         report_progress(BakeStage::Frames);
         Record record;
-        record.describe(scene, plan, sequence->total(), sequence->whitecap_threshold());
-        sequence->write_static(write);
+        record.describe(plan, sequence->total(), sequence->whitecap_threshold());
+        sequence->write_static(write_static);
         if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");
         if (!scene.output.maps.empty()) report.maps = options.out / "maps";
         record.save(report.record);
@@ -107,7 +174,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         PipelineStages stages;
         stages.compute = [&](int item, int place) {
             stop_if_cancelled();
-            sequence->compute(missing[item], slots[place]);
+            slots[place].wanted = jobs[item].wanted;
+            sequence->compute(jobs[item].frame, slots[place]);
             report.executed_transforms = sequence->executed_transforms();
         };
         stages.encode = [&](int, int place) {
@@ -115,8 +183,14 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             sequence->encode(slots[place]);
         };
         stages.write = [&](int item, int place) {
-            sequence->write(slots[place], write);
-            record.set(missing[item], slots[place].record);
+            FrameRecord& whole = slots[place].record;
+            sequence->write(slots[place], [&](const FileJob& file) {
+                stop_if_cancelled();
+                whole.files.at(file.path).bytes =
+                    files::write_atomically(options.out / file.path, file.content);
+            });
+            complete(whole, jobs[item], parts);
+            record.set(jobs[item].frame, whole);
             // The record grows with the shot: writing it takes at most a twentieth of the time. Frames that a
             // killed process had not recorded yet are baked again.
             const double now_s = seconds_since(first_frame);
@@ -127,13 +201,13 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             }
         };
         stages.written = [&](int item) {
-            progress.frame = missing[item];
+            progress.frame = jobs[item].frame;
             progress.done = ++report.done;
             progress.seconds = seconds_since(first_frame);
             report_progress(BakeStage::Frames);
         };
         try {
-            report.times = run_pipeline(static_cast<int>(missing.size()), kFramesInFlight, stages);
+            report.times = run_pipeline(static_cast<int>(jobs.size()), kFramesInFlight, stages);
         } catch (...) {
             // What was finished stays recorded; if even that can't be done, the first reason is the one to
             // tell.
@@ -144,6 +218,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             throw;
         }
         record.save(report.record);
+        report.foreign = foreign_files(options.out, scene.shot, parts, static_files);
     } catch (const Cancelled&) {
         report.cancelled = true;
     }

@@ -1,9 +1,9 @@
 // Runs a bake: plan, sea, and then frame after frame into files that are whole or not there.
 //
-//   DIR/NAME.usda, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
+//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
 //
-// Frames that a former run left whole, with the same fingerprint, are kept; everything else that is asked for
-// is done again.
+// Files that a former run left whole, with the fingerprint that they would get now, are kept; everything else
+// that is asked for is done again.
 //
 // One frame is computed while others are encoded and written, kFramesInFlight at most together. Beside the
 // plan's sea and frame, each of these holds, whatever the shot's length,
@@ -52,14 +52,15 @@ struct BakeOptions {
 
 struct BakeReport {
     std::filesystem::path root, maps, record;  // DIR/NAME.usda and DIR/maps (empty without), DIR/NAME.json
-    int done = 0, kept = 0, total = 0;
+    int done = 0, kept = 0, total = 0;         // frames
     bool cancelled = false;
-    double seconds = 0.0;
+    double seconds = 0.0;  // from the call to its end
     long executed_transforms = 0;
     PipelineTimes times;  // of the frames that were baked; all 0 where the bake was cancelled
     // Frames of this shot's range that lie in DIR but belong to another version of it: not asked for, not
     // touched.
     std::vector<int> stale;
+    std::vector<std::string> foreign;  // files in DIR that aren't this shot's (plugin/bake/foreign.h)
 };
 
 // Throws files::FileError where a file can't be written (what was finished is kept and recorded),

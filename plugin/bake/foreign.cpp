@@ -32,7 +32,8 @@ std::optional<int> frame_of(std::string_view path, const FilePattern& pattern) {
 // The name with its frame's number, the last part between dots that is one, as "####".
 std::string without_number(const std::string& path) {
     const std::size_t suffix = path.rfind('.');
-    const std::size_t number = suffix == std::string::npos || suffix == 0 ? suffix : path.rfind('.', suffix - 1);
+    const std::size_t number =
+        suffix == std::string::npos || suffix == 0 ? suffix : path.rfind('.', suffix - 1);
     if (number == std::string::npos || number == suffix) return path;
     const FilePattern pattern{path.substr(0, number + 1), path.substr(suffix)};
     return frame_of(path, pattern) ? pattern.prefix + "####" + pattern.suffix : path;
@@ -60,11 +61,10 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
             const std::string name = entry.path().filename().string(), path = below + name;
             const std::string extension = entry.path().extension().string();
             // Pictures and whatever people keep beside their bakes are none of a bake's business.
-            const bool is_bakes = *below != '\0'
-                                      ? extension == ".usda" || extension == ".usdc" || extension == ".exr" ||
-                                            extension == ".vdb"
-                                      : extension == ".usda" || extension == ".json" ||
-                                            name.ends_with(".camera.usdc");
+            const bool is_bakes = *below != '\0' ? extension == ".usda" || extension == ".usdc" ||
+                                                       extension == ".exr" || extension == ".vdb"
+                                                 : extension == ".usda" || extension == ".json" ||
+                                                       name.ends_with(".camera.usdc");
             if (!is_bakes || name.starts_with('.')) continue;
             if (std::find(static_files.begin(), static_files.end(), path) != static_files.end()) continue;
             std::string reason = "of another shot";

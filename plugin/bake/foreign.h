@@ -1,5 +1,5 @@
-// Files in a bake's folder that aren't the shot's: of frames outside its range, of another format, of outputs that
-// it no longer has, of another name. A bake names them; it deletes nothing.
+// Files in a bake's folder that aren't the shot's: of frames outside its range, of another format, of outputs
+// that it no longer has, of another name. A bake names them; it deletes nothing.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 namespace pelagic {
 
-// A line for each group, sorted: "mesh/sea.0007.usdc: outside the shot's frames", "maps/sea.normal.####.exr: 48
-// files of an output that the shot doesn't have", "mesh/old.####.usdc: 48 files of another shot". Only names that
-// bakes give to files are looked at, in DIR and its folders mesh, maps, tiles and volumes.
+// A line for each group, sorted: "mesh/sea.0007.usdc: outside the shot's frames", "maps/sea.normal.####.exr:
+// 48 files of an output that the shot doesn't have", "mesh/old.####.usdc: 48 files of another shot". Only
+// names that bakes give to files are looked at, in DIR and its folders mesh, maps, tiles and volumes.
 std::vector<std::string> foreign_files(const std::filesystem::path& folder, const Shot& shot,
                                        const std::vector<std::unique_ptr<OutputPart>>& parts,
                                        const std::vector<std::string>& static_files);

@@ -176,14 +176,13 @@ class MapPart final : public OutputPart {
         for (const glm::vec3& j : slot.values.vectors(Product::JacobianMoments))
             full.push_back({j.x, j.y, j.z});
         add_level(full);
-        for (const MipLevel<Moments>& level :
-             moment_mips({.n = n_, .texels = full, .periodic = periodic_}))
+        for (const MipLevel<Moments>& level : moment_mips({.n = n_, .texels = full, .periodic = periodic_}))
             add_level(level.texels);
         std::vector<Level> levels;
         for (std::size_t i = 0; i < texels.size(); ++i)
             levels.push_back({exr::mip_level_size(n_, n_, static_cast<int>(i)).first, texels[i]});
-        const exr::Header header =
-            header_of(made_of, frame, {"whitecap coverage, mean and variance of the Jacobian", "1", texels[0]});
+        const exr::Header header = header_of(
+            made_of, frame, {"whitecap coverage, mean and variance of the Jacobian", "1", texels[0]});
         return encode_levels(header, levels, {"coverage", "mean", "variance"}, exr::PixelType::Float);
     }
 

@@ -20,9 +20,9 @@ double seconds_since(Clock::time_point start) {
 // Frames of a shot; none, and no time, where it asks for nothing.
 class Runner {
   public:
-    Runner(const Scene& scene, const Plan& plan) {
+    explicit Runner(const Plan& plan) {
         const auto start = Clock::now();
-        if (!plan.queries.empty()) sequence_ = make_sequence(scene, plan);
+        if (!plan.outputs.empty()) sequence_ = make_sequence(plan);
         build_s_ = seconds_since(start);
     }
     double compute_ms(int frame) {
@@ -68,18 +68,19 @@ bool same_work(const Plan& a, const Plan& b) {
                                                 });
 }
 
-std::size_t held_bytes(const Scene& scene, const Plan& plan) {
+std::size_t held_bytes(const Plan& plan) {
     std::size_t bytes = plan.sea_bytes() + plan.frame_bytes() + plan.output_bytes();
-    for (const PlannedQuery& planned : plan.queries) {
+    for (const PlannedOutput& output : plan.outputs) {
+        const PlannedQuery& planned = plan.queries[output.query];
         // Encoded, at most: 18 bytes a number of text, 12 a texel, and a third more in levels, with as much
         // again while a file is made.
         constexpr std::size_t kText = 18, kTexel = 32;
         std::size_t scalars = 0;
         for (const ProductRow& row : kProductTable)
             if (planned.query.products[index(row.product)]) scalars += row.components;
-        if (planned.query.map)
+        if (output.map)
             bytes += planned.query.points * kTexel;
-        else if (scene.output.mesh == MeshFormat::Usda)
+        else if (plan.from->scene.output.mesh == MeshFormat::Usda)
             bytes += planned.query.points * scalars * kText;
     }
     return bytes;
@@ -109,18 +110,18 @@ std::vector<MeasureItem> measure_items(const Scene& scene) {
     const Output& output = scene.output;
     if (output.mesh != MeshFormat::None) {
         add("mesh", [](Scene& without) { without.output.mesh = MeshFormat::None; });
-        for (const AttributeRow& row : kAttributeTable)
+        for (const AttributeRow& row : attribute_table())
             if (std::find(output.attributes.begin(), output.attributes.end(), row.attribute) !=
                 output.attributes.end())
                 add("mesh " + std::string(word_of(row.attribute)),
                     [&](Scene& without) { std::erase(without.output.attributes, row.attribute); });
     }
-    for (const MapRow& row : kMapTable)
+    for (const MapRow& row : map_table())
         if (std::find(output.maps.begin(), output.maps.end(), row.map) != output.maps.end())
-            add("map " + std::string(row.name),
+            add("map " + std::string(word_of(row.map)),
                 [&](Scene& without) { std::erase(without.output.maps, row.map); });
     if (output.cascade_tiles) add("tiles", [](Scene& without) { without.output.cascade_tiles = false; });
-    for (const EffectRow& row : kEffectTable)
+    for (const EffectRow& row : effect_table())
         if (row.is_on(scene)) add(row.name, row.turn_off);
     return items;
 }
@@ -128,13 +129,13 @@ std::vector<MeasureItem> measure_items(const Scene& scene) {
 std::size_t measure_bytes(const Scene& scene) {
     std::size_t beside = 0;
     for (const MeasureItem& item : measure_items(scene))
-        beside = std::max(beside, held_bytes(item.without, make_plan(item.without)));
-    return held_bytes(scene, make_plan(scene)) + beside;
+        beside = std::max(beside, held_bytes(plan_bake(item.without)));
+    return held_bytes(plan_bake(scene)) + beside;
 }
 
 Measured measure(const Scene& scene, const MeasureOptions& options) {
     const std::vector<MeasureItem> items = measure_items(scene);
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     MeasureProgress progress{.items = static_cast<int>(items.size())};
     const auto tell = [&](const std::string& name, double seconds_left) {
         progress.name = name;
@@ -142,7 +143,7 @@ Measured measure(const Scene& scene, const MeasureOptions& options) {
         if (options.progress) options.progress(progress);
     };
     tell("the whole", 0.0);
-    Runner whole(scene, plan);
+    Runner whole(plan);
     // Which also allocates.
     const double compute_s = 1e-3 * whole.compute_ms(scene.shot.first_frame);
     const double encode_s = 1e-3 * whole.encode_ms();
@@ -157,11 +158,11 @@ Measured measure(const Scene& scene, const MeasureOptions& options) {
 
     std::vector<double> whole_compute_ms, whole_encode_ms;
     const auto measure_item = [&](const MeasureItem& item) {
-        const Plan planned = make_plan(item.without);
+        const Plan planned = plan_bake(item.without);
         Measured result{.name = item.name, .cost = cost_of(plan) - cost_of(planned)};
         if (same_work(plan, planned)) return result;
         const auto begin = Clock::now();
-        Runner without(item.without, planned);
+        Runner without(planned);
         without.compute_ms(scene.shot.first_frame);
         without.encode_ms();
         // Differences of pairs. Each of the two goes first every other time: whoever comes second finds the

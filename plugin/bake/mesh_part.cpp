@@ -100,9 +100,10 @@ class MeshPart final : public OutputPart {
                   else
                       usd::write_topology_crate(topology, take);
               }});
-        sink({.path = usd::manifest_file(shot.name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
-                  take(usd::manifest_text({.fps = shot.fps, .attributes = attributes_}));
-              }});
+        sink(
+            {.path = usd::manifest_file(shot.name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
+                 take(usd::manifest_text({.fps = shot.fps, .attributes = attributes_}));
+             }});
     }
 
   private:
@@ -118,7 +119,7 @@ class MeshPart final : public OutputPart {
 
     template <class T>
     void compute_as(State<T>& state, const Frame<T>& sea, int frame, MeshSlot& slot) {
-        const Surface& surface = *plan_.surface;
+        const RestSurface& surface = *plan_.surface;
         if (!state.is_laid_out || !surface.is_constant()) surface.points_at(frame, state.points);
         state.is_laid_out = true;
         if (!surface.is_constant()) slot.faces = surface.faces_at(frame);
@@ -140,8 +141,8 @@ class MeshPart final : public OutputPart {
                                .slope_variance = slot.values.vectors(Product::SlopeVariance),
                                .whitecap_coverage = slot.values.numbers(Product::Coverage)};
         if (attributes_.faces)
-            sample.faces = usd::Faces{
-                .counts = slot.faces.counts, .indices = slot.faces.indices, .st = slot.faces.st};
+            sample.faces =
+                usd::Faces{.counts = slot.faces.counts, .indices = slot.faces.indices, .st = slot.faces.st};
         return sample;
     }
 

@@ -24,7 +24,8 @@ double mean_of(std::span<const float> values) {
 std::vector<std::unique_ptr<OutputPart>> make_parts(const Plan& plan) {
     struct PartRow {
         OutputKind kind;
-        std::unique_ptr<OutputPart> (*make)(const Plan&, const PlannedOutput&, const std::shared_ptr<SquareCache>&);
+        std::unique_ptr<OutputPart> (*make)(const Plan&, const PlannedOutput&,
+                                            const std::shared_ptr<SquareCache>&);
     };
     static constexpr std::array kPartTable = std::to_array<PartRow>({
         {OutputKind::Mesh, make_mesh_part},

@@ -1,5 +1,6 @@
 // A part of a bake: one output of the plan, what it keeps of a frame, how it becomes bytes and which files
-// they go to. Each kind is a class of its own behind this interface and a row of make_parts() (output_part.cpp).
+// they go to. Each kind is a class of its own behind this interface and a row of make_parts()
+// (output_part.cpp).
 #pragma once
 
 #include <cstdint>

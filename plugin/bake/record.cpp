@@ -52,21 +52,19 @@ Json settings(const Scene& scene) {
     return json;
 }
 
-// Whether the fingerprint stands near one end of the file: maps and layers in text carry it among their first
-// lines, crates among the tokens after the arrays.
-bool carries(const std::filesystem::path& file, const std::string& fingerprint) {
-    constexpr std::streamoff kEnd = 8192;  // bytes; what lies before or behind it takes one or two thousand
-    std::ifstream stream(file, std::ios::binary | std::ios::ate);
-    const std::streamoff size = stream.tellg();
-    const auto stands_from = [&](std::streamoff begin) {
-        std::string bytes(kEnd, '\0');
-        stream.clear();
-        stream.seekg(begin);
-        stream.read(bytes.data(), kEnd);
-        bytes.resize(static_cast<std::size_t>(stream.gcount()));
-        return bytes.find(fingerprint) != std::string::npos;
-    };
-    return stream && (stands_from(0) || stands_from(std::max<std::streamoff>(size - kEnd, 0)));
+Json to_json(const FileRecord& file) {
+    Json json{{"bytes", file.bytes}, {"fingerprint", file.fingerprint}};
+    if (file.coverage) json["whitecap_coverage"] = *file.coverage;
+    if (file.significant_height_m) json["hs_m"] = *file.significant_height_m;
+    return json;
+}
+
+FileRecord file_from_json(const Json& json) {
+    FileRecord file{.bytes = json.at("bytes").get<std::uintmax_t>(),
+                    .fingerprint = json.at("fingerprint").get<std::string>()};
+    if (json.contains("whitecap_coverage")) file.coverage = json.at("whitecap_coverage").get<double>();
+    if (json.contains("hs_m")) file.significant_height_m = json.at("hs_m").get<double>();
+    return file;
 }
 
 Json to_json(const FrameRecord& frame) {
@@ -84,8 +82,7 @@ Json to_json(const FrameRecord& frame) {
     if (frame.mesh_significant_height_m) json["mesh_hs_m"] = *frame.mesh_significant_height_m;
     if (frame.coverage) json["whitecap_coverage"] = *frame.coverage;
     json["files"] = Json::object();
-    for (const auto& [path, file] : frame.files)
-        json["files"][path] = {{"bytes", file.bytes}, {"fingerprint", file.fingerprint}};
+    for (const auto& [path, file] : frame.files) json["files"][path] = to_json(file);
     return json;
 }
 
@@ -101,9 +98,7 @@ FrameRecord from_json(const Json& json) {
     frame.mss_residual = json.at("mss_residual").get<double>();
     if (json.contains("mesh_hs_m")) frame.mesh_significant_height_m = json.at("mesh_hs_m").get<double>();
     if (json.contains("whitecap_coverage")) frame.coverage = json.at("whitecap_coverage").get<double>();
-    for (const auto& [path, file] : json.at("files").items())
-        frame.files[path] = {file.at("bytes").get<std::uintmax_t>(),
-                             file.at("fingerprint").get<std::string>()};
+    for (const auto& [path, file] : json.at("files").items()) frame.files[path] = file_from_json(file);
     return frame;
 }
 
@@ -208,7 +203,8 @@ bool is_whole(const FrameRecord& frame, const std::string& path, const std::stri
               const std::filesystem::path& folder) {
     const auto found = frame.files.find(path);
     return found != frame.files.end() && found->second.fingerprint == fingerprint &&
-           files::file_size(folder / path) == found->second.bytes && carries(folder / path, fingerprint);
+           files::file_size(folder / path) == found->second.bytes &&
+           files::carries(folder / path, fingerprint);
 }
 
 void Record::save(const std::filesystem::path& file) {

@@ -27,6 +27,8 @@ struct WaveRecord {
 struct FileRecord {
     std::uintmax_t bytes = 0;
     std::string fingerprint;  // of what it was made of; it carries the same
+    // What its output says about the frame.
+    std::optional<double> coverage{}, significant_height_m{};
 };
 
 // Of one frame. What nobody paid for is absent.
@@ -38,23 +40,23 @@ struct FrameRecord {
     std::optional<WaveRecord> waves;
     double mss_residual = 0.0;                        // the spectrum's, of what the first output hides
     std::optional<double> mesh_significant_height_m;  // 4 × the standard deviation of the mesh's heights
-    std::optional<double> coverage;                   // mean over the mesh, or over the map without one
+    std::optional<double> coverage;                   // mean over the first output that has it
 };
 
 // The frames that the record at `file` holds; none where there is no record, or one that can't be read as
 // ours: its frames are baked again.
 std::map<int, FrameRecord> recorded_frames(const std::filesystem::path& file);
 
-// Whether the frame's file at `path` is there, has its recorded size and fingerprint, and says itself that it is
-// of this fingerprint: the record alone would vouch for a file that another shot has replaced since.
+// Whether the frame's file at `path` is there, has its recorded size and fingerprint, and says itself that it
+// is of this fingerprint: the record alone would vouch for a file that another shot has replaced since.
 bool is_whole(const FrameRecord& frame, const std::string& path, const std::string& fingerprint,
               const std::filesystem::path& folder);
 
 // What a run adds to the record of its shot.
 class Record {
   public:
-    // The part that belongs to the shot and not to a frame. Frames outside the shot's range are left out of the
-    // record from now on.
+    // The part that belongs to the shot and not to a frame. Frames outside the shot's range are left out of
+    // the record from now on.
     void describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold);
 
     void set(int frame, FrameRecord record) { unsaved_[frame] = std::move(record); }

@@ -37,13 +37,13 @@ class SequenceOf final : public Sequence {
         tbb::parallel_for(std::size_t(0), parts_.size(), [&](std::size_t p) {
             if (wants(slot, p)) parts_[p]->encode(slot.frame, *slot.outputs[p]);
         });
-        for (std::size_t p = 0; p < parts_.size(); ++p) {
-            if (!wants(slot, p)) continue;
-            const OutputSlot& output = *slot.outputs[p];
-            if (!slot.record.coverage) slot.record.coverage = output.coverage;
-            if (output.significant_height_m)
-                slot.record.mesh_significant_height_m = output.significant_height_m;
-        }
+        for (std::size_t p = 0; p < parts_.size(); ++p)
+            if (wants(slot, p))
+                slot.record.files[parts_[p]->file(slot.frame)] = {
+                    .bytes = 0,
+                    .fingerprint = parts_[p]->fingerprint(slot.frame),
+                    .coverage = slot.outputs[p]->coverage,
+                    .significant_height_m = slot.outputs[p]->significant_height_m};
     }
 
     void write(FrameSlot& slot, const FileSink& sink) const override {

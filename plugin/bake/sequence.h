@@ -16,7 +16,7 @@ namespace pelagic {
 // What one frame needs between its steps.
 struct FrameSlot {
     int frame = 0;
-    FrameRecord record;
+    FrameRecord record;                                // its files' sizes are of who writes them
     std::vector<std::unique_ptr<OutputSlot>> outputs;  // by part
     std::vector<bool> wanted;                          // by part; empty: all
 };

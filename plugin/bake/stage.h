@@ -1,5 +1,5 @@
-// The stage of a bake: the root layer that people open, and the camera's layer beside it. Both are of the whole
-// shot, whichever frames are baked.
+// The stage of a bake: the root layer that people open, and the camera's layer beside it. Both are of the
+// whole shot, whichever frames are baked.
 #pragma once
 
 #include "core/plan/plan.h"

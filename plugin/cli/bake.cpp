@@ -37,6 +37,8 @@ void print_done(const BakeReport& report, const std::string& out) {
     std::cout << '\n';
     if (const std::string times = time_text(report); !times.empty()) std::cout << times << '\n';
     std::cout << std::flush;
+    for (const std::string& line : report.foreign)
+        std::cerr << "pelagic: in " << out << " lies " << line << "; nothing was deleted\n";
     if (!report.stale.empty()) {
         std::cerr
             << "pelagic: in " << out << " the frames " << frames_text(report.stale)
@@ -47,7 +49,7 @@ void print_done(const BakeReport& report, const std::string& out) {
 
 // What was planned, so that people see what is large.
 std::string out_of_memory(const Scene& scene) {
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     const long vertices_a_side = long{scene.surface.resolution} + 1;
     const long vertices = scene.output.mesh == MeshFormat::None ? 0 : vertices_a_side * vertices_a_side;
     const long texels =

@@ -125,7 +125,7 @@ Verb add_explain(CLI::App& program) {
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
     return {command, [arguments] {
                 const Scene scene = load_shot(arguments->shot);
-                std::cout << explain(make_plan(scene)) << std::flush;
+                std::cout << explain(plan_bake(scene)) << std::flush;
                 return arguments->measure ? print_prices(scene, *arguments) : int{kDone};
             }};
 }

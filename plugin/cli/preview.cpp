@@ -63,10 +63,14 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
     const OffscreenPicture drawn = render_offscreen(scene, sky, frame);
     RenderOptions options = render_options(scene);
     options.samples = 1;
-    const PictureContext about{.scene = scene,
-                               .options = options,
-                               .sky = sky,
-                               .fingerprint = picture_plan(scene).fingerprint_text()};
+    const PictureContext about{
+        .scene = scene,
+        .options = options,
+        .sky = sky,
+        .made_of =
+            PictureFingerprint(
+                {.scene = scene, .options = options, .sky_content = sky_content(scene), .drawn_by_gpu = true})
+                .of(frame)};
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
                                                              : encode_png(about, drawn.picture));
     if (!drawn.note.empty()) std::cerr << "pelagic: note: " << drawn.note << '\n';

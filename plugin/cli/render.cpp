@@ -114,7 +114,7 @@ Job job_of(const Arguments& arguments) {
 struct Cancelled {};
 
 struct Done {
-    int frames = 0;
+    int frames = 0, kept = 0;
     double seconds = 0.0;
     bool cancelled = false;
 };
@@ -127,64 +127,90 @@ struct Place {
 
 Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
     using Clock = std::chrono::steady_clock;
-    const auto count = static_cast<int>(job.frames.size());
-    BakeProgress now{.stage = BakeStage::Building, .total = count};
+    const Clock::time_point start = Clock::now();
+    const auto seconds_since = [](Clock::time_point from) {
+        return std::chrono::duration<double>(Clock::now() - from).count();
+    };
+    const Shot& shot = job.scene.shot;
+    BakeProgress now{.stage = BakeStage::Planning, .total = static_cast<int>(job.frames.size())};
     progress.show(now);
     check_render(job.scene, job.options);
-    Sky sky = make_sky(job.scene);  // what is wrong with either leaves no folder behind
+    const PictureFingerprint fingerprint({.scene = job.scene,
+                                          .options = job.options,
+                                          .sky_content = sky_content(job.scene),
+                                          .exposure_stops = job.exposure_stops});
+    Done done;
+    std::vector<int> frames;
+    for (const int frame : job.frames) {
+        const auto whole = [&](const char* extension) {
+            return is_whole_picture(job.out / picture_file(shot, frame, extension), fingerprint.of(frame));
+        };
+        if (whole("png") && whole("exr"))
+            ++done.kept;
+        else
+            frames.push_back(frame);
+    }
+    now.kept = done.kept;
+    if (frames.empty()) {
+        done.seconds = seconds_since(start);
+        return done;
+    }
+    now.stage = BakeStage::Building;
+    progress.show(now);
+    Sky sky = make_sky(job.scene);  // what is wrong with it leaves no folder behind
     files::ensure_folder(job.out);
     files::remove_stale_temporaries(job.out);
-    Renderer renderer(job.scene, job.options, std::move(sky));
-    const PictureContext context{.scene = job.scene,
-                                 .options = job.options,
-                                 .sky = renderer.sky(),
-                                 .fingerprint = renderer.plan().fingerprint_text(),
-                                 .exposure_stops = job.exposure_stops};
+    Renderer renderer(job.scene, job.options, std::move(sky), frames);
+    const auto context_of = [&](int frame) {
+        return PictureContext{.scene = job.scene,
+                              .options = job.options,
+                              .sky = renderer.sky(),
+                              .made_of = fingerprint.of(frame),
+                              .exposure_stops = job.exposure_stops};
+    };
     stop.files_begin();
     now.stage = BakeStage::Frames;
-    const Clock::time_point start = Clock::now();
-    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    const Clock::time_point first_frame = Clock::now();
     const auto stop_if_cancelled = [&] {
         if (stop.cancelled().load(std::memory_order_relaxed)) throw Cancelled();
     };
 
-    Done done;
     std::array<Place, kPicturesInFlight> places;
     PipelineStages stages;
     stages.compute = [&](int item, int place) {
         stop_if_cancelled();
         const RenderWatch watch{.progress =
                                     [&](double part) {
-                                        progress.show("frame " + std::to_string(job.frames[item]) + ": " +
+                                        progress.show("frame " + std::to_string(frames[item]) + ": " +
                                                       std::to_string(std::lround(100.0 * part)) + " %, " +
                                                       std::to_string(done.frames) + " of " +
-                                                      std::to_string(count) + " whole");
+                                                      std::to_string(frames.size()) + " whole");
                                     },
                                 .cancel = &stop.cancelled()};
-        if (!renderer.render(job.frames[item], places[place].picture, watch)) throw Cancelled();
+        if (!renderer.render(frames[item], places[place].picture, watch)) throw Cancelled();
     };
     stages.encode = [&](int item, int place) {
         Place& at = places[place];
+        const PictureContext context = context_of(frames[item]);
         at.png = encode_png(context, at.picture);
-        at.exr = encode_exr(context, at.picture, job.frames[item]);
+        at.exr = encode_exr(context, at.picture, frames[item]);
     };
     stages.write = [&](int item, int place) {
-        const Shot& shot = job.scene.shot;
-        files::write_atomically(job.out / picture_file(shot, job.frames[item], "png"), places[place].png);
-        files::write_atomically(job.out / picture_file(shot, job.frames[item], "exr"), places[place].exr);
+        files::write_atomically(job.out / picture_file(shot, frames[item], "png"), places[place].png);
+        files::write_atomically(job.out / picture_file(shot, frames[item], "exr"), places[place].exr);
     };
     stages.written = [&](int item) {
-        now.frame = job.frames[item];
+        now.frame = frames[item];
         now.done = ++done.frames;
-        now.seconds = seconds();
+        now.seconds = seconds_since(first_frame);
         progress.show(now);
     };
     try {
-        run_pipeline(count, kPicturesInFlight, stages);
+        run_pipeline(static_cast<int>(frames.size()), kPicturesInFlight, stages);
     } catch (const Cancelled&) {
         done.cancelled = true;
     }
-    done.seconds = seconds();
+    done.seconds = seconds_since(start);
     return done;
 }
 
@@ -217,13 +243,15 @@ int run(const Arguments& arguments) {
     progress.clear();
     const std::string asked = count_text(static_cast<long>(job.frames.size()), "frame", "frames");
     if (done.cancelled) {
-        std::cerr << "pelagic: stopped; " << done.frames << " of the " << asked << " asked for are whole in "
-                  << out << "; --frames takes the others\n";
+        std::cerr << "pelagic: stopped; " << done.frames + done.kept << " of the " << asked
+                  << " asked for are whole in " << out << "; run the same command again to continue\n";
         return kSignal + stop.number();
     }
     std::cout << "pictures: " << (job.out / picture_file(job.scene.shot, job.frames.front(), "exr")).string()
               << (job.frames.size() > 1 ? " …" : "") << " and .png\n"
-              << asked << " rendered in " << duration_text(done.seconds) << std::endl;
+              << count_text(done.frames, "frame", "frames") << " rendered in " << duration_text(done.seconds);
+    if (done.kept > 0) std::cout << ", " << done.kept << " kept as they were";
+    std::cout << std::endl;
     return kDone;
 }
 

@@ -52,7 +52,7 @@ Verb add_validate(CLI::App& program) {
                 for (const std::string& file : *files) {
                     try {
                         const Scene scene = load_shot(file);
-                        const Plan plan = make_plan(scene);
+                        const Plan plan = plan_bake(scene);
                         std::cout << file << ": fine\n    " << summary(scene, plan) << std::endl;
                     } catch (const ShotError& error) {
                         std::cerr << error.what() << std::endl;

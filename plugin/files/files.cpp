@@ -16,6 +16,7 @@
 #include <atomic>
 #include <cerrno>
 #include <ctime>
+#include <fstream>
 #include <utility>
 
 namespace pelagic::files {
@@ -278,6 +279,21 @@ void ensure_folder(const std::filesystem::path& asked) {
     // Asked of the system rather than of the mode bits: it knows root, access lists and read-only file
     // systems.
     if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
+}
+
+bool carries(const std::filesystem::path& path, std::string_view text) {
+    constexpr std::streamoff kEnd = 8192;
+    std::ifstream stream(path, std::ios::binary | std::ios::ate);
+    const std::streamoff size = stream.tellg();
+    const auto stands_from = [&](std::streamoff begin) {
+        std::string bytes(kEnd, '\0');
+        stream.clear();
+        stream.seekg(begin);
+        stream.read(bytes.data(), kEnd);
+        bytes.resize(static_cast<std::size_t>(stream.gcount()));
+        return bytes.find(text) != std::string::npos;
+    };
+    return stream && (stands_from(0) || stands_from(std::max<std::streamoff>(size - kEnd, 0)));
 }
 
 std::optional<std::uintmax_t> file_size(const std::filesystem::path& path) {

@@ -72,6 +72,10 @@ class FolderLock {
     int descriptor_;
 };
 
+// Whether the text stands among the first or the last bytes of the file, 8 KiB at either end: where our
+// formats have what a file says about itself. False where there is no such file.
+bool carries(const std::filesystem::path& path, std::string_view text);
+
 // The size in bytes of the regular file at `path` (links followed); none where there is no such file.
 std::optional<std::uintmax_t> file_size(const std::filesystem::path& path);
 

@@ -43,6 +43,14 @@ bool write(png_structp file, png_infop info, const Image& image) {
     png_set_IHDR(file, info, width, static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(file, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (!image.comment.empty()) {
+        png_text text{};
+        text.compression = PNG_TEXT_COMPRESSION_NONE;
+        text.key = const_cast<png_charp>("Comment");  // the library copies both
+        text.text = const_cast<png_charp>(image.comment.c_str());
+        text.text_length = image.comment.size();
+        png_set_text(file, info, &text, 1);
+    }
     png_write_info(file, info);
     for (int y = 0; y < image.height; ++y)
         png_write_row(file, image.rgb.data() + std::size_t{3} * width * static_cast<std::size_t>(y));

@@ -13,6 +13,7 @@ namespace pelagic::png {
 struct Image {
     int width = 0, height = 0;  // 1 … 1e6 each
     std::span<const std::uint8_t> rgb;
+    std::string comment{};  // ASCII, kept in the file before the pixels; empty: none
 };
 
 // The image as the bytes of a file, marked as sRGB. Throws std::invalid_argument for a size out of range or

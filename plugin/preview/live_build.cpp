@@ -32,7 +32,8 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene) {
     const auto prepared = prepare(scene);
     LiveBuild made;
     made.scene = scene;
-    made.sea = std::make_shared<const Sea<float>>(make_plan(prepared, {view_query(*prepared)}));
+    made.sea = std::make_shared<const Sea<float>>(
+        make_plan(prepared, {view_query(*prepared)}, {.double_precision = false}));
     made.grid = projected_grid_options(*prepared);
     made.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::make_shared<const LiveBuild>(std::move(made));

@@ -1,3 +1,5 @@
+#include <array>
+
 #include "core/plan/plan.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
@@ -8,7 +10,7 @@ namespace pelagic {
 OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame, glm::ivec2 size) {
     Scene seen = scene;
     if (size.x > 0 && size.y > 0) seen.camera.resolution = size;
-    const auto sea = std::make_shared<const Sea<float>>(picture_plan(seen));
+    const auto sea = std::make_shared<const Sea<float>>(picture_plan(seen, std::array{frame}));
     Frame<float> state(sea);
     state.set(seen.shot.time_s(frame));
     PackedFrame packed(sea, 0);

@@ -11,7 +11,7 @@ namespace py = pybind11;
 // As `pelagic explain` prints it.
 std::string explain_bake(const pelagic::Scene& scene) {
     pelagic::python::require_valid(scene);
-    return pelagic::explain(pelagic::make_plan(scene));
+    return pelagic::explain(pelagic::plan_bake(scene));
 }
 
 }  // namespace

@@ -84,9 +84,8 @@ PythonSea build_sea(const Scene& scene, const SeaRequest& request) {
     }
     const Scene kept = scene;  // other threads may change the caller's meanwhile
     const py::gil_scoped_release others_may_run;
-    Plan plan = make_plan(kept, {query});
-    plan.knobs.double_precision = false;  // whatever the level: arrays are float32
-    return {std::make_shared<const Sea<float>>(plan)};
+    // Whatever the level, arrays are float32.
+    return {std::make_shared<const Sea<float>>(make_plan(kept, {query}, {.double_precision = false}))};
 }
 
 // ---- Frame

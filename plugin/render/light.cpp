@@ -1,6 +1,9 @@
 // The light of a shot, and its water. See render.h.
+#include <fstream>
 #include <stdexcept>
+#include <string_view>
 
+#include "core/plan/fingerprint.h"
 #include "plugin/exr/read.h"
 #include "plugin/render/render.h"
 
@@ -47,6 +50,18 @@ Sky make_sky(const Scene& scene) {
     } catch (const std::invalid_argument& error) {
         throw std::invalid_argument(light.sky + ": " + error.what());
     }
+}
+
+std::string sky_content(const Scene& scene) {
+    if (scene.light.sky == Light{}.sky) return {};
+    std::ifstream stream(scene.light.sky, std::ios::binary);
+    Fingerprint hash;
+    std::string piece(std::size_t{1} << 20, '\0');
+    while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0)
+        hash.add(std::string_view(piece).substr(0, static_cast<std::size_t>(stream.gcount())));
+    if (!stream.eof())
+        throw std::invalid_argument(scene.light.sky + ": can't be read; accepted: a picture in OpenEXR");
+    return hash.text();
 }
 
 WaterBody make_water(const Scene& scene) {

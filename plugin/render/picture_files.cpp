@@ -9,9 +9,13 @@
 
 #include "core/base/instruction_set.h"
 #include "core/lighting/tone.h"
+#include "core/plan/fingerprint.h"
+#include "core/scene/canonical.h"
 #include "core/scene/names.h"
+#include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/exr/exr.h"
+#include "plugin/files/files.h"
 #include "plugin/png/png.h"
 
 namespace pelagic {
@@ -63,7 +67,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
             {"sky", scene.light.sky},
             {"exposure", static_cast<double>(exposure_for(context.sky, context.exposure_stops))},
             {"samplesPerPixel", context.options.samples * context.options.samples},
-            {"fingerprint", context.fingerprint},
+            {"fingerprint", context.made_of},
             {"instructionSet", std::string(instruction_set())},
             {"software", std::string("pelagic " PELAGIC_VERSION)}};
 }
@@ -74,6 +78,39 @@ std::string picture_file(const Shot& shot, int frame, const char* extension) {
     std::array<char, 16> number{};
     std::snprintf(number.data(), number.size(), "%04d", frame);
     return shot.name + "." + number.data() + "." + extension;
+}
+
+PictureFingerprint::PictureFingerprint(const PictureSource& source) : camera_(source.scene.camera) {
+    // Raised by hand when the same source gives other bits: tests/plugin/bake/golden_test.cpp notices.
+    constexpr int kRevision = 1;
+    const LightingChoice& lighting = source.options.lighting;
+    const auto digit = [](auto value) { return std::to_string(static_cast<int>(value)); };
+    // What the plan says of a view is the same whichever frames it is for.
+    const Plan plan = picture_plan(source.scene, std::array{source.scene.shot.first_frame});
+    source_ = Fingerprint()
+                  .add(source.drawn_by_gpu ? "drawn picture" : "picture")
+                  .add("revision " + std::to_string(kRevision))
+                  .add(canonical(source.scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Grid,
+                                                     Feed::Light, Feed::Water)))
+                  .add(plan_text(plan, 0))
+                  .add(source.sky_content)
+                  .add("samples " + std::to_string(source.options.samples) + " terms " + digit(lighting.sun) +
+                       digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + " sky " +
+                       digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
+                  .add("exposure " + number_text(source.exposure_stops))
+                  .text();
+}
+
+std::string PictureFingerprint::of(int frame) const {
+    return Fingerprint()
+        .add(source_)
+        .add("frame " + std::to_string(frame))
+        .add(pose_text(view_at(camera_, frame)))
+        .text();
+}
+
+bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of) {
+    return files::carries(file, made_of);
 }
 
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame) {
@@ -120,7 +157,10 @@ std::string encode_png(const PictureContext& context, const Picture& picture) {
                 bytes[3 * i + c] = static_cast<std::uint8_t>(std::lround(255.0f * colour[c]));
         }
     });
-    return png::encode({.width = picture.resolution.x, .height = picture.resolution.y, .rgb = bytes});
+    return png::encode({.width = picture.resolution.x,
+                        .height = picture.resolution.y,
+                        .rgb = bytes,
+                        .comment = "pelagic " + context.made_of});
 }
 
 }  // namespace pelagic

@@ -1,6 +1,7 @@
 // Pictures as the bytes of files: HDR with its layers, and as a screen shows it.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "core/scene/scene.h"
@@ -15,9 +16,32 @@ struct PictureContext {
     const Scene& scene;
     const RenderOptions& options;
     const Sky& sky;
-    std::string fingerprint;  // Plan::fingerprint_text() of the sea
+    std::string made_of;  // PictureFingerprint::of(the frame)
     double exposure_stops = 0.0;
 };
+
+// What the two files of a frame are made of: the keys that feed pictures, the camera's pose, the resolved
+// plan, the sky's picture, the samples, terms and lookups of the light, and the exposure. Pictures with the
+// same are the same, byte for byte, on one kind of CPU; each file carries it.
+struct PictureSource {
+    const Scene& scene;  // its resolution is the picture's
+    const RenderOptions& options;
+    std::string sky_content;  // sky_content(scene)
+    double exposure_stops = 0.0;
+    bool drawn_by_gpu = false;
+};
+class PictureFingerprint {
+  public:
+    explicit PictureFingerprint(const PictureSource& source);
+    std::string of(int frame) const;  // 16 hexadecimal digits
+
+  private:
+    Camera camera_;
+    std::string source_;
+};
+
+// Whether the file is there and was made of this.
+bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of);
 
 // EXR: scan lines; R, G, B and the layers sun.R … foam.B, in the sky's units; halves where no value that the
 // light can give is beyond their range, floats for the others; what it was made of in the header. The layers

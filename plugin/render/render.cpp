@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -14,6 +15,7 @@
 #include "core/evaluate/values.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
+#include "core/plan/quality.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/render/raster.h"
@@ -63,11 +65,11 @@ Scene of_samples(const Scene& scene, int samples) {
 template <class T, class Impl>
 class RendererOf final : public Impl {
   public:
-    RendererOf(const Scene& scene, const RenderOptions& options, Sky sky, const Plan& plan)
-        : scene_(scene),
+    RendererOf(const Plan& plan, const RenderOptions& options, Sky sky)
+        : scene_(plan.from->scene),
           options_(options),
           sky_(std::move(sky)),
-          water_(make_water(scene)),
+          water_(make_water(scene_)),
           sea_(std::make_shared<const Sea<T>>(plan)),
           frame_(sea_),
           grid_options_(projected_grid_options(*plan.from)) {}
@@ -281,38 +283,43 @@ class RendererOf final : public Impl {
 }  // namespace
 
 RenderOptions render_options(const Scene& scene) {
+    const QualityRow& quality = quality_of(scene.quality.level);
     RenderOptions options;
-    options.lighting.whitecaps = scene.effects.whitecaps;
-    switch (scene.quality.level) {
-        case QualityLevel::Draft:
+    options.lighting.whitecaps = !products_gone(scene)[index(Product::Coverage)];
+    switch (quality.sky) {
+        case SkyLookups::One:
             options.lighting.sky_quality = SkyQuality::One;
-            options.lighting.fresnel = FresnelFit::Paper;
             break;
-        case QualityLevel::Preview:
+        case SkyLookups::Nine:
             options.lighting.sky_quality = SkyQuality::Nine;
-            options.lighting.fresnel = FresnelFit::Exact;
             break;
-        case QualityLevel::Final:
-            options.lighting.sky_quality = SkyQuality::Nine;
-            options.lighting.fresnel = FresnelFit::Exact;
-            options.samples = 2;
-            break;
-        case QualityLevel::Reference:
+        case SkyLookups::Integral:
             options.lighting.sky_quality = SkyQuality::Integral;
-            options.lighting.fresnel = FresnelFit::Exact;
-            options.samples = 4;
             break;
     }
+    options.lighting.fresnel = quality.fitted_fresnel ? FresnelFit::Exact : FresnelFit::Paper;
+    options.samples = quality.samples;
     return options;
 }
 
-Plan picture_plan(const Scene& scene) {
-    const auto prepared = prepare(scene);
-    const ProjectedGridNeeds needs = projected_grid_needs(*prepared);
-    return make_plan(prepared, {view_query(*prepared, {.products = {},
-                                                       .finest_cell_m = needs.finest_cell_m,
-                                                       .finest_pixel_m = needs.finest_pixel_m,
-                                                       .points = points_of(needs.size)})});
+Plan picture_plan(const Scene& scene, std::span<const int> frames) {
+    auto prepared = prepare(scene);
+    const ProjectedGridOptions options = projected_grid_options(*prepared);
+    std::optional<ProjectedGridNeeds> needs;
+    std::optional<View> before;
+    for (const int frame : frames) {
+        const View view = view_at(scene.camera, frame);
+        if (before && *before == view) continue;  // the camera stands still
+        const ProjectedGridNeeds own = projected_grid_needs(view, options);
+        needs = needs ? together(*needs, own) : own;
+        before = view;
+    }
+    if (!needs) throw std::invalid_argument("a plan of pictures needs at least one frame");
+    const Query query = view_query(*prepared, {.products = {},
+                                               .finest_cell_m = needs->finest_cell_m,
+                                               .finest_pixel_m = needs->finest_pixel_m,
+                                               .points = points_of(needs->size)});
+    return make_plan(std::move(prepared), {query});
 }
 
 void check_render(const Scene& scene, const RenderOptions& options) {
@@ -327,14 +334,12 @@ void check_render(const Scene& scene, const RenderOptions& options) {
                                     " a side are accepted; ask for a smaller picture or fewer samples");
 }
 
-Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky) {
+Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames) {
     check_render(scene, options);
-    const Scene sampled = of_samples(scene, options.samples);
-    const Plan plan = picture_plan(sampled);
-    if (plan.knobs.double_precision)
-        impl_ = std::make_unique<RendererOf<double, Impl>>(sampled, options, std::move(sky), plan);
-    else
-        impl_ = std::make_unique<RendererOf<float, Impl>>(sampled, options, std::move(sky), plan);
+    const Plan plan = picture_plan(of_samples(scene, options.samples), frames);
+    impl_ = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Impl> {
+        return std::make_unique<RendererOf<T, Impl>>(plan, options, std::move(sky));
+    });
 }
 
 Renderer::~Renderer() = default;

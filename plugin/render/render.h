@@ -16,6 +16,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/lighting/lighting.h"
@@ -59,12 +61,15 @@ RenderOptions render_options(const Scene& scene);
 void check_render(const Scene& scene, const RenderOptions& options);
 
 // The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike,
-// whose finest footprints are those of all of the shot's frames together.
-Plan picture_plan(const Scene& scene);
+// whose ladder is as fine as these frames need it. They decide nothing about any frame's bits.
+Plan picture_plan(const Scene& scene, std::span<const int> frames);
 
 // The shot's light: its daylight, or the picture that light.sky is the path of. Throws std::invalid_argument,
 // naming the file, for a picture that can't be read or isn't one of a sky.
 Sky make_sky(const Scene& scene);
+// What make_sky() reads besides the scene, as text for fingerprints: a hash of the picture's bytes; empty for
+// daylight. Throws std::invalid_argument for a file that can't be read.
+std::string sky_content(const Scene& scene);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
 
@@ -76,9 +81,9 @@ struct RenderWatch {
 
 class Renderer {
   public:
-    // The scene must be valid; its own sky (make_sky()), or another one. Seconds for the largest seas. Throws
-    // as check_render().
-    Renderer(const Scene& scene, const RenderOptions& options, Sky sky);
+    // The scene must be valid; its own sky (make_sky()), or another one; the frames that will be rendered, at
+    // least one. Seconds for the largest seas. Throws as check_render().
+    Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;

@@ -83,7 +83,7 @@ std::vector<PackedMap> maps_to_pack() {
     Scene scene = million_vertices(1);
     scene.output.mesh = MeshFormat::None;
     scene.output.maps = {MapKind::Displacement, MapKind::Normal, MapKind::Whitecaps, MapKind::SlopeVariance};
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan);
     FrameSlot slot;
     sequence->compute(1, slot);
@@ -242,7 +242,7 @@ int run(int argc, char** argv) {
         return 2;
     }
     const Scene scene = million_vertices(frames);
-    const std::unique_ptr<Sequence> sequence = make_sequence(scene, make_plan(scene));
+    const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan_bake(scene));
     packing_table();
     overlap_table(scene, *sequence, rounds, folder);
     std::printf("  peak memory of this process: %.0f MiB\n", peak_mib());

@@ -17,7 +17,7 @@ struct Means {
 };
 
 Means means_of(const Scene& scene) {
-    Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(scene)));
+    Frame<float> frame(std::make_shared<const Sea<float>>(plan_bake(scene)));
     frame.set(3.0);
     const int n = scene.surface.resolution;
     const auto points = rest_points<float>(

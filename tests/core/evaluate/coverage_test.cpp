@@ -18,7 +18,7 @@ double mean_coverage(double wind_mps, int quads, QualityLevel level = QualityLev
     scene.output.attributes = {MeshAttribute::Whitecaps};
     const auto points =
         rest_points<float>({.per_side = quads, .spacing_m = 1000.0 / quads, .first_m = -500.0});
-    return mean_of(sample(frame_of<float>(scene, make_plan(scene), 3.0), 0, points).numbers(Coverage),
+    return mean_of(sample(frame_of<float>(scene, plan_bake(scene), 3.0), 0, points).numbers(Coverage),
                    [](float w) { return w; });
 }
 

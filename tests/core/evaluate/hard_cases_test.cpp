@@ -54,7 +54,7 @@ TEST_P(HardCases, GiveSoundAnswers) {
     for (const Problem& problem : validate(scene)) ADD_FAILURE() << text_of(problem);
     ProductSet all;
     all.set();
-    auto queries = bake_queries(*prepare(scene));
+    auto queries = queries_of(plan_bake(scene));
     for (Query& query : queries) query.products = all;
     queries.push_back(filtered(all, 3.0));
     const Plan plan = make_plan(scene, queries);

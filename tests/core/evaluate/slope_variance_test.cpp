@@ -30,7 +30,7 @@ TEST(SlopeVariance, ResolvedAndResidualAreTheSpectrumsForEveryGrid) {
         double xx = 0.0, yy = 0.0, xy = 0.0, resolved = 0.0;
         for (int seed = 1; seed <= 8; ++seed) {
             scene.shot.seed = seed;
-            const auto samples = sample(frame_of<float>(scene, make_plan(scene), 0.5), 0, points);
+            const auto samples = sample(frame_of<float>(scene, plan_bake(scene), 0.5), 0, points);
             const auto moment = [&](int a, int b) {
                 return mean_of(samples.vectors(Normal),
                                [&](auto n) { return double(n[a] / n.z) * double(n[b] / n.z); });

@@ -375,7 +375,7 @@ TEST_P(Exact, IsTheMinimumAndIsWhatIsHeldAndRun) {
     Scene shot = scene();
     c.set(shot);
     for (const Problem& problem : validate(shot)) FAIL() << text_of(problem);
-    const Plan plan = c.queries.empty() ? make_plan(shot) : make_plan(shot, c.queries);
+    const Plan plan = c.queries.empty() ? plan_bake(shot) : make_plan(shot, c.queries);
     EXPECT_EQ(plan.trains ? plan.trains->count : 0, c.trains);
     if (c.scalar == 8)
         check<double>(c, plan);

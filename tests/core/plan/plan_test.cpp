@@ -29,11 +29,11 @@ const FieldSet kVelocities = fields(Field::VelocityX, Field::VelocityY, Field::V
 
 TEST(Plan, HoldsTheFieldsOfWhatIsAskedForAndNoOthers) {
     using enum MeshAttribute;
-    EXPECT_EQ(fields_of_plan(make_plan(scene_with({}))), kPositions);
-    EXPECT_EQ(fields_of_plan(make_plan(scene_with({Normal}))), kPositions | kSlopes | kStrain);
-    EXPECT_EQ(fields_of_plan(make_plan(scene_with({Velocity}))), kPositions | kVelocities);
-    EXPECT_EQ(fields_of_plan(make_plan(scene_with({Whitecaps}))), kPositions | kStrain);
-    EXPECT_EQ(fields_of_plan(make_plan(scene_with({SlopeVariance}))),
+    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({}))), kPositions);
+    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Normal}))), kPositions | kSlopes | kStrain);
+    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Velocity}))), kPositions | kVelocities);
+    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Whitecaps}))), kPositions | kStrain);
+    EXPECT_EQ(fields_of_plan(plan_bake(scene_with({SlopeVariance}))),
               kPositions);  // an integral of the spectrum
 }
 
@@ -41,7 +41,7 @@ TEST(Plan, HasNoJacobianWithoutWhitecapsAndNormals) {
     using enum MeshAttribute;
     Scene scene = scene_with({Velocity, SlopeVariance, Whitecaps});
     scene.effects.whitecaps = false;
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     EXPECT_EQ(fields_of_plan(plan) & kStrain, FieldSet());
     EXPECT_EQ(fields_of_plan(plan) & kSlopes, FieldSet());
     for (const PlannedQuery& planned : plan.queries) {
@@ -53,13 +53,13 @@ TEST(Plan, HasNoJacobianWithoutWhitecapsAndNormals) {
 TEST(Plan, HasNoHorizontalFieldsWithoutChoppiness) {
     Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity, MeshAttribute::Whitecaps});
     scene.waves.choppiness = 0.0;
-    EXPECT_EQ(fields_of_plan(make_plan(scene)), fields(Field::Height, Field::VelocityZ) | kSlopes);
+    EXPECT_EQ(fields_of_plan(plan_bake(scene)), fields(Field::Height, Field::VelocityZ) | kSlopes);
 }
 
 TEST(Plan, HasNothingToRunWithoutWindAndSwell) {
     Scene scene;
     scene.sea.wind_speed_mps = 0.0;
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     EXPECT_EQ(plan.transforms_per_frame(), 0);
     EXPECT_EQ(plan.sea_bytes(), 0u);
     EXPECT_EQ(plan.frame_bytes(), 0u);
@@ -71,12 +71,12 @@ TEST(Plan, AProjectedGridIsPlannedForTheCamerasOwnShot) {
     Scene scene = scene_with({MeshAttribute::Normal});
     const auto with_camera_at = [&](double height_m) {
         scene.camera.position_m.z = height_m;
-        return make_plan(scene);
+        return plan_bake(scene);
     };
     EXPECT_EQ(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
     scene.surface.kind = SurfaceKind::ProjectedGrid;
     EXPECT_NE(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     const ProjectedGridNeeds needs = projected_grid_needs(*prepare(scene));
     EXPECT_EQ(plan.queries[0].query.points, points_of(needs.size));
     EXPECT_EQ(plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
@@ -94,12 +94,12 @@ TEST(Plan, AProjectedGridIsPlannedForTheCamerasOwnShot) {
 
 TEST(Plan, SharesAGridBetweenQueriesOfOneFootprint) {
     Scene scene = scene_with({MeshAttribute::Normal});
-    const int mesh_alone = make_plan(scene).transforms_per_frame();
+    const int mesh_alone = plan_bake(scene).transforms_per_frame();
     scene.output.maps = {MapKind::Normal, MapKind::Displacement};
     scene.output.map_resolution = 64;
-    EXPECT_EQ(make_plan(scene).transforms_per_frame(), mesh_alone);
+    EXPECT_EQ(plan_bake(scene).transforms_per_frame(), mesh_alone);
     scene.output.map_resolution = 32;
-    EXPECT_GT(make_plan(scene).transforms_per_frame(), mesh_alone);
+    EXPECT_GT(plan_bake(scene).transforms_per_frame(), mesh_alone);
 }
 
 // Bands: from 0 to infinity, each beginning where the one before ends, and the same at every resolution.
@@ -110,7 +110,7 @@ TEST(Plan, CutsBandsThatAreDisjointCompleteAndOfTheSizesAlone) {
             Scene scene;
             scene.sea.wind_speed_mps = wind;
             scene.surface.resolution = resolution;
-            const Plan plan = make_plan(scene);
+            const Plan plan = plan_bake(scene);
             ASSERT_EQ(plan.cascades.size(), 4u);
             EXPECT_EQ(plan.cascades.front().k_lower, 0.0);
             EXPECT_TRUE(std::isinf(plan.cascades.back().k_upper));
@@ -131,7 +131,7 @@ TEST(Plan, GivesEachGridRoomForItsModes) {
     for (int resolution : {1, 2, 7, 64, 256}) {
         Scene scene;
         scene.surface.resolution = resolution;
-        const Plan plan = make_plan(scene);
+        const Plan plan = plan_bake(scene);
         for (const CascadePlan& cascade : plan.cascades) {
             EXPECT_LE(2 * cascade.mode_radius, cascade.resolution);
             for (const Grid& grid : cascade.grids) {
@@ -169,9 +169,9 @@ TEST(Plan, RefusesMalformedFootprints) {
 
 TEST(Plan, FingerprintFollowsTheSeaAndNotTheRangeOfFrames) {
     Scene scene;
-    const auto before = make_plan(scene).fingerprint;
+    const auto before = plan_bake(scene).fingerprint;
     scene.shot.last_frame = 480;
-    EXPECT_EQ(make_plan(scene).fingerprint, before);
+    EXPECT_EQ(plan_bake(scene).fingerprint, before);
     for (auto change :
          {+[](Scene& s) { s.shot.seed = 2; }, +[](Scene& s) { s.sea.wind_speed_mps = 10.5; },
           +[](Scene& s) { s.waves.choppiness = 0.9; }, +[](Scene& s) { s.surface.resolution = 128; },
@@ -179,9 +179,9 @@ TEST(Plan, FingerprintFollowsTheSeaAndNotTheRangeOfFrames) {
           +[](Scene& s) { s.quality.level = QualityLevel::Draft; }}) {
         Scene other = scene;
         change(other);
-        EXPECT_NE(make_plan(other).fingerprint, before);
+        EXPECT_NE(plan_bake(other).fingerprint, before);
     }
-    EXPECT_EQ(make_plan(scene).fingerprint_text().size(), 16u);
+    EXPECT_EQ(plan_bake(scene).fingerprint_text().size(), 16u);
 }
 
 // A bake that took hours isn't done again for another sun.
@@ -204,9 +204,9 @@ TEST(Plan, FingerprintKnowsNoLightAndOnlyAGridOfTheCameraKnowsTheCamera) {
         },
         [](Scene& s) { s.surface.cell_px = 9.0; }};
     const auto changed = [](Scene scene, void (*change)(Scene&)) {
-        const auto before = make_plan(scene).fingerprint;
+        const auto before = plan_bake(scene).fingerprint;
         change(scene);
-        return make_plan(scene).fingerprint != before;
+        return plan_bake(scene).fingerprint != before;
     };
     Scene patch = scene_with({}), grid = patch, maps_alone = patch;
     grid.surface.kind = maps_alone.surface.kind = SurfaceKind::ProjectedGrid;
@@ -225,7 +225,7 @@ TEST(Plan, AnswersAtOnceForTheLargestSea) {
     Scene scene;
     scene.waves.cascades = {{4000.0, 8192}, {150.0, 8192}};
     scene.surface.resolution = 8192;
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     EXPECT_GT(plan.frame_bytes(), std::size_t{1} << 30);  // nothing of which was allocated
     const std::string page = explain(plan);
     EXPECT_NE(page.find("8192"), std::string::npos);

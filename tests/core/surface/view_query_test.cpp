@@ -234,7 +234,7 @@ TEST(Extent, HardCasesStayFinite) {
 TEST(ViewQuery, DoesNotDecideWhichTrainsThereAre) {
     Scene scene;
     scene.waves.model = WaveModel::Trochoid;
-    const Plan baked = make_plan(scene);
+    const Plan baked = plan_bake(scene);
     for (const double finest_pixel_m : {0.0, 1e-4, 0.1, 10.0}) {
         const Plan seen = make_plan(scene, {view_query(*prepare(scene), {.finest_pixel_m = finest_pixel_m})});
         EXPECT_EQ(seen.trains->shortest_m, baked.trains->shortest_m) << finest_pixel_m;

@@ -103,7 +103,7 @@ TEST_P(TransformCount, IsTheMinimumAndIsWhatRuns) {
     scene.output.attributes = c.attributes;
     scene.output.maps = c.maps;
     scene.output.map_resolution = 64;
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     EXPECT_EQ(plan.transforms_per_frame(), c.fields);
     // A column for each mx of the disc, two rows at a time.
     const Grid& grid = plan.cascades[0].grids[0];
@@ -154,7 +154,7 @@ TEST(ExecutedTransforms, AreThePlansOwnForWholeShots) {
                 scene.output.cascade_tiles = tiles;
                 scene.output.map_resolution = map_resolution;
                 scene.output.maps = {MapKind::Displacement, MapKind::Normal};
-                const Plan plan = make_plan(scene);
+                const Plan plan = plan_bake(scene);
                 EXPECT_GT(plan.transforms_per_frame(), 0);
                 Frame<float> frame(std::make_shared<const Sea<float>>(plan));
                 for (double t : {0.0, 1.0, 1.0}) frame.set(t);

@@ -95,7 +95,7 @@ Scene camera_scene() {
 // The mesh of each frame is the core's answer for that frame's grid, with the footprints of its points.
 TEST(ProjectedGridBake, IsWhatTheCameraSeesWithOneTopology) {
     const Scene scene = camera_scene();
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     const auto sequence = make_sequence(scene, plan);
     Frame<float> frame(std::make_shared<const Sea<float>>(plan));
     ProjectedGridOptions options = projected_grid_options(*prepare(scene));

@@ -49,7 +49,7 @@ TEST_F(BakedMaps, HeightsHaveTheVarianceOfTheirRealisation) {
     mean /= static_cast<double>(heights.values.size());
     for (const float z : heights.values)
         squares += (static_cast<double>(z) - mean) * (static_cast<double>(z) - mean);
-    Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(scene_)));
+    Frame<float> frame(std::make_shared<const Sea<float>>(plan_bake(scene_)));
     frame.set(0.0);
     const double expected = frame.realisation(0).m0;
     // Parseval; single-precision transforms leave about 1e-6.
@@ -60,7 +60,7 @@ TEST_F(BakedMaps, LieAsAMapWithNorthOnTop) {
     // The texel in column i, j rows from the bottom, is the sea at (−L/2 + i L/N, −L/2 + j L/N), asked for
     // directly.
     const fs::path file = bake_map(MapKind::Displacement, "maps/displacement.0001.exr");
-    Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(scene_)));
+    Frame<float> frame(std::make_shared<const Sea<float>>(plan_bake(scene_)));
     frame.set(0.0);
     const int i = 17, j = 101;
     const double spacing_m = 600.0 / 128.0;
@@ -116,7 +116,7 @@ TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
 
 TEST_F(BakedMaps, SlopeVarianceOfACoarserLevelHidesMore) {
     const fs::path file = bake_map(MapKind::SlopeVariance, "maps/slope-variance.0001.exr");
-    const Plan plan = make_plan(scene_);
+    const Plan plan = plan_bake(scene_);
     EXPECT_EQ(plan.transforms_per_frame(), 0) << "variances alone need no transform";
     const Sea<float> sea(plan);
     double before = 0.0;

@@ -29,7 +29,7 @@ Scene small() {
 // texel.
 TEST(Measure, PromisesTheBytesThatAFrameHolds) {
     const Scene scene = small();
-    const Plan plan = make_plan(scene);
+    const Plan plan = plan_bake(scene);
     FrameSlot slot;
     make_sequence(scene, plan)->compute(1, slot);
     std::size_t results = bytes_of(slot.mesh);
@@ -42,11 +42,11 @@ TEST(Measure, PromisesTheBytesThatAFrameHolds) {
 TEST(Measure, TakesAwayOneThingAtATime) {
     Scene scene = small();
     scene.output.cascade_tiles = true;
-    const std::int64_t whole = cost_of(make_plan(scene)).transforms;
+    const std::int64_t whole = cost_of(plan_bake(scene)).transforms;
     for (const MeasureItem& item : measure_items(scene)) {
-        const Plan without = make_plan(item.without);
+        const Plan without = plan_bake(item.without);
         EXPECT_LE(without.transforms_per_frame(), whole) << item.name;
-        EXPECT_NE(without.fingerprint, make_plan(scene).fingerprint) << item.name;
+        EXPECT_NE(without.fingerprint, plan_bake(scene).fingerprint) << item.name;
     }
     scene.output.maps = {MapKind::Whitecaps};
     for (const MeasureItem& item : measure_items(scene))

@@ -180,7 +180,7 @@ TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
                 const BakeReport report =
                     bake(scene, {.out = out, .frames = {}, .progress = {}, .cancel = nullptr});
                 ASSERT_EQ(report.done, report.total);
-                ASSERT_EQ(report.executed_transforms, report.done * make_plan(scene).transforms_per_frame());
+                ASSERT_EQ(report.executed_transforms, report.done * plan_bake(scene).transforms_per_frame());
                 results.push_back(read_all(out));
                 for (const auto& [path, bytes] : results.back())
                     if (path.ends_with(".exr")) expect_bounded_map(out / path);

@@ -184,7 +184,7 @@ TEST(PackedFrame, RefusesWhatIsNotAPicturesOwn) {
     EXPECT_THROW(packed.pack(without_time), std::invalid_argument);
     EXPECT_THROW(packed.pack(of_another), std::invalid_argument);
     Scene patch = scene;
-    const auto baked = std::make_shared<const Sea<float>>(make_plan(patch));
+    const auto baked = std::make_shared<const Sea<float>>(plan_bake(patch));
     EXPECT_THROW(PackedFrame(baked, 0), std::invalid_argument);  // its mesh is a lattice
 }
 

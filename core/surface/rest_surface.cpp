@@ -1,4 +1,4 @@
-#include "core/surface/surface.h"
+#include "core/surface/rest_surface.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -16,7 +16,7 @@ namespace pelagic {
 namespace {
 
 // A square of quads, centred on the origin.
-class Patch final : public Surface {
+class Patch final : public RestSurface {
   public:
     Patch(const Scene& scene, const SeaReach&)
         : quads_(scene.surface.resolution),
@@ -53,9 +53,9 @@ class Patch final : public Surface {
     PatchLattice lattice_;
 };
 
-// What the camera sees. Each frame's grid has the size that its own pose asks for: a grid that served the whole
-// shot would make each frame depend on all others.
-class CameraGrid final : public Surface {
+// What the camera sees. Each frame's grid has the size that its own pose asks for: a grid that served the
+// whole shot would make each frame depend on all others.
+class CameraGrid final : public RestSurface {
   public:
     CameraGrid(const Scene& scene, const SeaReach& reach)
         : camera_(scene.camera),
@@ -68,8 +68,9 @@ class CameraGrid final : public Surface {
         const ProjectedGridSize size = projected_grid_needs(view_at(camera_, first_frame_), options_).size;
         return "the camera's projected grid, cells of at most " + number_text(options_.cell_px) +
                " pixels: " + std::to_string(size.columns) + " × " + std::to_string(size.rows) + " quads" +
-               (camera_.keys.empty() ? "" : " at frame " + std::to_string(first_frame_) +
-                                                ", each frame as many as its camera needs");
+               (camera_.keys.empty() ? ""
+                                     : " at frame " + std::to_string(first_frame_) +
+                                           ", each frame as many as its camera needs");
     }
     bool is_constant() const override { return false; }
     bool is_even() const override { return false; }
@@ -84,8 +85,8 @@ class CameraGrid final : public Surface {
         // Where the camera stands still, one frame answers for its neighbours.
         const auto still = [&](std::size_t i) {
             const auto& keys = camera_.keys;
-            return i > 0 && (keys.empty() || frames[i] <= keys.front().frame ||
-                             frames[i - 1] >= keys.back().frame);
+            return i > 0 &&
+                   (keys.empty() || frames[i] <= keys.front().frame || frames[i - 1] >= keys.back().frame);
         };
         const ProjectedGridNeeds all = tbb::parallel_reduce(
             tbb::blocked_range<std::size_t>(0, frames.size()), needs_at(0),
@@ -124,13 +125,13 @@ class CameraGrid final : public Surface {
 };
 
 template <class Kind>
-std::unique_ptr<const Surface> make(const Scene& scene, const SeaReach& reach) {
+std::unique_ptr<const RestSurface> make(const Scene& scene, const SeaReach& reach) {
     return std::make_unique<const Kind>(scene, reach);
 }
 
 struct SurfaceRow {
     SurfaceKind kind;
-    std::unique_ptr<const Surface> (*make)(const Scene&, const SeaReach&);
+    std::unique_ptr<const RestSurface> (*make)(const Scene&, const SeaReach&);
 };
 
 constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
@@ -164,7 +165,7 @@ Faces grid_faces(int columns, int rows) {
     return faces;
 }
 
-std::unique_ptr<const Surface> make_surface(const Scene& scene, const SeaReach& reach) {
+std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const SeaReach& reach) {
     for (const SurfaceRow& row : kSurfaceTable)
         if (row.kind == scene.surface.kind) return row.make(scene, reach);
     throw std::invalid_argument("surface.kind = \"" + std::string(word_of(scene.surface.kind)) +

@@ -1,7 +1,7 @@
 // A surface: the points at rest at which a mesh of the sea has its vertices, frame after frame.
 //
-// Each kind is a class of its own behind this interface and a row of kSurfaceTable (surface.cpp). Planning,
-// baking and explaining ask the interface, never the kind.
+// Each kind is a class of its own behind this interface and a row of kSurfaceTable (rest_surface.cpp).
+// Planning, baking and explaining ask the interface, never the kind.
 #pragma once
 
 #include <cstddef>
@@ -37,7 +37,7 @@ struct SurfaceNeeds {
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;
     // Whether each point has footprints of its own, up to any size; otherwise all have the finest.
     bool own_footprints = false;
-    std::optional<Lattice> lattice;
+    std::optional<Lattice> lattice{};
     std::size_t points = 0;  // the most that a frame has
 };
 
@@ -45,8 +45,8 @@ struct SurfaceNeeds {
 template <class T>
 struct RestPoints {
     glm::dvec2 origin_m{0.0};
-    std::vector<glm::vec<2, T>> rest_m;
-    std::vector<T> cell_m, pixel_m;  // empty: the query's own
+    std::vector<glm::vec<2, T>> rest_m{};
+    std::vector<T> cell_m{}, pixel_m{};  // empty: the query's own
 };
 
 // Polygons over the points: counts[i] corners each, counter-clockwise seen from above.
@@ -55,14 +55,14 @@ struct Faces {
     std::vector<glm::vec2> st;  // of each point, 0 … 1
 };
 
-// columns × rows quads over (columns + 1) × (rows + 1) points, columns fastest: counter-clockwise where columns
-// run to the right and rows upwards; st = (0, 0) at the first point, (1, 1) at the last. Throws
+// columns × rows quads over (columns + 1) × (rows + 1) points, columns fastest: counter-clockwise where
+// columns run to the right and rows upwards; st = (0, 0) at the first point, (1, 1) at the last. Throws
 // std::invalid_argument without quads and beyond 2^29 − 1 of them, whose indices don't fit 32 bits.
 Faces grid_faces(int columns, int rows);
 
-class Surface {
+class RestSurface {
   public:
-    virtual ~Surface() = default;
+    virtual ~RestSurface() = default;
     // One line for people: "a patch of 256 × 256 quads over 200 m".
     virtual std::string describe() const = 0;
     // Whether every frame has the same points and faces.
@@ -82,7 +82,7 @@ class Surface {
 };
 
 // The surface of a valid scene. Throws std::invalid_argument for a kind that isn't built.
-std::unique_ptr<const Surface> make_surface(const Scene& scene, const SeaReach& reach);
+std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const SeaReach& reach);
 
 // Some frames of the shot that stand for all where a look at each would take too long: those between which
 // the camera moves, evenly spaced, both ends included, at most `most`.

@@ -1,68 +1,37 @@
-// See camera.h.
+// What a USD camera is made of: film, focal length and angles. See camera.h; the crate is in
+// camera_crate.cpp.
 #include "plugin/usd/camera.h"
 
-#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 
 namespace pelagic::usd {
 
 namespace {
 
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
 bool is_finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+// The angle moved by whole turns until it is within half a turn of `before_deg`.
+double nearest_turn(double deg, double before_deg) {
+    return deg + 360.0 * std::round((before_deg - deg) / 360.0);
+}
+
+glm::dvec3 nearest_turns(const glm::dvec3& deg, const glm::dvec3& before_deg) {
+    return {nearest_turn(deg.x, before_deg.x), nearest_turn(deg.y, before_deg.y),
+            nearest_turn(deg.z, before_deg.z)};
+}
+
+double distance_of_angles(const glm::dvec3& a, const glm::dvec3& b) {
+    return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z);
+}
+
 }  // namespace
-
-void check(std::span<const CameraKey> keys) {
-    if (keys.empty()) throw std::invalid_argument("USD: a camera needs one key at least");
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        if (!is_finite(keys[i].position_m) || !is_finite(keys[i].look_at_m)) {
-            throw std::invalid_argument("USD: the camera's position and target must be finite, at frame " +
-                                        std::to_string(keys[i].frame));
-        }
-        if (i > 0 && keys[i].frame <= keys[i - 1].frame) {
-            throw std::invalid_argument("USD: the camera's keys must rise, and frame " +
-                                        std::to_string(keys[i].frame) + " follows " +
-                                        std::to_string(keys[i - 1].frame));
-        }
-    }
-}
-
-CameraKey key_at(std::span<const CameraKey> keys, int frame) {
-    const auto after = std::upper_bound(keys.begin(), keys.end(), frame,
-                                        [](int f, const CameraKey& key) { return f < key.frame; });
-    CameraKey key = after == keys.begin() ? keys.front() : *(after - 1);
-    if (after != keys.begin() && after != keys.end()) {
-        // In double: the distance between two ints need not be an int.
-        const double t =
-            (static_cast<double>(frame) - key.frame) / (static_cast<double>(after->frame) - key.frame);
-        key.position_m += t * (after->position_m - key.position_m);
-        key.look_at_m += t * (after->look_at_m - key.look_at_m);
-    }
-    key.frame = frame;
-    return key;
-}
-
-CameraMatrix camera_matrix(const CameraKey& key) {
-    const glm::dvec3 view = key.look_at_m - key.position_m;
-    const double distance = glm::length(view);
-    if (!(distance > 0.0)) {
-        throw std::invalid_argument("USD: the camera stands on its own target at frame " +
-                                    std::to_string(key.frame) + "; move one of them");
-    }
-    const glm::dvec3 back = -view / distance;
-    // Below this the horizontal part of the view is rounding, and so would be the picture's upright.
-    constexpr double kVertical = 1e-9;
-    const bool vertical = std::hypot(back.x, back.y) < kVertical;
-    const glm::dvec3 up = vertical ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
-    const glm::dvec3 right = glm::normalize(glm::cross(up, back));
-    return {{right, glm::cross(back, right), back, key.position_m}};
-}
 
 FilmBack film_back(const Camera& camera) {
     if (!(camera.fov_deg > 0.0 && camera.fov_deg < 180.0)) {
@@ -76,6 +45,43 @@ FilmBack film_back(const Camera& camera) {
     return {.horizontal_aperture = kFilmWidth,
             .vertical_aperture = kFilmWidth * camera.resolution.y / camera.resolution.x,
             .focal_length = 0.5 * kFilmWidth / std::tan(half_fov_rad)};
+}
+
+void check(const CameraPose& pose, int frame) {
+    if (!is_finite(pose.position_m)) {
+        throw std::invalid_argument("USD: the camera's position must be finite, at frame " +
+                                    std::to_string(frame));
+    }
+    // Far above what rounding does to unit vectors (1e-16), and far below what a picture shows.
+    constexpr double kTolerance = 1e-9;
+    const bool orthonormal = std::abs(glm::length(pose.right) - 1.0) <= kTolerance &&
+                             std::abs(glm::length(pose.up) - 1.0) <= kTolerance &&
+                             glm::distance(glm::cross(pose.right, pose.up), pose.backward) <= kTolerance &&
+                             std::abs(glm::dot(pose.right, pose.up)) <= kTolerance;
+    if (!orthonormal) {  // NaN too
+        throw std::invalid_argument(
+            "USD: the camera's axes must be unit vectors, orthogonal and right-handed, at frame " +
+            std::to_string(frame));
+    }
+}
+
+// The rotation is R = Rz(z) Ry(y) Rx(x) for column vectors, and its columns are right, up and backward:
+// right = (cos y cos z, cos y sin z, −sin y). Then x comes from the second row of Rz(−z) R = Ry(y) Rx(x),
+// which is (0, cos x, −sin x) whatever y is, so that an error of z where right is nearly vertical is made up
+// for.
+glm::dvec3 rotate_xyz_deg(const CameraPose& pose, const glm::dvec3& before_deg) {
+    const double cos_y = std::hypot(pose.right.x, pose.right.y);
+    // Rolled by a quarter, right is vertical: only z − x or z + x is determined, and z may stay what it was.
+    constexpr double kVertical = 1e-9;
+    const double z = cos_y < kVertical ? before_deg.z / kDegrees : std::atan2(pose.right.y, pose.right.x);
+    const double y = std::atan2(-pose.right.z, cos_y);
+    const double cos_z = std::cos(z), sin_z = std::sin(z);
+    const double x =
+        std::atan2(sin_z * pose.backward.x - cos_z * pose.backward.y, cos_z * pose.up.y - sin_z * pose.up.x);
+    const glm::dvec3 deg(x * kDegrees, y * kDegrees, z * kDegrees);
+    const glm::dvec3 one = nearest_turns(deg, before_deg);
+    const glm::dvec3 other = nearest_turns({deg.x + 180.0, 180.0 - deg.y, deg.z + 180.0}, before_deg);
+    return distance_of_angles(other, before_deg) < distance_of_angles(one, before_deg) ? other : one;
 }
 
 }  // namespace pelagic::usd

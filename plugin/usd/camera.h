@@ -1,35 +1,42 @@
-// A camera's keys and field of view as a USD camera has them: a matrix a frame, a film back and a focal
-// length.
+// A shot's camera as a layer of its own, a crate beside the root: one prim, def Camera "Camera", with plain
+// time samples, which every importer reads. Its size grows with the frames of the shot, 72 bytes for each;
+// the memory to write it does not.
 #pragma once
 
-#include <array>
+#include <functional>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
+#include <string>
+#include <string_view>
 
 #include "plugin/usd/layers.h"
 
 namespace pelagic::usd {
 
-// Camera to world, as USD writes a matrix: a row each for the images of x (right), y (up) and z (backwards),
-// then the position; row vectors stand on its left.
-struct CameraMatrix {
-    std::array<glm::dvec3, 4> rows;
-    bool operator==(const CameraMatrix&) const = default;
+// Where a camera is, and its axes in the world: unit vectors, orthogonal, right × up = backward. The camera
+// looks along −backward.
+struct CameraPose {
+    glm::dvec3 position_m{0.0};
+    glm::dvec3 right{1.0, 0.0, 0.0};
+    glm::dvec3 up{0.0, 0.0, 1.0};
+    glm::dvec3 backward{0.0, -1.0, 0.0};
+    bool operator==(const CameraPose&) const = default;
 };
 
-// Throws std::invalid_argument without keys, with keys that don't rise, and with values that aren't finite.
-void check(std::span<const CameraKey> keys);
+struct Camera {
+    double fps = 24.0;               // > 0
+    std::string_view fingerprint{};  // letters and digits; in customLayerData, empty: not written
+    int first_frame = 1;             // of the shot, both included
+    int last_frame = 1;
+    // The pose at a frame of the shot. It is called more than once for a frame, and must give the same.
+    std::function<CameraPose(int frame)> pose_at{};
+    double fov_deg = 50.0;               // horizontal, between 0 and 180
+    glm::ivec2 resolution{1280, 720};    // pixels; their ratio is the film's
+    glm::dvec2 clipping_m{0.1, 1000e3};  // near and far; far is beyond the horizon of any aircraft
+};
 
-// Where the camera is and what it looks at, at a frame: linear between the keys, constant outside. Of keys
-// that check() accepts.
-CameraKey key_at(std::span<const CameraKey> keys, int frame);
-
-// The camera looks along its −z, with z up in the picture; looking along z, +y is up.
-// Throws std::invalid_argument if the camera stands on its own target.
-CameraMatrix camera_matrix(const CameraKey& key);
-
-// In USD's unit, tenths of the stage's, here 0.1 m. Only their ratios matter to the picture: the film is 36
-// mm wide, as that of a photographer.
+// Film and focal length in USD's unit for them, a tenth of the stage's, so 0.1 m. Only their ratios matter to
+// the picture; the film is 36 mm wide, as a photographer's.
 struct FilmBack {
     double horizontal_aperture;
     double vertical_aperture;
@@ -37,5 +44,22 @@ struct FilmBack {
 };
 // Throws std::invalid_argument unless 0 < fov_deg < 180 and the resolution is positive.
 FilmBack film_back(const Camera& camera);
+
+// Throws std::invalid_argument, naming the frame, unless the pose is finite and its axes are orthonormal and
+// right-handed.
+void check(const CameraPose& pose, int frame);
+
+// The pose's rotation as USD's rotateXYZ [deg], about x, then y, then z: x is the pitch (0 looks straight
+// down, 90 at the horizon, 180 straight up), y the roll, z the heading (0 looks along +y). Angles repeat, and
+// two sets of them give the same rotation; this returns the set nearest to `before_deg`, so that linear
+// interpolation from one frame's angles to the next frame's takes the short way.
+glm::dvec3 rotate_xyz_deg(const CameraPose& pose, const glm::dvec3& before_deg);
+
+// Translation and rotation have a sample for each frame, from the last frame before the first change of pose
+// to the frame of the last change; a camera that stands still has plain values. The bytes go to the sink in
+// small pieces while the poses are asked for.
+// Throws std::invalid_argument, naming what is wrong, before it calls the sink.
+void write_camera_crate(const Camera& camera, const Sink& sink);
+std::string camera_crate(const Camera& camera);
 
 }  // namespace pelagic::usd

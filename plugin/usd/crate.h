@@ -1,6 +1,6 @@
-// The layers about the mesh as USD's binary crate (usdc), with the very contents of text.h's: the arrays lie
-// flat in the file, as they are in memory, so that writing is copying and a reader may map them. Nothing here
-// touches a file: the caller puts the bytes where they belong.
+// The mesh's layers as crates, USD's binary layers (usdc). They hold what the text layers of text.h hold. An
+// array is in the file as it is in memory, so that writing it is copying, and readers can map it. Nothing
+// here opens a file: the caller decides where the bytes go.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace pelagic::usd {
 
-// The writers give the sink the arrays as they lie in the caller's memory, each in one piece, and little
-// else. The same arguments give the same bytes. The machine must be little-endian, as the format is.
+// The writers hand each array to the sink in one piece, straight from the caller's memory, and little else.
+// The same arguments give the same bytes. The machine must be little-endian, as the format is.
 //
-// All throw std::invalid_argument, naming what is wrong, before the sink is called for the first time.
+// All throw std::invalid_argument, naming what is wrong, before they call the sink.
 
 void write_topology_crate(const Topology& topology, const Sink& sink);
 std::string topology_crate(const Topology& topology);

@@ -1,4 +1,4 @@
-// Names, declarations and checks that every way of writing the layers shares. See layers.h.
+// File names, declarations and checks, shared by text and crates. See layers.h.
 #include "plugin/usd/layers.h"
 
 #include <algorithm>
@@ -16,6 +16,9 @@ static_assert(sizeof(glm::vec3) == 3 * sizeof(float) && sizeof(glm::vec2) == 2 *
 
 constexpr VaryingAttribute kPoints{"points", "point3f", 3, false};
 constexpr VaryingAttribute kExtent{"extent", "float3", 3, false};
+constexpr VaryingAttribute kFaceVertexCounts{"faceVertexCounts", "int", 1, false};
+constexpr VaryingAttribute kFaceVertexIndices{"faceVertexIndices", "int", 1, false};
+constexpr VaryingAttribute kSt{"primvars:st", "texCoord2f", 2, true};
 constexpr VaryingAttribute kNormals{"normals", "normal3f", 3, true};
 constexpr VaryingAttribute kVelocities{"velocities", "vector3f", 3, false};
 constexpr VaryingAttribute kSlopeVariance{"primvars:slopeVariance", "float3", 3, true};
@@ -39,6 +42,32 @@ void check_finite(std::string_view name, std::span<const float> values, int comp
     }
 }
 
+// `vertices` as messages name them, and how many there are.
+struct Vertices {
+    std::string_view name;
+    std::size_t count;
+};
+
+void check_faces(const Faces& faces, const Vertices& vertices) {
+    std::size_t corners = 0;
+    for (const std::int32_t count : faces.counts) {
+        if (count < 3)
+            throw std::invalid_argument("USD: faceVertexCounts: a face needs at least three vertices");
+        corners += static_cast<std::size_t>(count);
+    }
+    if (corners != faces.indices.size()) {
+        throw std::invalid_argument("USD: faceVertexIndices has " + std::to_string(faces.indices.size()) +
+                                    " entries, and faceVertexCounts asks for " + std::to_string(corners));
+    }
+    for (const std::int32_t index : faces.indices) {
+        if (index < 0 || static_cast<std::size_t>(index) >= vertices.count) {
+            throw std::invalid_argument("USD: faceVertexIndices: " + std::to_string(index) +
+                                        " is not the index of " + std::string(vertices.name));
+        }
+    }
+    check_finite(kSt.name, floats(faces.st), kSt.components);
+}
+
 bool is_name_character(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
 }
@@ -58,6 +87,10 @@ std::string prim_name(std::string_view shot_name) {
 
 std::string root_file(std::string_view shot_name) {
     return std::string(shot_name) + ".usda";
+}
+
+std::string camera_file(std::string_view shot_name) {
+    return std::string(shot_name) + ".camera.usdc";
 }
 
 std::string topology_file(std::string_view shot_name, std::string_view extension) {
@@ -96,6 +129,7 @@ Extent extent_of(std::span<const glm::vec3> points) {
 
 std::vector<VaryingAttribute> varying_attributes(const AttributeSet& attributes) {
     std::vector<VaryingAttribute> result{kPoints, kExtent};
+    if (attributes.faces) result.insert(result.end(), {kFaceVertexCounts, kFaceVertexIndices, kSt});
     if (attributes.normals) result.push_back(kNormals);
     if (attributes.velocities) result.push_back(kVelocities);
     if (attributes.slope_variance) result.push_back(kSlopeVariance);
@@ -104,24 +138,32 @@ std::vector<VaryingAttribute> varying_attributes(const AttributeSet& attributes)
 }
 
 std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent& extent) {
+    const Faces faces = sample.faces.value_or(Faces{});
     std::vector<VaryingValues> result;
     for (const VaryingAttribute& attribute : varying_attributes(sample.attributes())) {
+        if (attribute.name == kFaceVertexCounts.name || attribute.name == kFaceVertexIndices.name) {
+            result.push_back(
+                {attribute, attribute.name == kFaceVertexCounts.name ? faces.counts : faces.indices});
+            continue;
+        }
         std::span<const float> values;
         if (attribute.name == kPoints.name) values = floats(sample.points);
         if (attribute.name == kExtent.name) values = floats(std::span<const glm::vec3>(extent));
+        if (attribute.name == kSt.name) values = floats(faces.st);
         if (attribute.name == kNormals.name) values = floats(sample.normals);
         if (attribute.name == kVelocities.name) values = floats(sample.velocities);
         if (attribute.name == kSlopeVariance.name) values = floats(sample.slope_variance);
         if (attribute.name == kWhitecapCoverage.name) values = sample.whitecap_coverage;
-        const std::size_t count = values.size() / static_cast<std::size_t>(attribute.components);
-        if (attribute.name != kExtent.name && count != sample.points.size()) {
+        const VaryingValues& varying = result.emplace_back(VaryingValues{attribute, values});
+        if (attribute.name != kExtent.name && varying.count() != sample.points.size()) {
             throw std::invalid_argument(
-                "USD: " + std::string(attribute.name) + " has " + std::to_string(count) + " values for " +
-                std::to_string(sample.points.size()) + " points; it must have as many, or none");
+                "USD: " + std::string(attribute.name) + " has " + std::to_string(varying.count()) +
+                " values for " + std::to_string(sample.points.size()) + " points; it must have as many" +
+                (attribute.name == kSt.name ? "" : ", or none"));
         }
         check_finite(attribute.name, values, attribute.components);
-        result.push_back({attribute, values});
     }
+    if (sample.faces) check_faces(faces, {"a point", sample.points.size()});
     return result;
 }
 
@@ -137,29 +179,20 @@ void check_rate(double fps) {
 }
 
 void check(const Topology& topology) {
-    std::size_t corners = 0;
-    for (const std::int32_t count : topology.face_vertex_counts) {
-        if (count < 3)
-            throw std::invalid_argument("USD: faceVertexCounts: a face needs at least three vertices");
-        corners += static_cast<std::size_t>(count);
-    }
-    if (corners != topology.face_vertex_indices.size()) {
-        throw std::invalid_argument("USD: faceVertexIndices has " +
-                                    std::to_string(topology.face_vertex_indices.size()) +
-                                    " entries, and faceVertexCounts asks for " + std::to_string(corners));
-    }
-    const std::size_t vertices =
-        topology.st.empty() ? std::numeric_limits<std::size_t>::max() : topology.st.size();
-    for (const std::int32_t index : topology.face_vertex_indices) {
-        if (index < 0 || static_cast<std::size_t>(index) >= vertices) {
-            throw std::invalid_argument("USD: faceVertexIndices: " + std::to_string(index) +
-                                        " is not the index of a vertex that has primvars:st");
+    if (topology.attributes.faces) {
+        if (!topology.face_vertex_counts.empty() || !topology.face_vertex_indices.empty() ||
+            !topology.st.empty()) {
+            throw std::invalid_argument(
+                "USD: faceVertexCounts, faceVertexIndices and primvars:st vary, so the topology has none");
         }
+        return;
     }
-    check_finite("primvars:st", floats(topology.st), 2);
+    check_faces({topology.face_vertex_counts, topology.face_vertex_indices, topology.st},
+                {"a vertex that has primvars:st",
+                 topology.st.empty() ? std::numeric_limits<std::size_t>::max() : topology.st.size()});
 }
 
-GridFaces grid_faces(int columns, int rows) {
+void set_grid_faces(int columns, int rows, GridFaces& grid) {
     constexpr std::int64_t kMaxQuads = std::numeric_limits<std::int32_t>::max() / 4;
     if (columns < 1 || rows < 1 || static_cast<std::int64_t>(columns) * rows > kMaxQuads) {
         throw std::invalid_argument("USD: a grid has 1 … " + std::to_string(kMaxQuads) + " quads, not " +
@@ -167,8 +200,8 @@ GridFaces grid_faces(int columns, int rows) {
     }
     const std::size_t quads = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     const std::int32_t row = columns + 1;
-    GridFaces grid;
     grid.counts.assign(quads, 4);
+    grid.indices.clear();
     grid.indices.reserve(4 * quads);
     for (std::int32_t j = 0; j < rows; ++j) {
         for (std::int32_t i = 0; i < columns; ++i) {
@@ -176,6 +209,7 @@ GridFaces grid_faces(int columns, int rows) {
             grid.indices.insert(grid.indices.end(), {corner, corner + 1, corner + 1 + row, corner + row});
         }
     }
+    grid.st.clear();
     grid.st.reserve((static_cast<std::size_t>(columns) + 1) * (static_cast<std::size_t>(rows) + 1));
     for (std::int32_t j = 0; j <= rows; ++j) {
         for (std::int32_t i = 0; i <= columns; ++i) {
@@ -183,6 +217,11 @@ GridFaces grid_faces(int columns, int rows) {
                                  static_cast<float>(static_cast<double>(j) / rows));
         }
     }
+}
+
+GridFaces grid_faces(int columns, int rows) {
+    GridFaces grid;
+    set_grid_faces(columns, rows, grid);
     return grid;
 }
 

@@ -33,7 +33,7 @@ std::string real32(std::string_view name, double value) {
 std::string color(std::string_view name, const glm::vec3& value) {
     std::string text = "(";
     for (int i = 0; i < 3; ++i) {
-        real(name, value[i]);  // checks; the float itself has the fewer digits
+        real(name, value[i]);  // only to check it: as a float it prints with fewer digits
         text += number(value[i]);
         text += i < 2 ? ", " : ")";
     }

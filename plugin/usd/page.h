@@ -1,4 +1,4 @@
-// What the writers of text layers share: numbers as text, indented lines, and the head of a layer.
+// Shared by the writers of text layers: numbers as text, indented lines, and the metadata at a layer's head.
 #pragma once
 
 #include <charconv>
@@ -10,7 +10,7 @@
 
 namespace pelagic::usd {
 
-// A shortest double takes at most 24 characters ("-2.2250738585072014e-308").
+// std::to_chars needs at most 24 characters for a double ("-2.2250738585072014e-308").
 inline constexpr std::size_t kLongestNumber = 32;
 
 // The fewest digits that read back as the same value.
@@ -18,14 +18,14 @@ template <class T>
 std::string number(T value) {
     char text[kLongestNumber];
     const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-    static_cast<void>(error);  // cannot be: the buffer holds the longest
+    static_cast<void>(error);  // none: the buffer holds the longest number
     return std::string(text, end);
 }
 
-// A real number of the stage; −0 becomes 0, which no stage needs and people stumble over. Throws
-// std::invalid_argument with the name if it isn't finite.
+// A real number of the stage. −0 is written as 0: no stage needs the sign, and it puzzles readers. Throws
+// std::invalid_argument, with the name, unless the number is finite.
 std::string real(std::string_view name, double value);
-// The same for a float attribute, with a float's digits.
+// The same for a float attribute: the fewest digits that read back as the same float.
 std::string real32(std::string_view name, double value);
 std::string color(std::string_view name, const glm::vec3& value);
 
@@ -47,11 +47,11 @@ class Page {
         --depth_;
         line({bracket});
     }
-    // An empty line between two things, none after a bracket.
+    // An empty line before a prim, except directly after an opening bracket.
     void gap() {
         if (!text_.ends_with("{\n")) line({});
     }
-    // A prim without metadata of its own.
+    // Opens a prim without metadata.
     void prim(std::string_view specifier, std::string_view name) {
         gap();
         line({specifier, " \"", name, "\""});
@@ -64,17 +64,18 @@ class Page {
     int depth_ = 0;
 };
 
-// Space and time of a layer: z up, metres, and the rate, without which a reference's times would be rescaled.
+// A layer's metadata about space and time: z up, metres, the range of frames, and their rate. If a referenced
+// layer had another rate, or none, USD would rescale its times.
 struct LayerHead {
     std::string_view default_prim;
     double fps;
     int first_frame;
     int last_frame;
 };
-// The lines between the head's brackets, the names sorted as OpenUSD does. Throws std::invalid_argument
-// unless fps is above 0.
+// The metadata without the brackets round it, sorted by name as OpenUSD sorts it. Throws
+// std::invalid_argument unless fps is above 0.
 void write_head(Page& page, const LayerHead& head);
-// The whole head of a layer about the mesh that has no frames of its own.
+// The whole head, brackets included, of a layer of the mesh that has no range of frames.
 void write_timeless_head(Page& page, double fps);
 
 }  // namespace pelagic::usd

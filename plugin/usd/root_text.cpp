@@ -1,26 +1,13 @@
-// The root layer as text: the page that people read. See text.h.
+// The root layer as text. See text.h.
 #include <cmath>
 #include <stdexcept>
 
-#include "plugin/usd/camera.h"
 #include "plugin/usd/page.h"
 #include "plugin/usd/text.h"
 
 namespace pelagic::usd {
 
 namespace {
-
-std::string row(const glm::dvec3& v, int w) {
-    std::string text = "(";
-    for (int i = 0; i < 3; ++i) text += real("the camera's matrix", v[i]) + ", ";
-    return text + (w == 1 ? "1)" : "0)");
-}
-
-std::string matrix(const CameraMatrix& m) {
-    std::string text = "( ";
-    for (std::size_t i = 0; i < 4; ++i) text += row(m.rows[i], i < 3 ? 0 : 1) + (i < 3 ? ", " : " )");
-    return text;
-}
 
 std::string quoted(std::string_view text) {
     std::string result = "\"";
@@ -42,7 +29,7 @@ std::string quoted(std::string_view text) {
     return result + "\"";
 }
 
-// An asset path, with the delimiter that its own characters allow.
+// An asset path between @, or between @@@ if it contains @.
 std::string asset(std::string_view path) {
     for (const char c : path) {
         if (static_cast<unsigned char>(c) < 0x20) {
@@ -123,7 +110,7 @@ void write_mesh(Page& page, const Stage& stage, const std::string& material_path
     page.close("}");
 }
 
-// A node of the material's network; what it computes is read from its output "out".
+// A node of the material's network. Its result is its output "out".
 void open_node(Page& page, std::string_view name, std::string_view id) {
     page.prim("def Shader", name);
     page.line({"uniform token info:id = \"", id, "\""});
@@ -134,7 +121,7 @@ void close_node(Page& page, std::string_view output_type) {
     page.close("}");
 }
 
-// UsdPreviewSurface has no node that mixes, so its water is the same everywhere.
+// UsdPreviewSurface has no node that mixes two colours, so it shows water without whitecaps.
 void write_preview_surface(Page& page, const Material& material) {
     open_node(page, "Preview", "UsdPreviewSurface");
     page.line({"color3f inputs:diffuseColor = ", color("the water's colour", material.color)});
@@ -146,7 +133,8 @@ void write_preview_surface(Page& page, const Material& material) {
     page.close("}");
 }
 
-// MaterialX's standard_surface, with whitecaps and roughness from the mesh's own primvars where it has them.
+// MaterialX's standard_surface. It takes whitecaps and roughness from the mesh's primvars where the mesh has
+// them.
 void write_materialx_surface(Page& page, const Stage& stage, const std::string& path) {
     const Material& material = stage.material;
     const std::string water = color("the water's colour", material.color);
@@ -185,7 +173,7 @@ void write_materialx_surface(Page& page, const Stage& stage, const std::string& 
         close_node(page, "float");
     }
     if (stage.attributes.slope_variance) {
-        // roughness = √α and α² = 2σ², σ² the mean of σxx and σyy: (σxx + σyy)^¼.
+        // roughness = √α and α² = 2σ², where σ² is the mean of σxx and σyy: roughness = (σxx + σyy)^¼.
         open_node(page, "SlopeVariance", "ND_geompropvalue_vector3");
         page.line({"string inputs:geomprop = \"slopeVariance\""});
         close_node(page, "float3");
@@ -209,8 +197,8 @@ void write_material(Page& page, const Stage& stage, const std::string& path) {
     page.close("}");
 }
 
-// A distant light shines along its −z: +z is turned from the zenith down to the sun's elevation, then round
-// to its azimuth.
+// A distant light shines along its −z, so its +z must point to the sun: turned about y from the zenith down
+// to the sun's elevation, then about z to its azimuth.
 void write_sun(Page& page, const Sun& sun) {
     page.prim("def DistantLight", "Sun");
     page.line({"float inputs:angle = ", real32("the sun's angle", sun.angle_deg)});
@@ -223,8 +211,9 @@ void write_sun(Page& page, const Sun& sun) {
     page.close("}");
 }
 
-// A dome's image has +z in the middle, +x a quarter to the left and +y above (OpenEXR's lat-long map). The
-// turn takes x → y → z → x, so that +x is in the middle, +y a quarter to the left and +z above.
+// A dome's image has +z in its middle, +x a quarter of the width further left, and +y at the top (OpenEXR's
+// lat-long map). The rotation takes x to y, y to z and z to x: +x is then in the middle, +y a quarter to the
+// left, and +z at the top.
 void write_sky(Page& page, const Sky& sky) {
     page.prim("def DomeLight", "Sky");
     page.line({"color3f inputs:color = ", color("the sky's colour", sky.color)});
@@ -238,40 +227,13 @@ void write_sky(Page& page, const Sky& sky) {
     page.close("}");
 }
 
-// One matrix a frame where the camera moves: USD mixes matrices between samples, and between distant keys
-// that would not be a rotation.
-void write_camera_motion(Page& page, const Stage& stage) {
-    const std::span<const CameraKey> keys = stage.camera->keys;
-    const CameraMatrix first = camera_matrix(key_at(keys, stage.first_frame));
-    bool moves = false;
-    for (std::int64_t frame = stage.first_frame; frame <= stage.last_frame; ++frame) {
-        moves = camera_matrix(key_at(keys, static_cast<int>(frame))) != first || moves;
-    }
-    if (!moves) {
-        page.line({"matrix4d xformOp:transform = ", matrix(first)});
-        return;
-    }
-    page.open({"matrix4d xformOp:transform.timeSamples = {"});
-    for (std::int64_t frame = stage.first_frame; frame <= stage.last_frame; ++frame) {
-        page.line({number(frame), ": ", matrix(camera_matrix(key_at(keys, static_cast<int>(frame)))), ","});
-    }
-    page.close("}");
-}
-
 void write_camera(Page& page, const Stage& stage) {
-    const Camera& camera = *stage.camera;
-    check(camera.keys);
-    const FilmBack film = film_back(camera);
-    page.prim("def Camera", "Camera");
-    page.line({"float2 clippingRange = (", real32("the camera's near distance", camera.clipping_m.x), ", ",
-               real32("the camera's far distance", camera.clipping_m.y), ")"});
-    page.line({"float focalLength = ", real32("the camera's focal length", film.focal_length)});
-    page.line({"float horizontalAperture = ", real32("the camera's aperture", film.horizontal_aperture)});
-    page.line({"token projection = \"perspective\""});
-    page.line({"float verticalAperture = ", real32("the camera's aperture", film.vertical_aperture)});
-    write_camera_motion(page, stage);
-    page.line({"uniform token[] xformOpOrder = [\"xformOp:transform\"]"});
-    page.close("}");
+    page.gap();
+    page.open({"def Camera \"", kCameraName, "\" ("});
+    page.line({"prepend references = @./", camera_file(stage.name), "@"});
+    page.close(")");
+    page.line({"{"});
+    page.line({"}"});
 }
 
 }  // namespace
@@ -297,7 +259,7 @@ std::string root_text(const Stage& stage) {
     page.close("}");
     if (stage.sun) write_sun(page, *stage.sun);
     if (stage.sky) write_sky(page, *stage.sky);
-    if (stage.camera) write_camera(page, stage);
+    if (stage.has_camera) write_camera(page, stage);
     page.close("}");
     return page.text();
 }

@@ -1,4 +1,4 @@
-// The layers about the mesh as text. See text.h; the root is in root_text.cpp.
+// The mesh's layers as text. See text.h; the root is in root_text.cpp.
 #include "plugin/usd/text.h"
 
 #include <charconv>
@@ -9,7 +9,7 @@ namespace pelagic::usd {
 
 namespace {
 
-// The arrays: text in one buffer, handed on when it is nearly full.
+// Writes text and arrays into a buffer, and hands it to the sink whenever it is nearly full.
 class ArrayWriter {
   public:
     explicit ArrayWriter(const Sink& sink) : sink_(sink) { buffer_.resize(kBufferBytes); }
@@ -30,7 +30,7 @@ class ArrayWriter {
         const auto step = static_cast<std::size_t>(components);
         text("[");
         for (std::size_t i = 0; i < values.size(); i += step) {
-            // Room for one element: its numbers, the commas and the brackets.
+            // An element needs room for its numbers, commas and brackets.
             if (kBufferBytes - used_ < (step + 1) * (kLongestNumber + 4)) flush();
             if (i > 0) put(", ");
             if (step > 1) put("(");
@@ -38,7 +38,7 @@ class ArrayWriter {
                 if (c > 0) put(", ");
                 char* const begin = buffer_.data() + used_;
                 const auto [end, error] = std::to_chars(begin, begin + kLongestNumber, values[i + c]);
-                static_cast<void>(error);  // cannot be: the buffer holds the longest
+                static_cast<void>(error);  // none: the buffer holds the longest number
                 used_ += static_cast<std::size_t>(end - begin);
             }
             if (step > 1) put(")");
@@ -98,8 +98,7 @@ void write_topology_text(const Topology& topology, const Sink& sink) {
     if (cage) page.line({"token interpolateBoundary = \"none\""});
     page.line({"uniform token orientation = \"rightHanded\""});
     page.line({"uniform token subdivisionScheme = \"", cage ? "catmullClark" : "none", "\""});
-    // Declared here, with the metadata that clips ignore, and without a value, which would hide the clips'
-    // ones.
+    // Clips ignore metadata, so it is declared here. A value here would hide those of the clips.
     for (const VaryingAttribute& attribute : varying_attributes(topology.attributes)) {
         page.line({attribute.type, "[] ", attribute.name,
                    attribute.interpolates ? metadata(topology.scheme) : std::string()});
@@ -112,11 +111,14 @@ void write_topology_text(const Topology& topology, const Sink& sink) {
         writer.array(std::span<const float>(&topology.st[0].x, 2 * topology.st.size()), 2);
         writer.text(metadata(topology.scheme) + "\n");
     }
-    writer.text("    int[] faceVertexCounts = ");
-    writer.array(topology.face_vertex_counts, 1);
-    writer.text("\n    int[] faceVertexIndices = ");
-    writer.array(topology.face_vertex_indices, 1);
-    writer.text("\n}\n");
+    if (!topology.attributes.faces) {
+        writer.text("    int[] faceVertexCounts = ");
+        writer.array(topology.face_vertex_counts, 1);
+        writer.text("\n    int[] faceVertexIndices = ");
+        writer.array(topology.face_vertex_indices, 1);
+        writer.text("\n");
+    }
+    writer.text("}\n");
     writer.flush();
 }
 
@@ -149,7 +151,8 @@ void write_frame_text(const MeshSample& sample, const Sink& sink) {
         writer.text("    " + std::string(varying.attribute.type) + "[] " +
                     std::string(varying.attribute.name) + ".timeSamples = {\n        " +
                     number(sample.frame) + ": ");
-        writer.array(varying.values, varying.attribute.components);
+        std::visit([&](const auto& values) { writer.array(values, varying.attribute.components); },
+                   varying.values);
         writer.text(",\n    }\n");
     }
     writer.text("}\n");

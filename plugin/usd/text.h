@@ -1,5 +1,5 @@
 // The layers of layers.h as USD text (OpenUSD's usda 1.0). Floats are printed with the fewest digits that
-// read back as the same float. Nothing here touches a file: the caller puts the text where it belongs.
+// read back as the same float. Nothing here opens a file: the caller decides where the text goes.
 #pragma once
 
 #include <string>
@@ -9,10 +9,11 @@
 
 namespace pelagic::usd {
 
-// The writers give the sink about a megabyte of text at a time.
+// The writers hand the sink about a megabyte of text at a time.
 //
-// All throw std::invalid_argument, naming what is wrong, before the sink is called for the first time.
+// All throw std::invalid_argument, naming what is wrong, before they call the sink.
 
+// Its length does not depend on the number of frames.
 std::string root_text(const Stage& stage);
 std::string manifest_text(const Manifest& manifest);
 

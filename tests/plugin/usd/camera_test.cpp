@@ -1,8 +1,10 @@
-// The camera that USD is told of.
+// The camera's layer. That OpenUSD and three.js find each pose in it is tested by
+// usd.openusd_reads_moving_usdc and usd.three_reads_crates.
 #include "plugin/usd/camera.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -12,59 +14,173 @@
 namespace pelagic::usd {
 namespace {
 
-// A few roundings of unit vectors, each 2^-53.
-constexpr double kTolerance = 1e-15;
+constexpr double kDegree = std::numbers::pi / 180.0;
 
-TEST(UsdCamera, IsARightHandedRotationThatLooksAtItsTarget) {
-    const CameraKey key{.frame = 1, .position_m = {3.0, -60.0, 4.0}, .look_at_m = {-10.0, 20.0, -1.0}};
-    const auto [right, up, back, position] = camera_matrix(key).rows;
-    EXPECT_EQ(position, key.position_m);
-    for (const glm::dvec3& axis : {right, up, back}) EXPECT_NEAR(glm::length(axis), 1.0, kTolerance);
-    EXPECT_NEAR(glm::length(glm::cross(right, up) - back), 0.0, kTolerance);
-    // The target lies on −z, at its distance.
-    const glm::dvec3 target = position - glm::distance(key.position_m, key.look_at_m) * back;
-    EXPECT_NEAR(glm::distance(target, key.look_at_m), 0.0, 100.0 * kTolerance);  // about 80 m away
-    // The horizon is level, and z is up in the picture.
-    EXPECT_EQ(right.z, 0.0);
-    EXPECT_GT(up.z, 0.0);
+// USD's rotateXYZ: about x first, then y, then z.
+glm::dvec3 rotated(const glm::dvec3& angles_deg, glm::dvec3 v) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double angle = angles_deg[axis] * kDegree;
+        const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+        const glm::dvec3 before = v;
+        v[i] = before[i] * std::cos(angle) - before[j] * std::sin(angle);
+        v[j] = before[i] * std::sin(angle) + before[j] * std::cos(angle);
+    }
+    return v;
 }
 
-TEST(UsdCamera, LooksAlongYWithoutATurnAboutTheViewAxis) {
-    const auto [right, up, back, position] = camera_matrix({1, {0, -5, 2}, {0, 5, 2}}).rows;
-    EXPECT_EQ(right, glm::dvec3(1, 0, 0));
-    EXPECT_EQ(up, glm::dvec3(0, 0, 1));
-    EXPECT_EQ(back, glm::dvec3(0, -1, 0));
+CameraPose pose_of(const glm::dvec3& angles_deg, const glm::dvec3& position_m = {}) {
+    return {.position_m = position_m,
+            .right = rotated(angles_deg, {1, 0, 0}),
+            .up = rotated(angles_deg, {0, 1, 0}),
+            .backward = rotated(angles_deg, {0, 0, 1})};
 }
 
-TEST(UsdCamera, LookingAlongZHasYUp) {
-    EXPECT_EQ(camera_matrix({1, {1, 2, 90}, {1, 2, 0}}).rows[1], glm::dvec3(0, 1, 0));
-    EXPECT_EQ(camera_matrix({1, {1, 2, 0}, {1, 2, 90}}).rows[1], glm::dvec3(0, 1, 0));
+// How far the axes are from those of a rotation by these angles.
+double error_of(const glm::dvec3& angles_deg, const CameraPose& pose) {
+    const CameraPose other = pose_of(angles_deg);
+    return std::max({glm::distance(pose.right, other.right), glm::distance(pose.up, other.up),
+                     glm::distance(pose.backward, other.backward)});
 }
 
-TEST(UsdCamera, OnItsOwnTargetIsRefused) {
-    EXPECT_THROW(camera_matrix({1, {1, 2, 3}, {1, 2, 3}}), std::invalid_argument);
+double largest(const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-TEST(UsdCamera, KeysAreLinearBetweenAndConstantOutside) {
-    const std::vector<CameraKey> keys{{10, {0, 0, 0}, {0, 8, 0}}, {14, {4, 8, 12}, {0, 16, 0}}};
-    EXPECT_EQ(key_at(keys, 11).position_m, glm::dvec3(1, 2, 3));
-    EXPECT_EQ(key_at(keys, 11).look_at_m, glm::dvec3(0, 10, 0));
-    EXPECT_EQ(key_at(keys, 10).position_m, keys[0].position_m);
-    EXPECT_EQ(key_at(keys, 14).position_m, keys[1].position_m);
-    EXPECT_EQ(key_at(keys, -100).look_at_m, keys[0].look_at_m);
-    EXPECT_EQ(key_at(keys, 100).look_at_m, keys[1].look_at_m);
-    // The whole range of an int apart.
-    const std::vector<CameraKey> far{{std::numeric_limits<int>::min(), {0, 0, 0}, {0, 1, 0}},
-                                     {std::numeric_limits<int>::max(), {1, 0, 0}, {0, 1, 0}}};
-    EXPECT_NEAR(key_at(far, 0).position_m.x, 0.5, 1e-9);  // 2^-32 beside the middle
+// A few roundings of unit vectors and of angles of some turns.
+constexpr double kTolerance = 1e-14, kTolerance_deg = 1e-11;
+
+TEST(UsdCamera, LevelViewsHaveTheAnglesThatPeopleExpect) {
+    // Along +y, +x, −y and straight down and up, the picture's top towards +y.
+    EXPECT_EQ(rotate_xyz_deg(CameraPose{}, {}), glm::dvec3(90, 0, 0));
+    EXPECT_EQ(rotate_xyz_deg({{}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}}, {}), glm::dvec3(90, 0, -90));
+    EXPECT_EQ(rotate_xyz_deg({{}, {-1, 0, 0}, {0, 0, 1}, {0, 1, 0}}, {0, 0, 1}), glm::dvec3(90, 0, 180));
+    EXPECT_EQ(rotate_xyz_deg({{}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}), glm::dvec3(0, 0, 0));
+    EXPECT_EQ(rotate_xyz_deg({{}, {1, 0, 0}, {0, -1, 0}, {0, 0, -1}}, {1, 0, 0}), glm::dvec3(180, 0, 0));
 }
 
-TEST(UsdCamera, KeysThatDontRiseOrArentFiniteAreRefused) {
-    EXPECT_THROW(check(std::vector<CameraKey>{}), std::invalid_argument);
-    EXPECT_THROW(check(std::vector<CameraKey>{{2, {}, {}}, {2, {}, {}}}), std::invalid_argument);
+TEST(UsdCamera, AnglesGiveThePoseBackForEveryRotation) {
+    for (double pitch = -180.0; pitch <= 540.0; pitch += 22.5) {
+        for (double roll = -180.0; roll <= 180.0; roll += 22.5) {  // 90 among them: right is vertical
+            for (double heading = -360.0; heading <= 360.0; heading += 22.5) {
+                const CameraPose pose = pose_of({pitch, roll, heading});
+                for (const glm::dvec3& before : {glm::dvec3(0), glm::dvec3(90, 0, 1000)})
+                    ASSERT_LT(error_of(rotate_xyz_deg(pose, before), pose), kTolerance)
+                        << pitch << " " << roll << " " << heading;
+            }
+        }
+    }
+    // Right is vertical but for a little: heading and pitch are badly determined, the pose is not.
+    for (const double off_deg : {1e-3, 1e-6, 1e-7, 1e-8, 1e-9, 1e-13}) {
+        const CameraPose pose = pose_of({37.0, 90.0 - off_deg, 110.0});
+        EXPECT_LT(error_of(rotate_xyz_deg(pose, {}), pose), 2e-9) << off_deg;  // below it, heading is kept
+    }
+}
+
+TEST(UsdCamera, AnglesGoOnFromFrameToFrame) {
+    // Several turns of heading, over the vertical by pitch, and a whole turn of roll.
+    for (const glm::dvec3& step_deg : {glm::dvec3(0, 0, 17), glm::dvec3(0, 0, -23), glm::dvec3(7, 0, 0),
+                                       glm::dvec3(-7, 0, 3), glm::dvec3(0, 7.3, 2), glm::dvec3(0, 10, 0)}) {
+        const glm::dvec3 start_deg(80, 0, 170);
+        glm::dvec3 angles_deg = start_deg;
+        for (int frame = 0; frame < 100; ++frame) {
+            const glm::dvec3 wanted_deg = start_deg + static_cast<double>(frame) * step_deg;
+            angles_deg = rotate_xyz_deg(pose_of(wanted_deg), angles_deg);
+            ASSERT_LT(largest(angles_deg - wanted_deg), 1e-6)
+                << frame << ": " << step_deg.x << " " << step_deg.y << " " << step_deg.z;
+        }
+    }
+}
+
+TEST(UsdCamera, LevelCameraStaysLevelOverTheVertical) {
+    // A camera with a level horizon that passes the zenith turns its heading by half a turn, from one frame
+    // to the next; its roll stays 0.
+    glm::dvec3 angles_deg(0);
+    for (const double pitch : {170.0, 178.0, 180.0})
+        angles_deg = rotate_xyz_deg(pose_of({pitch, 0, 30}), angles_deg);
+    for (const double pitch : {178.0, 170.0}) {
+        angles_deg = rotate_xyz_deg(pose_of({pitch, 0, 210}), angles_deg);
+        EXPECT_LT(error_of(angles_deg, pose_of({pitch, 0, 210})), kTolerance);
+        EXPECT_LT(std::abs(angles_deg.y), kTolerance_deg);
+    }
+}
+
+TEST(UsdCamera, PosesThatAreNoRotationAreRefused) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(check(std::vector<CameraKey>{{1, {0, nan, 0}, {}}}), std::invalid_argument);
-    EXPECT_NO_THROW(check(std::vector<CameraKey>{{1, {}, {}}, {2, {}, {}}}));
+    EXPECT_NO_THROW(check(pose_of({12, 34, 56}, {1, 2, 3}), 1));
+    const auto expect_refused = [](const CameraPose& pose) {
+        EXPECT_THROW(check(pose, 1), std::invalid_argument);
+        bool called = false;
+        const Camera camera{.last_frame = 9,
+                            .pose_at = [&](int frame) { return frame < 9 ? CameraPose{} : pose; }};
+        EXPECT_THROW(write_camera_crate(camera, [&](std::string_view) { called = true; }),
+                     std::invalid_argument);
+        EXPECT_FALSE(called) << "the last pose is checked before anything is written";
+    };
+    expect_refused({.position_m = {0, nan, 0}});
+    expect_refused({.right = {nan, 0, 0}});
+    expect_refused({.right = {2, 0, 0}});
+    expect_refused({.up = {0, 1, 0}});
+    expect_refused({.right = {-1, 0, 0}});  // left-handed
+    expect_refused({.backward = {0, nan, 0}});
+}
+
+TEST(UsdCamera, CamerasThatNoStageCanHaveAreRefused) {
+    const auto pose = [](int) { return CameraPose{}; };
+    EXPECT_NO_THROW(camera_crate({.pose_at = pose}));
+    EXPECT_THROW(camera_crate({}), std::invalid_argument);
+    EXPECT_THROW(camera_crate({.fps = 0.0, .pose_at = pose}), std::invalid_argument);
+    EXPECT_THROW(camera_crate({.first_frame = 2, .last_frame = 1, .pose_at = pose}), std::invalid_argument);
+    EXPECT_THROW(camera_crate({.pose_at = pose, .fov_deg = 180.0}), std::invalid_argument);
+    EXPECT_THROW(camera_crate({.pose_at = pose, .clipping_m = {0.0, 1.0}}), std::invalid_argument);
+    EXPECT_THROW(camera_crate({.pose_at = pose, .clipping_m = {2.0, 1.0}}), std::invalid_argument);
+}
+
+TEST(UsdCamera, SamplesCoverTheFramesBetweenWhichThePoseChanges) {
+    const auto bytes_of = [](int first, int last, int from, int to) {
+        return camera_crate({.first_frame = first,
+                             .last_frame = last,
+                             .pose_at =
+                                 [=](int frame) {
+                                     return pose_of({90, 0, 0}, {std::clamp(frame, from, to), 0, 0});
+                                 }})
+            .size();
+    };
+    // A time, two references and two vectors of three doubles.
+    constexpr std::size_t kBytes = 8 + 2 * 8 + 2 * 24;
+    const std::size_t one_step = bytes_of(1, 100, 50, 51);
+    EXPECT_EQ(bytes_of(1, 100, 50, 60), one_step + 9 * kBytes);
+    EXPECT_EQ(bytes_of(1, 100, 0, 200), one_step + 98 * kBytes);
+    EXPECT_EQ(bytes_of(1, 2, 0, 200), one_step);
+    // Moving only before or after the shot is standing still.
+    const std::size_t still = bytes_of(1, 1, 0, 200);
+    EXPECT_LT(still, one_step);
+    EXPECT_EQ(bytes_of(1, 100, 0, 1), still);
+    EXPECT_EQ(bytes_of(1, 100, 100, 200), still);
+    EXPECT_EQ(bytes_of(1, 100000, 7, 7), still);
+}
+
+TEST(UsdCamera, TwoMillionFramesGoThroughASmallBuffer) {
+    // The lowest frame that there is, so that frames are counted in more than an int.
+    constexpr int kFrames = 2000000, kFirst = std::numeric_limits<int>::min();
+    constexpr std::size_t kSmall = std::size_t{64} << 10;
+    std::size_t asked = 0, asked_before = 0, bytes = 0, largest_piece = 0, most_asked = 0;
+    const Camera camera{.first_frame = kFirst, .last_frame = kFirst + kFrames - 1, .pose_at = [&](int frame) {
+                            ++asked;
+                            return CameraPose{.position_m = {static_cast<double>(frame), 0.0, 4.0}};
+                        }};
+    write_camera_crate(camera, [&](std::string_view piece) {
+        // Before the first piece every pose is checked; then they are asked for as they are written.
+        if (bytes > 0) most_asked = std::max(most_asked, asked - asked_before);
+        asked_before = asked;
+        bytes += piece.size();
+        largest_piece = std::max(largest_piece, piece.size());
+    });
+    EXPECT_GT(bytes, std::size_t{72} * kFrames);
+    EXPECT_LT(bytes, std::size_t{72} * kFrames + 4096);
+    EXPECT_LE(largest_piece, kSmall);
+    EXPECT_GT(most_asked, 0u);
+    EXPECT_LE(most_asked, kSmall / 48 + 1) << "poses were gathered before they were written";
+    EXPECT_LE(asked, std::size_t{2} * kFrames);
 }
 
 TEST(UsdCamera, FilmSeesTheFieldOfViewAndHasThePicturesShape) {

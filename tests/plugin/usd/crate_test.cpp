@@ -1,5 +1,5 @@
-// The layers as crates. That others read them, and find what the text holds, is tested by
-// usd.openusd_reads_usdc and usd.three_reads_crates; here is what those would not notice.
+// The mesh's layers as crates. That other programs read them, and find in them what the text holds, is tested
+// by usd.openusd_reads_usdc and usd.three_reads_crates. Here is what those would not notice.
 #include "plugin/usd/crate.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ struct Written {
             bytes += part;
         };
     }
-    // Where in the file the piece that lies at this address begins; 0 if there is none.
+    // Where in the file the piece begins that was handed over from this memory; 0 if there is none.
     std::size_t offset_of(const void* memory, std::size_t size) const {
         std::size_t offset = 0;
         for (const Piece& piece : pieces) {
@@ -74,7 +74,7 @@ T number_at(const std::string& bytes, std::size_t offset) {
     return number;
 }
 
-// What stands in a file besides its arrays: the specs of the six attributes, and no more than a page.
+// What a file holds besides its arrays, the specs of its attributes, fits on a page.
 constexpr std::size_t kMostBesidesArrays = 4096;
 
 TEST(UsdCrate, ArraysGoFromTheCallersMemoryToTheFileAlignedAndInOnePiece) {
@@ -101,6 +101,16 @@ TEST(UsdCrate, ArraysGoFromTheCallersMemoryToTheFileAlignedAndInOnePiece) {
     EXPECT_GT(topology.offset_of(faces.counts.data(), 9 * 4), 0u);
     EXPECT_GT(topology.offset_of(faces.indices.data(), 36 * 4), 0u);
     EXPECT_GT(topology.offset_of(faces.st.data(), 16 * 8), 0u);
+
+    // Faces that vary are arrays of the frame.
+    const Frame vertices(16);
+    MeshSample sample = vertices.sample();
+    sample.faces = faces.view();
+    written = {};
+    write_frame_crate(sample, written.sink());
+    expect_array(faces.counts.data(), 9, 4);
+    expect_array(faces.indices.data(), 36, 4);
+    expect_array(faces.st.data(), 16, 8);
 }
 
 TEST(UsdCrate, IsAsLongAsItsArraysAndAPage) {
@@ -145,8 +155,8 @@ TEST(UsdCrate, BeginsAsACrateAndEndsWithItsContents) {
     EXPECT_EQ(end, contents);
 }
 
-// The text of a block of literals, from its place behind the byte that says there is one block, by LZ4's
-// block format: fifteen in four bits, then bytes to be added up until one is less than 255.
+// The text of an LZ4 block of literals, after the byte that says there is one block. By LZ4's block format
+// its length is in four bits; if they say 15, bytes follow that are added to it, up to the first below 255.
 std::string literals(std::string_view block) {
     std::size_t at = 1, length = static_cast<unsigned char>(block.at(0)) >> 4;
     if (length == 15) {
@@ -245,6 +255,10 @@ TEST(UsdCrate, RefusesWhatTheTextRefusesBeforeAnythingIsWritten) {
     const std::vector<glm::vec2> st(3, glm::vec2(0));
     topologies_alike({.face_vertex_counts = counts, .face_vertex_indices = indices, .st = st});
     topologies_alike({.face_vertex_counts = counts});
+    topologies_alike(
+        {.face_vertex_counts = counts, .face_vertex_indices = indices, .attributes = {.faces = true}});
+    const std::vector<glm::vec3> points(3, glm::vec3(0));
+    frames_alike({.faces = Faces{counts, indices, st}, .points = points});  // an index without a point
     topologies_alike({.fps = -1.0, .face_vertex_counts = counts, .face_vertex_indices = indices});
 }
 

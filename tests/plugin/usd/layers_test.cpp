@@ -38,6 +38,7 @@ TEST(UsdNames, FrameNumbersAreWhatUsdMakesOfFourHashes) {
     EXPECT_EQ(frame_file("sea", std::numeric_limits<int>::min(), "usda"), "mesh/sea.-2147483648.usda");
     EXPECT_EQ(frame_file_template("sea", "usdc"), "mesh/sea.####.usdc");
     EXPECT_EQ(root_file("a-b"), "a-b.usda");
+    EXPECT_EQ(camera_file("a-b"), "a-b.camera.usdc");
     EXPECT_EQ(topology_file("a-b", "usdc"), "mesh/a-b.topology.usdc");
     EXPECT_EQ(manifest_file("a-b"), "mesh/a-b.manifest.usda");
 }
@@ -72,12 +73,14 @@ TEST(UsdValues, AreViewsOfTheCallersArrays) {
     const Extent extent = extent_of(sample.points);
     const auto values = varying_values(sample, extent);
     ASSERT_EQ(values.size(), 6u);
-    EXPECT_EQ(values[0].values.data(), &frame.points[0].x);
-    EXPECT_EQ(values[0].values.size(), 9u);
-    EXPECT_EQ(values[1].values.data(), &extent[0].x);
-    EXPECT_EQ(values[1].values.size(), 6u);
-    EXPECT_EQ(values[5].values.data(), frame.whitecap_coverage.data());
-    EXPECT_EQ(values[5].values.size(), 3u);
+    const auto floats = [&](std::size_t i) { return std::get<std::span<const float>>(values[i].values); };
+    EXPECT_EQ(floats(0).data(), &frame.points[0].x);
+    EXPECT_EQ(floats(0).size(), 9u);
+    EXPECT_EQ(values[0].count(), 3u);
+    EXPECT_EQ(floats(1).data(), &extent[0].x);
+    EXPECT_EQ(floats(1).size(), 6u);
+    EXPECT_EQ(floats(5).data(), frame.whitecap_coverage.data());
+    EXPECT_EQ(floats(5).size(), 3u);
     // The declarations are the frame's own, in its order.
     const auto declared = varying_attributes(sample.attributes());
     ASSERT_EQ(declared.size(), values.size());
@@ -153,6 +156,14 @@ TEST(UsdTopology, GridCoversItsSquareOnceAndLooksUp) {
             check({.face_vertex_counts = grid.counts, .face_vertex_indices = grid.indices, .st = grid.st}));
     }
     EXPECT_EQ(grid_faces(3).indices, grid_faces(3, 3).indices);
+    // Into memory that another grid has used.
+    GridFaces again = grid_faces(7, 5);
+    const std::int32_t* const memory = again.indices.data();
+    set_grid_faces(4, 6, again);
+    EXPECT_EQ(again.counts, grid_faces(4, 6).counts);
+    EXPECT_EQ(again.indices, grid_faces(4, 6).indices);
+    EXPECT_EQ(again.st, grid_faces(4, 6).st);
+    EXPECT_EQ(again.indices.data(), memory);
     EXPECT_THROW(grid_faces(0), std::invalid_argument);
     EXPECT_THROW(grid_faces(4, 0), std::invalid_argument);
     EXPECT_THROW(grid_faces(1 << 15, 1 << 14), std::invalid_argument);  // 2^29
@@ -178,6 +189,41 @@ TEST(UsdTopology, FacesThatDontFitAreRefused) {
     EXPECT_NE(
         refused({.face_vertex_counts = counts, .face_vertex_indices = indices, .st = torn}).find("st[1]"),
         std::string::npos);
+}
+
+TEST(UsdValues, FacesThatVaryAreTheFramesOwn) {
+    const Frame frame;
+    const std::vector<std::int32_t> counts{3}, indices{0, 1, 2}, beyond{0, 1, 3};
+    const std::vector<glm::vec2> st(3, glm::vec2(0)), few(2, glm::vec2(0));
+    MeshSample sample = frame.sample();
+    sample.faces = Faces{counts, indices, st};
+    const auto values = varying_values(sample, {});
+    ASSERT_EQ(values.size(), 9u);
+    EXPECT_EQ(values[2].attribute.name, "faceVertexCounts");
+    EXPECT_EQ(std::get<std::span<const std::int32_t>>(values[2].values).data(), counts.data());
+    EXPECT_EQ(values[3].attribute.name, "faceVertexIndices");
+    EXPECT_EQ(std::get<std::span<const std::int32_t>>(values[3].values).data(), indices.data());
+    EXPECT_EQ(values[4].attribute.name, "primvars:st");
+    EXPECT_EQ(values[4].count(), 3u);
+
+    const auto refused = [&](const Faces& faces) {
+        sample.faces = faces;
+        return refusal([&] { varying_values(sample, {}); });
+    };
+    EXPECT_NE(refused({counts, beyond, st}).find("3 is not the index of a point"), std::string::npos);
+    EXPECT_NE(refused({counts, {}, st}).find("asks for 3"), std::string::npos);
+    EXPECT_NE(refused({counts, indices, few}).find("primvars:st has 2 values for 3 points"),
+              std::string::npos);
+    // No point is in sight: no faces, and that is a frame too.
+    EXPECT_EQ(varying_values({.faces = Faces{}}, {}).size(), 5u);
+}
+
+TEST(UsdTopology, HasNoFacesWhereTheyVary) {
+    const std::vector<std::int32_t> counts{3}, indices{0, 1, 2};
+    EXPECT_NO_THROW(check({.attributes = {.faces = true}}));
+    EXPECT_THROW(
+        check({.face_vertex_counts = counts, .face_vertex_indices = indices, .attributes = {.faces = true}}),
+        std::invalid_argument);
 }
 
 }  // namespace

@@ -111,6 +111,50 @@ TEST(UsdText, TopologyIsThisPage) {
 )");
 }
 
+TEST(UsdText, FacesThatVaryStandInTheFrames) {
+    const std::vector<std::int32_t> counts{3}, indices{0, 1, 2};
+    const std::vector<glm::vec2> st{{0, 0}, {1, 0}, {0, 0.5f}};
+    const std::vector<glm::vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    const MeshSample sample{.frame = 7, .faces = Faces{counts, indices, st}, .points = points};
+    const std::string frame = frame_text(sample);
+    EXPECT_EQ(frame.substr(frame.find("over")), R"(over "Sea"
+{
+    point3f[] points.timeSamples = {
+        7: [(0, 0, 0), (1, 0, 0), (0, 1, 0)],
+    }
+    float3[] extent.timeSamples = {
+        7: [(0, 0, 0), (1, 1, 0)],
+    }
+    int[] faceVertexCounts.timeSamples = {
+        7: [3],
+    }
+    int[] faceVertexIndices.timeSamples = {
+        7: [0, 1, 2],
+    }
+    texCoord2f[] primvars:st.timeSamples = {
+        7: [(0, 0), (1, 0), (0, 0.5)],
+    }
+}
+)");
+    const std::string topology = topology_text({.attributes = sample.attributes()});
+    EXPECT_EQ(topology.substr(topology.find("def Mesh")), R"(def Mesh "Sea"
+{
+    uniform bool doubleSided = 1
+    uniform token orientation = "rightHanded"
+    uniform token subdivisionScheme = "none"
+    point3f[] points
+    float3[] extent
+    int[] faceVertexCounts
+    int[] faceVertexIndices
+    texCoord2f[] primvars:st (interpolation = "vertex")
+}
+)");
+    const std::string manifest = manifest_text({.attributes = sample.attributes()});
+    EXPECT_NE(manifest.find(
+                  "    int[] faceVertexCounts\n    int[] faceVertexIndices\n    texCoord2f[] primvars:st\n"),
+              std::string::npos);
+}
+
 TEST(UsdText, CageHasNoBoundaryFacesAndVaryingPrimvars) {
     const std::vector<std::int32_t> counts{3}, indices{0, 1, 2};
     const std::vector<glm::vec2> st(3, glm::vec2(0));
@@ -298,20 +342,24 @@ TEST(UsdText, SkysMiddleIsXAndItsTopTheZenith) {
     EXPECT_THROW(root_text({.sky = Sky{.lat_long_file = "a@@@b.exr"}}), std::invalid_argument);
 }
 
-TEST(UsdText, CameraMovesWhereItsKeysDiffer) {
-    Camera camera{.keys = {{1, {0, -60, 4}, {0, 40, 4}}}};
-    const std::string still = root_text({.first_frame = 1, .last_frame = 3, .camera = camera});
-    EXPECT_NE(still.find("matrix4d xformOp:transform = ( (1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), "
-                         "(0, -60, 4, 1) )\n"),
+TEST(UsdText, CameraIsReferenced) {
+    EXPECT_EQ(root_text({}).find("Camera"), std::string::npos);
+    EXPECT_NE(root_text({.name = "a-b", .has_camera = true}).find(R"(
+    def Camera "Camera" (
+        prepend references = @./a-b.camera.usdc@
+    )
+    {
+    }
+)"),
               std::string::npos);
-    camera.keys.push_back({3, {10, -60, 4}, {10, 40, 4}});
-    const std::string moving = root_text({.first_frame = 1, .last_frame = 3, .camera = camera});
-    EXPECT_NE(moving.find("xformOp:transform.timeSamples = {\n"), std::string::npos);
-    EXPECT_NE(moving.find("2: ( (1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (5, -60, 4, 1) ),\n"),
-              std::string::npos);
-    // Keys that only differ outside the shot are a still camera.
-    const std::string outside = root_text({.first_frame = 3, .last_frame = 9, .camera = camera});
-    EXPECT_EQ(outside.find("timeSamples"), std::string::npos);
+}
+
+TEST(UsdText, RootHasOneLengthWhateverTheNumberOfFrames) {
+    // Numbers of the same length.
+    const auto bytes = [](int last_frame) {
+        return root_text({.first_frame = 1000001, .last_frame = last_frame, .has_camera = true}).size();
+    };
+    EXPECT_EQ(bytes(1000002), bytes(9000002));
 }
 
 TEST(UsdText, RefusesWhatNoStageCanSay) {
@@ -323,7 +371,6 @@ TEST(UsdText, RefusesWhatNoStageCanSay) {
     EXPECT_THROW(root_text({.custom_data = {{"depth_m", nan}}}), std::invalid_argument);
     EXPECT_THROW(root_text({.material = {.roughness = nan}}), std::invalid_argument);
     EXPECT_THROW(root_text({.sun = Sun{.azimuth_deg = nan}}), std::invalid_argument);
-    EXPECT_THROW(root_text({.camera = Camera{}}), std::invalid_argument);
 }
 
 }  // namespace

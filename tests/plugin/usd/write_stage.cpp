@@ -1,16 +1,22 @@
-// Writes a small stage of known numbers for the readers: write_stage DIR usda|usdc. Beside the layers it
-// leaves DIR/expected.json, in the form that `read-stage.mjs --expect` takes. One frame of the shot is
-// missing on purpose. Of crates there is a twin in text for each, and DIR/hard holds more pairs: what is at
-// the ends of what a layer may be.
+// Writes two small stages of known numbers for the readers:
+//   write_stage DIR usda|usdc
+// 3-days-out.usda has one topology; a frame of the shot is missing on purpose. moving.usda has other faces at
+// each frame and a camera that turns every way; moving-probe.usda puts a mesh under that camera. Beside them
+// are DIR/expected.json and DIR/moving.json, for `read-stage.mjs --expect`, and a file for each camera, as
+// read-crates.mjs takes it. Each crate has a twin in text. DIR/hard holds more pairs, with the extremes of
+// what a layer may hold.
 //   write_stage LARGE.usdc      a single crate of 2049² vertices, value i of its points and coverage being i
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -18,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "plugin/usd/camera.h"
 #include "plugin/usd/crate.h"
 #include "plugin/usd/text.h"
 
@@ -67,7 +74,7 @@ Mesh random_mesh(int frame) {
     mesh.velocities = random_vectors(numbers, 10.0f);
     mesh.slope_variance = random_vectors(numbers, 1e-3f);
     for (std::size_t i = 0; i < kVertices; ++i) mesh.whitecap_coverage.push_back(numbers.next());
-    // The ends of what a float can hold, and numbers whose shortest form is an integer or has an exponent.
+    // The extremes of a float, and numbers whose shortest form is an integer or has an exponent.
     const float hard[] = {std::numeric_limits<float>::denorm_min(),
                           std::numeric_limits<float>::min(),
                           std::numeric_limits<float>::max(),
@@ -93,7 +100,7 @@ std::string json_array(std::span<const T> values) {
     std::string text = "[";
     char number[32];
     for (std::size_t i = 0; i < values.size(); ++i) {
-        // As a double: JSON's reader then has the very float.
+        // Printed as a double, so that a reader of doubles rounds it to the same float.
         const auto value = static_cast<double>(values[i]);
         const auto [end, error] = std::to_chars(number, number + sizeof number, value);
         if (error != std::errc{}) throw std::runtime_error("a number does not fit its buffer");
@@ -119,14 +126,21 @@ std::string expected_frame(const Mesh& mesh, const std::vector<glm::vec2>& st) {
            ", \"st\": " + json_array(std::span<const float>(&st[0].x, 2 * st.size())) + "}}";
 }
 
-// What the reader should find besides the numbers of the frames. Hydra cuts a quad (a, b, c, d) into the
-// triangles (a, b, c) and (a, c, d).
-std::string expected_rest(const usd::GridFaces& faces) {
+// Hydra cuts a face (a, b, c, d, …) into the triangles (a, b, c), (a, c, d), …
+std::string json_triangles(const usd::GridFaces& faces) {
     std::vector<std::int32_t> triangles;
-    for (std::size_t i = 0; i < faces.indices.size(); i += 4) {
-        const std::int32_t* quad = &faces.indices[i];
-        triangles.insert(triangles.end(), {quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]});
+    std::size_t first = 0;
+    for (const std::int32_t corners : faces.counts) {
+        const std::int32_t* face = &faces.indices[first];
+        for (std::int32_t i = 1; i + 1 < corners; ++i)
+            triangles.insert(triangles.end(), {face[0], face[i], face[i + 1]});
+        first += static_cast<std::size_t>(corners);
     }
+    return json_array(std::span<const std::int32_t>(triangles));
+}
+
+// What the reader should find besides the numbers of the frames.
+std::string expected_rest(const usd::GridFaces& faces) {
     return R"json("stage": {"startTimeCode": -2, "endTimeCode": 2, "timeCodesPerSecond": 23.976},
 "prims": {"/_3_days_out": "Xform", "/_3_days_out/Sea": "Mesh", "/_3_days_out/Camera": "Camera",
   "/_3_days_out/Sun": "DistantLight", "/_3_days_out/Sky": "DomeLight",
@@ -140,15 +154,16 @@ std::string expected_rest(const usd::GridFaces& faces) {
 "flattened": ["apiSchemas = [\"MaterialBindingAPI\"]", "uniform bool doubleSided = 1",
   "uniform token orientation = \"rightHanded\"", "uniform token subdivisionScheme = \"none\"",
   "float3 xformOp:rotateXYZ = (0, 70, 90)", "float inputs:angle = 0.53",
-  "-2: ( (1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, -60, 4, 1) ),",
-  "2: ( (0, 1, 0, 0), (0, 0, 1, 0), (1, 0, 0, 0), (40, -60, 4, 1) ),"],
+  "double3 xformOp:rotateXYZ = (90, 0, -90)", "double3 xformOp:translate = (40, -60, 4)",
+  "uniform token[] xformOpOrder = [\"xformOp:translate\", \"xformOp:rotateXYZ\"]",
+  "float2 clippingRange = (0.1, 1000000)", "token projection = \"perspective\""],
 "meshes": {
         "/_3_days_out/Sea" : {"material": "/_3_days_out/Materials/Water",
   "primvars": {"normals": {"dimension": 3, "interpolation": "vertex"},
     "slopeVariance": {"dimension": 3, "interpolation": "vertex"},
     "st": {"dimension": 2, "interpolation": "vertex"}},
   "indices": )json" +
-           json_array(std::span<const std::int32_t>(triangles)) + "}}";
+           json_triangles(faces) + "}}";
 }
 
 usd::Stage stage_of(const std::string& name, const usd::AttributeSet& attributes) {
@@ -160,9 +175,7 @@ usd::Stage stage_of(const std::string& name, const usd::AttributeSet& attributes
     stage.attributes = attributes;
     stage.material.roughness = 0.25;
     stage.material.opacity = 0.875;
-    // From looking along y to looking along -x, both level, so that the matrices are whole numbers.
-    stage.camera = usd::Camera{
-        .keys = {{-2, {0.0, -60.0, 4.0}, {0.0, 40.0, 4.0}}, {2, {40.0, -60.0, 4.0}, {-60.0, -60.0, 4.0}}}};
+    stage.has_camera = true;
     stage.sun = usd::Sun{};
     stage.sky = usd::Sky{};
     stage.custom_data = {{"seed", std::int64_t{9007199254740993}},
@@ -174,7 +187,7 @@ usd::Stage stage_of(const std::string& name, const usd::AttributeSet& attributes
     return stage;
 }
 
-// Writes layers in one of the two ways, crates with their twins, of which it keeps a list.
+// Writes layers as text, or as crates with their twins in text, and lists the twins.
 class Layers {
   public:
     Layers(std::filesystem::path dir, bool crates) : dir_(std::move(dir)), crates_(crates) {}
@@ -234,6 +247,160 @@ void write_hard_layers(Layers& layers) {
                                             .velocities = std::span(points).first(1)});
 }
 
+// The mesh at a frame of the second stage: a grid of another size each time. At frame 3 its first face is cut
+// into two triangles, so that the counts differ too; frames 4 and 5 have as many points, but other faces.
+usd::GridFaces moving_faces(int frame) {
+    if (frame == 4 || frame == 5) return frame == 4 ? usd::grid_faces(7, 3) : usd::grid_faces(3, 7);
+    usd::GridFaces faces = usd::grid_faces(2 + frame, 1 + frame % 3);
+    if (frame != 3) return faces;
+    faces.counts.insert(faces.counts.begin(), 3);
+    faces.counts[1] = 3;
+    const std::int32_t a = faces.indices[0], c = faces.indices[2];
+    faces.indices.insert(faces.indices.begin() + 3, {a, c});
+    return faces;
+}
+
+constexpr const char* kMoving = "moving";
+
+struct CameraState {
+    glm::dvec3 position_m;
+    glm::dvec3 angles_deg;  // pitch, roll, heading
+};
+
+// The camera at a time of the second stage, with angles that never jump. It stands still at both ends of the
+// shot. In between it pans through 180 degrees, looks straight down, rolls by a quarter, looks straight up.
+CameraState moving_camera(double time) {
+    const std::vector<CameraState> at_frames{
+        {{-3.5, 2.0, 4.0}, {90, 0, 150}},   {{-3.5, 2.0, 4.0}, {90, 0, 150}},
+        {{1e5, 2.25, 4.0}, {90, 0, 170}},   {{1e5, -7.0, 40.0}, {60, 0, 190}},
+        {{1e5, -7.1, 80.0}, {0, 0, 250}},   {{1e5, -7.2, 10.0}, {50, 90, 250}},
+        {{1e5, -7.3, 0.25}, {180, 0, 250}}, {{1e5, -7.3, 0.25}, {180, 0, 250}}};
+    const auto before = static_cast<std::size_t>(time) - 1;  // frame 1 is the first
+    const CameraState& a = at_frames.at(before);
+    const CameraState& b = at_frames[std::min(before + 1, at_frames.size() - 1)];
+    const double t = time - std::floor(time);
+    return {a.position_m + t * (b.position_m - a.position_m),
+            a.angles_deg + t * (b.angles_deg - a.angles_deg)};
+}
+
+// The axes after a turn about x by the pitch, about y by the roll and about z by the heading.
+usd::CameraPose pose_of(const CameraState& state) {
+    glm::dvec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double angle = state.angles_deg[axis] * (std::numbers::pi / 180.0);
+        const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+        for (glm::dvec3& v : axes) {
+            const glm::dvec3 before = v;
+            v[i] = before[i] * std::cos(angle) - before[j] * std::sin(angle);
+            v[j] = before[i] * std::sin(angle) + before[j] * std::cos(angle);
+        }
+    }
+    return {state.position_m, axes[0], axes[1], axes[2]};
+}
+
+// Camera to world, as USD writes a matrix: the rows are the images of x, y and z, then the position.
+std::string json_matrix(const usd::CameraPose& pose) {
+    std::vector<double> numbers;
+    const glm::dvec3* rows[] = {&pose.right, &pose.up, &pose.backward, &pose.position_m};
+    for (int i = 0; i < 4; ++i)
+        numbers.insert(numbers.end(), {rows[i]->x, rows[i]->y, rows[i]->z, i < 3 ? 0.0 : 1.0});
+    return json_array(std::span<const double>(numbers));
+}
+
+// The camera's layer, and what read-crates.mjs should find in it.
+void write_camera(const std::filesystem::path& dir, const std::string& name, const usd::Camera& camera,
+                  const std::vector<int>& sampled) {
+    const std::string file = usd::camera_file(name);
+    save(dir / file, usd::camera_crate(camera));
+    const usd::FilmBack film = usd::film_back(camera);
+    const auto single = [](double value) {
+        const auto rounded = static_cast<float>(value);
+        return json_array(std::span<const float>(&rounded, 1));
+    };
+    std::string frames;
+    for (const int frame : sampled)
+        frames += (frames.empty() ? "\"" : ", \"") + std::to_string(frame) +
+                  "\": " + json_matrix(camera.pose_at(frame));
+    save(dir / (without_extension(file) + ".json"),
+         "{\"focalLength\": " + single(film.focal_length) + ",\n\"horizontalAperture\": " +
+             single(film.horizontal_aperture) + ",\n\"verticalAperture\": " + single(film.vertical_aperture) +
+             ",\n\"first\": " + std::to_string(camera.first_frame) +
+             ",\n\"last\": " + std::to_string(camera.last_frame) + ",\n\"matrices\": {" + frames + "}}\n");
+}
+
+void write_moving_stage(const std::filesystem::path& dir, const std::string& extension) {
+    constexpr int kLast = 8;
+    Layers layers(dir, extension == "usdc");
+    std::map<double, std::string> expected;
+    usd::AttributeSet attributes;
+    for (int frame = 1; frame <= kLast; ++frame) {
+        const usd::GridFaces faces = moving_faces(frame);
+        Numbers numbers(static_cast<std::uint64_t>(frame));
+        std::vector<glm::vec3> points, normals;
+        for (std::size_t i = 0; i < faces.st.size(); ++i) {
+            points.emplace_back(numbers.next(), numbers.next(), numbers.next());
+            normals.emplace_back(numbers.next(), numbers.next(), numbers.next());
+        }
+        const usd::MeshSample sample{
+            .frame = frame, .faces = faces.view(), .points = points, .normals = normals};
+        attributes = sample.attributes();
+        layers.frame(without_extension(usd::frame_file(kMoving, frame, extension)), sample);
+        // Arrays of different lengths hold their value until the next frame.
+        for (const double time : {frame + 0.0, frame + 0.5}) {
+            if (time > kLast || time == 4.5) continue;  // at 4.5 points of other faces are mixed
+            expected[time] = "\"/moving/Sea\": {\"points\": " + json_array(points) +
+                             ", \"normals\": " + json_array(normals) + ", \"st\": " +
+                             json_array(std::span<const float>(&faces.st[0].x, 2 * faces.st.size())) +
+                             ", \"indices\": " + json_triangles(faces) + "}";
+        }
+    }
+    layers.topology(without_extension(usd::topology_file(kMoving, extension)), {.attributes = attributes});
+    save(dir / usd::manifest_file(kMoving), usd::manifest_text({.attributes = attributes}));
+    const usd::Camera camera{.fingerprint = "1234abcd",
+                             .first_frame = 1,
+                             .last_frame = kLast,
+                             .pose_at = [](int frame) { return pose_of(moving_camera(frame)); },
+                             .fov_deg = 65.0};
+    write_camera(dir, kMoving, camera, {2, 3, 4, 5, 6, 7});
+    usd::Stage stage{.name = kMoving, .first_frame = 1, .last_frame = kLast, .attributes = attributes};
+    stage.frame_extension = stage.topology_extension = extension;
+    stage.has_camera = true;
+    save(dir / usd::root_file(kMoving), usd::root_text(stage));
+
+    // The reader's renderer is told of meshes only: one in the camera's place says where the camera is.
+    save(dir / "moving-probe.usda", R"(#usda 1.0
+(
+    defaultPrim = "moving"
+    metersPerUnit = 1
+    subLayers = [@./moving.usda@]
+    timeCodesPerSecond = 24
+    upAxis = "Z"
+)
+over "moving" {
+    over "Camera" {
+        def Mesh "Probe" {
+            int[] faceVertexCounts = [3]
+            int[] faceVertexIndices = [0, 1, 2]
+            point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+            uniform token subdivisionScheme = "none"
+        }
+    }
+}
+)");
+    std::string frames;
+    for (const auto& [time, sea] : expected) {
+        char number[32];
+        const auto [end, error] = std::to_chars(number, number + sizeof number, time);
+        if (error != std::errc{}) throw std::runtime_error("a time does not fit its buffer");
+        frames += (frames.empty() ? "\"" : ",\n\"") + std::string(number, end) + "\": {" + sea +
+                  ", \"/moving/Camera/Probe\": {\"transform\": " + json_matrix(pose_of(moving_camera(time))) +
+                  "}}";
+    }
+    save(dir / "moving.json", R"({"prims": {"/moving/Camera": "Camera", "/moving/Sea": "Mesh"},
+"sameLayers": )" + layers.twins() +
+                                  ",\n\"frames\": {" + frames + "}}\n");
+}
+
 void write_stage(const std::filesystem::path& dir, const std::string& extension) {
     const std::string name = "3-days-out";
     std::filesystem::remove_all(dir);  // of an earlier run
@@ -263,6 +430,11 @@ void write_stage(const std::filesystem::path& dir, const std::string& extension)
                      .st = faces.st,
                      .attributes = attributes});
     if (extension == "usdc") write_hard_layers(layers);
+    // It stands still and looks along +x.
+    const usd::CameraPose pose{{40.0, -60.0, 4.0}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
+    write_camera(dir, name,
+                 {.fps = 23.976, .first_frame = -2, .last_frame = 2, .pose_at = [&](int) { return pose; }},
+                 {-2});
     save(dir / usd::manifest_file(name), usd::manifest_text({.fps = 23.976, .attributes = attributes}));
     usd::Stage stage = stage_of(name, attributes);
     stage.frame_extension = stage.topology_extension = extension;
@@ -295,6 +467,7 @@ int main(int argc, char** argv) try {
         write_large(words[0]);
     } else if (words.size() == 2 && (words[1] == "usda" || words[1] == "usdc")) {
         write_stage(words[0], words[1]);
+        write_moving_stage(words[0], words[1]);
     } else {
         std::fprintf(stderr, "usage: write_stage DIR usda|usdc, or write_stage LARGE.usdc\n");
         return 2;

@@ -33,7 +33,9 @@ class MeshRecord {
     setMaterial(path) {
         this.material = path;
     }
-    setTransform() {}
+    setTransform(matrix) {
+        this.fresh.set('transform', Float32Array.from(matrix));
+    }
 }
 
 class Delegate {

@@ -8,7 +8,8 @@ const help = `Usage: read-crates.mjs DIR [--large FILE]
 
 Reads each NAME.usdc below DIR and its twin NAME.usda, in the form in which Pelagic writes it, and compares the prim,
 the attributes with their types, variability, interpolation and times, and every number of every array, bit for bit.
-three.js leaves out what stands in dictionaries, and so does this.
+three.js leaves out what stands in dictionaries, and so does this. A NAME.camera.usdc is compared with NAME.camera.json
+instead: the lens, the frames that have samples, and the matrix (camera to world) at each.
 
   --large FILE   read one more crate, of 2049² vertices, in whose points and coverage value i is i
   --help
@@ -152,6 +153,64 @@ function differences(text, crate, count) {
     return found;
 }
 
+// A matrix as USD writes it, row after row, of a rotation about x, then y, then z [deg] and a translation.
+function matrixOf(rotate, translate) {
+    const rows = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((row) => {
+        let [x, y, z] = row;
+        const [[sx, cx], [sy, cy], [sz, cz]] = rotate.map((deg) => [Math.sin, Math.cos].map((f) => f(deg * Math.PI / 180)));
+        [y, z] = [y * cx - z * sx, y * sx + z * cx];
+        [z, x] = [z * cy - x * sy, z * sy + x * cy];
+        [x, y] = [x * cz - y * sz, x * sz + y * cz];
+        return [x, y, z, 0];
+    });
+    return [...rows.flat(), ...translate, 1];
+}
+
+// Where a camera's crate differs from what is expected of it.
+function differencesOfCamera(USDCParser, file, count) {
+    const expected = JSON.parse(fs.readFileSync(file.replace(/usdc$/, 'json'), 'utf8'));
+    const bytes = fs.readFileSync(file);
+    const { specsByPath } = new USDCParser().parseData(
+        bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+    const found = [];
+    const same = (what, wanted, got) => {
+        if (JSON.stringify(wanted) !== JSON.stringify(got)) {
+            found.push(`${what} is ${JSON.stringify(got)} instead of ${JSON.stringify(wanted)}`);
+        }
+    };
+    const layer = specsByPath['/'].fields;
+    same('default prim', 'Camera', layer.defaultPrim);
+    same('frames', [expected.first, expected.last], [layer.startTimeCode, layer.endTimeCode]);
+    const prim = specsByPath['/Camera'].fields;
+    same('prim', ['def', 'Camera'], [specifiers[prim.specifier], prim.typeName]);
+    const valueOf = (name) => specsByPath[`/Camera.${name}`].fields.default;
+    for (const name of ['focalLength', 'horizontalAperture', 'verticalAperture']) {
+        same(name, expected[name][0], valueOf(name));
+    }
+    same('projection', 'perspective', valueOf('projection'));
+    same('clippingRange', [Math.fround(0.1), 1e6], valueOf('clippingRange'));
+    same('xformOpOrder', ['xformOp:translate', 'xformOp:rotateXYZ'], valueOf('xformOpOrder'));
+    // A camera that stands still has plain values, and no samples.
+    const samplesOf = (name) => {
+        const { timeSamples, default: value } = specsByPath[`/Camera.${name}`].fields;
+        return timeSamples ?? { times: [expected.first], values: [value] };
+    };
+    const [translate, rotate] = ['xformOp:translate', 'xformOp:rotateXYZ'].map(samplesOf);
+    for (const { times } of [translate, rotate]) same('times', Object.keys(expected.matrices).map(Number), times);
+    Object.values(expected.matrices).forEach((wanted, i) => {
+        const got = matrixOf(rotate.values[i], translate.values[i]);
+        // Roundings of angles of less than a turn.
+        const wrong = wanted.findIndex((value, k) => !(Math.abs(value - got[k]) < 1e-14));
+        if (wrong >= 0) found.push(`matrix ${i}[${wrong}] is ${got[wrong]} instead of ${wanted[wrong]}`);
+        // No step between frames is longer than half a turn.
+        const longest = i === 0 ? 0 : Math.max(...rotate.values[i].map((v, k) => Math.abs(v - rotate.values[i - 1][k])));
+        if (longest > 180) found.push(`matrix ${i} is ${longest} degrees from the one before`);
+        count.numbers += 6;
+    });
+    count.layers += 1;
+    return found;
+}
+
 function differencesOfLarge(crate, count) {
     const found = [];
     for (const [name, components] of [['points', 3], ['primvars:whitecapCoverage', 1]]) {
@@ -179,7 +238,7 @@ if (!dir || (option !== undefined && (option !== '--large' || !large)) || words.
 const USDCParser = await loadParser();
 const count = { layers: 0, numbers: 0 };
 const found = [];
-// Damage makes the parser throw.
+// The parser throws when a file is damaged.
 const collect = (file, compare) => {
     try {
         found.push(...compare().map((line) => `${file}: ${line}`));
@@ -189,7 +248,8 @@ const collect = (file, compare) => {
 };
 for (const file of fs.readdirSync(dir, { recursive: true }).filter((name) => name.endsWith('.usdc')).sort()) {
     const crate = path.join(dir, file);
-    collect(file, () => differences(readText(fs.readFileSync(crate.replace(/c$/, 'a'), 'utf8')),
+    if (file.endsWith('.camera.usdc')) collect(file, () => differencesOfCamera(USDCParser, crate, count));
+    else collect(file, () => differences(readText(fs.readFileSync(crate.replace(/c$/, 'a'), 'utf8')),
         readCrate(USDCParser, crate), count));
 }
 if (count.layers === 0) found.push(`there is no crate below ${dir}`);

@@ -8,12 +8,13 @@ import { fileURLToPath } from 'node:url';
 
 const help = `Usage: read-stage.mjs DIR ROOT FRAME… [options]
 
-Opens DIR/ROOT with OpenUSD, sets the time to each FRAME (an integer) in the order given, draws, and collects what
-OpenUSD hands over. All layers below DIR (.usda .usdc .usd) are given to it.
+Opens DIR/ROOT with OpenUSD, sets the time to each FRAME (also between two frames: 1.5) in the order given, draws, and
+collects what OpenUSD hands over. All layers below DIR (.usda .usdc .usd) are given to it.
 
   --json FILE        write all that was read (below)
   --expect FILE      compare with FILE, of the same form: every array, prim, mesh and stage value that it names must
-                     have been read with the very same float32 values; "flattened" and "root" list lines that must
+                     have been read with exactly the same float32 values, and every transform within 2e-7;
+                     "flattened" and "root" list lines that must
                      stand in the flattened stage, and in the root layer as OpenUSD writes it again (spaces at
                      either end aside); "sameLayers" lists pairs of layers, [A, B], that must be the same when
                      OpenUSD opens each and writes it as text
@@ -31,7 +32,8 @@ JSON:
     "prims": { PATH: TYPE… },
     "meshes": { PATH: { "material": PATH, "indices": array, "primvars": { NAME: { dimension, interpolation } } } },
     "materials": { PATH: { NODE: { parameter: value } } },
-    "frames": { FRAME: { PATH: { "points": array, "normals": array, "velocities": array, NAME: array… } } } }
+    "frames": { FRAME: { PATH: { "points": array, "normals": array, "velocities": array, "indices": array,
+                                 "transform": [16 numbers, as USD writes a matrix], NAME: array… } } } }
 Primvars stand under their names without "primvars:". Indices are those of triangles. Primvars of plain floats, and
 extent, are there at frames that have a time sample of their own only; everything else is what OpenUSD makes of the time.
 
@@ -78,10 +80,10 @@ function parseArguments(words) {
             throw new UsageError(`unknown option ${word}`);
         } else if (places.length < 2) {
             places.push(word);
-        } else if (/^-?\d+$/.test(word)) {
+        } else if (/^-?\d+(\.\d+)?$/.test(word)) {
             options.frames.push(Number(word));
         } else {
-            throw new UsageError(`a frame is an integer, not ${word}`);
+            throw new UsageError(`a frame is a number, not ${word}`);
         }
     }
     options.timeoutS = Number(options.timeoutS);
@@ -113,10 +115,7 @@ class Arrays {
     }
     add({ frame, prim, name, type }, bytes) {
         const copy = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
-        if (name === 'indices') {
-            this.indices.set(prim, new Int32Array(copy));
-            return;
-        }
+        if (name === 'indices') this.indices.set(prim, new Int32Array(copy));
         const prims = this.frames.get(Number(frame)) ?? new Map();
         const arrays = prims.get(prim) ?? new Map();
         arrays.set(name, type === 'int32' ? new Int32Array(copy) : new Float32Array(copy));
@@ -238,7 +237,7 @@ async function read(options, pairs) {
             lines.push(`broke off: ${error.message.split('\n')[0]}`);
         }
         const drawn = Object.entries(result.meshes ?? {})
-            .map(([prim, mesh]) => [prim, ['points', ...Object.keys(mesh.primvars)]]);
+            .map(([prim, mesh]) => [prim, ['points', 'indices', 'transform', ...Object.keys(mesh.primvars)]]);
         arrays.carryForward(options.frames, drawn);
         return { lines, arrays, result };
     } finally {
@@ -322,6 +321,12 @@ function differences(options, expected, arrays, result) {
         const wrong = wanted.findIndex((value, i) => !Object.is(value, got[i]));
         if (wrong >= 0) found.push(`${what}[${wrong}]: ${got[wrong]} instead of ${wanted[wrong]}`);
     };
+    // OpenUSD computes them in double precision out of angles and translations, and hands them over as floats.
+    const compareTransforms = (what, wanted, got) => {
+        const near = (value, i) => Math.abs(value - got[i]) <= 2e-7 * Math.max(1, Math.abs(value));
+        if (!got) found.push(`${what}: not handed over`);
+        else if (wanted.length !== got.length || !wanted.every(near)) found.push(`${what}: ${got} instead of ${wanted}`);
+    };
     const comparePlain = (what, wanted, got) => {
         if (wanted !== null && typeof wanted === 'object') {
             for (const key of Object.keys(wanted)) comparePlain(`${what} ${key}`, wanted[key], got?.[key]);
@@ -340,7 +345,9 @@ function differences(options, expected, arrays, result) {
         for (const [prim, named] of Object.entries(prims)) {
             for (const [name, entry] of Object.entries(named)) {
                 const got = arrays.frames.get(Number(frame))?.get(prim)?.get(name);
-                compareArrays(`frame ${frame} ${prim} ${name}`, entry, got, Float32Array);
+                const what = `frame ${frame} ${prim} ${name}`;
+                if (name === 'transform') compareTransforms(what, entry, got);
+                else compareArrays(what, entry, got, name === 'indices' ? Int32Array : Float32Array);
             }
         }
     }

@@ -68,12 +68,25 @@ class Delegate {
 function slimLayer(rootFile, timeCodesPerSecond, blocked) {
     let text = `#usda 1.0\n(\n    timeCodesPerSecond = ${timeCodesPerSecond}\n` +
         `    subLayers = [@./${rootFile}@]\n)\n`;
+    // A prim may be written once only: meshes are gathered into a tree.
+    const tree = { attributes: [], children: new Map() };
     for (const [path, attributes] of blocked) {
-        const names = path.split('/').filter((name) => name !== '');
-        for (const name of names) text += `over "${name}" {\n`;
-        for (const { type, name } of attributes) text += `${type} ${name} = None\n`;
-        text += '}\n'.repeat(names.length);
+        let prim = tree;
+        for (const name of path.split('/').filter((word) => word !== '')) {
+            if (!prim.children.has(name)) prim.children.set(name, { attributes: [], children: new Map() });
+            prim = prim.children.get(name);
+        }
+        prim.attributes = attributes;
     }
+    const write = ({ attributes, children }) => {
+        for (const { type, name } of attributes) text += `${type} ${name} = None\n`;
+        for (const [name, child] of children) {
+            text += `over "${name}" {\n`;
+            write(child);
+            text += '}\n';
+        }
+    };
+    write(tree);
     return text;
 }
 

@@ -196,8 +196,10 @@ function differencesOfCamera(USDCParser, file, count) {
         return timeSamples ?? { times: [expected.first], values: [value] };
     };
     const [translate, rotate] = ['xformOp:translate', 'xformOp:rotateXYZ'].map(samplesOf);
-    for (const { times } of [translate, rotate]) same('times', Object.keys(expected.matrices).map(Number), times);
-    Object.values(expected.matrices).forEach((wanted, i) => {
+    const matrices = Object.entries(expected.matrices).map(([frame, wanted]) => [Number(frame), wanted])
+        .sort(([a], [b]) => a - b);
+    for (const { times } of [translate, rotate]) same('times', matrices.map(([frame]) => frame), times);
+    matrices.forEach(([, wanted], i) => {
         const got = matrixOf(rotate.values[i], translate.values[i]);
         // Roundings of angles of less than a turn.
         const wrong = wanted.findIndex((value, k) => !(Math.abs(value - got[k]) < 1e-14));

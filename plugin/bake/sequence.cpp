@@ -17,6 +17,7 @@
 #include "core/surface/projected_grid.h"
 #include "plugin/bake/maps.h"
 #include "plugin/exr/exr.h"
+#include "plugin/usd/camera.h"
 #include "plugin/usd/crate.h"
 #include "plugin/usd/layers.h"
 #include "plugin/usd/text.h"
@@ -206,6 +207,8 @@ class SequenceOf final : public Sequence {
             sink(path, [&](const usd::Sink& take) { take(bytes); });
         };
         text(usd::manifest_file(shot.name), usd::manifest_text({.fps = shot.fps, .attributes = attributes}));
+        sink(usd::camera_file(shot.name),
+             [&](const usd::Sink& take) { usd::write_camera_crate(camera(), take); });
         text(usd::root_file(shot.name), usd::root_text(stage(attributes)));
     }
 
@@ -315,10 +318,22 @@ class SequenceOf final : public Sequence {
         return text;
     }
 
+    usd::Camera camera() const {
+        return {.fps = scene_.shot.fps,
+                .first_frame = scene_.shot.first_frame,
+                .last_frame = scene_.shot.last_frame,
+                .pose_at =
+                    [this](int frame) {
+                        const View view = view_at(scene_.camera, frame);
+                        return usd::CameraPose{view.position_m, view.right, view.up, -view.forward};
+                    },
+                .fov_deg = scene_.camera.fov_deg,
+                .resolution = scene_.camera.resolution};
+    }
+
     usd::Stage stage(const usd::AttributeSet& attributes) const {
         const Shot& shot = scene_.shot;
         const SeaState& sea = scene_.sea;
-        const Camera& camera = scene_.camera;
         usd::Stage stage;
         stage.name = shot.name;
         stage.first_frame = shot.first_frame;
@@ -327,11 +342,7 @@ class SequenceOf final : public Sequence {
         stage.attributes = attributes;
         stage.frame_extension = stage.topology_extension = mesh_extension();
         stage.material.roughness = preview_roughness(hidden_mss(mesh_query_));
-        stage.camera = usd::Camera{.keys = {}, .fov_deg = camera.fov_deg, .resolution = camera.resolution};
-        for (const CameraKey& key : camera.keys)
-            stage.camera->keys.push_back({key.frame, key.position_m, key.look_at_m});
-        if (camera.keys.empty())
-            stage.camera->keys.push_back({shot.first_frame, camera.position_m, camera.look_at_m});
+        stage.has_camera = true;
         // Its upper edge sets half a degree after its centre has.
         if (constexpr double kDiscRadius_deg = 0.27; scene_.light.sun_elevation_deg > -kDiscRadius_deg)
             stage.sun = usd::Sun{.elevation_deg = scene_.light.sun_elevation_deg,

@@ -48,7 +48,7 @@ class Sequence {
     // Hands each of the frame's files to `sink` and enters it in the slot's record; what the sink throws
     // passes through. As encode().
     virtual void write(FrameSlot& slot, const FileSink& sink) const = 0;
-    // The files that belong to no frame: root, topology, manifest. None without a mesh.
+    // The files that belong to no frame: root, camera, topology, manifest. None without a mesh.
     virtual void write_static(const FileSink& sink) const = 0;
     virtual const SpectralMoments& total() const = 0;
     virtual double whitecap_threshold() const = 0;

@@ -17,7 +17,7 @@ bool is_finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// The angle moved by whole turns until it is within half a turn of `before_deg`.
+// The angle plus the number of whole turns that brings it within half a turn of `before_deg`.
 double nearest_turn(double deg, double before_deg) {
     return deg + 360.0 * std::round((before_deg - deg) / 360.0);
 }
@@ -67,11 +67,10 @@ void check(const CameraPose& pose, int frame) {
 
 // The rotation is R = Rz(z) Ry(y) Rx(x) for column vectors, and its columns are right, up and backward:
 // right = (cos y cos z, cos y sin z, −sin y). Then x comes from the second row of Rz(−z) R = Ry(y) Rx(x),
-// which is (0, cos x, −sin x) whatever y is, so that an error of z where right is nearly vertical is made up
-// for.
+// which is (0, cos x, −sin x) for any y. Where right is nearly vertical, x makes up for the error of z.
 glm::dvec3 rotate_xyz_deg(const CameraPose& pose, const glm::dvec3& before_deg) {
     const double cos_y = std::hypot(pose.right.x, pose.right.y);
-    // Rolled by a quarter, right is vertical: only z − x or z + x is determined, and z may stay what it was.
+    // After a quarter turn of roll, right is vertical. Only z − x or z + x is determined then, and z is kept.
     constexpr double kVertical = 1e-9;
     const double z = cos_y < kVertical ? before_deg.z / kDegrees : std::atan2(pose.right.y, pose.right.x);
     const double y = std::atan2(-pose.right.z, cos_y);

@@ -9,14 +9,14 @@ namespace pelagic::usd {
 
 namespace {
 
-// The frames between which the pose changes: it is the same before `first`, and after `last`.
+// The pose changes only between these frames: up to `first` and from `last` on the camera stands still.
 struct MovingFrames {
     std::int64_t first = 0;
     std::int64_t last = 0;
     std::uint64_t count() const { return first < last ? static_cast<std::uint64_t>(last - first) + 1 : 0; }
 };
 
-// Checks every pose, so that nothing has been written when one is refused.
+// Checks every pose of the shot too: a pose must be refused before anything is written.
 MovingFrames moving_frames(const Camera& camera) {
     MovingFrames moving;
     CameraPose before;
@@ -32,7 +32,7 @@ MovingFrames moving_frames(const Camera& camera) {
     return moving;
 }
 
-// What the file holds of one frame.
+// One frame's values in the file.
 struct Sample {
     glm::dvec3 translate;
     glm::dvec3 rotate_xyz_deg;
@@ -67,7 +67,7 @@ void check(const Camera& camera) {
     }
 }
 
-// Refers to `camera` until it is written.
+// The crate refers to `camera` until it is written.
 Crate camera_layer(const Camera& camera) {
     check(camera);
     const FilmBack film = film_back(camera);

@@ -153,7 +153,7 @@ std::uint64_t Crate::produced(std::uint64_t bytes, std::function<void(const Sink
     return begin;
 }
 
-// How far it is from here to the value, and the value.
+// A value as containers hold it: the distance from here to it, and then, eight bytes on, the value.
 void Crate::append_indirect(CrateValue value) {
     append(piece(), std::int64_t{sizeof(std::int64_t)});
     append(piece(), value);
@@ -272,7 +272,7 @@ void Crate::write(const Sink& sink) const {
     }
 }
 
-// A path's index is its spec's.
+// Paths are numbered as specs are.
 std::vector<std::uint32_t> Crate::path_indices() const {
     std::vector<std::uint32_t> indices(path_tokens_.size());
     for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);

@@ -9,7 +9,7 @@
 //   DIR/mesh/NAME.####.EXT         one frame's values, as time samples at the frame's number
 //
 // Where the faces vary from frame to frame, they and st are in the frames' layers, and the topology only
-// declares them.
+// declares them. Between two frames with different numbers of points USD holds the first one's mesh.
 //
 // Space is right-handed, z up, in metres. A time code is a frame number. The structs here refer to the
 // caller's arrays, which must live until the writer returns.

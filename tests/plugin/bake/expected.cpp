@@ -63,6 +63,8 @@ void write_expected(const std::string& shot_file, const std::string& file) {
 "prims": {"/a_stage": "Xform", "/a_stage/Sea": "Mesh", "/a_stage/Camera": "Camera", "/a_stage/Sun": "DistantLight",
   "/a_stage/Sky": "DomeLight", "/a_stage/Materials/Water": "Material"},
 "root": ["defaultPrim = \"a_stage\"", "upAxis = \"Z\"", "metersPerUnit = 1"],
+"flattened": ["1: (90, 0, 0),", "2: (90, 0, 45),", "3: (90, 0, 90),", "1: (0, -60, 4),", "2: (20, -60, 4),",
+  "3: (40, -60, 4),"],
 "frames": {)json"
         << frames << "}}\n";
     if (!out.flush()) throw std::runtime_error("cannot write " + file);

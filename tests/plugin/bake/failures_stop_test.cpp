@@ -47,7 +47,7 @@ TEST(BakeStop, TheCheckOfThisTestNoticesTornFiles) {
         }
         write_file(folder.path() / "out" / path, bytes);
     }
-    EXPECT_GE(files, 7) << "root, topology, manifest, frame, two maps and the record";
+    EXPECT_GE(files, 8) << "root, camera, topology, manifest, frame, two maps and the record";
 }
 
 // How a bake is stopped, and what of.

@@ -80,6 +80,23 @@ std::string why_torn_usd(const std::string& text) {
     return {};
 }
 
+// The format: "PXR-USDC", at byte 16 where the table of contents is, and the table at the file's end: the
+// number of sections, then for each 16 bytes of name, where it begins and how long it is.
+std::string why_torn_crate(const std::string& bytes) {
+    if (!bytes.starts_with("PXR-USDC")) return "does not begin with PXR-USDC";
+    const auto number_at = [&](std::size_t at) {
+        std::uint64_t number = 0;
+        if (at + sizeof number <= bytes.size()) std::memcpy(&number, bytes.data() + at, sizeof number);
+        return number;
+    };
+    constexpr std::size_t kSectionBytes = 32;
+    const std::uint64_t contents = number_at(16), sections = number_at(contents);
+    if (sections == 0 || contents + 8 + kSectionBytes * sections != bytes.size())
+        return "does not end with its contents";
+    const std::size_t last = bytes.size() - kSectionBytes;
+    return number_at(last + 16) + number_at(last + 24) == contents ? "" : "has sections of other lengths";
+}
+
 // The format: eight bytes, then chunks of length, name, content and a sum, to the one that says that it is
 // the last.
 std::string why_torn_png(const std::string& bytes) {
@@ -97,6 +114,7 @@ std::string why_torn_png(const std::string& bytes) {
 std::string why_torn(const fs::path& file) {
     const std::string extension = file.extension();
     if (extension == ".usda") return why_torn_usd(read_file(file));
+    if (extension == ".usdc") return why_torn_crate(read_file(file));
     if (extension == ".json") return nlohmann::json::accept(read_file(file)) ? "" : "is not JSON";
     if (extension == ".exr") return Imf::checkOpenEXRFile(file.c_str()) ? "is not a whole OpenEXR file" : "";
     if (extension == ".png") return why_torn_png(read_file(file));

@@ -75,9 +75,9 @@ std::string read_file(const std::filesystem::path& file);
 std::map<std::string, std::string> files_below(const std::filesystem::path& folder);
 
 // What is wrong with the files below the folder, a line each; empty: all are whole. USD text begins with its
-// header and all its brackets and strings are closed; JSON parses; OpenEXR's own checker reads every pixel;
-// PNG ends with its last chunk. Shot files, which are the tests' own, are not looked at.
-// Hidden files are looked at by leftovers().
+// header and all its brackets and strings are closed; a crate ends with its contents; JSON parses; OpenEXR's
+// own checker reads every pixel; PNG ends with its last chunk. Shot files, which are the tests' own, are not
+// looked at. Hidden files are looked at by leftovers().
 std::string torn_files(const std::filesystem::path& folder);
 
 // Hidden files: temporaries that a dead writer left.

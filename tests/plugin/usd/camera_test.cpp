@@ -69,7 +69,7 @@ TEST(UsdCamera, AnglesGiveThePoseBackForEveryRotation) {
             }
         }
     }
-    // Right is vertical but for a little: heading and pitch are badly determined, the pose is not.
+    // Right is nearly vertical: heading and pitch are badly determined, the pose is not.
     for (const double off_deg : {1e-3, 1e-6, 1e-7, 1e-8, 1e-9, 1e-13}) {
         const CameraPose pose = pose_of({37.0, 90.0 - off_deg, 110.0});
         EXPECT_LT(error_of(rotate_xyz_deg(pose, {}), pose), 2e-9) << off_deg;  // below it, heading is kept

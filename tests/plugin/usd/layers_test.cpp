@@ -81,7 +81,7 @@ TEST(UsdValues, AreViewsOfTheCallersArrays) {
     EXPECT_EQ(floats(1).size(), 6u);
     EXPECT_EQ(floats(5).data(), frame.whitecap_coverage.data());
     EXPECT_EQ(floats(5).size(), 3u);
-    // The declarations are the frame's own, in its order.
+    // The declarations name the same attributes in the same order.
     const auto declared = varying_attributes(sample.attributes());
     ASSERT_EQ(declared.size(), values.size());
     for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(declared[i].name, values[i].attribute.name);
@@ -130,7 +130,7 @@ TEST(UsdValues, ArraysAreAsLongAsPoints) {
 }
 
 TEST(UsdTopology, GridCoversItsSquareOnceAndLooksUp) {
-    // Dyadic, so that every st and every area below is exact.
+    // Powers of two, so that every st and every area below is exact.
     for (const auto& [columns, rows] : {std::pair{8, 8}, {8, 4}, {2, 16}}) {
         const GridFaces grid = grid_faces(columns, rows);
         ASSERT_EQ(grid.counts.size(), std::size_t(columns * rows));

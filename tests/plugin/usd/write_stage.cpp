@@ -328,6 +328,18 @@ void write_camera(const std::filesystem::path& dir, const std::string& name, con
              ",\n\"last\": " + std::to_string(camera.last_frame) + ",\n\"matrices\": {" + frames + "}}\n");
 }
 
+// So many samples that the writer hands them over in several pieces, with an odd number of frames before
+// them.
+void write_long_camera(const std::filesystem::path& dir) {
+    const usd::Camera camera{.first_frame = -1000, .last_frame = 3000, .pose_at = [](int frame) {
+                                 const double moved = std::max(frame, -7);
+                                 return pose_of({{moved, -0.1 * moved, 9.0}, {70, 0, 0.3 * moved}});
+                             }};
+    std::vector<int> sampled;
+    for (int frame = -7; frame <= 3000; ++frame) sampled.push_back(frame);
+    write_camera(dir, "hard/long", camera, sampled);
+}
+
 void write_moving_stage(const std::filesystem::path& dir, const std::string& extension) {
     constexpr int kLast = 8;
     Layers layers(dir, extension == "usdc");
@@ -429,7 +441,10 @@ void write_stage(const std::filesystem::path& dir, const std::string& extension)
                      .face_vertex_indices = faces.indices,
                      .st = faces.st,
                      .attributes = attributes});
-    if (extension == "usdc") write_hard_layers(layers);
+    if (extension == "usdc") {
+        write_hard_layers(layers);
+        write_long_camera(dir);
+    }
     // It stands still and looks along +x.
     const usd::CameraPose pose{{40.0, -60.0, 4.0}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
     write_camera(dir, name,

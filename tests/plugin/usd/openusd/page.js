@@ -11,7 +11,7 @@ async function postArray(header, array) {
     if (!answer.ok) throw new Error(`the server refused an array: ${answer.status}`);
 }
 
-// What a mesh has received so far, and what of it is new since it was last asked.
+// What a mesh has received so far. `fresh` holds what came since it was last cleared.
 class MeshRecord {
     constructor() {
         this.fresh = new Map();
@@ -24,7 +24,7 @@ class MeshRecord {
     updateIndices(indices) {
         this.fresh.set('indices', indices.slice());
     }
-    // Smooth normals that Hydra computes where it is asked to; the authored ones come as a primvar.
+    // These would be smooth normals that Hydra computes; the layer's own normals come as a primvar.
     updateNormals() {}
     updatePrimvar(name, data, dimension, interpolation) {
         this.primvars[name] = { dimension, interpolation };
@@ -63,8 +63,8 @@ class Delegate {
     CommitResources() {}
 }
 
-// A layer over the root in which the given attributes of each mesh have no value. It has the root's own time codes a
-// second: where they differ, a sublayer's times are scaled.
+// A layer over the root in which the given attributes of each mesh have no value. It has the root's time codes per
+// second, because OpenUSD scales a sublayer's times where they differ.
 function slimLayer(rootFile, timeCodesPerSecond, blocked) {
     let text = `#usda 1.0\n(\n    timeCodesPerSecond = ${timeCodesPerSecond}\n` +
         `    subLayers = [@./${rootFile}@]\n)\n`;
@@ -90,7 +90,8 @@ function slimLayer(rootFile, timeCodesPerSecond, blocked) {
     return text;
 }
 
-// How an attribute is declared, by OpenUSD's name for its value. Where several declarations have one value, by name.
+// The type with which an attribute is declared. It follows from OpenUSD's name for the type of its value, or from the
+// attribute's name where several declared types have values of one type.
 function declaredType(name, valueType) {
     const special = {
         points: 'point3f[]', normals: 'normal3f[]', velocities: 'vector3f[]', accelerations: 'vector3f[]',
@@ -108,8 +109,8 @@ function numbersOf(text) {
     return Float32Array.from(numbers, Number);
 }
 
-// What the flattened text says of prims and of float arrays: prims by path with their types, samples by prim,
-// attribute and time. OpenUSD indents by four spaces a level.
+// The prims and the samples of float arrays in the flattened text: the type of each prim by its path, the samples by
+// prim, attribute and time. OpenUSD indents by four spaces a level.
 function parseFlattened(text) {
     const prims = {};
     const samples = [];
@@ -156,7 +157,7 @@ function differencesOfLayers(usd, folder, pairs) {
     });
 }
 
-// Called by read-stage.mjs. Resolves to what is not an array.
+// Called by read-stage.mjs. Returns all that was read except the arrays.
 async function readStage({ rootFile, layers, frames, pairs }) { // eslint-disable-line no-unused-vars
     const folder = '/stage';
     const usd = await getUsdModule(undefined, '/openusd');

@@ -43,8 +43,8 @@ function numbersOf(text) {
     return words.map(Number);
 }
 
-// What a layer in Pelagic's own text says, as { layer: { field: value }, prim: {…}, attributes: { name: {…} } }. Empty
-// lines, braces and dictionaries aside, a line says one thing.
+// The content of a layer in Pelagic's own text, as { layer: { field: value }, prim: {…}, attributes: { name: {…} } }.
+// Each of its lines says one thing; empty lines, braces and dictionaries say nothing here.
 function readText(text) {
     const layer = {};
     const prim = {};
@@ -79,7 +79,7 @@ function readText(text) {
     return { layer, prim, attributes };
 }
 
-// The same of a crate, as three.js reads it.
+// The same content of a crate, as three.js reads it.
 function readCrate(USDCParser, file) {
     const bytes = fs.readFileSync(file);
     const { specsByPath } = new USDCParser().parseData(
@@ -157,7 +157,8 @@ function differences(text, crate, count) {
 function matrixOf(rotate, translate) {
     const rows = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((row) => {
         let [x, y, z] = row;
-        const [[sx, cx], [sy, cy], [sz, cz]] = rotate.map((deg) => [Math.sin, Math.cos].map((f) => f(deg * Math.PI / 180)));
+        const [[sx, cx], [sy, cy], [sz, cz]] = rotate.map((deg) => deg * Math.PI / 180)
+            .map((angle) => [Math.sin(angle), Math.cos(angle)]);
         [y, z] = [y * cx - z * sx, y * sx + z * cx];
         [z, x] = [z * cy - x * sy, z * sy + x * cy];
         [x, y] = [x * cz - y * sz, x * sz + y * cz];
@@ -196,14 +197,17 @@ function differencesOfCamera(USDCParser, file, count) {
         return timeSamples ?? { times: [expected.first], values: [value] };
     };
     const [translate, rotate] = ['xformOp:translate', 'xformOp:rotateXYZ'].map(samplesOf);
-    for (const { times } of [translate, rotate]) same('times', Object.keys(expected.matrices).map(Number), times);
-    Object.values(expected.matrices).forEach((wanted, i) => {
+    const matrices = Object.entries(expected.matrices).map(([frame, wanted]) => [Number(frame), wanted])
+        .sort(([a], [b]) => a - b);
+    for (const { times } of [translate, rotate]) same('times', matrices.map(([frame]) => frame), times);
+    matrices.forEach(([, wanted], i) => {
         const got = matrixOf(rotate.values[i], translate.values[i]);
         // Roundings of angles of less than a turn.
         const wrong = wanted.findIndex((value, k) => !(Math.abs(value - got[k]) < 1e-14));
         if (wrong >= 0) found.push(`matrix ${i}[${wrong}] is ${got[wrong]} instead of ${wanted[wrong]}`);
         // No step between frames is longer than half a turn.
-        const longest = i === 0 ? 0 : Math.max(...rotate.values[i].map((v, k) => Math.abs(v - rotate.values[i - 1][k])));
+        const before = rotate.values[Math.max(i - 1, 0)];
+        const longest = Math.max(...rotate.values[i].map((angle, k) => Math.abs(angle - before[k])));
         if (longest > 180) found.push(`matrix ${i} is ${longest} degrees from the one before`);
         count.numbers += 6;
     });

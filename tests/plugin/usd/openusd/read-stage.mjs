@@ -35,16 +35,16 @@ JSON:
     "frames": { FRAME: { PATH: { "points": array, "normals": array, "velocities": array, "indices": array,
                                  "transform": [16 numbers, as USD writes a matrix], NAME: array… } } } }
 Primvars stand under their names without "primvars:". Indices are those of triangles. Primvars of plain floats, and
-extent, are there at frames that have a time sample of their own only; everything else is what OpenUSD makes of the time.
+extent, are there only at frames that have a time sample of their own; everything else is there at every frame.
 
 Exit status: 0 all well; 1 OpenUSD complained, or something is not as expected; 2 wrong arguments; 3 could not run
 (no browser, not installed, out of time). Install once with install.sh.`;
 
-// OpenUSD's own complaints about this build of it, the same for any stage; every other line is about the stage. The
-// renderer draws meshes only and says so of every light and camera, and of the primvars of a cage; the shader registry's
-// discovery plugin is not in the build and is missed at the first material.
+// OpenUSD's complaints about this build of itself, the same for any stage; every other line is about the stage. Its
+// renderer draws meshes only, and complains about every light and camera and about the primvars of a cage. The build
+// lacks the plugin with which the shader registry finds shaders, and the first material makes it complain.
 const known = [
-    // Emscripten's runtime, of OpenUSD's own threads, when the machine is slow: no word about any stage.
+    // From Emscripten's runtime, about OpenUSD's threads, when the machine is slow.
     /^Blocking on the main thread is very dangerous, see https:\/\/emscripten\.org\/\S+$/,
     /Failed to find plugin for schema type 'UsdVol(OpenVDBAsset|Volume|Field3DAsset)'$/,
     /Selected hydra renderer doesn't support prim type '(DistantLight|LightAPI|DomeLight|Camera)'$/,
@@ -122,7 +122,7 @@ class Arrays {
         prims.set(prim, arrays);
         this.frames.set(Number(frame), prims);
     }
-    // Hydra hands over what changed; fills in what stayed, in the order in which the frames were drawn.
+    // Hydra hands over only what has changed since the frame drawn before; this fills in the rest.
     carryForward(frames, drawn) {
         const latest = new Map();
         for (const frame of frames) {
@@ -325,7 +325,9 @@ function differences(options, expected, arrays, result) {
     const compareTransforms = (what, wanted, got) => {
         const near = (value, i) => Math.abs(value - got[i]) <= 2e-7 * Math.max(1, Math.abs(value));
         if (!got) found.push(`${what}: not handed over`);
-        else if (wanted.length !== got.length || !wanted.every(near)) found.push(`${what}: ${got} instead of ${wanted}`);
+        else if (wanted.length !== got.length || !wanted.every(near)) {
+            found.push(`${what}: ${got} instead of ${wanted}`);
+        }
     };
     const comparePlain = (what, wanted, got) => {
         if (wanted !== null && typeof wanted === 'object') {

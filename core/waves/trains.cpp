@@ -66,7 +66,7 @@ double direction(const DirectionalSpectrum& spectrum, double k, double share) {
     return 0.5 * (low + high);
 }
 
-// Uniform in [0, 1), from two words of random bits; below, from one word.
+// Uniform in [0, 1), from two words of random bits or from one.
 double uniform(std::uint32_t high, std::uint32_t low) {
     return static_cast<double>(((std::uint64_t{high} << 32) | low) >> 11) * 0x1p-53;
 }
@@ -112,7 +112,7 @@ Passing passing(const Trains<T>& trains, const FootprintFilter& filter, double f
     return {first_shorter(filter.n_max * footprint_m), first_shorter(filter.n_min * footprint_m)};
 }
 
-// The fractional part of a·b, rounded to nearest whole number, without the rounding error of the product.
+// a·b minus the nearest whole number, without the rounding error of the product.
 double fraction_of_product(double a, double b) {
     const double product = a * b;
     return (product - std::round(product)) + std::fma(a, b, -product);

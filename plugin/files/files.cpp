@@ -62,8 +62,7 @@ Advice advice(int error) {
             return {"a part of the path is a file, not a folder",
                     "move that file away or choose another --out"};
         case ELOOP:
-            return {"the path contains a loop of symbolic links",
-                    "fix the links or choose another --out"};
+            return {"the path contains a loop of symbolic links", "fix the links or choose another --out"};
         case ENAMETOOLONG:
             return {"the path is too long for the file system", "choose a shorter name or --out"};
         case EIO:

@@ -8,7 +8,7 @@
 namespace pelagic::gpu {
 namespace {
 
-constexpr int kWidth = 256;  // elements a row
+constexpr int kWidth = 256;  // elements per row
 constexpr int kInputUnit = 15;
 
 }  // namespace

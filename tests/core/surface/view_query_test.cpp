@@ -139,7 +139,7 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
         // single precision. Such a unit in the position changes the height along slopes of up to 1.
         const float digit = 4e-7f * (1.0f + glm::length(rest));
         EXPECT_LE(glm::length(rest - there.rest_m[i]), digit);
-        if (glm::length(rest) > 1000.0f) continue;  // beyond, a digit is more than the waves that are left
+        if (glm::length(rest) > 1000.0f) continue;  // beyond, rounding exceeds the resolved waves
         EXPECT_LE(glm::length(a.vectors(Product::Position)[i] - b.vectors(Product::Position)[i]),
                   3.0f * digit + 3e-5f);
         EXPECT_LE(glm::length(a.vectors(Product::Normal)[i] - b.vectors(Product::Normal)[i]),

@@ -229,8 +229,8 @@ TEST(FarFromTheOrigin, NothingIsLost) {
             EXPECT_NEAR(far.vectors(Displacement)[i][axis], near.vectors(Displacement)[i][axis], 1e-6);
             EXPECT_NEAR(far.vectors(Normal)[i][axis], near.vectors(Normal)[i][axis], 1e-6);
             EXPECT_NEAR(far.vectors(Velocity)[i][axis], near.vectors(Velocity)[i][axis], 1e-6);
-            // Moving a single-precision position of 30 m rounds it by 2e-6 m; slopes and velocities below 10
-            // a metre.
+            // Rounding a position of 30 m to single precision moves it by 2e-6 m; slopes and velocities
+            // change by less than 10 per metre.
             EXPECT_NEAR(told.vectors(Displacement)[i][axis], near.vectors(Displacement)[i][axis], 1e-5);
             EXPECT_NEAR(told.vectors(Normal)[i][axis], near.vectors(Normal)[i][axis], 1e-4);
         }

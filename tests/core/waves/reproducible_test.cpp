@@ -75,8 +75,8 @@ TEST(Seeds, GiveOtherSeas) {
     scene.shot.seed = 2;
     const auto two = sample(frame_of<float>(scene, {everything()}), 0, points);
     EXPECT_FALSE(same_bits(one.vectors(Position), two.vectors(Position)));
-    EXPECT_TRUE(
-        same_bits(one.vectors(SlopeVariance), two.vectors(SlopeVariance)));  // an expectation: no seed in it
+    EXPECT_TRUE(same_bits(one.vectors(SlopeVariance),
+                          two.vectors(SlopeVariance)));  // an expectation, not of one seed
 }
 
 // The transforms of a shot, counted by hand for one cascade. The mesh alone has one grid, and two real fields

@@ -101,7 +101,8 @@ TEST(SplineSampling, KeepsTheVarianceOfTheRealisation) {
     for (auto& point : points) point += glm::vec2(0.71f, 1.13f);
     const double variance =
         mean_of(sample(frame, 0, points).vectors(Displacement), [](auto d) { return double(d.z) * d.z; });
-    // rms error 1.5e-5 of the rms height (above), its cross term with the height at most twice that.
+    // The rms error is 1.5e-5 of the rms height (above); its cross term with the height is at most twice
+    // that.
     EXPECT_NEAR(variance / frame.realisation(0).m0, 1.0, 5e-5);
 }
 

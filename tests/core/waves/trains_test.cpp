@@ -83,7 +83,7 @@ TEST(TrainsPlan, TenTrainsAreBelowThePixel) {
         EXPECT_EQ(below, plan.below_pixel);
     }
     EXPECT_LT(resolve_trains(*prepare(scene), 0.005).shortest_m,
-              0.01);  // longer ones alone would all be visible
+              0.01);  // or all trains would be visible
     Scene few = scene;
     few.waves.trains = 8;
     EXPECT_GE(resolve_trains(*prepare(few), 0.5).below_pixel, 4);
@@ -333,7 +333,7 @@ TEST(Trains, PhasesAreUniform) {
     for (int seed = 1; seed <= kSeeds; ++seed) {
         scene.shot.seed = static_cast<std::uint64_t>(seed);
         const TrainsPlan plan = resolve_trains(*prepare(scene), 0.0);
-        Scene calm = scene;  // without energy there are no directions to find
+        Scene calm = scene;  // no energy, so directions needn't be computed
         calm.sea.wind_speed_mps = 0.0;
         for (const double cycles : make_trains<double>(*prepare(calm), plan).start_cycles)
             mean += std::polar(1.0 / (1000.0 * kSeeds), kTwoPi * cycles);

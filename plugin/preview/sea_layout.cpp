@@ -26,10 +26,9 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
     const Plan& plan = sea_->plan();
     const PlannedQuery& planned = plan.queries.at(query);
     if (planned.query.lattice || planned.query.only_cascade)
-        throw std::invalid_argument(
-            "query \"" + planned.query.name +
-            "\" is of a lattice or of one cascade: a picture needs one of points anywhere "
-            "in the whole sea");
+        throw std::invalid_argument("query \"" + planned.query.name +
+                                    "\" is of a lattice or of one cascade: "
+                                    "a picture needs one of points anywhere in the whole sea");
     const ProductSet least = products(Product::Position, Product::Normal, Product::SlopeVariance);
     if ((planned.query.products & least) != least)
         throw std::invalid_argument(

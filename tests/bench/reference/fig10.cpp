@@ -164,8 +164,8 @@ Comparison compare(const Settings& settings, const SeaUnderTest& under_test, con
                              .resolution = settings["waves"]});
         const SpectralMoments hidden = tile.hidden_from_all();
         std::printf(
-            "  seed %d: waves of %.3f ... %.0f m, Hs %.2f m, slope variance %.5f (hidden at "
-            "footprint 0: %.1e of it)\n",
+            "  seed %d: waves of %.3f ... %.0f m, Hs %.2f m, slope variance %.5f "
+            "(hidden at footprint 0: %.1e of it)\n",
             seed, tile.shortest_m(), tile.size_m(), tile.whole().significant_height_m(), tile.whole().mss(),
             hidden.mss() / tile.whole().mss());
         const auto start = std::chrono::steady_clock::now();
@@ -315,13 +315,13 @@ void run(const Settings& settings) {
                     1e-3 * under_test.fetch_m);
         const Comparison result = compare(settings, under_test, view, sky);
         std::printf(
-            "  noise: sun %.1f %%, refracted %.2f %%, sky %.2f %%; the disc as it is: %.1f %%, "
-            "differs by %.1f %%\n",
+            "  noise: sun %.1f %%, refracted %.2f %%, sky %.2f %%; "
+            "the disc as it is: %.1f %%, differs by %.1f %%\n",
             100.0 * result.noise[kSun], 100.0 * result.noise[kRefracted], 100.0 * result.noise[kSky],
             100.0 * result.small_sun_noise, 100.0 * rms_difference(result.small_sun, result.all, kSun));
         std::printf(
-            "  of %.3g rays %.2g %% met no sea, %.1f %% were reflected onto it, %.2g %% met a facet "
-            "whose normal faces away\n",
+            "  of %.3g rays %.2g %% met no sea, %.1f %% were reflected onto it, "
+            "%.2g %% met a facet whose normal faces away\n",
             result.rays, 100.0 * result.missed / result.rays, 100.0 * result.blocked / result.rays,
             100.0 * result.turned_away / result.rays);
         std::printf("  one reflection alone differs by: sun %.1f %%, refracted %.1f %%, sky %.1f %%\n",

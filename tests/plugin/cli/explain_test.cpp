@@ -161,10 +161,9 @@ TEST_F(Explain, CanBeInterrupted) {
 // Grids of 32768² in double, for mesh and maps: terabytes.
 TEST_F(Explain, RefusesToMeasureWhatDoesNotFit) {
     const Ended ended = explain(
-        "[quality]\nlevel = \"reference\"\n[waves]\ncascades = [ { size_m = 4000.0, resolution = 8192 }, { "
-        "size_m = "
-        "150.0, resolution = 8192 }, { size_m = 5.0, resolution = 8192 } ]\n[surface]\nresolution = "
-        "8192\nsize_m = 5\n"
+        "[quality]\nlevel = \"reference\"\n[waves]\ncascades = [ { size_m = 4000.0, resolution = 8192 }, "
+        "{ size_m = 150.0, resolution = 8192 }, { size_m = 5.0, resolution = 8192 } ]\n"
+        "[surface]\nresolution = 8192\nsize_m = 5\n"
         "[output]\nmaps = [\"displacement\", \"normal\", \"whitecaps\"]\nmap_resolution = 4000\n",
         {"--measure"});
     EXPECT_EQ(ended.status, 1);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and bakes the first example: 24 frames of a 14 m/s wind sea with a swell.
-#   examples/bake-first-shot.sh [DIR]      DIR: where the files go, default baked/first-shot
+#   examples/bake-first-shot.sh [DIR]      DIR: the folder for the files, default baked/first-shot
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
     sed -n '2,3s/^# //p' "$0"

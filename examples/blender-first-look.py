@@ -27,11 +27,11 @@ except ImportError as error:
 
 OBJECT = "Sea"
 HORIZON_M = 30e3  # ends less than a pixel below the true horizon for cameras up to about 15 m above the sea
-RING_GROWTH = 1.05  # each ring of quads round the patch is wider than the last by this
+RING_GROWTH = 1.05  # each ring of quads round the patch is wider than the last by this factor
 WATER_IOR = 1.34
 
 
-# ---- The points: the patch, as the bake writes it, and rings of ever larger quads round it to the horizon
+# ---- The points: the patch, as the bake writes it, and rings of growing quads round it out to the horizon
 
 
 def sea_points(size_m, resolution):
@@ -79,9 +79,9 @@ def make_mesh(rest, quads, size_m):
 
 
 class LivingSea:
-    """Keeps the sea, one frame of it and the arrays; writes the time's sea into the object that it made."""
+    """Holds the sea, one frame of it and the arrays; writes the sea at a time into the object that it made."""
 
-    # The mesh's attributes: name, type, how foreach_set calls the numbers, the module's name.
+    # The mesh's attributes: name, type, the property for foreach_set, the module's name.
     ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
                   ("slope_variance", "FLOAT_VECTOR", "vector", "slope_variance"),
                   ("whitecap_coverage", "FLOAT", "value", "coverage"))
@@ -90,8 +90,8 @@ class LivingSea:
         self.shot = shot
         surface = shot.surface
         self.rest, quads, self.cell_m = sea_points(surface.size_m, surface.resolution)
-        # Rungs a factor of two apart, from the patch's quads to the farthest: what a quad is too large for goes into
-        # the variance and the coverage, and the far sea is as rough as the near one.
+        # Filter levels a factor of two apart, from the patch's quads to the farthest. Waves that a quad can't
+        # show go into the variance and the coverage, so that the far sea is as rough as the near one.
         spacing_m = surface.size_m / surface.resolution
         rungs = 1 + math.ceil(math.log2(max(self.cell_m.max() / spacing_m, 1)))
         ladder_m = [spacing_m * 2**i for i in range(rungs + 1)]
@@ -109,7 +109,7 @@ class LivingSea:
                 self.object.data.attributes.new(name, kind, "POINT")
 
     def show(self, frame):
-        """Any frame, also between two. Frames come in any order, several times running, from any thread."""
+        """Any frame, also between two, in any order, repeatedly, from any thread."""
         time_s = self.shot.shot.time_s(frame)
         if time_s != self.time_s:
             self.frame.set(time_s)
@@ -168,15 +168,15 @@ def water_material(shot):
     add, calc = nodes.add, nodes.math
 
     place = add("ShaderNodeVectorMath", {0: add("ShaderNodeUVMap", uv_map="UVMap"), 1: (shot.surface.size_m,) * 3},
-                operation="MULTIPLY")  # the rest position [m]: what is drawn there rides with the water
+                operation="MULTIPLY")  # the rest position [m]: the texture moves with the water
     along = add("ShaderNodeVectorRotate", {"Vector": place, "Angle": -math.radians(shot.sea.wind_direction_deg)})
     hidden = add("ShaderNodeAttribute", attribute_name="slope_variance", output="Vector")
     variance = add("ShaderNodeSeparateXYZ", {"Vector": hidden}).node.outputs
     normal = ripples(nodes, shot, along, variance)
-    # The rest is roughness: facets of the width α² = 2σ², with σ² the mean of the variances along x and y, and
-    # Principled's roughness is √α. So roughness = ((1 − part)(σxx + σyy))^¼.
+    # The rest is roughness: microfacets of width α² = 2σ², where σ² is the mean of the variances along x and
+    # y. Principled's roughness is √α. So roughness = ((1 − part)(σxx + σyy))^¼.
     roughness = calc("POWER", calc("MULTIPLY", calc("ADD", variance[0], variance[1]), 1 - RIPPLE_PART), 0.25)
-    # Light that comes back from under the surface: a dark body, a little greener in the thin crests.
+    # Light from under the surface: a dark body, slightly greener in the thin crests.
     height = add("ShaderNodeSeparateXYZ", {"Vector": add("ShaderNodeNewGeometry", output="Position")}, output=2)
     crest = add("ShaderNodeMapRange", {"Value": height, "From Min": 0.0, "From Max": 3.0})
     body = add("ShaderNodeMixRGB",
@@ -186,10 +186,10 @@ def water_material(shot):
                 {"Base Color": body, "Roughness": roughness, "Specular": normal_reflectance / 0.08,
                  "Normal": normal})
 
-    # Foam: coverage is the part of the surface that is white. Fine noise decides which part, so that a half-covered
-    # crest is streaks of foam and not grey paint.
+    # Foam: coverage is the fraction of the surface that is white. Fine noise decides where, so that a
+    # half-covered crest has streaks of foam instead of grey.
     coverage = add("ShaderNodeAttribute", attribute_name="whitecap_coverage", output="Fac")
-    # Streaks: long along the wind, which combs foam into lines.
+    # Streaks are elongated along the wind.
     streaks = add("ShaderNodeVectorMath", {0: along, 1: (FOAM_PER_M / 4, FOAM_PER_M, 1)}, operation="MULTIPLY")
     noise = add("ShaderNodeTexNoise", {"Vector": streaks, **NOISE})
     foam = foam_mask(nodes, coverage, noise)
@@ -199,13 +199,13 @@ def water_material(shot):
     return material
 
 
-# Blender's noise, mean and deviation measured over 512² points; as good as normally distributed from its 0.1 to its
-# 99.9 %.
+# Blender's noise, its mean and deviation measured over 512² points. Between its 0.1 % and 99.9 % quantiles it
+# is as good as normally distributed.
 NOISE = {"Scale": 1.0, "Detail": 6.0, "Roughness": 0.65}
 NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0602
-RIPPLE_PART = 0.8  # of the hidden slope variance, drawn as ripples; the remainder is the shortest waves' blur
-RIPPLE_PER_M = 1.4  # the coarsest of the noise's octaves, along the wind; twice as long across it, as crests are
-FOAM_PER_M = 1.6  # the coarsest octave across the wind
+RIPPLE_PART = 0.8  # of the hidden slope variance, drawn as ripples; the rest becomes roughness
+RIPPLE_PER_M = 1.4  # the noise's coarsest octave along the wind; half as frequent across it, as crests are
+FOAM_PER_M = 1.6  # the noise's coarsest octave across the wind
 FOAM_EDGE = 1.6  # half the width of the soft edge, in logits: foam thins out before it ends
 FOAM_ALBEDO = (0.55, 0.565, 0.57, 1)  # dense fresh foam (Koepke 1984)
 
@@ -221,7 +221,7 @@ def ripples(nodes, shot, along, variance):
     noise = nodes.tree.nodes.new("ShaderNodeTexNoise")
     noise.noise_dimensions = "4D"
     nodes.connect(noise, {"Vector": scaled(nodes, along, RIPPLE_PER_M), **NOISE})
-    # It changes over about a second.
+    # The noise changes over about a second.
     noise.inputs["W"].driver_add("default_value").driver.expression = f"frame / {shot.shot.fps}"
     numbers = add("ShaderNodeSeparateXYZ", {"Vector": noise.outputs["Color"]}).node.outputs
     slopes = [nodes.math("MULTIPLY", nodes.math("SUBTRACT", NOISE_MEAN, numbers[axis]),
@@ -231,13 +231,13 @@ def ripples(nodes, shot, along, variance):
     mesh_normal = add("ShaderNodeNewGeometry", output="Normal")
     tilted = add("ShaderNodeVectorMath", {0: mesh_normal, 1: tilt}, operation="ADD")
     unit = add("ShaderNodeVectorMath", {0: tilted}, operation="NORMALIZE")
-    # As a normal map's colour: only this node keeps reflections above the surface where the view is grazing.
+    # As the colour of a normal map: only this node keeps reflections above the surface at grazing angles.
     colour = add("ShaderNodeVectorMath", {0: unit, 1: (0.5,) * 3, 2: (0.5,) * 3}, operation="MULTIPLY_ADD")
     return add("ShaderNodeNormalMap", {"Color": colour}, space="WORLD")
 
 
 def foam_mask(nodes, coverage, noise):
-    """1 on the part of the surface where the noise is among its largest values, and that part is `coverage`."""
+    """A mask of the surface where the noise has its largest values, with the mean `coverage`."""
     calc = nodes.math
     part = calc("MINIMUM", calc("MAXIMUM", coverage, 1e-9), 1 - 1e-6)
     asked = calc("LOGARITHM", calc("DIVIDE", part, calc("SUBTRACT", 1.0, part)), math.e)
@@ -252,7 +252,7 @@ DUST, OZONE = 0.15, 4.0  # in Blender's units, whose defaults are 1: less haze a
 
 
 def make_world(light):
-    """Sun and sky: Blender's own clear sky, whose sun turns clockwise from +y."""
+    """Sun and sky: Blender's own clear sky, whose sun azimuth is clockwise from +y."""
     world = bpy.data.worlds.new("Sky")
     world.use_nodes = True
     nodes = Nodes(world.node_tree)
@@ -264,7 +264,7 @@ def make_world(light):
 
 
 def camera_matrix(position_m, look_at_m):
-    """Looking along its −z, z up in the picture; looking along z, +y is up."""
+    """The camera looks along its −z, with z up in the picture; looking straight down or up, +y is up."""
     back = (Vector(position_m) - Vector(look_at_m)).normalized()
     up = Vector((0, 0, 1)) if back.xy.length > 1e-6 else Vector((0, 1, 0))
     right = up.cross(back).normalized()
@@ -282,7 +282,7 @@ def make_camera(shot):
     keys = [(key.frame, Vector(key.position_m), Vector(key.look_at_m)) for key in shot.camera.keys]
     if not keys:
         eye.matrix_world = camera_matrix(shot.camera.position_m, shot.camera.look_at_m)
-    # Position and target are linear between keys; turning isn't linear in them, hence a key a frame.
+    # Position and target are linear between keys; the rotation isn't, hence a key for each frame.
     for (frame, at, target), (next_frame, next_at, next_target) in zip(keys, keys[1:] + keys[-1:]):
         for here in range(frame, max(next_frame, frame + 1)):
             part = (here - frame) / max(next_frame - frame, 1)
@@ -293,7 +293,7 @@ def make_camera(shot):
 
 
 def make_scene(shot):
-    """A new Blender scene of the shot, in the window where there is one; its LivingSea follows the timeline."""
+    """A new Blender scene of the shot, in the window if there is one; its LivingSea follows the timeline."""
     scene = bpy.data.scenes.new(shot.shot.name)
     if bpy.context.window:
         bpy.context.window.scene = scene
@@ -314,7 +314,7 @@ def make_scene(shot):
     scene.cycles.caustics_reflective = False
     scene.cycles.sample_clamp_indirect = 10.0
     scene.view_settings.view_transform = "Filmic"
-    scene.render.use_lock_interface = True  # frames change on the render's thread
+    scene.render.use_lock_interface = True  # frames change on the render thread
     scene.render.resolution_x, scene.render.resolution_y = shot.camera.resolution
     scene.render.resolution_percentage = 100
     sea.follow_timeline()

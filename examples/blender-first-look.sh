@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A first look at a shot in Blender: builds the Python module where it is missing, and renders two pictures.
+# A first look at a shot in Blender: builds the Python module if it is missing, and renders two pictures.
 #   examples/blender-first-look.sh [SHOT.toml [OPTION…]]     default: examples/first-shot.toml, into baked/first-look
 #   OPTION: --out DIR, --frames A,B, --samples N, --size WxH
 set -euo pipefail
@@ -21,7 +21,8 @@ if ! compgen -G "$module/pelagic.*.so" >/dev/null; then
 fi
 command -v blender >/dev/null || install_packages
 
-# Of options given twice the later counts: the caller's. Without --python-exit-code Blender hides a script's failure.
+# If an option is given twice, the caller's counts: it is the later one. Blender needs --python-exit-code to
+# report a script's failure.
 PYTHONPATH=$module PYTHONDONTWRITEBYTECODE=1 blender -b --factory-startup --python-exit-code 1 \
     --python "$here/blender-first-look.py" -- "$shot" --out "$PELAGIC_ROOT/baked/first-look" --size 960x540 "$@"
 

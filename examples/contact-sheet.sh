@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Renders a picture of each example shot and puts them on one sheet. Some minutes.
-#   examples/contact-sheet.sh [DIR]      DIR: where the pictures go, default examples/gallery
+# Renders a picture of each example shot and puts them on one sheet. Takes some minutes.
+#   examples/contact-sheet.sh [DIR]      DIR: the folder for the pictures, default examples/gallery
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
     sed -n '2,3s/^# //p' "$0"

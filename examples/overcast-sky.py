@@ -13,20 +13,20 @@ import numpy as np
 
 WIDTH, HEIGHT = 512, 256
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear Rec. 709
-ILLUMINANCE = 15.0  # [klx] on the ground: a usual grey day
+ILLUMINANCE = 15.0  # [klx] on the ground: an ordinary grey day
 CLOUD_BASE_KM = 1.5
 EARTH_KM = 6371.0
 LARGEST_CLOUD_KM = 5.0
 OCTAVES = 6
 CONTRAST = 0.8  # of the clouds: exponent on a noise of variance about 0.1
-THIN, THICK = np.array([1.02, 1.0, 0.95]), np.array([0.90, 0.99, 1.20])  # tints: grey-blue where less comes through
-GLOW_AZIMUTH, GLOW_ELEVATION, GLOW_WIDTH = np.radians([20.0, 35.0, 22.0])  # where the sun is behind it all
+THIN, THICK = np.array([1.02, 1.0, 0.95]), np.array([0.90, 0.99, 1.20])  # tints: grey-blue for thick clouds
+GLOW_AZIMUTH, GLOW_ELEVATION, GLOW_WIDTH = np.radians([20.0, 35.0, 22.0])  # the sun behind the clouds
 GLOW = 0.6
 
 
 def lattice(x, y, octave):
-    """A random number, −1 … 1, for each pair of integers."""
-    with np.errstate(over="ignore"):  # the products are meant modulo 2³²
+    """A random number in −1 … 1 for each pair of integers."""
+    with np.errstate(over="ignore"):  # the products are meant to wrap modulo 2³²
         h = x.astype(np.uint32) * np.uint32(0x9E3779B1) ^ y.astype(np.uint32) * np.uint32(0x85EBCA77)
         h ^= np.uint32(octave) * np.uint32(0xC2B2AE3D)
         for shift, factor in ((15, 0x2C1B3C6D), (12, 0x297A2D39)):
@@ -36,7 +36,7 @@ def lattice(x, y, octave):
 
 
 def noise(x, y, octave):
-    """Smooth between the lattice's numbers."""
+    """Interpolates smoothly between the lattice's numbers."""
     i, j = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
     s, t = x - i, y - j
     s, t = s**3 * (s * (6 * s - 15) + 10), t**3 * (t * (6 * t - 15) + 10)
@@ -46,18 +46,18 @@ def noise(x, y, octave):
 
 
 def clouds(direction):
-    """Noise on the clouds' base, a sphere round the earth, without what is smaller there than a pixel."""
+    """Noise on the clouds' base, a sphere round the earth, without details smaller than a pixel."""
     up = direction[..., 2]
     radius = EARTH_KM * up
     distance = -radius + np.sqrt(radius**2 + CLOUD_BASE_KM * (2 * EARTH_KM + CLOUD_BASE_KM))
     x, y = direction[..., 0] * distance, direction[..., 1] * distance
-    # A pixel sees this much of the base: it is longest away from the eye, where the base is seen at a slant.
+    # The length of cloud base in a pixel, which grows where it is seen at a slant.
     slant = np.sqrt(up**2 + 2 * CLOUD_BASE_KM / EARTH_KM)
     footprint = distance * np.pi / HEIGHT / slant
     total = np.zeros_like(up)
     for octave in range(OCTAVES):
         size = LARGEST_CLOUD_KM / 2.0**octave
-        turn = 0.6 * octave  # so that the lattices don't line up
+        turn = 0.6 * octave  # rotates the lattices against each other
         u, v = np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y
         seen = np.exp(-((footprint / size) ** 2))
         total += seen * 0.6**octave * noise(u / size + 17.3 * octave, v / size - 9.1 * octave, octave)
@@ -66,7 +66,7 @@ def clouds(direction):
 
 def sky(direction):
     up = np.maximum(direction[..., 2], 0.0)
-    overcast = (1 + 2 * up) / 3  # Moon & Spencer 1942, since then the CIE's standard overcast sky
+    overcast = (1 + 2 * up) / 3  # Moon & Spencer 1942, later the CIE standard overcast sky
     cloud = clouds(np.concatenate([direction[..., :2], up[..., None]], axis=-1))
     hidden = np.array([np.cos(GLOW_ELEVATION) * np.cos(GLOW_AZIMUTH),
                        np.cos(GLOW_ELEVATION) * np.sin(GLOW_AZIMUTH), np.sin(GLOW_ELEVATION)])
@@ -79,7 +79,7 @@ def sky(direction):
 
 
 def picture():
-    """Rows from the top. The clouds' mean is chance: what the sky gives is not."""
+    """Rows from the top. Scaled to ILLUMINANCE, because the clouds' mean is random."""
     azimuth = np.pi - 2 * np.pi * (np.arange(WIDTH) + 0.5) / WIDTH
     elevation = np.pi / 2 - np.pi * (np.arange(HEIGHT) + 0.5) / HEIGHT
     elevation, azimuth = np.meshgrid(elevation, azimuth, indexing="ij")
@@ -89,14 +89,14 @@ def picture():
     upper = (elevation > 0)[..., None]
     share = np.where(upper, radiance * (np.sin(elevation) * np.cos(elevation))[..., None], 0.0)
     irradiance = share.sum(axis=(0, 1)) * (np.pi / HEIGHT) * (2 * np.pi / WIDTH)
-    # The sea below sends back a fifteenth of what comes down.
+    # The sea below reflects a fifteenth of the light.
     return np.where(upper, radiance, irradiance / np.pi / 15) * (ILLUMINANCE / (irradiance @ LUMINANCE))
 
 
 def save(pixels, path):
     image = bpy.data.images.new("overcast", WIDTH, HEIGHT, alpha=False, float_buffer=True)
     rgba = np.ones((HEIGHT, WIDTH, 4), dtype=np.float32)
-    rgba[..., :3] = pixels[::-1]  # Blender's rows are from the bottom
+    rgba[..., :3] = pixels[::-1]  # Blender's rows begin at the bottom
     image.pixels.foreach_set(rgba.ravel())
     settings = bpy.context.scene.render.image_settings
     settings.file_format, settings.color_mode = "OPEN_EXR", "RGB"

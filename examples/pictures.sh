@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Renders the five pictures of the README from their shots in examples/pictures, on the CPU. Some minutes.
-#   examples/pictures.sh [DIR]      DIR: where the JPEGs go, default examples/gallery
+# Renders the five pictures of the README from their shots in examples/pictures, on the CPU. Takes some
+# minutes.
+#   examples/pictures.sh [DIR]      DIR: the folder for the JPEGs, default examples/gallery
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
     sed -n '2,3s/^# //p' "$0"
@@ -15,7 +16,7 @@ build release pelagic >/dev/null
 mkdir -p "$out"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-# Each with the stops that a photographer would give it.
+# Each picture with its exposure correction in stops.
 for picture in noon:0.5 low-sun:-0.5 overcast:0.4 storm:0.4 from-8-km:-0.4; do
     shot=${picture%%:*}
     "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$shot.toml" --frames 12 --samples 2 \

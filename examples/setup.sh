@@ -20,7 +20,7 @@ install_packages() {
     local as_root=()
     if [ "$(id -u)" -ne 0 ]; then
         command -v sudo >/dev/null || {
-            echo "These packages are missing and neither root nor sudo is at hand:" $missing >&2
+            echo "These packages are missing, and this user is neither root nor has sudo:" $missing >&2
             return 1
         }
         as_root=(sudo)

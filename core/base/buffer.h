@@ -1,6 +1,5 @@
-// Memory for numbers that vectors read: aligned to a cache line, zero at first, in huge pages where it is
-// large (a transform that walks down the columns of a large grid would otherwise miss the page table at every
-// step).
+// Memory for vectorised loops: aligned to a cache line, zero-initialised, in huge pages where it is large.
+// (With small pages a transform along the columns of a large grid would miss the TLB at every step.)
 #pragma once
 
 #include <sys/mman.h>
@@ -16,8 +15,8 @@ namespace pelagic {
 template <class T>
 class Buffer {
   public:
-    // Loops may read, and write, this many values beyond size(): as many as the longest vector has floats,
-    // whatever T is (doubles are read beside floats, lane by lane).
+    // Loops may read and write this many values beyond size(): the floats of the longest vector, whatever T
+    // is, because mixed loops read doubles lane by lane beside floats.
     static constexpr std::size_t kSlack = 64 / sizeof(float);
 
     Buffer() = default;
@@ -29,8 +28,8 @@ class Buffer {
         if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
         data_.reset(static_cast<T*>(memory));
 #ifdef MADV_HUGEPAGE
-        // A wish: refused is fine. The last, partial page stays as it is: it would be memory that nobody has
-        // counted.
+        // A hint: failure is fine. The last, partial huge page is left out: it would take memory that the
+        // plan doesn't count.
         if (alignment == kHugePage) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
 #endif
         std::memset(data_.get(), 0, bytes);

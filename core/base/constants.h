@@ -1,4 +1,4 @@
-// Numbers that several rooms need under one name.
+// Mathematical constants.
 #pragma once
 
 #include <numbers>

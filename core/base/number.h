@@ -1,8 +1,8 @@
-// What formulas need that are written once for plain numbers, for vectors of them (pack-inl.h) and for GLSL
-// (plugin/preview/prelude.glsl): *.inl files, included here and there inside the namespace that holds the
-// operations on their kind of number, and handed to OpenGL as text. So they keep to what both languages have
-// (plugin/preview/shader_source.h says which lines are changed on the way): arguments by value, structs made
-// by their constructor, `T(2)` for numbers, and no `auto`.
+// The operations of formulas that are written once (*.inl) and compiled for scalars (here), for SIMD vectors
+// (pack-inl.h) and for GLSL (plugin/preview/prelude.glsl). Each includer does so inside the namespace with
+// the operations of its number type; OpenGL gets the text. So *.inl files use only what both languages have
+// (plugin/preview/shader_source.h lists the lines that it adapts): arguments by value, structs made by their
+// constructor, `T(2)` for numbers, no `auto`.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ T magnitude(T x) {
     return std::abs(x);
 }
 template <class T>
-T minus_product(T c, T a, T b) {  // c − ab; vectors round once where the CPU can
+T minus_product(T c, T a, T b) {  // c − ab; with one rounding where vectors have FMA
     return c - a * b;
 }
 template <class T>

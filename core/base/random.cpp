@@ -30,7 +30,7 @@ std::array<double, 2> normal_pair(std::array<std::uint32_t, 4> counter, std::uin
     const auto wide = [](std::uint32_t high, std::uint32_t low) {
         return (static_cast<std::uint64_t>(high) << 32) | low;
     };
-    // (0, 1]: the logarithm below never sees 0; the smallest value, 2^-64, bounds |ξ| by √(128 ln 2).
+    // u in (0, 1], so that its logarithm is finite. The smallest value, 2^-64, bounds |ξ| by √(128 ln 2).
     const double u = (static_cast<double>(wide(bits[0], bits[1])) + 1.0) * 0x1p-64;
     const double angle = 2.0 * std::numbers::pi * (static_cast<double>(wide(bits[2], bits[3])) * 0x1p-64);
     const double radius = std::sqrt(-2.0 * std::log(std::min(u, 1.0)));

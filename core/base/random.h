@@ -1,5 +1,5 @@
-// Counter-based random numbers: a pure function of a key and a counter, so that a value never depends on the
-// order in which it is drawn, on threads or on how many others are.
+// Counter-based random numbers: a pure function of key and counter. So a value doesn't depend on the order of
+// drawing, on threads or on how many others are drawn.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// A view of n values somewhere in the caller's memory, a fixed number of bytes apart: how results reach
-// buffers that others own (numpy arrays, Blender's vertices, interleaved GPU uploads) without a copy.
+// A view of n values in the caller's memory, a fixed number of bytes apart. Results reach numpy arrays,
+// Blender's vertices or interleaved GPU buffers without a copy.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace pelagic {
 
-// Non-owning. T is the element as it lies in memory, e.g. glm::vec3 for three packed floats. An empty view
-// (data == nullptr) means "not wanted" where a Strided is an output.
+// Non-owning. T is the element as it lies in memory, e.g. glm::vec3 for three packed floats. As an output, an
+// empty view (data == nullptr) means "not wanted".
 template <class T>
 struct Strided {
     T* data = nullptr;

@@ -1,6 +1,6 @@
-// Why this model and not one of the usual fits: a fit (Preetham 1999, Hosek & Wilkie 2012) ends where the sun
-// touches the horizon and gives the sky alone; low suns and twilight are what a sea is filmed in, and the
-// sun's disc has to go with its sky. What the integral needs is a handful of measured constants, below.
+// Why not one of the usual fits (Preetham 1999, Hosek & Wilkie 2012)? They end when the sun reaches the
+// horizon, and they give the sky without its sun. Films of the sea need low suns and twilight, and a sun that
+// matches its sky. The integral needs only the few measured constants below.
 #include "core/lighting/atmosphere.h"
 
 #include <tbb/parallel_for.h>
@@ -18,37 +18,36 @@ namespace pelagic {
 namespace {
 
 constexpr double kEarth_km = 6371.0;
-constexpr double kTop_km = 100.0;       // 1e-6 of the air is above
+constexpr double kTop_km = 100.0;       // 1e-6 of the air lies higher
 constexpr double kSunRadius = 0.00465;  // [rad]
 
-// Density falls off exponentially with these heights; the ozone is a tent, its column 300 Dobson units.
+// Scale heights of the exponential densities. Ozone has a triangular profile; its column is 300 Dobson units.
 constexpr double kAirScale_km = 8.0, kHazeScale_km = 1.2;
 constexpr double kOzoneMiddle_km = 25.0, kOzoneHalfWidth_km = 15.0;
 constexpr double kOzoneColumn_per_m2 = 300.0 * 2.687e20;
 
-// The haze: Ångström's law, and the asymmetry and absorption of particles over a sea with some land not too
-// far (marine ones alone: exponent 0.5, albedo 0.99; continental: 1.3, 0.93).
+// Haze: Ångström exponent and single-scattering albedo of particles over a sea with some land around (purely
+// marine: 0.5 and 0.99; continental: 1.3 and 0.93).
 constexpr double kHazeReference_um = 0.55, kHazeExponent = 1.0, kHazeAlbedo = 0.97;
-// Two Henyey–Greenstein lobes, mean cosine 0.73: the one forward is the aureole.
+// Two Henyey–Greenstein lobes with a mean cosine of 0.73. The forward lobe makes the aureole.
 constexpr double kHazeForward = 0.80, kHazeBackward = -0.45, kHazeForwardShare = 0.945;
 
-// What the sea, and what little land there is, sends back up.
+// The ground's albedo, that of the sea.
 const double kGroundAlbedo = static_cast<double>(diffuse_fresnel());
 
-// Optical thickness of all the air above the sea: Hansen & Travis 1974 for 1013 hPa.
+// Optical thickness of the whole air column at 1013 hPa: Hansen & Travis 1974.
 double air_thickness(double um) {
     const double per = 1.0 / (um * um);
     return 0.008569 * per * per * (1.0 + 0.0113 * per + 0.00013 * per * per);
 }
 
-// Optical thickness of the ozone: its Chappuis band, 5.0e-25 m² at 0.595 μm, as a bell.
+// Optical thickness of the ozone: its Chappuis band as a Gaussian, with a peak of 5.0e-25 m² at 0.595 μm.
 double ozone_thickness(double um) {
     const double x = (um - 0.595) / 0.054;
     return kOzoneColumn_per_m2 * 5.0e-25 * std::exp(-0.5 * x * x);
 }
 
-// The three kinds of matter: densities by height, or columns along a ray, as fractions of the vertical
-// column.
+// Air, haze and ozone: densities at a height, or columns along a ray, as fractions of the vertical column.
 struct Matter {
     double air = 0.0, haze = 0.0, ozone = 0.0;
 };
@@ -61,7 +60,8 @@ Matter density(double height_km) {
             std::max(0.0, 1.0 - off) / kOzoneHalfWidth_km};
 }
 
-// Distance to the top of the air, from a radius and for a cosine with the vertical.
+// Distance to the top of the atmosphere along a ray, from its start's radius and its cosine with the
+// vertical.
 double to_top(double radius, double cosine) {
     constexpr double top = kEarth_km + kTop_km;
     return -radius * cosine + std::sqrt(std::max(0.0, top * top - radius * radius * (1.0 - cosine * cosine)));
@@ -71,8 +71,8 @@ double horizon_distance(double radius) {
     return std::sqrt(std::max(0.0, radius * radius - kEarth_km * kEarth_km));
 }
 
-// Columns of matter from a height up to the top, along rays that don't meet the ground, tabulated over the
-// distance to the horizon and the distance to the top: in both, rays that skim the ground have room.
+// Columns of matter from a height to the top, along rays that miss the ground. The table's axes are the
+// distance to the horizon and the distance to the top, which give resolution to grazing rays.
 class Columns {
   public:
     Columns() : table_(kHeights * kDistances) {
@@ -87,8 +87,8 @@ class Columns {
         }
     }
 
-    // cosine: of the ray with the vertical; those that meet the ground get the column of the one that skims
-    // it.
+    // cosine: between the ray and the vertical. Rays that meet the ground get the column of the ray that
+    // grazes it.
     Matter operator()(double radius, double cosine) const {
         const double horizon = horizon_distance(radius);
         const double least = kEarth_km + kTop_km - radius, most = horizon + kFarthest;
@@ -109,12 +109,12 @@ class Columns {
         return {mixed(&Matter::air), mixed(&Matter::haze), mixed(&Matter::ozone)};
     }
 
-    // The same without the table, along the ray from this radius that reaches the top at distance d.
+    // The same without the table, for the ray from this radius that reaches the top at distance d.
     static Matter integrated(double radius, double d) {
         constexpr double top = kEarth_km + kTop_km;
         const double cosine =
             d > 0.0 ? std::clamp((top * top - radius * radius - d * d) / (2.0 * radius * d), -1.0, 1.0) : 1.0;
-        // Steps are short round the lowest point, where the density changes most.
+        // Steps are shortest near the lowest point, where the density changes most.
         const double lowest = std::clamp(-radius * cosine, 0.0, d);
         Matter column;
         for (const double length : {-lowest, d - lowest}) {
@@ -141,7 +141,7 @@ class Columns {
     std::vector<Matter> table_;
 };
 
-// What of a disc is above a line, that is `above` radii below its middle.
+// The fraction of a disc above a line that lies `above` radii below its centre.
 double part_above(double above) {
     const double x = std::clamp(above, -1.0, 1.0);
     return 0.5 + (x * std::sqrt(1.0 - x * x) + std::asin(x)) / kPi;
@@ -157,7 +157,7 @@ constexpr std::size_t kBandCount = kBands;
 }  // namespace
 
 double air_phase(double cosine) {
-    return 3.0 / (16.0 * kPi) * (1.0 + cosine * cosine);  // Rayleigh, the molecules taken as round
+    return 3.0 / (16.0 * kPi) * (1.0 + cosine * cosine);  // Rayleigh, without the molecules' anisotropy
 }
 
 double haze_phase(double cosine) {
@@ -210,37 +210,38 @@ class Atmosphere::Tables {
 
   private:
     static constexpr int kViewSteps = 48, kGatherSteps = 24;
-    // The table of further scatterings: heights grow with the cube of the index, so that the haze has some;
-    // elevations of the sun are those met between the observer and the farthest air in sight, 10° away round
-    // the earth.
+    // The table of multiple scattering. Heights grow with the cube of the index, which resolves the haze. The
+    // sun's elevations cover all those between the observer and the farthest visible air, 10° away round the
+    // earth.
     static constexpr std::size_t kHeights = 20, kElevations = 15;
     static constexpr double kReach = 11.0 * kPi / 180.0;
-    static constexpr int kGatherElevations = 20, kGatherAzimuths = 5;  // of a half circle
+    static constexpr int kGatherElevations = 20, kGatherAzimuths = 5;  // azimuths of a half circle
 
-    // An angle round the earth's middle, from where the ray starts.
+    // The angle at the earth's centre between the ray's start and a point of the ray.
     struct Turn {
         double sine = 0.0, cosine = 1.0;
     };
-    // A piece of a ray, small enough for its middle to stand for it.
+    // A segment of a ray, evaluated at its middle.
     struct Piece {
         double radius = 0.0;
         Turn turn;
-        // What of the light that falls on the piece it sends to the ray's start, without the phase functions.
+        // The share of light that falls on the segment and is scattered to the ray's start, without phase
+        // functions.
         BandValues by_air{}, by_haze{};
     };
     struct Ray {
         std::vector<Piece> pieces;
-        bool ground = false;  // where it ends, or in space
+        bool ground = false;  // the ray ends on the ground, otherwise in space
         Turn end;
-        BandValues passed{};  // what comes through from its end
+        BandValues passed{};  // transmittance from its end to its start
     };
-    // The sun over a vertical plane that makes this angle with the sun's own.
+    // The sun's direction relative to a vertical plane, at this azimuth from the sun.
     struct Sun {
         Sun(double elevation, double azimuth)
             : along(std::cos(elevation) * std::cos(azimuth)), up(std::sin(elevation)) {}
-        // Of its angle with the vertical, that far round the earth in the plane.
+        // Cosine of the sun's zenith angle at a point of the plane.
         double cosine(Turn turn) const { return along * turn.sine + up * turn.cosine; }
-        // Of the angle by which its light is turned into a ray of the plane, seen against the ray.
+        // Cosine of the scattering angle from the sun into a ray of the plane.
         double turned_into(double elevation) const {
             return along * std::cos(elevation) + up * std::sin(elevation);
         }
@@ -251,10 +252,10 @@ class Atmosphere::Tables {
         return air_[b] * column.air + haze_[b] * column.haze + ozone_[b] * column.ozone;
     }
 
-    // The sunlight at a point: through the air, and less what of the disc is below the horizon there. False,
-    // and nothing written, where that is all of it.
+    // The sunlight at a point: transmittance times the fraction of the disc above the local horizon. Returns
+    // false and writes nothing if the whole disc is below.
     bool sunlight(double radius, double cosine, BandValues& light) const {
-        const double horizon = -horizon_distance(radius) / radius;  // cosine of its angle with the vertical
+        const double horizon = -horizon_distance(radius) / radius;  // cosine of its zenith angle
         double part = 1.0;
         if (cosine < horizon + 2.0 * kSunRadius) {
             part = part_above((std::asin(std::clamp(cosine, -1.0, 1.0)) - std::asin(horizon)) / kSunRadius);
@@ -281,7 +282,7 @@ class Atmosphere::Tables {
         ray.end = turn_at(length);
         ray.pieces.resize(static_cast<std::size_t>(steps));
         for (int i = 0; i < steps; ++i) {
-            // Cubes: most of what an eye in dense air sees is near, however far the ray goes.
+            // Cubic spacing: most of the light comes from nearby dense air, however long the ray is.
             const auto at = [&](double s) { return length * s * s * s; };
             const double from = at(static_cast<double>(i) / steps), to = at((i + 1.0) / steps);
             const double middle = 0.5 * (from + to);
@@ -291,7 +292,7 @@ class Atmosphere::Tables {
                 std::clamp(std::hypot(middle * across, radius + middle * up), kEarth_km, kEarth_km + kTop_km);
             const Matter here = density(piece.radius - kEarth_km);
             for (std::size_t b = 0; b < kBandCount; ++b) {
-                // The integral over a piece of even density, which is right for thick pieces, too.
+                // The integral over a segment of constant density, exact for thick segments as well.
                 const double extinction = thickness(here, b);
                 const double passed = std::exp(-extinction * (to - from));
                 const double seen =
@@ -304,16 +305,16 @@ class Atmosphere::Tables {
         return ray;
     }
 
-    // One height's row of the table. For each elevation of the sun: the mean over all directions of the light
-    // that was scattered once or sent back by the ground, over 1 − f, f being the share of an even light from
-    // all round that is scattered back to where it came from: the sum of all further scatterings' radiance.
+    // Fills one height's row of the table. For each elevation of the sun: the mean over all directions of the
+    // light scattered once or reflected by the ground, divided by 1 − f. Here f is the share of isotropic
+    // light that is scattered back. The result is the radiance of all further orders of scattering.
     void gather(std::size_t height, const std::vector<double>& haze_turns) {
         const double x = static_cast<double>(height) / (kHeights - 1);
         const double radius = kEarth_km + kTop_km * x * x * x;
         BandValues* row = &more_[height * kElevations];
         BandValues again{};
         for (int i = 0; i < kGatherElevations; ++i) {
-            // Equal steps of angle: denser near the horizon, where the air is thick, than equal solid angles.
+            // Equal steps of elevation resolve the dense air near the horizon better than equal solid angles.
             const double from = kPi * i / kGatherElevations - 0.5 * kPi, to = from + kPi / kGatherElevations;
             const double share = 0.5 * (std::sin(to) - std::sin(from)) / kGatherAzimuths;
             const double elevation = 0.5 * (from + to);
@@ -333,12 +334,12 @@ class Atmosphere::Tables {
             for (std::size_t b = 0; b < kBandCount; ++b) row[j][b] /= 1.0 - again[b];
     }
 
-    // By how much the light that haze, air or ground sends into a ray counts.
+    // Weights of the light that haze, air and ground send into a ray.
     struct Weights {
         double air, haze, ground;
     };
 
-    // Adds the light that comes down the ray after having been turned once.
+    // Adds the light that reaches the ray's start after exactly one scattering or reflection.
     void add_once(const Ray& ray, const Sun& sun, const Weights& weights, BandValues& sum) const {
         BandValues light;
         for (const Piece& piece : ray.pieces)
@@ -356,8 +357,8 @@ class Atmosphere::Tables {
                static_cast<std::size_t>(azimuth);
     }
 
-    // The haze's phase function for each ray of gather() and each sun: the mean over the ray's part of the
-    // sphere, which is wider than the forward lobe.
+    // The haze's phase function for each ray of gather() and each sun, averaged over the ray's solid angle,
+    // which is wider than the forward lobe.
     std::vector<double> haze_turns() const {
         constexpr int kParts = 6;
         std::vector<double> means(kGatherElevations * kElevations * kGatherAzimuths);
@@ -404,7 +405,7 @@ class Atmosphere::Tables {
     double sun_elevation_;
     BandValues air_{}, haze_{}, ozone_{};  // vertical optical thickness
     Columns columns_;
-    std::vector<BandValues> more_;  // by height and elevation of the sun
+    std::vector<BandValues> more_;  // by height and sun elevation
 };
 
 Atmosphere::Atmosphere(double turbidity, double sun_elevation_rad)

@@ -1,15 +1,15 @@
-// Sunlight in clear air over the sea: what reaches the ground straight, and what is scattered on the way.
+// Sunlight in clear air over the sea: direct light at the ground, and light scattered on the way.
 //
-// A round earth under air, haze and ozone that depend on height alone; the light of a sun far away, absorbed
-// and scattered by wavelength. The first scattering is integrated along the line of sight. All further ones
-// are closed in the way of Hillaire 2020 ("A scalable and production ready sky and atmosphere rendering
-// technique"): the second is gathered over all directions at each height and elevation of the sun, each later
-// one is taken to be isotropic and, since what lights a place differs little from what lights its
-// neighbourhood, the one before times one fraction f of the height; so that the sum of all is the geometric
-// series 1/(1 − f).
+// The model: a spherical earth with air, haze and ozone whose densities depend on height alone, and parallel
+// light from a distant sun, absorbed and scattered by wavelength. Single scattering is integrated along the
+// line of sight. Higher orders follow Hillaire 2020 ("A scalable and production ready sky and atmosphere
+// rendering technique"): the second order is gathered over all directions, for each height and elevation of
+// the sun. Later orders are taken as isotropic, and since neighbouring places are lit nearly alike, each is
+// the previous one times a factor f that depends on height. Their sum is a geometric series with the factor
+// 1/(1 − f).
 //
-// Values are by band (sunlight.h), as fractions of the sunlight outside: irradiance 1 gives radiance [1/sr].
-// Heights and distances are in km, as the tables of air are.
+// Values are per band (sunlight.h), relative to the sunlight outside the atmosphere: irradiance 1 gives
+// radiance in 1/sr. Heights and distances are in km, as in the published tables of air.
 #pragma once
 
 #include <memory>
@@ -22,21 +22,20 @@ namespace pelagic {
 
 class Atmosphere {
   public:
-    // turbidity T: at 0.55 μm air and haze together have T times the optical thickness of air alone, ≥ 1.
-    // The sun's elevation is that of the observer, at sea level.
+    // turbidity T ≥ 1: at 0.55 μm, air and haze together have T times the optical thickness of air alone. The
+    // sun's elevation is as seen by the observer at sea level.
     Atmosphere(double turbidity, double sun_elevation_rad);
 
-    // What of the sunlight comes through to sea level from this elevation, ≥ 0, along the straight ray
-    // (without refraction).
+    // Transmittance from space to sea level at this elevation ≥ 0, along a straight ray (no refraction).
     BandValues transmittance(double elevation_rad) const;
 
-    // Light scattered towards the sea from one direction. The first two are still to be multiplied with their
-    // phase functions: without them they are smooth even at the sun.
+    // Light scattered towards the observer from one direction. by_air and by_haze lack their phase functions,
+    // which the caller multiplies in: without them they are smooth even at the sun.
     struct Scattered {
-        BandValues by_air{}, by_haze{};  // once
-        BandValues more{};               // more than once: radiance as it is
+        BandValues by_air{}, by_haze{};  // scattered once
+        BandValues more{};               // scattered more than once: complete
     };
-    // From one elevation ≥ 0, for each of these azimuths from the sun's.
+    // For one elevation ≥ 0 and each of these azimuths relative to the sun's.
     std::vector<Scattered> scattered(double elevation_rad, std::span<const double> azimuths_rad) const;
 
     ~Atmosphere();
@@ -46,7 +45,7 @@ class Atmosphere {
     std::unique_ptr<const Tables> tables_;
 };
 
-// Phase functions [1/sr], of the cosine of the angle by which light is turned.
+// Phase functions [1/sr] of the cosine of the scattering angle.
 double air_phase(double cosine);
 double haze_phase(double cosine);
 

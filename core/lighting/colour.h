@@ -12,7 +12,7 @@ namespace pelagic {
 // The CIE 1931 colour-matching functions at a wavelength [nm], the multi-lobe fits of Wyman, Sloan, Shirley
 // 2013.
 inline glm::dvec3 observed_xyz(double nm) {
-    // A bell with two widths.
+    // A Gaussian with different widths on either side.
     struct Lobe {
         double height, middle, below, above;  // all but the first [nm]
         double at(double x) const {
@@ -26,8 +26,7 @@ inline glm::dvec3 observed_xyz(double nm) {
     return {x1.at(nm) + x2.at(nm) + x3.at(nm), y1.at(nm) + y2.at(nm), z1.at(nm) + z2.at(nm)};
 }
 
-// IEC 61966-2-1: XYZ to the primaries of Rec. 709 with its white, D65. Negative where the colour is purer
-// than the primaries.
+// IEC 61966-2-1: XYZ to linear Rec. 709 with white D65. Negative for colours outside its gamut.
 inline glm::dvec3 rec709_of(glm::dvec3 xyz) {
     return {3.2406 * xyz.x - 1.5372 * xyz.y - 0.4986 * xyz.z,
             -0.9689 * xyz.x + 1.8758 * xyz.y + 0.0415 * xyz.z,
@@ -38,8 +37,8 @@ inline double luminance(glm::dvec3 rec709) {
     return glm::dot(rec709, glm::dvec3(0.2126, 0.7152, 0.0722));
 }
 
-// The colour of the same luminance and, as near as can be, the same hue that has no negative component: mixed
-// with grey of its own luminance just far enough. Continuous; luminances ≤ 0 give black.
+// Moves a colour into the gamut: mixes it with grey of the same luminance until no component is negative.
+// Keeps luminance, and hue as far as possible. Continuous; luminances ≤ 0 give black.
 inline glm::dvec3 into_gamut(glm::dvec3 rec709) {
     const double y = luminance(rec709);
     if (!(y > 0.0)) return glm::dvec3(0.0);

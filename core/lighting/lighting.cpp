@@ -11,7 +11,7 @@ namespace shading {
 
 using namespace glm;
 
-// The shared source as members of a struct, one for each variant: its constants fold.
+// The shared source as members of a struct, one instance per variant, so that its constants fold.
 template <LightingChoice kChoice>
 struct Shading {
     explicit Shading(const SkyMap& sky_map) : map(sky_map), kSkyMapSize(static_cast<float>(sky_map.size())) {}
@@ -27,7 +27,7 @@ struct Shading {
 
     vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
 
-// In this order: each may use those before it.
+// The order matters: each file uses those before it.
 // clang-format off
 #include "core/lighting/special.glsl"
 #include "core/lighting/fresnel.glsl"
@@ -57,7 +57,7 @@ void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoin
     }
 }
 
-// Every variant has a number: four bits for the terms, one for Fresnel, and the sky's quality.
+// A variant's number: four bits for the terms, one for Fresnel, and the sky's quality.
 constexpr std::size_t kVariants = 16 * 2 * 3;
 
 constexpr std::size_t number_of(const LightingChoice& c) {
@@ -75,7 +75,7 @@ constexpr LightingChoice choice_of(std::size_t number) {
             .fresnel = FresnelFit(number / 16 % 2)};
 }
 
-// What makes no difference has one variant only.
+// Maps choices that give equal results to one variant.
 constexpr LightingChoice canonical(LightingChoice c) {
     if (!c.sky) c.sky_quality = SkyQuality::One;
     if (!c.sky && !c.water) c.fresnel = FresnelFit::Paper;

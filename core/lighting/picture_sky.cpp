@@ -1,10 +1,10 @@
-// A picture of a sky: its sun is cut out and becomes the disc, the rest is resampled into the map.
+// Makes a sky from a picture: its sun is cut out and becomes the disc; the rest is resampled into the map.
 //
-// What is a sun. The brightest pixel with what is near it (kReach) is one where it outshines the ring around
-// by kStandsOut: a sun, even one clipped by the camera or spread over a coarse pixel, is 100 … 100 000 times
-// brighter than the sky beside it, a cloud's edge or haze round a hidden sun at most some 5 times. Then every
-// pixel near it that is kTakenOut times brighter than the ring is taken out and filled from those next to it:
-// the sun's own glow stays in the sky.
+// What counts as a sun: the brightest pixel and its neighbourhood (kReach), if that pixel is kStandsOut times
+// as bright as the ring around it. A sun, even one clipped by the camera or spread over a coarse pixel, is
+// 100 … 100 000 times as bright as the sky beside it; a cloud's edge or the haze round a hidden sun is at
+// most some 5 times as bright. Every nearby pixel that is kTakenOut times as bright as the ring is then
+// removed and filled in from its neighbours. The sun's glow stays in the sky.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -25,10 +25,10 @@
 namespace pelagic {
 namespace {
 
-constexpr double kReach = 4.0 * kPi / 180.0;      // [rad] from the brightest pixel: discs and cameras' glare
+constexpr double kReach = 4.0 * kPi / 180.0;      // [rad] from the brightest pixel: disc and glare
 constexpr double kRingWidth = 2.0 * kPi / 180.0;  // [rad]
 constexpr double kStandsOut = 16.0, kTakenOut = 4.0;
-constexpr float kBrightest = 1e30f;  // no sum or disc made of it leaves single precision's range
+constexpr float kBrightest = 1e30f;  // sums and the disc stay finite in single precision
 
 void check(const LatLong& picture) {
     const auto size_text = std::to_string(picture.width) + " x " + std::to_string(picture.height);
@@ -49,7 +49,7 @@ void check(const LatLong& picture) {
         }
 }
 
-// The rows of a picture that see the sky; where the horizon lies inside of a row, it is the last of them.
+// The upper rows of a picture, those that see the sky. The last one may contain the horizon.
 class Upper {
   public:
     explicit Upper(const LatLong& picture)
@@ -79,27 +79,27 @@ class Upper {
         const auto [low, high] = edges(i / width_);
         return pixel_width() * (std::sin(high) - std::sin(low));
     }
-    // Of the cosine with the vertical, over the pixel.
+    // The mean over the pixel of the cosine with the vertical.
     double mean_cosine(std::size_t i) const {
         const auto [low, high] = edges(i / width_);
         return 0.5 * (std::sin(high) + std::sin(low));
     }
 
-    // Between pixels, for directions with z ≥ 0.
+    // Bilinear, for directions with z ≥ 0.
     glm::dvec3 interpolated(glm::dvec3 to) const {
         const double azimuth = to.x == 0.0 && to.y == 0.0 ? 0.0 : std::atan2(to.y, to.x);
         const double y = (0.5 * kPi - std::asin(std::clamp(to.z, 0.0, 1.0))) / pixel_height() - 0.5;
         const double x = (kPi - azimuth) / pixel_width() - 0.5;
         const double row = std::floor(y);
         const double half_turn = 0.5 * static_cast<double>(width_);
-        // Beyond the zenith is the top row again, on the other side.
+        // Beyond the zenith the top row continues on the opposite side.
         const glm::dvec3 above =
             row < 0.0 ? in_row(0, x + half_turn) : in_row(static_cast<std::size_t>(row), x);
         return glm::mix(above, in_row(static_cast<std::size_t>(row + 1.0), x), y - row);
     }
 
-    // Towards the zenith pixels are slivers: each row becomes its running mean over as many columns as make a
-    // pixel as wide as it is high, so that samples a pixel's height apart miss nothing.
+    // Near the zenith pixels are narrow. Averages each row over as many columns as make a pixel as wide as
+    // high, so that samples one pixel height apart miss nothing.
     void round_pixels() {
         for (std::size_t j = 0; j < rows_; ++j) {
             const auto [low, high] = edges(j);
@@ -109,7 +109,7 @@ class Upper {
     }
 
   private:
-    // Elevations that a row spans.
+    // The elevations of a row's edges.
     std::pair<double, double> edges(std::size_t row) const {
         const double high = 0.5 * kPi - pixel_height() * static_cast<double>(row);
         return {std::max(0.0, high - pixel_height()), high};
@@ -126,12 +126,12 @@ class Upper {
         return std::min(static_cast<std::size_t>(column - n * std::floor(column / n)), width_ - 1);
     }
 
-    // Means over `reach` columns to either side of each pixel's middle, from running sums.
+    // Replaces each pixel by the mean over `reach` columns to either side of its middle, from running sums.
     void widen(std::size_t row, double reach) {
         glm::dvec3* pixels = &pixels_[row * width_];
         std::vector<glm::dvec3> sum(width_ + 1, glm::dvec3(0.0));
         for (std::size_t i = 0; i < width_; ++i) sum[i + 1] = sum[i] + pixels[i];
-        const auto up_to = [&](double x) {  // of the row that repeats for ever
+        const auto up_to = [&](double x) {  // integral of the periodic row
             const double turns = std::floor(x / static_cast<double>(width_));
             const double inside = x - turns * static_cast<double>(width_);
             const std::size_t i = std::min(static_cast<std::size_t>(inside), width_ - 1);
@@ -150,13 +150,13 @@ class Upper {
     std::vector<glm::dvec3> pixels_;
 };
 
-// The sun that was taken out.
+// The sun that was removed.
 struct Sun {
     glm::dvec3 irradiance{0.0};  // on a horizontal plane
     glm::dvec3 moment{0.0};      // Σ flux · direction
 };
 
-// The pixels beside those that are taken out.
+// The pixels next to the removed ones.
 std::vector<std::size_t> rim_of(const Upper& picture, const std::vector<std::size_t>& taken) {
     const std::size_t width = picture.width();
     std::vector<std::size_t> beside;
@@ -174,7 +174,7 @@ std::vector<std::size_t> rim_of(const Upper& picture, const std::vector<std::siz
     return rim;
 }
 
-// What the rim suggests for a direction inside: the mean of its pixels, the nearest ones weighing most.
+// Fills the inside of a rim: the mean of the rim's pixels, weighted by inverse squared distance.
 struct Rim {
     std::vector<glm::dvec3> radiance, direction;
 
@@ -196,7 +196,7 @@ Sun take_sun_out(Upper& picture) {
     for (std::size_t i = 1; i < picture.size(); ++i)
         if (luminance(picture[i]) > luminance(picture[brightest])) brightest = i;
 
-    // In a coarse picture the ring starts where the brightest pixel and its neighbours end.
+    // In a coarse picture the ring starts beyond the neighbours of the brightest pixel.
     const double pixel = std::max(picture.pixel_width(), picture.pixel_height());
     const double inner = std::max(kReach, 2.5 * pixel), outer = inner + std::max(kRingWidth, 1.5 * pixel);
     const glm::dvec3 middle = picture.direction(brightest);

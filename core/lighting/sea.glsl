@@ -1,6 +1,5 @@
-// All of the light that a pixel of sea sends to the eye. Found in scope, given by the host, besides
-// sky.glsl's:
-//   const bool kSun, kSky, kWater, kWhitecaps    which terms there are; what is off is not compiled in
+// All light that a pixel of sea sends to the eye. The includer defines, besides what sky.glsl needs:
+//   const bool kSun, kSky, kWater, kWhitecaps    the terms; those that are off are not compiled
 
 struct SeaLight {
     vec3 sun_direction;
@@ -18,9 +17,9 @@ struct SeaTerms {
     vec3 foam;
 };
 
-// to_eye, normal: unit, world; the normal may face away. slope_variance: (σxx, σyy, σxy) of the hidden waves,
-// world axes. The terms already have their shares of the pixel (W for foam, 1 − W for the rest): they are
-// added up.
+// to_eye, normal: unit vectors, world axes; the normal may face away. slope_variance: (σxx, σyy, σxy) of the
+// hidden waves, world axes. Each term is weighted by its share of the pixel (W for foam, 1 − W for the
+// others); their sum is the radiance.
 SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, float coverage, SeaLight light) {
     SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
     SeaTerms terms = SeaTerms(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f));

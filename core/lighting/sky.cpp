@@ -1,9 +1,9 @@
-// Daylight: light scattered in a round atmosphere (atmosphere.h has the model, atmosphere.cpp why this one),
-// in directions that are few but well chosen, and from there into the map.
+// Daylight: light scattered in the atmosphere (model: atmosphere.h, reasons: atmosphere.cpp), computed for a
+// few directions and interpolated into the map.
 //
-// Scattered light without its phase functions changes slowly with the direction, fastest towards the horizon:
-// it is tabulated over the upper hemisphere on one side of the sun (the other is its mirror image), and each
-// sample of the map puts the phase functions, which have the aureole, back in.
+// Scattered light without its phase functions varies slowly with direction, fastest near the horizon. It is
+// tabulated over half of the upper hemisphere, which is symmetric about the sun's azimuth. Each sample of the
+// map then applies the phase functions, which bring back the aureole.
 #include "core/lighting/sky.h"
 
 #include <tbb/parallel_for.h>
@@ -49,7 +49,7 @@ class ScatteredTable {
         });
     }
 
-    // Radiance; both angles as Atmosphere::scattered() has them, and the cosine of the angle with the sun.
+    // Radiance. Angles as for Atmosphere::scattered(); `cosine` is of the angle with the sun.
     glm::dvec3 radiance(double elevation, double azimuth, double cosine) const {
         const double x = std::sqrt(std::clamp(elevation / (0.5 * kPi), 0.0, 1.0)) * kElevations;
         const double y = std::clamp(std::abs(azimuth) / kPi, 0.0, 1.0) * kAzimuths;
@@ -67,7 +67,7 @@ class ScatteredTable {
     }
 
   private:
-    // Elevations grow with the square of the index: 0.02° above the horizon, 3° at the zenith.
+    // Elevations grow with the square of the index: steps of 0.02° at the horizon and 3° at the zenith.
     static constexpr std::size_t kElevations = 64, kAzimuths = 24;
     struct Entry {
         glm::dvec3 by_air{0.0}, by_haze{0.0}, more{0.0};
@@ -75,13 +75,13 @@ class ScatteredTable {
     std::vector<Entry> entries_;
 };
 
-// The sun's disc, as far as it is above the horizon.
+// The part of the sun's disc above the horizon.
 struct Disc {
-    glm::dvec3 radiance{0.0};    // mean over the whole disc, what is below the horizon black
-    double elevation_rad = 0.0;  // of the visible part's middle
+    glm::dvec3 radiance{0.0};    // mean over the whole disc, the part below the horizon counted as black
+    double elevation_rad = 0.0;  // of the visible part's centre
 };
 
-// From strips of equal elevation: near the horizon the lower edge is redder and darker than the upper.
+// Integrates strips of equal elevation: near the horizon the lower edge is redder and darker than the upper.
 Disc disc_at(const Atmosphere& air, double elevation_rad, double radius_rad) {
     constexpr int kStrips = 16;
     const double lowest = std::max(-radius_rad, -elevation_rad);
@@ -97,7 +97,7 @@ Disc disc_at(const Atmosphere& air, double elevation_rad, double radius_rad) {
         sum += light;
         moment += luminance(light) * up;
     }
-    const double area = kPi * radius_rad * radius_rad;  // [sr]: the disc is small
+    const double area = kPi * radius_rad * radius_rad;  // [sr], for a small disc
     disc.radiance = into_gamut(sum) / (area * area);
     if (luminance(sum) > 0.0) disc.elevation_rad += moment / luminance(sum);
     return disc;

@@ -1,23 +1,23 @@
-// The reflected sky: Bruneton et al. 2010, §5.2. Found in scope, given by the host:
+// The reflected sky: Bruneton et al. 2010, §5.2. The includer defines:
 //   const int kSkyLookups          1, 9, or 0 for the integral
 //   const bool kExactFresnel
-//   const float kSkyMapSize        texels a side of the map
+//   const float kSkyMapSize        texels per side of the map
 //   vec3 sky_lookup(vec2 u, float level)    the map, trilinear; u = r_xy/(1 + r_z), level 0 the finest
 
-// What a ray meets that is reflected onto the sea: the map's value below the horizon (§6), found in its
+// The light that a ray reflected downwards meets: the map's value below the horizon (§6), stored in its
 // corner.
 vec3 light_from_below() {
     return sky_lookup(vec2(kSkyMapReach, kSkyMapReach), 0.0f);
 }
 
-// The level whose trilinear lookup (a square's mean, then a tent: a variance of a quarter of a texel's
-// square) has this variance in u.
+// The mip level whose trilinear lookup has this variance in u. (A lookup averages a square and interpolates
+// with a tent: a variance of a quarter of a squared texel.)
 float sky_level(float variance) {
     float texels = kSkyMapSize / (2.0f * kSkyMapReach);
     return max(0.5f * log2(max(4.0f * variance, 1.0e-12f) * texels * texels), 0.0f);
 }
 
-// How u moves when the facet's slope does, from slope (0, 0).
+// Derivatives of u with respect to the facet's slope, at slope (0, 0).
 struct PlaceChange {
     vec2 by_x;
     vec2 by_y;
@@ -36,7 +36,7 @@ PlaceChange place_changes(vec3 to_eye, SlopeFrame frame) {
                        place_change(to_eye, frame.normal, frame.y, u, r.z));
 }
 
-// The effective term of a sea of this tensor, v in the frame.
+// The effective Fresnel term for a given slope variance; v in the frame.
 float effective_fresnel(vec3 v, vec3 variance) {
     float sine2 = v.x * v.x + v.y * v.y;
     float sigma_v = sqrt(variance_towards(v, variance) / max(sine2, 1.0e-12f));
@@ -45,14 +45,14 @@ float effective_fresnel(vec3 v, vec3 variance) {
     return fresnel_effective_exact(v.z, sigma_v, dot(seen.along, seen.along), dot(seen.across, seen.across));
 }
 
-// Fresnel's term of one facet, of the kind that the effective one averages.
+// Fresnel's term of one facet, the one that the effective term averages.
 float facet_fresnel(float cosine) {
     if (kExactFresnel) return fresnel_exact(cosine, kWaterIndex);
     return fresnel_schlick(cosine);
 }
 
-// Eq. 27: one lookup at the average normal's reflection. Trilinear filters are round: theirs has the
-// ellipse's area.
+// Eq. 27: one lookup at the average normal's reflection. Trilinear filters are isotropic, so the filter has
+// the ellipse's area.
 vec3 sky_at_mean_normal(vec3 to_eye, SlopeFrame frame) {
     vec3 r = 2.0f * dot(to_eye, frame.normal) * frame.normal - to_eye;
     PlaceChange change = place_changes(to_eye, frame);
@@ -60,7 +60,7 @@ vec3 sky_at_mean_normal(vec3 to_eye, SlopeFrame frame) {
     return sky_lookup(sky_place(r), sky_level(area * sqrt(determinant_of(frame.variance))));
 }
 
-// What one facet sends to the eye: the sky, as far as no wave is in the way, and else the sea's own light.
+// The reflection of one facet: the sky where no wave blocks it, otherwise the light from below.
 vec3 facet_reflection(vec2 slope, vec3 v, SlopeFrame frame, float level, vec3 below) {
     vec3 f = normalize(vec3(-slope.x, -slope.y, 1.0f));
     vec3 r = 2.0f * dot(v, f) * f - v;
@@ -73,20 +73,19 @@ float facet_cosine(vec2 slope, vec3 v) {
     return max(dot(v, f), 0.0f);
 }
 
-// The best that real time affords: nine lookups for the slopes that the eye sees. Near grazing their mean and
-// spread are not those of all slopes: facets that face the eye count more. All nine differ along the line of
-// sight (a midpoint rule), where Fresnel's term, the horizon and the sky's own gradient are; across it they
-// take turns at 0 and ±√1.5 σ, whose variance is right. Each counts with its own Fresnel term, since the
-// bright facets and the bright sky go together near the horizon; the sum of those weights is the effective
-// term.
+// The best quality in real time: nine lookups over the visible slopes. Near grazing the mean and variance of
+// visible slopes differ from those of all slopes, because facets that face the eye count more. Along the line
+// of sight the nine form a midpoint rule, since Fresnel's term, the horizon and the sky's gradient vary
+// there. Across it they alternate between 0 and ±√1.5 σ, which has the right variance. Each lookup has its
+// own Fresnel weight, because near the horizon reflective facets see bright sky; the weights' sum is the
+// effective term.
 vec3 sky_of_nine(vec3 to_eye, SlopeFrame frame) {
     vec3 v = into_frame(frame, to_eye);
     VisibleSlopes seen = visible_slopes(v, frame.variance);
     float first = max(-seen.tilt, -3.0f);
     float step_along = (3.0f - first) / 9.0f;
 
-    // The lookups blur about as far as half-way to the next one: measured best for smooth skies and cloudy
-    // ones.
+    // Each lookup's blur reaches about halfway to the next: measured to be best for smooth and cloudy skies.
     PlaceChange change = place_changes(to_eye, frame);
     vec2 along = change.by_x * seen.along.x + change.by_y * seen.along.y;
     vec2 across = change.by_x * seen.across.x + change.by_y * seen.across.y;
@@ -107,9 +106,9 @@ vec3 sky_of_nine(vec3 to_eye, SlopeFrame frame) {
     return sum / total;
 }
 
-// Eq. 20 as it stands: every facet with its visibility and Fresnel term, a midpoint rule over the slopes that
-// the eye sees, ±4 σ across and from the steepest facet that is still seen to 4.5 σ along. The weights' sum
-// stands for Eq. 11.
+// Eq. 20 in full: every facet with its visibility and Fresnel term. A midpoint rule over the visible slopes,
+// ±4 σ across, and along from the steepest visible facet to 4.5 σ. Dividing by the weights' sum normalises as
+// Eq. 11.
 vec3 sky_integral(vec3 to_eye, SlopeFrame frame) {
     vec3 v = into_frame(frame, to_eye);
     VisibleSlopes seen = visible_slopes(v, frame.variance);

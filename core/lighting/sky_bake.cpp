@@ -1,4 +1,4 @@
-// Sampling a dome into the stereographic map, and the map's own integral.
+// Samples a dome into the stereographic map, and integrates its irradiance.
 #include "core/lighting/sky_bake.h"
 
 #include <tbb/blocked_range.h>
@@ -28,10 +28,10 @@ struct Fresnel {
 
 }  // namespace shading
 
-// Samples a side where the horizon crosses a texel: it is a line that the eye finds.
+// Samples per side of a texel that the horizon crosses: the eye is sensitive to that line.
 constexpr int kHorizonSamples = 8;
 
-// A texel's part of the dome.
+// The sums over a texel's samples.
 struct Texel {
     glm::dvec3 radiance{0.0};    // sum over the samples above the horizon
     glm::dvec3 irradiance{0.0};  // [radiance sr]

@@ -1,6 +1,6 @@
-// The stereographic map's levels and lookup. The projection: Bruneton, Neyret, Holzschuch 2010, §5.2; the
-// lookup: OpenGL 3.3, sections 3.8.8 (mipmaps) and 3.8.11, so that a texture of the same levels answers
-// alike.
+// The stereographic map's levels and lookup. Projection: Bruneton, Neyret, Holzschuch 2010, §5.2. Lookup:
+// OpenGL 3.3, sections 3.8.8 (mipmaps) and 3.8.11, so that a texture with the same levels gives the same
+// values.
 #include "core/lighting/sky_map.h"
 
 #include <algorithm>
@@ -40,12 +40,12 @@ std::vector<glm::vec3> halved(const std::vector<glm::vec3>& fine, std::size_t fi
     return coarse;
 }
 
-// Bound that gives `low` for what is no number.
+// Clamps x; NaN gives `low`.
 float bounded(float x, float low, float high) {
     return x > low ? std::min(x, high) : low;
 }
 
-// The two samples round a coordinate in texels, both inside the picture, and the second one's weight.
+// The two samples around a coordinate in texels, clamped to the picture, and the weight of the second.
 struct Between {
     std::size_t first, second;
     float weight;
@@ -53,7 +53,7 @@ struct Between {
 
 Between between(float u, int size) {
     const float n = static_cast<float>(size);
-    // Outside of the picture both samples are the one at the edge, however far away.
+    // Outside the picture both samples are at the edge, however far away u is.
     const float x = bounded((0.5f * u / kSkyMapExtent + 0.5f) * n - 0.5f, -1.0f, n);
     const float floor = std::floor(x);
     const int first = static_cast<int>(floor);
@@ -104,7 +104,7 @@ glm::vec3 SkyMap::radiance(glm::vec2 u, float level) const {
 glm::vec2 sky_map_place(glm::vec3 direction) {
     const glm::vec2 across(direction.x, direction.y);
     const float up = 1.0f + direction.z;
-    // Straight down has no place of its own: what lies at the edge is the same radiance.
+    // Straight down is the projection's pole. The map's edge has the same radiance.
     if (!(std::max(std::abs(across.x), std::abs(across.y)) < kSkyMapExtent * up)) {
         const float largest = std::max(std::abs(across.x), std::abs(across.y));
         return largest > 0.0f ? across * (kSkyMapExtent / largest) : glm::vec2(kSkyMapExtent, 0.0f);

@@ -1,10 +1,10 @@
-// Radiance by direction as one square picture with mip levels: what the lighting's filtered lookups read, on
-// the CPU and, uploaded level by level, on the GPU.
+// Radiance by direction as a square picture with mip levels, for the lighting's filtered lookups on the CPU
+// and, once uploaded, on the GPU.
 //
-// Stereographic projection (Bruneton, Neyret, Holzschuch 2010, §5.2): a direction r, z up, lies at
-// u = (r_x, r_y)/(1 + r_z); the horizon is the circle |u| = 1. The picture covers −kSkyMapExtent ≤ u_x, u_y ≤
-// kSkyMapExtent, a little of what lies below the horizon included, whose radiance is `below` (the water's own
-// multiple reflections, §6) like all that lies farther out.
+// Stereographic projection (Bruneton, Neyret, Holzschuch 2010, §5.2): a direction r, z up, maps to
+// u = (r_x, r_y)/(1 + r_z), and the horizon to the circle |u| = 1. The picture covers −kSkyMapExtent ≤ u_x,
+// u_y ≤ kSkyMapExtent. Directions below the horizon, in the picture and beyond it, all have the radiance of
+// the sea's own multiple reflections (§6).
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -13,25 +13,25 @@
 
 namespace pelagic {
 
-inline constexpr float kSkyMapExtent = 1.25f;  // of u: the wrong side of the horizon for the filters' tails
+inline constexpr float kSkyMapExtent = 1.25f;  // of u: room below the horizon for the filters' tails
 
 class SkyMap {
   public:
     SkyMap() = default;
-    // texels: size × size, x fastest, y rising; texel (i, j) is the mean of its square of u, the first from
-    // −kSkyMapExtent. size is a power of two, 4 … 4096. Levels are means of 2 × 2, down to 1 × 1. Throws
-    // std::invalid_argument for another size or count, or a texel that is negative or not finite.
+    // texels: size × size, x fastest, y rising. Texel (i, j) is the mean over its square of u; (0, 0) begins
+    // at −kSkyMapExtent. size is a power of two, 4 … 4096. Coarser levels are 2 × 2 means, down to 1 × 1.
+    // Throws std::invalid_argument for another size or count, or a texel that is negative or not finite.
     SkyMap(int size, std::vector<glm::vec3> texels);
 
-    // Throws for a size that the constructor refuses: before one fills the texels.
+    // Throws for a size that the constructor rejects, so that callers needn't fill the texels first.
     static void check_size(int size);
 
     int size() const { return size_; }
     int level_count() const { return static_cast<int>(levels_.size()); }
     const std::vector<glm::vec3>& level(int i) const { return levels_.at(i); }  // (size >> i)² texels
 
-    // As OpenGL's textureLod with GL_LINEAR_MIPMAP_LINEAR and GL_CLAMP_TO_EDGE does it: u in units of the
-    // projection, level 0 … level_count() − 1 (clamped), 0 the finest.
+    // Equivalent to OpenGL's textureLod with GL_LINEAR_MIPMAP_LINEAR and GL_CLAMP_TO_EDGE. u in units of the
+    // projection; level 0 (finest) … level_count() − 1, clamped.
     glm::vec3 radiance(glm::vec2 u, float level) const;
 
   private:
@@ -39,9 +39,9 @@ class SkyMap {
     std::vector<std::vector<glm::vec3>> levels_;
 };
 
-// Where a unit direction lies in the map; clamped to the map's square, so that r_z → −1 has a place.
+// The place of a unit direction in the map, clamped to its square so that r_z → −1 has one.
 glm::vec2 sky_map_place(glm::vec3 direction);
-// The direction of a place: the inverse.
+// The inverse: the direction at a place.
 glm::vec3 sky_map_direction(glm::vec2 u);
 
 }  // namespace pelagic

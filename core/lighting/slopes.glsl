@@ -1,8 +1,9 @@
-// Which facets there are, and which the eye sees: Ross, Dion, Potvin 2005 as in Bruneton et al. 2010, §4.
+// The distribution of facets' slopes, and their visibility: Ross, Dion, Potvin 2005 as in Bruneton et al.
+// 2010, §4.
 //
-// Facets' slopes are Gaussian in the tangent frame of the average normal (§5.1). The frame is the world's,
-// turned the shortest way from the vertical to the normal, and the waves' whole 2 × 2 tensor is taken into
-// it, so that no axis has to follow the wind. Directions below are in that frame: z along the normal.
+// Slopes are Gaussian in the tangent frame of the average normal (§5.1). That frame is the world's, rotated
+// by the shortest way from the vertical to the normal. The full 2 × 2 tensor is transformed into it, so that
+// no axis has to follow the wind. Directions below are in that frame, z along the normal.
 
 struct SlopeFrame {
     vec3 x;
@@ -11,14 +12,15 @@ struct SlopeFrame {
     vec3 variance;  // (σxx, σyy, σxy) in the frame
 };
 
-// What is seen cannot face away from the eye (§3.2), nor, where the eye is above, be a mirror for rays that
-// go on downwards: they would meet the next wave, at a grazing angle as well, and be sent up by it. Both
-// happen where a pixel's normal is finer than the crest that it stands on, or where the crest has folded
-// over. The normal is bent towards the eye: first as the paper has it, n − 2(n·v)v, which alone leaves a dark
-// line along crests, then as little as takes the mirrored ray up to the horizon.
+// Bends a normal so that the eye can see it. A visible surface doesn't face away from the eye (§3.2). Seen
+// from above it doesn't mirror the eye's ray downwards either: that ray would meet the next wave at a grazing
+// angle and be reflected up. Both happen where a pixel's normal is finer than the crest beneath it, or where
+// the crest has folded over. The first step is the paper's, n − 2(n·v)v. Alone it leaves a dark line along
+// crests, so a second step bends the normal just far enough for the mirrored ray to reach the horizon.
 //
-// n + cv mirrors v to the horizon where v_z c² + 2 n_z c + 2 n_z (n·v) − v_z = 0. With n·v ≥ 0 just one root
-// is positive where n itself mirrors v downwards; it is written so that nothing cancels, whichever sign n_z
+// n + cv mirrors v to the horizon if v_z c² + 2 n_z c + 2 n_z (n·v) − v_z = 0. With n·v ≥ 0 exactly one root
+// is positive if n mirrors v downwards; it is written without cancellation for either sign of n_z. n + cv
+// then points up: its z is the square root of the discriminant. The bounds of 1e-6 keep c finite.
 // has. n + cv then points up: its z is the root of the discriminant. The bounds of 1e-6 keep c finite.
 vec3 facing_normal(vec3 normal, vec3 to_eye) {
     vec3 seen = normal - 2.0f * min(dot(normal, to_eye), 0.0f) * to_eye;
@@ -31,10 +33,10 @@ vec3 facing_normal(vec3 normal, vec3 to_eye) {
     return normalize(seen + bend * to_eye);
 }
 
-// The tensor of world slopes about a plane of slope s, seen from that plane: to first order a slope deviation
-// δ becomes δ/(1 + s²) along s and δ/√(1 + s²) across it, that is n_z (1 − n_xy n_xyᵀ/(1 + n_z)) δ. Variances
-// are kept above (1e-5)², a hundredth of what the sun's disc itself spreads, and the correlation below 1 −
-// 1e-4: a density has to have a determinant.
+// Transforms the covariance of world slopes into the plane of slope s. To first order a slope deviation δ
+// becomes δ/(1 + s²) along s and δ/√(1 + s²) across it, that is n_z (1 − n_xy n_xyᵀ/(1 + n_z)) δ. Variances
+// are at least (1e-5)², with σ a hundredth of the sun disc's own spread, and the correlation at most 1 −
+// 1e-4: the density needs a determinant.
 SlopeFrame slope_frame(vec3 normal, vec3 slope_variance) {
     float up = normal.z < 0.0f ? -1.0f : 1.0f;
     float height = abs(normal.z);
@@ -65,7 +67,7 @@ float determinant_of(vec3 variance) {
     return variance.x * variance.y - variance.z * variance.z;
 }
 
-// ζᵀ S⁻¹ ζ: p(ζ) of Eq. 7, for any axes, is exp(−½ of it)/(2π √det S).
+// ζᵀ S⁻¹ ζ. The density p(ζ) of Eq. 7, for arbitrary axes, is exp(−½ ζᵀ S⁻¹ ζ)/(2π √det S).
 float slope_distance(vec2 slope, vec3 variance, float determinant) {
     float sum = variance.y * slope.x * slope.x - 2.0f * variance.z * slope.x * slope.y +
                 variance.x * slope.y * slope.y;
@@ -77,49 +79,49 @@ float slope_density(vec2 slope, vec3 variance) {
     return exp(-0.5f * slope_distance(slope, variance, determinant)) / (2.0f * kPi * sqrt(determinant));
 }
 
-// Slope variance along a direction, times its sin²θ.
+// Slope variance along a direction, times the direction's sin²θ.
 float variance_towards(vec3 direction, vec3 variance) {
     return variance.x * direction.x * direction.x + variance.y * direction.y * direction.y +
            2.0f * variance.z * direction.x * direction.y;
 }
 
-// a = 1/(√2 σ_d tanθ) (Eq. 9, both versions of which print tanθ for tan²θ inside the root: with that, Eq. 11
-// is 2.56 at 88°). 0 at and below the frame's horizon; no more than 1e6, where exp(−a²) has long been 0.
+// a = 1/(√2 σ_d tanθ) (Eq. 9; both versions of the paper print tanθ for tan²θ inside the root, with which Eq.
+// 11 would be 2.56 at 88°). 0 at and below the frame's horizon; limited to 1e6, where exp(−a²) is 0 anyway.
 float smith_argument(vec3 direction, vec3 variance) {
     float along = max(variance_towards(direction, variance), 1.0e-20f);
     return clamp(direction.z * inversesqrt(2.0f * along), 0.0f, 1.0e6f);
 }
 
-// Λ (Eq. 8), written without its cancellation: exp(−a²)(1 − √π a erfcx(a))/(2√π a). Infinite at grazing: 1e8
-// here.
+// Λ (Eq. 8) without its cancellation: exp(−a²)(1 − √π a erfcx(a))/(2√π a). Infinite at grazing, limited to
+// 1e8.
 float smith_lambda(float a) {
     return exp(-a * a) * erfcx_remainder(a) / (2.0f * sqrt(kPi) * max(a, 2.8e-9f));
 }
 
-// cosθ (1 + Λ), the facets' area as the eye sees it per area of the plane: Eq. 10's normalisation. Finite at
-// grazing, where it is σ_d/√(2π).
+// cosθ (1 + Λ): the facets' area projected towards the eye, per area of the plane; Eq. 10's normalisation.
+// Finite at grazing, where it is σ_d/√(2π).
 float visible_area(vec3 direction, vec3 variance) {
     float a = smith_argument(direction, variance);
     float along = max(variance_towards(direction, variance), 1.0e-20f);
     return max(direction.z, 0.0f) + sqrt(along / (2.0f * kPi)) * exp(-a * a) * erfcx_remainder(a);
 }
 
-// Of the facets that the eye sees, the share from which light may come in this direction: (1 + Λv)/(1 + Λv +
-// Λl), the ratio of Eq. 5 to Eq. 10. The rest of the light meets another wave. 0 at and below the frame's
-// horizon.
+// The fraction of the visible facets that light from this direction reaches: (1 + Λv)/(1 + Λv + Λl), the
+// ratio of Eq. 5 to Eq. 10. Other waves block the rest. 0 at and below the frame's horizon.
 float unblocked(vec3 to_eye, vec3 to_light, vec3 variance) {
     float seen = visible_area(to_eye, variance);
     return seen / (seen + max(to_eye.z, 0.0f) * smith_lambda(smith_argument(to_light, variance)));
 }
 
-// Eq. 10: the density, over slopes, of what the eye sees; its integral is 1 (Eq. 11).
+// Eq. 10: the density of visible slopes. Its integral is 1 (Eq. 11).
 float visible_slope_density(vec2 slope, vec3 to_eye, vec3 variance) {
     float cosine = to_eye.z - to_eye.x * slope.x - to_eye.y * slope.y;  // v·f/f_z
     return slope_density(slope, variance) * max(cosine, 0.0f) / visible_area(to_eye, variance);
 }
 
-// Visible slopes are ζ = −along x + across y with y normal and x of density (k + x)₊ φ(x): along the line of
-// sight the facets that face the eye count more, across it nothing changes.
+// Visible slopes are ζ = −along x + across y, with y standard normal and x of density (k + x)₊ φ(x):
+// visibility favours facets that face the eye, and leaves the distribution across the line of sight
+// unchanged.
 struct VisibleSlopes {
     vec2 along;
     vec2 across;
@@ -138,7 +140,7 @@ VisibleSlopes visible_slopes(vec3 to_eye, vec3 variance) {
     return VisibleSlopes(turned / sigma, across, k, ramp_moments(k));
 }
 
-// The facets that are seen lean towards the eye.
+// Visible facets lean towards the eye on average.
 vec2 mean_visible_slope(VisibleSlopes seen) {
     return -seen.x.first * seen.along;
 }

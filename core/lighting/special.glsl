@@ -1,22 +1,23 @@
 // Constants, the sky map's projection and special functions of the sea's lighting.
 //
-// These files (special, fresnel, slopes, sun, sky, water, foam, sea: in this order) are the same text for C++
-// and for GLSL: plain functions over floats and vectors. C++ takes them in inside a struct after `using
-// namespace glm` (lighting.cpp), the preview puts them behind its #version line.
+// These files (special, fresnel, slopes, sun, sky, water, foam, sea, in this order) are the same text for C++
+// and for GLSL: plain functions over floats and vectors. C++ includes them inside a struct after `using
+// namespace glm` (lighting.cpp); the preview appends them to its #version line.
 
 const float kPi = 3.14159265f;
 const float kWaterIndex = 1.34f;  // sea water's index of refraction for visible light (Hu et al. 2006)
 
-const float kSkyMapReach = 1.25f;  // the map holds |u_x|, |u_y| up to this; C++'s kSkyMapExtent
+const float kSkyMapReach = 1.25f;  // the map covers |u_x|, |u_y| up to this; kSkyMapExtent in C++
 
-// Where a direction lies. r_z → −1 is the projection's pole: any place beyond the map's edge will do there.
+// The place of a direction in the map. r_z → −1 is the projection's pole; any place beyond the map's edge
+// serves.
 vec2 sky_place(vec3 direction) {
     return vec2(direction.x, direction.y) / max(1.0f + direction.z, 1.0e-4f);
 }
 
-// exp(a²) erfc(a) for a ≥ 0, to 1e-6 relative. The factor (1 + 2a) takes out the decay; what is left is a
-// polynomial in s = (a − 2)/(a + 2), which has the whole half-line in −1 … 1: least squares in Chebyshev's
-// basis, reweighted until the largest relative error was least (4e-7).
+// exp(a²) erfc(a) for a ≥ 0, with a relative error of 1e-6. The factor (1 + 2a) removes the decay. The rest
+// is a polynomial in s = (a − 2)/(a + 2), which maps the half-line to −1 … 1: least squares in the Chebyshev
+// basis, reweighted until the largest relative error was smallest (4e-7).
 float erfcx(float a) {
     float s = (a - 2.0f) / (a + 2.0f);
     float p = -0.00016978146f;
@@ -32,8 +33,8 @@ float erfcx(float a) {
     return p / (1.0f + 2.0f * a);
 }
 
-// 1 − √π a exp(a²) erfc(a) for a ≥ 0, to 1e-6 relative: 1 at 0, 1/(2a²) far out, where the difference itself
-// would cancel. A polynomial of its own, found as erfcx's was, after (1 + 1.5a)².
+// 1 − √π a exp(a²) erfc(a) for a ≥ 0, with a relative error of 1e-6: 1 at 0, 1/(2a²) for large a, where the
+// difference itself would cancel. Fitted like erfcx, with the factor (1 + 1.5a)².
 float erfcx_remainder(float a) {
     float s = (a - 2.0f) / (a + 2.0f);
     float p = -0.00368287414f;
@@ -54,8 +55,9 @@ float square(float x) {
     return x * x;
 }
 
-// Moments of the density (k + x)₊ φ(x)/(kΦ(k) + φ(k)), φ the normal density and Φ its integral, k ≥ 0: what a
-// line of sight makes of normal slopes (slopes.glsl). The mean is `first`, the second moment 1 + `second`.
+// Moments of the density (k + x)₊ φ(x)/(kΦ(k) + φ(k)), k ≥ 0, with the normal density φ and its integral Φ:
+// normal slopes weighted by their visibility (slopes.glsl). The mean is `first`, the second moment is 1 +
+// `second`.
 struct RampMoments {
     float first;   // Φ(k)/(kΦ(k) + φ(k))
     float second;  // φ(k)/(kΦ(k) + φ(k))
@@ -64,6 +66,6 @@ struct RampMoments {
 RampMoments ramp_moments(float k) {
     float a = 0.70710678f * k;
     float bell = exp(-a * a);
-    float whole = k + 0.39894228f * bell * erfcx_remainder(a);  // kΦ + φ without a cancellation
+    float whole = k + 0.39894228f * bell * erfcx_remainder(a);  // kΦ + φ without cancellation
     return RampMoments((1.0f - 0.5f * bell * erfcx(a)) / whole, 0.39894228f * bell / whole);
 }

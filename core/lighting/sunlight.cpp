@@ -1,4 +1,4 @@
-// The sun as a black body, seen with the CIE 1931 observer.
+// The sun as a black body, seen by the CIE 1931 observer.
 #include "core/lighting/sunlight.h"
 
 #include <cmath>
@@ -8,20 +8,20 @@
 namespace pelagic {
 namespace {
 
-// The black body that the visible part of the extraterrestrial spectrum looks like. (The sun's effective
-// temperature, 5772 K, is that of all its radiation.)
+// The black body that fits the visible part of the extraterrestrial spectrum. (The sun's effective
+// temperature, 5772 K, fits its total radiation.)
 constexpr double kSunColour_K = 5900.0;
 // The luminous solar constant: Darula, Kittler, Gueymard 2005.
 constexpr double kSunIlluminance_klx = 133.3;
 constexpr double kSecondRadiation_umK = 14387.8;  // hc/k_B
 
-// Planck's law by wavelength, up to a factor.
+// Planck's law by wavelength, without its constant factor.
 double planck(double um) {
     return 1.0 / (std::pow(um, 5.0) * std::expm1(kSecondRadiation_umK / (um * kSunColour_K)));
 }
 
 std::array<glm::dvec3, kBands> tabulated() {
-    constexpr int kSteps = 64;  // a band: the narrowest lobe is 12 nm wide, a step is 0.4 nm
+    constexpr int kSteps = 64;  // per band: steps of 0.4 nm; the narrowest lobe is 12 nm wide
     std::array<glm::dvec3, kBands> bands{};
     double y = 0.0;
     for (int b = 0; b < kBands; ++b) {

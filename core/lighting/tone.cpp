@@ -20,11 +20,11 @@ glm::vec3 display_colour(glm::vec3 radiance, float exposure) {
 }
 
 float exposure_for(const Sky& sky) {
-    // The mean of a clear noon's sky, in kcd/m²: shown as a sky, well above middle grey.
+    // Mean radiance of a clear sky at noon, in kcd/m², and its display value: bright, well above middle grey.
     constexpr double kNoon = 6.0, kNoonShown = 0.5;
-    // Of the changes of the light the exposure makes up this power: eyes expect less light to look darker.
+    // The exposure compensates for the light's changes to this power only: less light should look darker.
     constexpr double kAdaptation = 0.25;
-    constexpr double kDarkest = 1e-3;  // [kcd/m²] deep dusk: beyond it the night comes down
+    constexpr double kDarkest = 1e-3;  // [kcd/m²] deep dusk: the exposure is constant below
     const double mean = luminance(glm::dvec3(sky.sky_irradiance)) / kPi;  // radiance of the upper hemisphere
     const double seen = std::max(mean, kDarkest) / kNoon;
     return static_cast<float>(kNoonShown / kNoon * std::pow(seen, -kAdaptation));

@@ -1,4 +1,4 @@
-// Tone mapping for C++, and the exposure that goes with a light.
+// Tone mapping for C++, and a light's exposure.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -7,14 +7,14 @@
 
 namespace pelagic {
 
-// What a screen shows of a radiance: sRGB, 0 … 1. radiance · exposure = 0.18 is middle grey (tone.glsl).
+// The sRGB display value, 0 … 1, of a radiance. radiance · exposure = 0.18 is middle grey (tone.glsl).
 glm::vec3 display_colour(glm::vec3 radiance, float exposure);
 
-// The exposure for a light, > 0 and finite: of the light alone and not of the picture, so that a shot whose
-// camera turns keeps its brightness. A brighter light is always shown brighter.
+// The exposure for a light, > 0 and finite. It depends on the light and not on the picture, so that a camera
+// that turns keeps its brightness. A brighter light always gives a brighter picture.
 float exposure_for(const Sky& sky);
 
-// The exposure for `stops` more than that: twice for each.
+// That exposure, brighter by `stops`: a factor of 2 for each.
 float exposure_for(const Sky& sky, double stops);
 
 }  // namespace pelagic

@@ -1,18 +1,20 @@
-// Reflectance of the water body, R = 0.33 b_b/a (Morel and Prieur 1977; Darles et al. 2007), in a form that
-// stays below 0.33 where much is scattered and little absorbed, R = 0.33 b_b/(a + b_b). Absorption a and
-// backscatter b_b:
+// Reflectance of the water body: R = 0.33 b_b/a (Morel and Prieur 1977; Darles et al. 2007), here as
+// R = 0.33 b_b/(a + b_b), which stays below 0.33 where scattering outweighs absorption. Absorption a and
+// backscattering b_b:
 //
-// water        a: Pope and Fry 1997; b_b: half of 0.00288 m⁻¹ (λ/500 nm)^−4.32, sea water (Morel 1974)
-// plankton     a = (a_w + 0.06 A(λ) C^0.65)(1 + 0.2 exp(−0.014(λ − 440))), A and the yellow substance that
-// goes with it:
-//              Prieur and Sathyendranath 1981, in Morel's form of 1991;
+// water        a: Pope and Fry 1997
+//              b_b = ½ 0.00288 m⁻¹ (λ/500 nm)^−4.32, sea water (Morel 1974)
+// plankton     a = (a_w + 0.06 A(λ) C^0.65)(1 + 0.2 exp(−0.014(λ − 440))): A and the yellow substance that
+// comes with
+//              plankton, Prieur and Sathyendranath 1981 in Morel's form of 1991
 //              b_b = (0.002 + 0.02(½ − ¼ log₁₀ C) 550/λ) 0.30 C^0.62 (Gordon and Morel 1983, Morel 1988)
-// rivers       yellow substance a_y exp(−0.014(λ − 440)) (Bricaud, Morel, Prieur 1981); mineral particles of
-//              concentration s: a = 0.041 m²/g s exp(−0.0123(λ − 443)), scattering 0.51 m²/g s (Babin et al.
-//              2003), of which 0.018 goes back (Petzold 1972)
+// rivers       yellow substance: a = a_y exp(−0.014(λ − 440)) (Bricaud, Morel, Prieur 1981)
+//              mineral particles of concentration s: a = 0.041 m²/g s exp(−0.0123(λ − 443)), scattering 0.51
+// m²/g s
+//              (Babin et al. 2003), of which 0.018 is backscattered (Petzold 1972)
 //
-// λ in nm, C chlorophyll in mg/m³. The spectrum becomes a colour through the CIE 1931 observer (the Gaussians
-// of Wyman, Sloan, Shirley 2013) and Rec. 709's primaries, so scaled that a reflectance of 1 is (1, 1, 1).
+// λ in nm, chlorophyll C in mg/m³. The CIE 1931 observer (Gaussians of Wyman, Sloan, Shirley 2013) and the
+// primaries of Rec. 709 turn the spectrum into a colour, scaled so that a reflectance of 1 is (1, 1, 1).
 #include "core/lighting/water.h"
 
 #include <algorithm>
@@ -41,7 +43,7 @@ constexpr std::array<double, kBands> kPlanktonAbsorption{
     0.618, 0.528, 0.474, 0.416, 0.357, 0.294, 0.276, 0.291, 0.282, 0.236, 0.252,
     0.276, 0.317, 0.334, 0.356, 0.441, 0.595, 0.502, 0.329, 0.215};
 
-// What rivers bring: yellow substance's absorption at 440 nm [1/m], mineral particles [g/m³].
+// What rivers add: absorption of yellow substance at 440 nm [1/m], mineral particles [g/m³].
 struct Rivers {
     double yellow, minerals;
 };
@@ -60,13 +62,13 @@ Rivers rivers_of(WaterKind kind) {
 
 double reflectance_at(std::size_t band, double chlorophyll, const Rivers& rivers) {
     const double wavelength = 400.0 + 10.0 * static_cast<double>(band);
-    const double c = std::max(chlorophyll, 0.01);  // the clearest water there is; 0 has no logarithm
+    const double c = std::max(chlorophyll, 0.01);  // the clearest natural water; 0 has no logarithm
     const double a_clear = (kWaterAbsorption[band] + 0.06 * kPlanktonAbsorption[band] * std::pow(c, 0.65)) *
                            (1.0 + 0.2 * std::exp(-0.014 * (wavelength - 440.0)));
     const double a = a_clear + rivers.yellow * std::exp(-0.014 * (wavelength - 440.0)) +
                      0.041 * rivers.minerals * std::exp(-0.0123 * (wavelength - 443.0));
     const double sea_water = 0.5 * 0.00288 * std::pow(wavelength / 500.0, -4.32);
-    // Above 100 mg/m³ the bracket would turn negative: such water is refused.
+    // The bracket is negative above 100 mg/m³: water_body() rejects such water.
     const double plankton =
         (0.002 + 0.02 * (0.5 - 0.25 * std::log10(c)) * 550.0 / wavelength) * 0.30 * std::pow(c, 0.62);
     const double back = sea_water + plankton + 0.018 * 0.51 * rivers.minerals;
@@ -87,7 +89,7 @@ WaterBody water_body(const WaterChoice& choice) {
         sum += reflectance_at(band, c, rivers) * seen;
         white += seen;
     }
-    // Blues purer than the primaries have a negative red, which no display shows.
+    // Blues outside the gamut have a negative red, which no display shows.
     return {glm::vec3(glm::max(rec709_of(sum) / rec709_of(white), glm::dvec3(0.0)))};
 }
 

@@ -1,4 +1,4 @@
-// The square patch: a regular lattice of points at rest.
+// The square patch: a regular grid of points at rest.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -7,7 +7,7 @@
 namespace pelagic {
 
 struct PatchLattice {
-    int per_side = 257;  // points a side
+    int per_side = 257;  // points per side
     double spacing_m = 0.78125;
     double first_m = -100.0;  // x and y of the first point
 };

@@ -13,32 +13,32 @@
 namespace pelagic {
 namespace {
 
-// What lies beyond the last row is seen under less than this many pixels.
+// The sea beyond the last row covers less than this many pixels.
 constexpr double kHorizon_px = 0.05;
-// No row is further, so that squares of distances stay finite in single precision.
+// The last row is at most this far, so that squared distances stay finite in single precision.
 constexpr double kFarthest_m = 1e15;
-// A camera in the surface of a calm sea still stands this high over it.
+// The least effective height, for a camera at the surface of a calm sea.
 constexpr double kLeastHeight_m = 0.01;
-// The picture's plane stretches angles by 1/cos² of their distance from the axis. Cells are made as small as
-// a corner asks for, but not below this share of the axis' own (60° away from it).
+// A perspective picture stretches angles by 1/cos² of their distance from the optical axis. Cells are sized
+// for the corners, but at most this much smaller than on the axis (a corner 60° off it).
 constexpr double kStretched = 0.25;
-// Cells of rows that only displaced crests come into view from, and of rows within kNear reaches of the
-// nadir, which go most of the way round it, may be this much larger.
+// Cells may be kMargin times as large in rows that only displaced crests bring into view, and in rows within
+// kNear reaches of the nadir, which span most of the circle.
 constexpr double kMargin = 3.0, kNear = 2.0;
-// In view, columns shift by this part of a cell from row to row at most: a side is then longer than the
-// rows' distance, by up to √(1 + ¼) in a corner.
+// In view, a column shifts by at most this part of a cell from row to row. A cell's side is then longer than
+// the row spacing, by up to √(1 + ¼) in a corner.
 constexpr double kShift = 0.5;
-// Cells are made smaller by this, so that such a side is no longer than asked: by trial over poses and lenses
-// (the largest was 1.08 × cell_px without it).
+// Shrinks cells so that even such a side stays below cell_px. Found by trial over poses and lenses: the
+// longest side was 1.08 × cell_px without it.
 constexpr double kSlack = 0.92;
-// Counts are multiples of this, and not beyond the largest: 8K pictures with a cell for each pixel.
+// Counts are multiples of kCountStep. The largest serves an 8K picture with one cell per pixel.
 constexpr int kCountStep = 16, kLargestCount = 8192;
 
 double cross(glm::dvec2 a, glm::dvec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-// A convex polygon, counter-clockwise; a segment or a point where there is no more; empty.
+// A convex polygon, counter-clockwise; degenerate to a segment or a point; or empty.
 using Polygon = std::vector<glm::dvec2>;
 
 // Andrew's monotone chain.
@@ -56,20 +56,20 @@ Polygon convex_hull(std::vector<glm::dvec2> points) {
                 hull.pop_back();
             hull.push_back(*at);
         }
-        hull.pop_back();  // the other chain's first
+        hull.pop_back();  // equals the other chain's first point
     };
     chain(points.begin(), points.end());
     chain(points.rbegin(), points.rend());
     return hull;
 }
 
-// Where the camera stands, and which way it looks: azimuths are counted from the middle of the picture.
+// The camera's place and heading. Azimuths are relative to `ahead`.
 struct Station {
     double height_m;            // h above the sea at rest
     double effective_height_m;  // √(h² + (Hs/2)²)
-    double farthest_m;          // the last row
-    double corner_cos;          // of the angle between a corner of the picture and its axis
-    glm::dvec2 ahead;           // unit: azimuth 0
+    double farthest_m;          // radius of the last row
+    double corner_cos;          // cosine of the angle between the optical axis and a corner of the picture
+    glm::dvec2 ahead;           // unit vector of azimuth 0
 };
 
 Station station_of(const View& view, const ProjectedGridOptions& options) {
@@ -84,16 +84,16 @@ Station station_of(const View& view, const ProjectedGridOptions& options) {
     at.farthest_m = std::min(at.effective_height_m / (kHorizon_px * view.pixel_tangent() *
                                                       std::max(at.corner_cos * at.corner_cos, 1e-6)),
                              kFarthest_m);
-    // forward's own azimuth; where the camera looks straight down or up, that of the picture's upper or lower
-    // edge, and without a jump on the way there.
+    // The azimuth of `forward`; where that is vertical, the azimuth of the picture's upper or lower edge.
+    // This expression goes from one to the other without a jump.
     const glm::dvec3 middle = view.forward - view.forward.z * view.up;
     const double length = std::hypot(middle.x, middle.y);
     at.ahead = length > 0.0 ? glm::dvec2(middle) / length : glm::dvec2(0.0, 1.0);
     return at;
 }
 
-// The shadow of what is in view of the slab |z| ≤ height_m: the camera's nadir is 0, +x is ahead. Cut off
-// well beyond the last row.
+// The convex hull of the part of the slab |z| ≤ height_m that is in view, projected onto the plane. The
+// origin is the camera's nadir, +x is `ahead`. Truncated well beyond the last row.
 Polygon in_view(const View& view, const Station& at, double height_m) {
     const double far_m = 8.0 * at.farthest_m;
     std::vector<glm::dvec2> points;
@@ -102,8 +102,8 @@ Polygon in_view(const View& view, const Station& at, double height_m) {
         return glm::dvec2(glm::dot(at.ahead, xy), cross(at.ahead, xy));
     };
     if (std::abs(at.height_m) <= height_m) points.emplace_back(0.0, 0.0);
-    // Rays of the picture's border, from the camera to both faces of the slab.
-    constexpr int kSteps = 16;  // an edge, evenly in angle: the far cut's chords stay beyond the last row
+    // Rays through the picture's border, cut with both faces of the slab.
+    constexpr int kSteps = 16;  // per edge, evenly in angle: chords of the far cut stay beyond the last row
     std::vector<glm::dvec3> border;
     std::array<glm::dvec3, 4> corners;
     const glm::dvec2 size(view.resolution);
@@ -129,13 +129,13 @@ Polygon in_view(const View& view, const Station& at, double height_m) {
             points.push_back(flat(d) * std::min(way_m, far_m / std::max(across, 1e-300)));
         }
     if (!hits) return {};
-    // The horizon, where it is in view: between the two places where the border crosses it.
+    // The horizon, if it is in view: the arc between its two crossings with the border.
     std::vector<double> crossings;
     for (std::size_t i = 0; i < border.size(); ++i) {
         const glm::dvec3 a = border[i], b = border[(i + 1) % border.size()];
         if ((a.z < 0.0) == (b.z < 0.0)) continue;
         const glm::dvec2 level = flat(a * b.z - b * a.z);
-        // a·b_z − b·a_z points along a or against it.
+        // The sign that makes a·b_z − b·a_z point from the camera to the crossing.
         const double side = b.z - a.z;
         crossings.push_back(std::atan2(side < 0.0 ? -level.y : level.y, side < 0.0 ? -level.x : level.x));
     }
@@ -150,7 +150,7 @@ Polygon in_view(const View& view, const Station& at, double height_m) {
     return convex_hull(std::move(points));
 }
 
-// Calls visit(a, b) with each side; a point is a side, too.
+// Calls visit(a, b) for each side. A polygon of one point has one side of length 0.
 template <class Visit>
 void for_each_side(const Polygon& polygon, Visit&& visit) {
     for (std::size_t i = 0; i < polygon.size(); ++i) visit(polygon[i], polygon[(i + 1) % polygon.size()]);
@@ -168,7 +168,7 @@ struct Interval {
     double first = 0.0, last = 0.0;
 };
 
-// The polygon's least and largest distance from the nadir.
+// The polygon's smallest and largest distance from the nadir.
 Interval distances(const Polygon& polygon) {
     Interval r{contains(polygon, {0.0, 0.0}) ? 0.0 : std::numeric_limits<double>::infinity(), 0.0};
     for_each_side(polygon, [&](glm::dvec2 a, glm::dvec2 b) {
@@ -181,15 +181,15 @@ Interval distances(const Polygon& polygon) {
     return r;
 }
 
-// The largest |azimuth| of the polygon's points between two circles; none where it has none there.
+// The largest |azimuth| of the polygon within a ring; nullopt where the two don't intersect.
 std::optional<double> half_width(const Polygon& polygon, Interval ring) {
-    // Straight behind: then all round.
+    // A polygon that contains a point straight behind the camera covers azimuth ± π.
     if (contains(polygon, {-ring.first, 0.0})) return kPi;
     std::optional<double> widest;
     const auto take = [&](glm::dvec2 p) {
         widest = std::max(widest.value_or(0.0), std::abs(std::atan2(p.y, p.x)));
     };
-    // Along a side the azimuth only rises or only falls: it is widest where the side enters or leaves.
+    // Azimuth is monotonic along a side, so its extremes are at vertices and where sides cross the circles.
     for_each_side(polygon, [&](glm::dvec2 a, glm::dvec2 b) {
         const double r = glm::length(a);
         if (r >= ring.first && r <= ring.last) take(a);
@@ -197,7 +197,7 @@ std::optional<double> half_width(const Polygon& polygon, Interval ring) {
         if (!(length > 0.0)) return;
         const glm::dvec2 along = (b - a) / length;
         const double start = glm::dot(a, along);
-        const double distance = cross(along, a);  // of the line from the nadir
+        const double distance = cross(along, a);  // from the nadir to the side's line
         const glm::dvec2 foot = distance * glm::dvec2(-along.y, along.x);
         for (const double circle : {ring.first, ring.last}) {
             const double square = circle * circle - distance * distance;
@@ -215,13 +215,13 @@ std::optional<double> half_width(const Polygon& polygon, Interval ring) {
 
 struct Row {
     double radius_m;
-    double half_width;  // azimuths, to either side of ahead
-    bool in_view;       // of the sea at rest
-    double seen_width;  // of it alone, likewise
-    bool fine;          // in view, and not so near that the reach of crests goes most of the way round
+    double half_width;  // the row spans azimuths ± half_width
+    bool in_view;       // the sea at rest is in view at this radius
+    double seen_width;  // half width of that part
+    bool fine;          // in_view, and farther than kNear reaches
 };
 
-// A pose's rows, `count` cells of them or as many as it needs.
+// The rows of a pose: count + 1 of them, or as many as the pose needs if count is 0.
 std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, const Station& at,
                          double cell_angle, int count) {
     const double reach_m = options.bounds.reach_m;
@@ -240,7 +240,7 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
         seen = radii;
     }
     const auto angle_at = [&](double radius_m) { return std::atan2(radius_m, at.effective_height_m); };
-    // Cells from the first row to an angle: fewer in the margins.
+    // Cell count from the first row to a given angle. Margins have larger cells.
     const Interval angles{angle_at(radii.first), angle_at(radii.last)};
     const Interval core{angle_at(seen.first), angle_at(seen.last)};
     const double before = (core.first - angles.first) / (kMargin * cell_angle);
@@ -261,11 +261,11 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
         rows[i].radius_m = i == 0       ? radii.first
                            : i == count ? radii.last
                                         : at.effective_height_m * std::tan(angle_of(all * i / count));
-    // A row's chords lie inside its circle.
+    // A chord between two points of a row comes this much nearer than the row's radius.
     const int least_columns = options.size.columns > 0 ? options.size.columns : kCountStep;
     const double sagitta = std::cos(kPi / std::max(least_columns, 3));
     for (int i = 0; i <= count; ++i) {
-        // What lies between the neighbouring rows: the cells' sides then leave nothing out.
+        // Covering the ring up to both neighbouring rows leaves no gap between the rows' ends.
         const Interval ring{rows[std::max(i - 1, 0)].radius_m * sagitta,
                             rows[std::min(i + 1, count)].radius_m};
         const Interval reached{std::max(ring.first - reach_m, 0.0), ring.last + reach_m};
@@ -279,7 +279,7 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
         rows[i].fine = rows[i].in_view && rows[i].radius_m >= kNear * reach_m;
         rows[i].seen_width = rows[i].in_view ? half_width(plane, ring).value_or(0.0) : 0.0;
     }
-    // What is in view stays straight: columns follow a neighbouring row that is wider.
+    // Columns must stay nearly straight where they are in view: a row follows a wider neighbour.
     const auto follow = [&](Row& row, const Row& neighbour) {
         const double cell = kShift * cell_angle * std::hypot(row.radius_m, at.effective_height_m) /
                             std::max(row.radius_m, 1e-300);
@@ -297,8 +297,8 @@ double cell_angle_of(const View& view, const ProjectedGridOptions& options, cons
            std::max(at.corner_cos * at.corner_cos, kStretched);
 }
 
-// What a pixel covers along its longer side at a distance from the nadir, where the way from the camera has
-// this cosine with the picture's axis.
+// A pixel's footprint along its longer side, at a distance from the nadir. `cosine` is that of the angle
+// between the optical axis and the direction to the point.
 double pixel_footprint_m(const View& view, const Station& at, double radius_m, double cosine) {
     return view.pixel_tangent() * cosine *
            (radius_m * radius_m / at.effective_height_m + at.effective_height_m);
@@ -353,12 +353,12 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
         for (std::size_t i = 0; i < stride; ++i) {
             const double azimuth = rows[j].half_width * (2.0 * static_cast<double>(i) / columns - 1.0);
             const glm::dvec2 unit(std::cos(azimuth), std::sin(azimuth));
-            // Rightwards in the picture: clockwise from above.
+            // To the right in the picture, which is clockwise seen from above.
             row[i] = r * glm::dvec2(at.ahead.x * unit.x + at.ahead.y * unit.y,
                                     at.ahead.y * unit.x - at.ahead.x * unit.y);
             const std::size_t here = j * stride + i;
             grid.rest_m[here] = glm::vec2(row[i]);
-            // A pixel's angle falls with the cosine of its distance from the axis, at least; to the corner's.
+            // A pixel's angle shrinks with the cosine of its distance from the axis, down to the corner's.
             const glm::dvec3 way =
                 glm::normalize(glm::dvec3(row[i], -std::copysign(at.effective_height_m, at.height_m)));
             const double cosine = std::max(glm::dot(way, view.forward), at.corner_cos);
@@ -385,7 +385,7 @@ std::vector<std::uint32_t> projected_grid_triangles(ProjectedGridSize size) {
     triangles.reserve(std::size_t(6) * columns * rows);
     for (std::uint32_t j = 0; j < rows; ++j)
         for (std::uint32_t i = 0; i < columns; ++i) {
-            // Counter-clockwise from above: columns run to the right, rows away from the camera.
+            // Counter-clockwise seen from above: columns run to the right, rows away from the camera.
             const std::uint32_t near_left = j * stride + i, far_left = near_left + stride;
             for (const std::uint32_t index :
                  {near_left, near_left + 1, far_left + 1, near_left, far_left + 1, far_left})

@@ -1,4 +1,4 @@
-// What the camera sees, and where. See view.h.
+// The camera's view. See view.h.
 #include "core/surface/view.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Pose pose_at(const Camera& camera, double frame) {
     if (after == keys.begin()) return {after->position_m, after->look_at_m};
     const CameraKey& before = *(after - 1);
     if (after == keys.end()) return {before.position_m, before.look_at_m};
-    // In double: the distance between two ints need not be an int.
+    // In double: the difference of two ints may overflow an int.
     const double t =
         (frame - before.frame) / (static_cast<double>(after->frame) - static_cast<double>(before.frame));
     return {before.position_m + t * (after->position_m - before.position_m),
@@ -58,9 +58,9 @@ View view_at(const Camera& camera, double frame) {
     view.tan_half_width = std::tan(camera.fov_deg * (kPi / 360.0));
     const glm::dvec3 way_m = pose.look_at_m - pose.position_m;
     const double distance_m = glm::length(way_m);
-    // Between two keys a camera may pass through its target: it then looks where a new camera does.
+    // Between two keys a camera may pass through its target. It then has a new camera's direction.
     view.forward = distance_m > 0.0 ? way_m / distance_m : glm::dvec3(0.0, 1.0, 0.0);
-    // Below this the horizontal part of the view is rounding, and so would be the picture's upright.
+    // Below this the horizontal part of the direction is rounding noise, and the picture's up would be, too.
     constexpr double kVertical = 1e-9;
     const bool vertical = std::hypot(view.forward.x, view.forward.y) < kVertical;
     const glm::dvec3 upright = vertical ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);

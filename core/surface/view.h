@@ -1,4 +1,4 @@
-// What the camera sees, and where: the pinhole of a shot's camera at one frame.
+// The view of a shot's camera at one frame: a pinhole.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -11,26 +11,26 @@ namespace pelagic {
 
 struct View {
     glm::dvec3 position_m{0.0};
-    // Unit and orthogonal, world: right, up and forward of the picture.
+    // Orthonormal, in world axes: right, up and forward of the picture.
     glm::dvec3 right{1.0, 0.0, 0.0}, up{0.0, 0.0, 1.0}, forward{0.0, 1.0, 0.0};
-    double tan_half_width = 0.4663;  // of the horizontal field of view's half
+    double tan_half_width = 0.4663;  // of half the horizontal field of view
     glm::ivec2 resolution{1280, 720};
 
     bool operator==(const View&) const = default;
 
-    // Square pixels: tangents per pixel, across and up alike.
+    // The tangent that a pixel covers. Pixels are square.
     double pixel_tangent() const { return 2.0 * tan_half_width / resolution.x; }
-    // The unit direction through picture point (x, y) in pixels: (0, 0) is the top left corner, pixel (i,
-    // j)'s centre is (i + ½, j + ½).
+    // The unit direction through a point of the picture in pixels: (0, 0) is the top left corner, the centre
+    // of pixel (i, j) is (i + ½, j + ½).
     glm::dvec3 direction(glm::dvec2 pixel) const;
-    // Clip coordinates (OpenGL's, −w ≤ z ≤ w) of points relative to origin_m [m], by an infinite projection:
-    // z/w = 1 − 2 near_m/d at distance d along forward, never clipped far away. The nearer the origin to the
-    // camera, the less is lost when the matrix is rounded to single precision.
+    // OpenGL's clip coordinates (−w ≤ z ≤ w) of points relative to origin_m [m], without a far plane:
+    // z/w = 1 − 2 near_m/d at distance d along forward. An origin near the camera keeps precision when the
+    // matrix is rounded to single.
     glm::dmat4 clip_from(glm::dvec3 origin_m, double near_m) const;
 };
 
-// The shot's camera at a frame: camera.keys, linear between and constant outside, or its one pose. Up is z;
-// looking along z, +y.
+// The shot's camera at a frame: camera.keys, interpolated linearly between them and constant outside, or its
+// single pose. Up is z; for a vertical direction, +y.
 View view_at(const Camera& camera, double frame);
 
 }  // namespace pelagic

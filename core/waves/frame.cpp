@@ -17,25 +17,25 @@
 namespace pelagic {
 namespace {
 
-// Columns that are transformed at once and then written as pieces of rows: a cache line's worth in single
+// Columns that one task transforms before it writes them into the rows: one cache line of each row in single
 // precision.
 constexpr int kBlockColumns = 16;
 constexpr int kBlockRows = 32;
 
-// Re-using one FFTW plan per size.
+// One FFTW plan per size.
 template <class T>
 LineTransform<T> transform_of(std::map<int, LineTransform<T>>& known, int n) {
     const auto found = known.find(n);
     return found != known.end() ? found->second : known.emplace(n, LineTransform<T>(n)).first->second;
 }
 
-// Null for a buffer that this sea has no use for.
+// Null where this sea doesn't need the buffer.
 template <class T>
 T* from(Buffer<T>& buffer, std::size_t at) {
     return buffer.empty() ? nullptr : buffer.data() + at;
 }
 
-// Work on each item, one at a time to whoever is free; the sum of what it returns.
+// Calls work(item) for each item, one item per task, and returns the sum of the results.
 template <class Item, class Work>
 long sum_of_each(const std::vector<Item>& items, Work&& work) {
     std::atomic<long> sum = 0;
@@ -102,7 +102,7 @@ template <class T>
 void Frame<T>::set(double t_s) {
     if (!(std::abs(t_s) <= kLatest_s))
         throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
-    is_set_ = false;  // until everything is done
+    is_set_ = false;  // stays so if a task throws
     time_s_ = t_s;
     time_within_loop_s_ = pelagic::time_within_loop_s(t_s, sea_->loop_s());
     executed_lines_ += sum_of_each(blocks_, [this](const Block& block) { return transform_columns(block); });
@@ -126,12 +126,12 @@ typename Frame<T>::Scratch& Frame<T>::scratch() const {
                         [](const CascadePlan& cascade) { return cascade.moves(); }))
             want({&scratch.rate_re, &scratch.rate_im}, block_modes_);
         want({&scratch.lines}, kBlockColumns * line_values_);
-        want({&scratch.line}, line_values_);  // the last: it says that all are there
+        want({&scratch.line}, line_values_);  // allocated last: the check above relies on it
     }
     return scratch;
 }
 
-// h(k,t), and its rate where somebody asks for velocities, of a block's modes.
+// Computes h(k,t) of a block's modes, and ∂h/∂t where a query asks for velocities.
 template <class T>
 void Frame<T>::advance(const Block& block, Scratch& at) const {
     const Cascade<T>& cascade = sea_->cascades()[block.cascade];
@@ -150,8 +150,8 @@ void Frame<T>::advance(const Block& block, Scratch& at) const {
                       .rate_im = moves ? at.rate_im.data() : nullptr});
 }
 
-// The spectrum of a block's columns at this time, once; then each field of each grid: written into lines,
-// transformed along y and laid into the rows.
+// Computes the spectrum of a block's columns at this time once. Then, for each field of each grid, writes the
+// columns' spectra, transforms them along y and scatters the results into the rows.
 template <class T>
 long Frame<T>::transform_columns(const Block& block) {
     const Plan& plan = sea_->plan();
@@ -165,7 +165,7 @@ long Frame<T>::transform_columns(const Block& block) {
         const Grid& grid = planned.grids[g];
         GridState& state = grids_[block.cascade][g];
         const int columns = std::min(block.columns, grid.radius - block.first_mx);
-        // Where a column's my = 0 stands in the scratch.
+        // The scratch index of a column's my = 0.
         const auto middle = [&](int column) {
             return cascade.middle(block.first_mx + column) - cascade.columns[block.first_mx];
         };
@@ -217,7 +217,7 @@ long Frame<T>::transform_columns(const Block& block) {
     return lines;
 }
 
-// Two real rows ride in one complex line.
+// Each complex transform yields two real rows.
 template <class T>
 long Frame<T>::transform_rows(const Rows& rows) {
     const Grid& grid = sea_->plan().cascades[rows.cascade].grids[rows.grid];
@@ -237,7 +237,7 @@ long Frame<T>::transform_rows(const Rows& rows) {
         state.transform.execute(at.line.data(), row);
         for (T* real : {row, row + stride})
             for (std::size_t i = 0; i < kRowSkirt; ++i)
-                real[n + i] = real[i];  // again and again where N is short
+                real[n + i] = real[i];  // N may be shorter than the skirt: copies of copies then
     }
     return lines;
 }
@@ -262,7 +262,7 @@ Realisation Frame<T>::realisation(int query, const Footprints& footprints) const
     const Plan& plan = sea_->plan();
     const Query& asked = plan.queries.at(query).query;
     constexpr int kSums = 5;
-    // Blocks side by side, added up in their order.
+    // Blocks run in parallel; their sums are added in block order, so that rounding is the same every time.
     std::vector<std::array<double, kSums>> parts(blocks_.size(), std::array<double, kSums>{});
     tbb::parallel_for(std::size_t(0), blocks_.size(), [&](std::size_t b) {
         const Block& block = blocks_[b];
@@ -273,7 +273,7 @@ Realisation Frame<T>::realisation(int query, const Footprints& footprints) const
         advance(block, at);
         for (int mx = block.first_mx; mx < block.first_mx + block.columns; ++mx) {
             const std::size_t end = cascade.columns[mx + 1];
-            // Column 0 holds its modes twice.
+            // Column mx = 0 stores my and −my, which are conjugates: count one half.
             const std::size_t first = mx == 0 ? cascade.middle(0) : cascade.columns[mx];
             const std::size_t local = first - cascade.columns[block.first_mx];
             kernels_.realise({.height_re = at.height_re.data() + local,

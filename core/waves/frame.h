@@ -1,5 +1,4 @@
-// The state of the sea at one time. Whoever uses a Frame owns it and reuses it: its buffers are allocated
-// once.
+// The state of the sea at one time. The caller owns a Frame and reuses it: its buffers are allocated once.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -17,15 +16,14 @@
 
 namespace pelagic {
 
-// Frame f's content depends on the sea and on t alone, not on what was computed before or on the number of
-// threads.
+// The samples depend on the sea and on t alone: not on earlier calls of set(), not on the number of threads.
 template <class T>
 class Frame {
   public:
     explicit Frame(std::shared_ptr<const Sea<T>>);
 
-    // t [s] within ± kLatest_s; throws std::invalid_argument otherwise. Runs the plan's transforms, several
-    // side by side.
+    // Runs the plan's transforms in parallel. t [s] within ± kLatest_s; throws std::invalid_argument
+    // otherwise.
     void set(double t_s);
 
     static constexpr double kLatest_s = 1e12;  // a phase in cycles then still has four digits after the point
@@ -35,18 +33,18 @@ class Frame {
     double time_s() const { return time_s_; }
     double time_within_loop_s() const { return time_within_loop_s_; }  // core/waves/loop.h
 
-    // The samples f(jx, jy) of a field of a cascade's grid, at jy · line_stride<T>(N) + jx, jx < N +
-    // kRowSkirt (core/plan/grid_layout.h), jy < N, at x = jx L/N and y = jy L/N. Null where the grid doesn't
-    // hold it.
+    // The samples f(jx, jy) of a field at x = jx L/N and y = jy L/N, stored at jy · line_stride<T>(N) + jx
+    // for jy < N and jx < N + kRowSkirt (core/plan/grid_layout.h). Null where the grid doesn't hold the
+    // field.
     const T* samples(int cascade, int grid, Field field) const {
         const Buffer<T>& plane = grids_[cascade][grid].planes[index(field)];
         return plane.empty() ? nullptr : plane.data();
     }
-    // How many of a field's transforms, and of the lines that they are made of, were run since the frame was
-    // made: set() calls × plan().transforms_per_frame(), × plan().lines_per_frame().
+    // Counts since construction: 2-D transforms, and the 1-D transforms that they consist of. After n calls
+    // of set(): n × plan().transforms_per_frame() and n × plan().lines_per_frame().
     long executed_transforms() const { return executed_transforms_; }
     long executed_lines() const { return executed_lines_; }
-    // What the fields' samples take: plan().frame_bytes().
+    // Bytes of the fields' samples: plan().frame_bytes().
     std::size_t held_bytes() const;
 
     // Sums over the modes at this time that `query` may show, filtered as it filters its finest positions and
@@ -57,15 +55,14 @@ class Frame {
   private:
     struct GridState {
         LineTransform<T> transform;
-        Buffer<T>
-            prefilter;  // by my from 1 − radius to radius − 1; empty where the grid is read at its nodes
+        Buffer<T> prefilter;  // indexed by my + radius − 1; empty where the grid is read at its nodes only
         std::array<Buffer<T>, kFieldCount> planes;
     };
-    // A few of a cascade's columns: what is done at once, so that the spectrum never leaves the cache.
+    // A few columns of a cascade, processed together so that their spectrum stays in the cache.
     struct Block {
         int cascade, first_mx, columns;
     };
-    // A few of a field's rows.
+    // A few rows of a field.
     struct Rows {
         int cascade, grid;
         Field field;
@@ -73,21 +70,21 @@ class Frame {
     };
     struct Scratch {                                                              // of one thread
         Buffer<T> height_re, height_im, rate_re, rate_im, through, chop_through;  // by mode of a block
-        Buffer<T> line, lines;  // one line before its transform, a block's afterwards
+        Buffer<T> line, lines;  // one spectrum before its 1-D transform; a block's results
     };
 
-    Scratch& scratch() const;  // this thread's
+    Scratch& scratch() const;  // of the calling thread
     void advance(const Block&, Scratch&) const;
-    // Both return how many lines they have transformed.
+    // Both return the number of 1-D transforms.
     long transform_columns(const Block&);
     long transform_rows(const Rows&);
 
     std::shared_ptr<const Sea<T>> sea_;
     Kernels<T> kernels_;
     std::vector<std::vector<GridState>> grids_;  // by cascade
-    std::vector<Block> blocks_;                  // the largest first, so that small ones fill the gaps
+    std::vector<Block> blocks_;                  // largest first, so that the threads end together
     std::vector<Rows> rows_;
-    std::size_t block_modes_ = 0, line_values_ = 0;  // the most that a scratch must hold
+    std::size_t block_modes_ = 0, line_values_ = 0;  // sizes of a scratch's buffers
     mutable tbb::enumerable_thread_specific<Scratch> scratches_;
     double time_s_ = 0.0, time_within_loop_s_ = 0.0;
     long executed_transforms_ = 0, executed_lines_ = 0;

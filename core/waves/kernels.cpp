@@ -3,7 +3,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/waves/kernels.cpp"
 #include <hwy/foreach_target.h>
-// foreach_target first: it includes this file once for each instruction set.
+// foreach_target comes first: it includes this file once per instruction set.
 #include <hwy/highway.h>
 
 #include <cstring>
@@ -15,10 +15,10 @@ HWY_BEFORE_NAMESPACE();
 namespace pelagic {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-namespace {  // names are this file's own
+namespace {  // local to this file
 
-// ωt in cycles, reduced in double before it is rounded: as exact after ten weeks as at 0 (where the CPU
-// multiplies and subtracts in one, without the product's own rounding, at any time). And ω.
+// ωt in cycles, reduced in double before it is rounded to T: as exact after ten weeks as at 0 (at any time
+// where the CPU has a fused multiply-add). Also ω.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void PhaseAndOmega(D d, const double* cycles_per_s, double time_s, V& phase, V& omega) {
     if constexpr (sizeof(hn::TFromD<D>) == sizeof(double)) {
@@ -54,14 +54,14 @@ void Advance(const AdvanceArgs<T>& args) {
         const auto coming_im = hn::MulAdd(br, sine, hn::Mul(bi, cosine));
         hn::StoreU(hn::Add(going_re, coming_re), d, args.height_re + i);
         hn::StoreU(hn::Add(going_im, coming_im), d, args.height_im + i);
-        if (args.rate_re) {  // iω (coming − going)
+        if (args.rate_re) {  // iω (backward part − forward part)
             hn::StoreU(hn::Mul(omega, hn::Sub(going_im, coming_im)), d, args.rate_re + i);
             hn::StoreU(hn::Mul(omega, hn::Sub(coming_re, going_re)), d, args.rate_im + i);
         }
     }
 }
 
-// FootprintFilter::weight (core/plan/filter.h) of waves with k² given.
+// FootprintFilter::weight (core/plan/filter.h) for waves given by k².
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Weight(D d, V k2, double footprint_m, double n_min, double n_max) {
     using T = hn::TFromD<D>;
@@ -90,9 +90,9 @@ void Through(const ThroughArgs<T>& args) {
     }
 }
 
-// A field's factor on h(k,t), or on ∂h/∂t for velocities: sign · chop · kx^a · ky^b, times i for some.
-// Tessendorf 2001, Eqs. 19, 20, 29 and their derivatives; D with +i, which sharpens the crests (his printed
-// −i flattens them).
+// A field's factor on h(k,t), or on ∂h/∂t for velocities: sign · chop · kx^a · ky^b, times i for odd
+// derivatives. Tessendorf 2001, Eqs. 19, 20, 29 and their derivatives. D has +i, which sharpens the crests;
+// his printed −i flattens them.
 struct Factor {
     bool of_rate, choppy, imaginary;
     int kx_power, ky_power;
@@ -154,7 +154,7 @@ template <int kKyPower, bool kImaginary, class T>
 HWY_INLINE void LineOf(const LineArgs<T>& args, const Factor& factor) {
     const int h = args.half_height;
     const std::size_t gap = static_cast<std::size_t>(args.n - 2 * h - 1) * sizeof(T);
-    // In this order: each piece may spill over the next one's beginning.
+    // In this order: vector stores may run past the end of one segment into the next.
     Segment<kKyPower, kImaginary>(args, factor, 0, h + 1, args.line_re, args.line_im);
     std::memset(args.line_re + h + 1, 0, gap);
     std::memset(args.line_im + h + 1, 0, gap);
@@ -172,7 +172,7 @@ void Line(const LineArgs<T>& args) {
         LineOf<2, false>(args, factor);
 }
 
-// A square of 16 bytes a side, turned.
+// Transposes a block of 16 × 16 bytes: 4 × 4 floats or 2 × 2 doubles.
 HWY_INLINE void Turn(const float* from, std::size_t from_stride, float* to, std::size_t to_stride) {
     const hn::Full128<float> d;
     const hn::Full128<double> pairs;
@@ -203,7 +203,7 @@ void Scatter(const ScatterArgs<T>& args) {
         T* to = args.rows + part * (stride / 2) + args.first_column;
         int row = 0;
         for (; row + kSide <= args.n; row += kSide) {
-            // Each row lies in another page, where no CPU looks ahead by itself.
+            // Each row lies in another page, beyond which hardware prefetchers don't look.
             for (int i = 0; i < kSide; ++i) __builtin_prefetch(to + (row + kAhead + i) * stride, 1);
             int column = 0;
             for (; column + kSide <= args.columns; column += kSide)
@@ -230,7 +230,7 @@ void Pair(const PairArgs<T>& args) {
         }
         hn::StoreU(hn::Sub(xr, yi), d, args.line_re + m);
         hn::StoreU(hn::Add(xi, yr), d, args.line_im + m);
-        // At −m stand the conjugates. m = 0 writes behind the line's end.
+        // Conjugates go to −m. For m = 0 that is one place past the line's end, into the slack.
         const int mirrored = args.n - m - static_cast<int>(hn::Lanes(d)) + 1;
         hn::StoreU(hn::Reverse(d, hn::Add(xr, yi)), d, args.line_re + mirrored);
         hn::StoreU(hn::Reverse(d, hn::Sub(yr, xi)), d, args.line_im + mirrored);
@@ -246,7 +246,7 @@ void Pair(const PairArgs<T>& args) {
     std::memset(args.line_im + args.radius, 0, gap);
 }
 
-// Single precision read as double.
+// Loads values of T as double.
 template <class D, class T>
 HWY_INLINE hn::Vec<D> Wide(D d, const T* from) {
     if constexpr (sizeof(T) == sizeof(double))
@@ -272,14 +272,14 @@ void Realise(const RealiseArgs<T>& args) {
         };
         const auto cell = weight2(args.cell_m), pixel = weight2(args.pixel_m);
         const auto re = Wide(d, args.height_re + i), im = Wide(d, args.height_im + i);
-        const auto twice = hn::Set(d, 2.0);  // the mode and its mirror image
+        const auto twice = hn::Set(d, 2.0);  // the mode and its conjugate at −k
         const auto height2 = hn::Mul(twice, hn::MulAdd(re, re, hn::Mul(im, im)));
         const auto shown = hn::Mul(cell, height2);
         m0 = hn::Add(m0, shown);
         const auto omega = hn::Mul(two_pi, hn::LoadU(d, args.cycles_per_s + i));
         m_minus1 = hn::Add(m_minus1, hn::IfThenElseZero(held, hn::Div(shown, omega)));
         mss = hn::MulAdd(hn::Mul(pixel, k2), height2, mss);
-        // forward is h0(k), which travels along +k; backward belongs to −k.
+        // forward is h0(k) and travels along +k; backward is conj(h0(−k)) and travels along −k.
         const auto fr = Wide(d, args.forward_re + i), fi = Wide(d, args.forward_im + i);
         const auto br = Wide(d, args.backward_re + i), bi = Wide(d, args.backward_im + i);
         const auto net = hn::Sub(hn::MulAdd(fr, fr, hn::Mul(fi, fi)), hn::MulAdd(br, br, hn::Mul(bi, bi)));

@@ -1,7 +1,6 @@
-// The loops over modes and samples that a Frame spends its time in, in the vectors of the CPU at hand
-// (Highway, chosen at run time). A column is a run of modes with one mx (core/plan/mode_lattice.h); pointers
-// "at my = 0" are read from −H to H. Every loop may read, and write, up to Buffer<T>::kSlack values beyond
-// what it is asked for.
+// The inner loops of a Frame over modes and samples, vectorised with Highway for the CPU at run time. A
+// column is the run of modes with one mx (core/plan/mode_lattice.h). Pointers "at my = 0" are read from −H to
+// H. Every loop may read and write up to Buffer<T>::kSlack values beyond its range.
 #pragma once
 
 #include <cstddef>
@@ -21,20 +20,20 @@ struct AdvanceArgs {
     T *rate_re = nullptr, *rate_im = nullptr;  // [m/s]
 };
 
-// What a grid lets through of a column's modes: the footprint's weight times the spline's prefilter.
+// A grid's weight on each mode of a column: footprint filter times spline prefilter.
 template <class T>
 struct ThroughArgs {
     int half_height;
     T kx, step;                        // [rad/m]
-    double footprint_m, n_min, n_max;  // core/plan/filter.h; footprint 0: all of it
-    const T* prefilter = nullptr;      // by my, at my = 0; none where the grid is read at its nodes
+    double footprint_m, n_min, n_max;  // core/plan/filter.h; footprint 0: no filter
+    const T* prefilter = nullptr;      // at my = 0; null where the grid is read at its nodes only
     T prefilter_x = T(1);
-    const T* chop = nullptr;    // choppiness coth(kd)/k, at my = 0; none without choppiness
-    T *through, *chop_through;  // out, at my = 0; the second is the first times chop
+    const T* chop = nullptr;    // choppiness coth(kd)/k, at my = 0; null without choppiness
+    T *through, *chop_through;  // out, at my = 0: the weight, and the weight times chop
 };
 
-// One field's spectrum along a column, as the line that a transform along y takes: my from 0 up, nothing, my
-// from −H to −1.
+// One field's spectrum along a column, in the order of a 1-D transform along y: my = 0 … H, zeros, my =
+// −H … −1.
 template <class T>
 struct LineArgs {
     Field field;
@@ -45,8 +44,8 @@ struct LineArgs {
     T *line_re, *line_im;                                // out, n values
 };
 
-// Columns after their transform, as pieces of the rows that they cross: for each row, its real parts from
-// column first_column on, and the imaginary parts half a stride later.
+// Writes transformed columns into the rows. In each row the real parts begin at column first_column, the
+// imaginary parts half a stride later.
 template <class T>
 struct ScatterArgs {
     const T* lines;  // `columns` lines, each 2 line_stride(n) long
@@ -54,24 +53,24 @@ struct ScatterArgs {
     T* rows;  // line_stride(n) apart
 };
 
-// Two rows' half spectra X and Y (modes 0 … radius − 1), as the whole line X + iY that a transform along x
-// takes; its real part is then the first row and its imaginary part the second. `second` may be null: 0.
+// Combines two rows' half spectra X and Y (modes 0 … radius − 1) into the full spectrum X + iY. Its transform
+// along x has the first row as its real part and the second as its imaginary part. `second` null: Y = 0.
 template <class T>
 struct PairArgs {
-    const T *first, *second;  // as scatter leaves them
+    const T *first, *second;  // as scatter() leaves them
     int radius, n;
     T *line_re, *line_im;
 };
 
-// Sums over a column's modes, doubled for their mirror images: see core/waves/realisation.h.
+// Sums over a column's modes, doubled for their conjugates at −k: see core/waves/realisation.h.
 template <class T>
 struct RealiseArgs {
     const T *height_re, *height_im, *forward_re, *forward_im, *backward_re, *backward_im;
     const double* cycles_per_s;
-    int first_my, count;  // pointers stand at first_my
+    int first_my, count;  // the pointers stand at first_my
     double kx, step;
     double cell_m, pixel_m, n_min, n_max;
-    double* sums;  // m0, m_minus1, mss, east, north: added to
+    double* sums;  // added to: m0, m_minus1, mss, east, north
 };
 
 template <class T>
@@ -84,7 +83,7 @@ struct Kernels {
     void (*realise)(const RealiseArgs<T>&);
 };
 
-// For the CPU that runs this.
+// The kernels for the CPU that the program runs on.
 template <class T>
 Kernels<T> kernels();
 

@@ -1,4 +1,4 @@
-// What the waves of one moment hold: sums over modes or trains, and nothing of a mesh.
+// Statistics of the waves at one time: sums over modes or trains, independent of any mesh.
 #pragma once
 
 namespace pelagic {

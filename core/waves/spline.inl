@@ -1,8 +1,7 @@
-// Weights of the uniform B-spline, for plain numbers, for vectors of them and for GLSL: see
-// core/base/number.h.
+// Weights of the uniform B-spline, written once for scalars, SIMD vectors and GLSL: see core/base/number.h.
 
-// The P weights of the uniform B-spline at fraction f ∈ [0, 1] after node i: for the nodes i − P/2 + 1 … i +
-// P/2. They sum to 1. (de Boor's recursion on integer knots.)
+// The P weights of the uniform B-spline at fraction f ∈ [0, 1] after node i, for nodes i − P/2 + 1 … i + P/2.
+// They sum to 1. (de Boor's recursion on integer knots.)
 template <int P, class T>
 inline void bspline_weights(T f, T (&w)[P]) {
     w[0] = T(1);

@@ -15,10 +15,10 @@
 namespace pelagic {
 namespace {
 
-// The last word of the random counter: 0 for the cascades' modes, "TRAN" for trains.
+// The last word of the random counter. Cascades use 0; trains use "TRAN".
 constexpr std::uint32_t kTrainStream = 0x5452414Eu;
 
-// A bin of the spectrum, k_lo ≤ k < k_hi: its energy, and where in it a share of the energy is reached.
+// A bin of the spectrum, k_lo ≤ k < k_hi: its energy and its inverse cumulative distribution.
 class Bin {
   public:
     Bin(const DirectionalSpectrum& spectrum, double k_lo, double k_hi) {
@@ -40,8 +40,7 @@ class Bin {
         }
     }
     double energy() const { return energy_; }
-    // A node of the integral, each as likely as its part of the energy; share in [0, 1). Only where there is
-    // energy.
+    // The quadrature node at which the cumulated energy reaches `share`, in [0, 1). Requires energy > 0.
     double wavenumber(double share) const {
         const auto at = std::upper_bound(nodes_.begin(), nodes_.end(), share * energy_,
                                          [](double sum, const Node& node) { return sum < node.sum; });
@@ -56,7 +55,7 @@ class Bin {
     std::vector<Node> nodes_;
 };
 
-// The direction below which (from −π) a share of the energy at wavenumber k travels.
+// The inverse cumulative distribution of direction at wavenumber k, counted from −π.
 double direction(const DirectionalSpectrum& spectrum, double k, double share) {
     const double wanted = share * spectrum.arc(k, -kPi, kPi);
     double low = -kPi, high = kPi;
@@ -67,7 +66,7 @@ double direction(const DirectionalSpectrum& spectrum, double k, double share) {
     return 0.5 * (low + high);
 }
 
-// Uniform in [0, 1), from the random bits' first two words; and from one word alone.
+// Uniform in [0, 1), from two words of random bits or from one.
 double uniform(std::uint32_t high, std::uint32_t low) {
     return static_cast<double>(((std::uint64_t{high} << 32) | low) >> 11) * 0x1p-53;
 }
@@ -80,13 +79,13 @@ double steepness(const Trains<T>& trains, std::size_t i) {
     return kTwoPi / trains.wavelength_m[i] * trains.horizontal_m[i];
 }
 
-// Slope variance of a trochoid over that of the sinusoid with its amplitude (appendix A): wh and wH at weight
-// w.
+// The slope variance of a trochoid relative to the sinusoid of the same amplitude (appendix A), for
+// amplitudes wh and wH.
 double trochoid_factor(double steepness) {
     return 2.0 / (1.0 + std::sqrt(std::max(1.0 - steepness * steepness, 0.0)));
 }
 
-// A train's moments with amplitudes times `weight`.
+// A train's moments with its amplitudes multiplied by `weight`.
 template <class T>
 SpectralMoments weighted(const Trains<T>& trains, std::size_t i, double weight) {
     const double q = steepness(trains, i);
@@ -97,7 +96,7 @@ SpectralMoments weighted(const Trains<T>& trains, std::size_t i, double weight) 
     return moments;
 }
 
-// Trains [0, full) have weight 1, [full, any) a weight between, the others 0.
+// Trains [0, full) have weight 1, trains [full, any) a weight between 0 and 1, the rest 0.
 struct Passing {
     std::size_t full, any;
 };
@@ -113,7 +112,7 @@ Passing passing(const Trains<T>& trains, const FootprintFilter& filter, double f
     return {first_shorter(filter.n_max * footprint_m), first_shorter(filter.n_min * footprint_m)};
 }
 
-// cycles per unit × units, less the nearest whole number, without the product's rounding.
+// a·b minus the nearest whole number, without the rounding error of the product.
 double fraction_of_product(double a, double b) {
     const double product = a * b;
     return (product - std::round(product)) + std::fma(a, b, -product);
@@ -209,7 +208,7 @@ SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, d
     for (std::size_t i = pass.full; i < pass.any; ++i) {
         const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
         const double q = steepness(trains, i);
-        // 1 − w² without cancellation; the trochoid's slope variance falls faster with w than that.
+        // 1 − w² without cancellation. The trochoid's slope variance falls faster with w than w² does.
         const double energy = (1.0 - w) * (1.0 + w);
         const double slopes = std::max(1.0 - w * w * trochoid_factor(w * q) / trochoid_factor(q), 0.0);
         SpectralMoments part = trains.alone[i];
@@ -230,7 +229,7 @@ Realisation realisation(const Trains<T>& trains, const FootprintFilter& filter,
         const double k = kTwoPi / trains.wavelength_m[i];
         const double cell = filter.weight(k, footprints.cell_m), pixel = filter.weight(k, footprints.pixel_m);
         if (cell == 0.0 && pixel == 0.0) break;
-        // A train is the modes ±k with |h| = h/2 each; the one that travels has |h0|² = h²/4.
+        // A train is the pair of modes ±k with |h| = h/2 each; |h0|² = h²/4 travels along k.
         const double height2 = 0.5 * trains.height_m[i] * trains.height_m[i];
         sum.m0 += cell * cell * height2;
         sum.m_minus1 += cell * cell * height2 / (kTwoPi * trains.cycles_per_s[i]);

@@ -28,7 +28,7 @@ struct Fftw<float> {
     static constexpr auto execute = fftwf_execute_split_dft;
     static constexpr auto destroy_plan = fftwf_destroy_plan;
     using Dimension = fftwf_iodim;
-    // Merged with what FFTW knows already; nothing where another build of FFTW refuses it.
+    // Adds to FFTW's wisdom. A different build of FFTW rejects it: no effect then.
     static void remember() { fftwf_import_wisdom_from_string(kSingleLineWisdom); }
 };
 template <>
@@ -38,7 +38,7 @@ struct Fftw<double> {
     static constexpr auto execute = fftw_execute_split_dft;
     static constexpr auto destroy_plan = fftw_destroy_plan;
     using Dimension = fftw_iodim;
-    static void remember() {}  // only the reference is computed in double
+    static void remember() {}  // double precision serves as reference only
 };
 
 }  // namespace
@@ -55,8 +55,8 @@ struct LineTransform<T>::Plan {
     }
 };
 
-// FFTW's split transforms go forwards; with real and imaginary parts exchanged on both sides they go
-// backwards.
+// FFTW's split-complex transforms have sign −1. Exchanging real and imaginary parts of input and output gives
+// sign +1.
 template <class T>
 LineTransform<T>::LineTransform(int n) : n_(n) {
     const std::size_t stride = line_stride<T>(n);
@@ -65,9 +65,9 @@ LineTransform<T>::LineTransform(int n) : n_(n) {
     auto plan = std::make_shared<Plan>();
     {
         const std::lock_guard lock(planner());
-        // Each time: somebody may have made FFTW forget. Of lengths that aren't recorded, one line from one
-        // place to another is what FFTW's estimate is good at: within a fifth of what its longest search
-        // finds, while its estimates for squares, columns and in place are up to ten times slower.
+        // Each time: the host may have called fftw_forget_wisdom. Lengths without wisdom use FFTW's estimate,
+        // which is good for single 1-D transforms out of place: within a fifth of its longest search. (For
+        // 2-D, strided or in-place transforms estimates are up to ten times slower.)
         Fftw<T>::remember();
         plan->handle = Fftw<T>::plan(1, &line, 0, nullptr, from.data() + stride, from.data(),
                                      to.data() + stride, to.data(), FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
@@ -79,7 +79,7 @@ LineTransform<T>::LineTransform(int n) : n_(n) {
 template <class T>
 void LineTransform<T>::execute(const T* from, T* to) const {
     const std::size_t stride = line_stride<T>(n_);
-    T* input = const_cast<T*>(from);  // FFTW's interface has no const; the plan preserves its input
+    T* input = const_cast<T*>(from);  // FFTW's interface lacks const; the plan preserves its input
     Fftw<T>::execute(plan_->handle, input + stride, input, to + stride, to);
 }
 

@@ -1,9 +1,8 @@
-// Fourier transforms of single lines: the one place that knows FFTW.
+// One-dimensional Fourier transforms, called lines here. Only this file and its source know FFTW.
 //
-// A field is real and its spectrum lives in a disc of modes, so a square of N × N samples takes R
-// transforms along y (R: the disc's radius; 0 ≤ mx < R only) and N/2 along x (two real rows ride in one
-// complex line). That is the arithmetic of half a complex square, less for the empty columns, whichever
-// fields are asked for. core/waves/frame puts the lines together.
+// A field is real, and its modes lie within a radius R. So N × N samples take R transforms along y (0 ≤ mx <
+// R) and N/2 along x (each complex transform yields two real rows): half the arithmetic of a complex N × N
+// transform, less what the columns beyond R would cost. core/waves/frame combines the lines.
 #pragma once
 
 #include <memory>
@@ -12,11 +11,11 @@
 
 namespace pelagic {
 
-// f(j) = Σ F(m) exp(+2πi m j/N), m and j from 0 to N − 1, one thread, unnormalised, from one place to
-// another; real parts at the pointer, imaginary parts line_stride(N) behind it, both aligned to 64 bytes. The
-// input is kept. Planned from recorded wisdom or by FFTW's estimate and never by timing, so that every run
-// takes the same path (where the host has not given FFTW wisdom of its own). execute() may be called from
-// several threads at once.
+// f(j) = Σ F(m) exp(+2πi m j/N), m and j from 0 to N − 1: unnormalised, single-threaded, out of place. Real
+// parts begin at the pointer, imaginary parts line_stride(N) later, both aligned to 64 bytes. The input is
+// preserved. Plans come from recorded wisdom or FFTW's estimate and never from timing, so that every run
+// computes the same bits (unless the host gives FFTW other wisdom). Several threads may call execute() at
+// once.
 template <class T>
 class LineTransform {
   public:

@@ -1,14 +1,14 @@
 // Whitecap coverage from the moments of the Jacobian (Dupuy and Bruneton 2012), with a third moment.
 //
-// J = (1 + Dxx)(1 + Dyy) − Dxy². A footprint splits D into the waves that it shows and a Gaussian remainder s
-// = (sxx, syy, sxy) with covariance V. Given the shown ones, J = J_shown + g·s + sᵀAs with
+// J = (1 + Dxx)(1 + Dyy) − Dxy². A footprint splits D into the waves that it shows and a Gaussian remainder
+// s = (sxx, syy, sxy) with covariance V. Given the waves shown, J = J_shown + g·s + sᵀAs with
 //   g = (1 + Dyy, 1 + Dxx, −2 Dxy),   sᵀAs = sxx syy − sxy²,
 // whose cumulants are known in closed form:
 //   κ1 = J_shown + tr(AV),   κ2 = gᵀVg + 2 tr(AVAV),   κ3 = 6 gᵀVAVg + 8 tr(AVAVAV).
-// tr(AV) = ⟨sxx syy⟩ − ⟨sxy²⟩ is 0 for every spectrum: both are ∬ Ψ kx²ky²/k². So the mean of J is the shown
-// J, and a grid that shows fewer waves has the same expected coverage: what it doesn't show is in κ2 and κ3.
-// The paper's own sum of squares (its Eq. 8) subtracts μ² once instead of each pattern's mean, which makes σ²
-// negative; none of that here.
+// tr(AV) = ⟨sxx syy⟩ − ⟨sxy²⟩ is 0 for every spectrum: both terms are ∬ Ψ kx²ky²/k². So the mean of J is
+// J_shown, and a grid that shows fewer waves has the same expected coverage: the hidden ones enter κ2 and κ3.
+// (The paper's Eq. 8 subtracts μ² once instead of each pattern's squared mean, which can make σ² negative. It
+// isn't used here.)
 #pragma once
 
 #include <algorithm>
@@ -23,9 +23,8 @@ namespace pelagic {
 
 #include "core/waves/whitecaps.inl"
 
-// Mean, variance and third cumulant of a weighted set of parts from theirs and from the spread of their
-// means: how a mip level is made (law of total cumulance). Powers are taken about the first part's mean, so
-// that a calm sea doesn't cancel.
+// Mean, variance and third cumulant of a weighted mixture, from those of its parts (law of total cumulance).
+// Builds mip levels. Powers are taken about the first part's mean, to avoid cancellation on a calm sea.
 template <class T>
 class MomentSum {
   public:
@@ -38,7 +37,7 @@ class MomentSum {
         second_ += weight * (d * d + part.variance);
         third_ += weight * (d * d * d + T(3) * d * part.variance + part.third);
     }
-    // Of nothing: J = 1 everywhere.
+    // Without any part: J = 1 everywhere.
     JacobianMoments<T> moments() const {
         if (!(weight_ > T(0))) return {T(1), T(0), T(0)};
         const T m1 = first_ / weight_, m2 = second_ / weight_, m3 = third_ / weight_;
@@ -59,7 +58,7 @@ T from_normal(T y, T skewness) {
     return (T(2) / s) * (root * root * root - T(1));
 }
 
-// Standard normal quantile by Newton's method on erfc; p in (0, 1).
+// Quantile of the standard normal distribution by Newton's method on erfc; p in (0, 1).
 inline double normal_quantile(double p) {
     double y = 0.0;
     for (int i = 0; i < 100; ++i) {
@@ -74,14 +73,13 @@ inline double normal_quantile(double p) {
 
 }  // namespace whitecaps_detail
 
-// Monahan and O'Muircheartaigh 1980: W = 2.95e-6 U10^3.52, U10 in m/s. Held below 1 (reached at 37 m/s).
+// Monahan and O'Muircheartaigh 1980: W = 2.95e-6 U10^3.52, U10 in m/s. Limited to 0.99, reached at 37 m/s.
 inline double observed_coverage(double wind_speed_mps) {
     return std::min(2.95e-6 * std::pow(std::max(wind_speed_mps, 0.0), 3.52), 0.99);
 }
 
-// The threshold ε at which the whole sea, every wave of the spectrum counted, has the coverage that is
-// observed at this wind. −∞ (never any foam) without wind or where nothing converges.
-// `third_moment`: as coverage() will be asked.
+// The threshold ε at which the whole sea, all waves of the spectrum included, has the coverage observed at
+// this wind. −∞ (no foam) without wind or without convergence. `third_moment`: as coverage() will be called.
 inline double calibrated_threshold(const SpectralMoments& all_waves, double wind_speed_mps,
                                    bool third_moment) {
     const auto j = jacobian_moments<double>(

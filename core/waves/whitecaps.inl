@@ -1,19 +1,19 @@
-// Whitecaps' formulas, for plain numbers, for vectors of them and for GLSL: see core/base/number.h, and
-// core/waves/whitecaps.h for what they mean.
+// The formulas of whitecaps, written once for scalars, SIMD vectors and GLSL (core/base/number.h). Their
+// derivation is in core/waves/whitecaps.h.
 
-// Mean, variance and third cumulant of J in a footprint [-].
+// Mean, variance and third cumulant of J within a footprint [-].
 template <class T>
 struct JacobianMoments {
     T mean, variance, third;
 };
 
-// Covariance of (sxx, syy, sxy): the fourth moments of the waves that a footprint hides, times choppiness².
+// Covariance of (sxx, syy, sxy): fourth moments of the hidden waves, times choppiness².
 template <class T>
 struct HiddenStrain {
     T xxxx, xxxy, xxyy, xyyy, yyyy;
 };
 
-// tr(AVAV) and tr(AVAVAV): what J's cumulants take from V alone.
+// tr(AVAV) and tr(AVAVAV): the terms of J's cumulants that depend on V alone.
 template <class T>
 struct StrainTraces {
     T second, third;
@@ -21,7 +21,7 @@ struct StrainTraces {
 
 template <class T>
 inline StrainTraces<T> strain_traces(HiddenStrain<T> v) {
-    // AV, row by row; A has ½ off the diagonal (xx, yy) and −1 at (xy, xy).
+    // AV by rows. A is ½ at (xx, yy) and (yy, xx), −1 at (xy, xy), 0 elsewhere.
     const T h = T(0.5);
     T m[9];
     m[0] = h * v.xxyy;
@@ -42,8 +42,8 @@ inline StrainTraces<T> strain_traces(HiddenStrain<T> v) {
     return StrainTraces<T>(second, third);
 }
 
-// J's cumulants given the shown derivatives of the displacement. Variance ≥ 0; exactly 0 where nothing is
-// hidden.
+// J's cumulants, given the shown derivatives of the displacement. The variance is ≥ 0, and exactly 0 where no
+// waves are hidden.
 template <class T>
 inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, HiddenStrain<T> v, StrainTraces<T> traces) {
     const T gx = T(1) + dyy, gy = T(1) + dxx, gs = T(-2) * dxy;
@@ -61,14 +61,14 @@ inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, HiddenStrain<T> 
 
 namespace whitecaps_detail {
 
-// Beyond these |skewness| Wilson and Hilferty's cube leaves its range; a J that lopsided is calm almost
-// everywhere.
+// Wilson and Hilferty's cube root holds up to this |skewness|. A J more skewed than that belongs to an almost
+// calm sea.
 inline constexpr double kLargestSkewness = 2.0;
-inline constexpr double kNoSkewness = 1e-4;  // below, the correction is smaller than single precision
+inline constexpr double kNoSkewness = 1e-4;  // the correction is below single precision
 
-// The standard normal deviate as improbable as the deviate z of a Pearson III (shifted gamma) variable of
-// mean 0, variance 1 and the given skewness: Wilson and Hilferty 1931. Rising in z, and the identity for
-// skewness → 0.
+// Maps the deviate z of a Pearson III (shifted gamma) variable of mean 0, variance 1 and the given skewness
+// to the standard normal deviate of equal probability: Wilson and Hilferty 1931. Increasing in z; the
+// identity for skewness → 0.
 template <class T>
 inline T to_normal(T z, T skewness) {
     const T clamped = minimum(maximum(skewness, T(-kLargestSkewness)), T(kLargestSkewness));
@@ -79,12 +79,12 @@ inline T to_normal(T z, T skewness) {
 
 }  // namespace whitecaps_detail
 
-// Standard deviations beyond which the coverage is all or nothing (−∞: never any foam).
+// Beyond this many standard deviations the coverage is 0 or 1 (ε = −∞: no foam).
 inline constexpr double kFarthestDeviate = 30.0;
 
-// The part of a footprint with J < threshold, 0 … 1. Two moments: ½(1 + erf((ε − μ)/(√2 σ))) (Dupuy and
-// Bruneton 2012, Eq. 6). The third makes J's distribution a shifted gamma: with a skewness of 0.24, the
-// Gaussian is off by +85 % at a coverage of 0.005. Variance 0: the step, without a division.
+// The fraction of a footprint with J < threshold, 0 … 1. From two moments: ½(1 + erf((ε − μ)/(√2 σ))) (Dupuy
+// and Bruneton 2012, Eq. 6). The third makes the distribution of J a shifted gamma: at a skewness of 0.24 and
+// a coverage of 0.005 the Gaussian is 85 % too large. Variance 0 gives a step, without a division.
 template <class T>
 inline T coverage(JacobianMoments<T> j, T threshold, bool third_moment) {
     const T sigma = square_root(select(j.variance > T(0), j.variance, T(1)));

@@ -1,5 +1,5 @@
-// FFTW's recorded plans for lines of a power of two, 256 … 16384, in single precision: up to a fifth
-// faster than its estimate, and more than twice from 4096 on. Another build of FFTW refuses them and
+// FFTW plans ("wisdom") for 1-D transforms of 256, 512 … 16384 in single precision: up to a fifth faster than
+// FFTW's estimate, and more than twice as fast from 4096 on. Another build of FFTW rejects them and
 // estimates. Written by tests/bench/wisdom.cpp.
 #pragma once
 

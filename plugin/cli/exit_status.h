@@ -1,11 +1,11 @@
-// What the program's exit status means.
+// The meaning of the program's exit status.
 #pragma once
 
 namespace pelagic::cli {
 
-inline constexpr int kDone = 0;        // everything that was asked for is complete, on disk or printed
-inline constexpr int kRefused = 1;     // a shot file that is refused, or a file that can't be read or written
-inline constexpr int kWrongUsage = 2;  // the command line itself
-inline constexpr int kSignal = 128;    // plus the signal's number, as shells count
+inline constexpr int kDone = 0;        // everything requested is complete, on disk or printed
+inline constexpr int kRefused = 1;     // a shot file is invalid, or a file can't be read or written
+inline constexpr int kWrongUsage = 2;  // an error on the command line
+inline constexpr int kSignal = 128;    // plus the signal's number, as in shells
 
 }  // namespace pelagic::cli

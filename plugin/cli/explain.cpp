@@ -30,7 +30,7 @@ struct Arguments {
     std::string threads;
 };
 
-// What the system could give this process without swapping; the largest number where it doesn't tell.
+// Memory that this process could get without swapping; the largest number if the system doesn't say.
 std::size_t free_bytes() {
     std::ifstream memory("/proc/meminfo");
     for (std::string key, rest; memory >> key; std::getline(memory, rest)) {
@@ -51,7 +51,7 @@ std::string milliseconds_text(const Milliseconds& ms) {
     return text.data();
 }
 
-// Columns of fixed width, so that a row can be printed as soon as it is known.
+// Columns of fixed width, so that each row can be printed as soon as it is measured.
 void print_row(const std::array<std::string, 8>& cells) {
     constexpr std::array<int, 8> kWidths{-23, 10, 8, 10, 10, 10, 17, 17};
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -59,7 +59,7 @@ void print_row(const std::array<std::string, 8>& cells) {
         const std::string space(width - std::min(width, cells[i].size()), ' ');
         std::cout << (i > 0 ? " " : "") << (kWidths[i] < 0 ? cells[i] + space : space + cells[i]);
     }
-    std::cout << std::endl;  // flushed: a row that took seconds is not lost
+    std::cout << std::endl;  // flushed, because a row may take seconds
 }
 
 void print_measured(const Measured& measured) {
@@ -83,11 +83,10 @@ int print_prices(const Scene& scene, const Arguments& arguments) {
     if (const std::size_t there = free_bytes(); needed > there)
         return refuse_memory(needed, ", and " + bytes_text(there) + " are free");
     Threads threads(arguments.threads);
-    std::cout << "\nPrices: a frame with the item less a frame without it, on "
+    std::cout << "\nPrices: a frame with the item minus a frame without it, on "
               << count_text(threads.count(), "thread", "threads") << ", " << instruction_set()
-              << ".\nBytes: held by the sea, by a frame, and by points and results. Milliseconds: median "
-                 "(half of what "
-                 "holds\nthe middle half); computing as a bake does it, and encoding its files.\n\n";
+              << ".\nBytes: held by the sea, by a frame, and by points and results. Milliseconds: median\n"
+                 "(half the interquartile range) of computing as in a bake, and of encoding its files.\n\n";
     print_row({"", "transforms", "lines", "sea", "frame", "output", "compute, ms", "encode, ms"});
     Progress progress;
     MeasureOptions options;

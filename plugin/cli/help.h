@@ -1,4 +1,4 @@
-// Every help text of the command line, in one place. The keys of a shot file are described where they are
+// All help texts of the command line, in one place. The keys of a shot file are described where they are
 // parsed (plugin/shot), and printed by "pelagic keys".
 #pragma once
 
@@ -51,7 +51,7 @@ extern const char* const kShot;
 extern const char* const kShots;
 extern const char* const kHelp;
 
-// The program's version, and what it was built with.
+// The program's version, and how it was built.
 std::string version_text();
 
 }  // namespace pelagic::cli::help

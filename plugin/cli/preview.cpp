@@ -46,19 +46,20 @@ std::string joined(const std::vector<std::string>& words) {
     return text;
 }
 
-// What is wrong with a picture's name; empty where nothing is.
+// What is wrong with a picture's name; empty if nothing is.
 std::string refuse_file(const fs::path& file, const std::vector<std::string>& extensions) {
     if (std::find(extensions.begin(), extensions.end(), file.extension()) != extensions.end() &&
         file.has_stem())
         return {};
-    return "\"" + file.string() + "\" names no picture; accepted: a file that ends in " + joined(extensions);
+    return "\"" + file.string() + "\" is not the name of a picture; accepted: a file that ends in " +
+           joined(extensions);
 }
 
 int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments) {
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
     const OffscreenContext context;
-    const Sky sky = make_sky(scene);  // what is wrong with either leaves no folder behind
+    const Sky sky = make_sky(scene);  // before the folder is made: an error leaves none behind
     files::ensure_folder(file.parent_path());
     const OffscreenPicture drawn = render_offscreen(scene, sky, frame);
     RenderOptions options = render_options(scene);

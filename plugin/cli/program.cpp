@@ -26,13 +26,13 @@ std::string listed(const std::vector<std::string>& words) {
     return text;
 }
 
-// "; did you mean --frames?", or nothing.
+// "; did you mean --frames?", or "".
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
     const std::string near = nearest(word, candidates);
     return near.empty() ? std::string() : "; did you mean " + near + '?';
 }
 
-// The options that may follow: "--out", …
+// The options of a command: "--out", …
 std::vector<std::string> options_of(const CLI::App& command) {
     std::vector<std::string> names;
     for (const CLI::Option* option : command.get_options()) {
@@ -41,7 +41,7 @@ std::vector<std::string> options_of(const CLI::App& command) {
     return names;
 }
 
-// The first argument where it is meant to be a verb and is none: what is wrong with it; otherwise empty.
+// What is wrong if the first argument should be a verb and isn't one; otherwise empty.
 std::string refuse_verb(int argc, const char* const* argv, const std::vector<Verb>& verbs) {
     if (argc < 2 || argv[1][0] == '-') return {};
     std::vector<std::string> names;
@@ -52,7 +52,8 @@ std::string refuse_verb(int argc, const char* const* argv, const std::vector<Ver
     return problem + "' is not a verb" + suggestion(argv[1], names) + " (verbs: " + listed(names) + ')';
 }
 
-// What CLI11 had no place for: an unknown option with the nearest known one, or else an argument too many.
+// The error for arguments that CLI11 couldn't place: an unknown option, with the nearest known one, or an
+// extra argument.
 std::string refuse_extras(const std::vector<std::string>& extras, const CLI::App& command) {
     const auto option = std::find_if(extras.begin(), extras.end(),
                                      [](const std::string& extra) { return extra.starts_with('-'); });
@@ -94,14 +95,14 @@ class Formatter : public CLI::Formatter {
 
 int run(int argc, const char* const* argv) {
     CLI::App program(help::kProgram, "pelagic");
-    program.set_help_flag("-h,--help", help::kHelp);  // the verbs inherit it
+    program.set_help_flag("-h,--help", help::kHelp);  // inherited by the verbs
     program.set_version_flag("--version", help::version_text(), help::kVersion);
     program.footer(help::kProgramFooter);
     program.require_subcommand(1);
     const auto formatter = std::make_shared<Formatter>();
     formatter->label("SUBCOMMAND", "VERB");
     formatter->column_width(20);
-    program.formatter(formatter);  // the verbs inherit it
+    program.formatter(formatter);  // inherited by the verbs
     const std::vector<Verb> verbs{add_bake(program),    add_render(program),   add_preview(program),
                                   add_explain(program), add_validate(program), add_keys(program)};
 
@@ -134,15 +135,14 @@ int run_program(int argc, const char* const* argv) noexcept {
     try {
         return run(argc, argv);
     } catch (const ShotError& error) {
-        return failed(error.what());  // each line begins with the file, as compilers' do
+        return failed(error.what());  // each line begins with the file, as compilers' messages do
     } catch (const std::bad_alloc&) {
         return failed(
             "pelagic: out of memory; lower the resolution (pelagic explain shows what takes how much)");
     } catch (const std::exception& error) {
         return failed(std::string("pelagic: ") + error.what());
     } catch (...) {
-        return failed(
-            "pelagic: an error without a message; this is a mistake in the program, please report it");
+        return failed("pelagic: an error without a message; this is a bug in the program, please report it");
     }
 }
 

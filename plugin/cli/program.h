@@ -1,4 +1,4 @@
-// The command line as a whole: parses it, runs the verb, and turns whatever goes wrong into a message.
+// The whole command line: parses it, runs the verb, and turns every error into a message.
 #pragma once
 
 namespace pelagic::cli {

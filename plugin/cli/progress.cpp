@@ -1,4 +1,4 @@
-// What running work shows. See progress.h.
+// Progress on stderr. See progress.h.
 #include "plugin/cli/progress.h"
 
 #include <sys/ioctl.h>
@@ -15,11 +15,11 @@
 namespace pelagic::cli {
 namespace {
 
-constexpr std::chrono::milliseconds kRewriteEvery{100};  // faster than an eye reads
-constexpr std::chrono::seconds kLineEvery{5};            // a log of a night's bake stays readable
-constexpr int kColumns = 80;                             // of a terminal that doesn't tell
+constexpr std::chrono::milliseconds kRewriteEvery{100};  // faster than one can read
+constexpr std::chrono::seconds kLineEvery{5};            // keeps the log of a long bake short
+constexpr int kColumns = 80;                             // of a terminal of unknown width
 constexpr int kLongestBar = 40;
-constexpr int kShortestBar = 8;  // shorter ones say nothing
+constexpr int kShortestBar = 8;  // a shorter one isn't informative
 
 bool is_terminal() {
     const char* kind = std::getenv("TERM");
@@ -35,7 +35,7 @@ int finished(const BakeProgress& progress) {
     return progress.done + progress.kept;
 }
 
-// "3.4 frames/s", or "12 s a frame" for slow ones; empty before the first frame is done.
+// "3.4 frames/s", or "12 s a frame" if it is slow; empty before the first frame is done.
 std::string rate_text(const BakeProgress& progress) {
     if (progress.done == 0 || progress.seconds <= 0.0) return {};
     const double rate = progress.done / progress.seconds;
@@ -79,7 +79,7 @@ std::string progress_bar(const BakeProgress& progress, int columns) {
     const std::string count = std::to_string(finished(progress)) + '/' + std::to_string(progress.total);
     const std::string frame = progress.done > 0 ? "frame " + std::to_string(progress.frame) : std::string();
     const std::string text = joined({frame, count, rate_text(progress), left_text(progress)}, "  ");
-    // The last column stays free: many terminals wrap there. 3: brackets and a space.
+    // The last column stays empty, because many terminals wrap there. 3: brackets and a space.
     const int room = std::min(columns - 1 - static_cast<int>(text.size()) - 3, kLongestBar);
     if (room < kShortestBar) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
     const auto filled =
@@ -106,7 +106,7 @@ void Progress::show(const BakeProgress& progress) {
     const Clock::time_point now = Clock::now();
     if (frame_said_ && !last && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery))
         return;
-    if (!terminal_ && progress.done == 0 && progress.kept == 0) return;  // nothing to tell yet
+    if (!terminal_ && progress.done == 0 && progress.kept == 0) return;  // nothing to report yet
     frame_said_ = true;
     last_ = now;
     if (terminal_) return write_over(progress_bar(progress, terminal_columns()));
@@ -128,7 +128,7 @@ void Progress::clear() {
 }
 
 void Progress::write_over(const std::string& line) {
-    print("\r\x1b[K" + line);  // to the line's start, and the rest of it erased
+    print("\r\x1b[K" + line);  // returns to the start of the line and erases it
     line_is_there_ = true;
 }
 

@@ -1,5 +1,4 @@
-// What running work shows on stderr: on a terminal one line that is written over and over, elsewhere plain
-// lines that come seldom enough for a log.
+// Progress on stderr: on a terminal one line that is rewritten, otherwise plain lines, few enough for a log.
 #pragma once
 
 #include <chrono>
@@ -17,8 +16,8 @@ class Progress {
     Progress& operator=(const Progress&) = delete;
 
     void show(const BakeProgress& progress);
-    void show(const std::string& line);  // work that is no bake, in the caller's words
-    void clear();                        // takes the line away, so that a message can follow
+    void show(const std::string& line);  // progress of other work than a bake, as a text
+    void clear();                        // erases the line, so that a message can follow
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -32,7 +31,7 @@ class Progress {
     Clock::time_point last_;
 };
 
-// One line for a terminal of so many columns: "[######----] frame 12  13/48  3.4 frames/s  10 s left".
+// One line for a terminal of this width: "[######----] frame 12  13/48  3.4 frames/s  10 s left".
 std::string progress_bar(const BakeProgress& progress, int columns);
 
 // "frame 12: 13 of 48, 3.4 frames/s, 10 s left"

@@ -21,7 +21,7 @@ std::optional<glm::ivec2> parse_size(const std::string& text) {
     return size;
 }
 
-// Empty where it is a size, else what is wrong with it.
+// What is wrong with a size; empty if nothing is.
 std::string refuse_size(const std::string& text) {
     if (parse_size(text)) return {};
     return text + " is no size; accepted: width and height in pixels, like 1280x720, each " +

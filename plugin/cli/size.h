@@ -7,11 +7,11 @@
 
 namespace pelagic::cli {
 
-// Adds the option, which refuses what is no size. `size` must outlive the parsing; it stays empty where none
-// is asked for.
+// Adds the option, which rejects invalid sizes. `size` must outlive the parsing; it stays empty if the option
+// isn't given.
 CLI::Option* add_size(CLI::App& command, std::string& size, const char* help);
 
-// As add_size() leaves it; 0 × 0 for an empty one.
+// Converts the text; an empty one gives 0 × 0.
 glm::ivec2 size_of(const std::string& size);
 
 }  // namespace pelagic::cli

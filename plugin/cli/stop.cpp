@@ -1,4 +1,4 @@
-// Being asked to stop. See stop.h. The handler does only what POSIX allows in one: lock-free atomics,
+// Handling of stop signals. See stop.h. The handler does only what POSIX allows in one: lock-free atomics,
 // write(), _exit().
 #include "plugin/cli/stop.h"
 
@@ -26,7 +26,7 @@ struct sigaction pipe_before {
 }, size_before{};
 
 void say(std::string_view text) {
-    // Nobody can be told where stderr itself fails.
+    // An error of stderr can't be reported.
     [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
@@ -39,7 +39,7 @@ extern "C" void pelagic_stop_handler(int signal) {
                   : "\npelagic: stopped before the first frame; no frame was touched\n");
         _exit(kSignal + signal);
     }
-    say("\npelagic: stopping after the file at hand; again to stop at once\n");
+    say("\npelagic: stopping after the current file; again to stop at once\n");
     errno = saved;
 }
 
@@ -52,14 +52,15 @@ StopSignals::StopSignals() {
     struct sigaction action {};
     sigemptyset(&action.sa_mask);
     action.sa_handler = pelagic_stop_handler;
-    action.sa_flags = SA_RESTART;  // the file at hand is finished undisturbed
+    action.sa_flags = SA_RESTART;  // system calls for the current file continue
     for (std::size_t i = 0; i < kStopping.size(); ++i) {
         sigaction(kStopping[i], nullptr, &before[i]);
         if (before[i].sa_handler != SIG_IGN) sigaction(kStopping[i], &action, nullptr);
     }
     action.sa_handler = SIG_IGN;
     sigaction(SIGPIPE, &action, &pipe_before);
-    sigaction(SIGXFSZ, &action, &size_before);  // a file beyond the allowed size is then an error with words
+    sigaction(SIGXFSZ, &action,
+              &size_before);  // a file too large is then an error with a message
 }
 
 StopSignals::~StopSignals() {

@@ -1,14 +1,14 @@
-// Being asked to stop: SIGINT (Ctrl-C), SIGTERM, SIGHUP.
+// Stop signals: SIGINT (Ctrl-C), SIGTERM, SIGHUP.
 #pragma once
 
 #include <atomic>
 
 namespace pelagic::cli {
 
-// While it lives, the first of these signals sets cancelled(), and the second ends the program at once; files
-// are written so that even that tears none. Until files_begin() the first one already ends it at once:
-// nothing is being written then. A signal that is ignored when it begins (nohup, background jobs) stays
-// ignored. SIGPIPE is ignored: a log that is closed must not end a bake. One at a time.
+// During its lifetime, the first of these signals sets cancelled(), and the second ends the program at once;
+// no file is torn even then, because files are written atomically. Before files_begin() the first signal ends
+// the program at once: nothing is being written. A signal that was ignored before (nohup, background jobs)
+// stays ignored. SIGPIPE is ignored: closing a log must not end a bake. Only one object at a time.
 class StopSignals {
   public:
     StopSignals();
@@ -17,8 +17,8 @@ class StopSignals {
     StopSignals& operator=(const StopSignals&) = delete;
 
     const std::atomic<bool>& cancelled() const;
-    int number() const;  // the signal that came; 0: none
-    void files_begin();  // from now on files may be being written
+    int number() const;  // of the signal received; 0: none
+    void files_begin();  // declares that files may be written from now on
 };
 
 }  // namespace pelagic::cli

@@ -1,4 +1,4 @@
-// Numbers as people read them in messages. See text.h.
+// Formats numbers for messages. See text.h.
 #include "plugin/cli/text.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace pelagic::cli {
 
 std::string duration_text(double seconds) {
-    constexpr double kLongest_s = 1e9;  // 30 years: keeps the conversion to integers defined
+    constexpr double kLongest_s = 1e9;  // 30 years: the conversion to integers stays defined
     const double whole = std::clamp(std::isnan(seconds) ? 0.0 : seconds, 0.0, kLongest_s);
     std::array<char, 64> text{};
     const long rounded = std::lround(whole);

@@ -1,4 +1,4 @@
-// Numbers as people read them in messages.
+// Formats numbers for messages.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,6 @@ namespace pelagic::cli {
 std::string duration_text(double seconds);  // "3.2 s", "4 min 05 s", "2 h 07 min"
 std::string bytes_text(std::size_t bytes);  // "34 MiB", "1.2 GiB"
 std::string count_text(long count, const char* singular, const char* plural);  // "1 frame", "3 frames"
-std::string frames_text(const std::vector<int>& frames);                       // rising; "1-6, 9"
+std::string frames_text(const std::vector<int>& frames);                       // sorted; "1-6, 9"
 
 }  // namespace pelagic::cli

@@ -8,9 +8,9 @@
 namespace pelagic::cli {
 namespace {
 
-constexpr int kMostThreads = 256;  // beyond, a frame's work is too small to be shared
+constexpr int kMostThreads = 256;  // a frame has too little work for more
 
-// Empty where it is a number of threads, else what is wrong with it.
+// What is wrong with a number of threads; empty if nothing is.
 std::string refuse_threads(const std::string& text) {
     int number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

@@ -1,4 +1,4 @@
-// --threads: how many threads a verb's work may take.
+// --threads: the number of threads of a verb.
 #pragma once
 
 #include <oneapi/tbb/global_control.h>
@@ -9,14 +9,14 @@
 
 namespace pelagic::cli {
 
-// Adds the option, which refuses what is no number of threads. `threads` must outlive the parsing; it stays
-// empty for all cores of the process's affinity mask.
+// Adds the option, which rejects invalid numbers. `threads` must outlive the parsing. It stays empty for all
+// cores of the process's affinity mask.
 CLI::Option* add_threads(CLI::App& command, std::string& threads, const char* help);
 
-// That many threads while it lives.
+// Runs work on that many threads.
 class Threads {
   public:
-    explicit Threads(const std::string& threads);  // as add_threads() leaves it
+    explicit Threads(const std::string& threads);  // the text from add_threads()
     int count() const { return count_; }
     template <class Work>
     auto execute(const Work& work) {
@@ -25,7 +25,8 @@ class Threads {
 
   private:
     int count_;
-    // The first bounds the threads of the process, the second asks for that many, also beyond the cores.
+    // limit_ bounds the threads of the process; the arena asks for that many, even beyond the number of
+    // cores.
     tbb::global_control limit_;
     tbb::task_arena arena_;
 };

@@ -1,6 +1,6 @@
-// A verb of the command line, one file each. add_…() tells CLI11 its arguments; run() does the work after
-// parsing, prints results on stdout and messages on stderr, and returns the exit status. What run() throws is
-// reported by run_program().
+// The verbs of the command line, one file each. add_…() declares a verb's arguments to CLI11. run() does the
+// work after parsing: it prints results on stdout and messages on stderr, and returns the exit status.
+// run_program() reports its exceptions.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,16 +1,15 @@
-// OpenEXR through the library's own writers, onto a string.
+// Writes OpenEXR with the library's own writers into a string.
 //
-// The compression, measured by tests/bench/bake.cpp on one core with a choppy JONSWAP sea (10 m/s) and 1024²
-// pixels; size against the samples' own, time against None:
+// Why Auto means no compression. tests/bench/bake.cpp measures, on one core, a choppy JONSWAP sea (10 m/s) of
+// 1024² pixels. Size relative to the samples', and time relative to None:
 //                             None       RLE        ZIPS       ZIP        PIZ
 //     displacement, Float   1.00, 1×   1.00, 4×   1.00, 27×  0.96, 39×  0.93, 61×
 //     normal, Half          1.00, 1×   0.87, 3×   0.77, 12×  0.77, 11×  1.00, 31×
 //     whitecaps, Float      1.00, 1×   1.00, 4×   0.99, 30×  0.99, 34×  1.00, 74×
-//     the same everywhere   1.00, 1×   1.00, 4×   0.01, 3×   0.01, 3×   0.11, 10×
-// The low bits of a sea are noise. The best case of a map that varies, a quarter of the normals by ZIP, takes
-// longer than to compute all of the frame, and would gain time only where a disk takes less than some
-// 10 MB/s; a renderer pays again each time it reads. So Auto is None, and who knows that a map is the same
-// everywhere asks for Zip.
+//     a constant map        1.00, 1×   1.00, 4×   0.01, 3×   0.01, 3×   0.11, 10×
+// The low bits of a sea are noise. In the best case of a map that varies, ZIP saves a quarter of the normals.
+// That takes longer than computing the whole frame, saves time only on disks slower than some 10 MB/s, and
+// every read pays again. Callers that know a map to be constant ask for Zip.
 #include "plugin/exr/exr.h"
 
 #include <ImfChannelList.h>
@@ -40,16 +39,17 @@
 namespace pelagic::exr {
 namespace {
 
-constexpr int kTileSize = 64;  // [pixels] a side: what renderers' texture caches expect
-// zlib's effort, 1 … 9: 4, the library's own, makes normals 2 % smaller in 1.25 times the time.
+constexpr int kTileSize = 64;  // [pixels] per side: what renderers' texture caches expect
+// zlib's level, 1 … 9. Level 4, the library's default, makes normals 2 % smaller and takes 1.25 times as
+// long.
 constexpr int kZipLevel = 1;
-// Rows handed over at a time: a multiple of every compression's block (32 for PIZ, 16 for ZIP).
+// Rows written per call: a multiple of every compression's block (32 for PIZ, 16 for ZIP).
 constexpr int kBandRows = 32;
-constexpr std::size_t kLongestName = 255;  // [bytes] of the format's long names
-// The first magnitude that rounds to the infinity of a half: 65504, the largest half, and half a step of 32.
+constexpr std::size_t kLongestName = 255;  // [bytes] the format's limit for long names
+// The smallest magnitude that rounds to infinity as a half: 65504, the largest half, plus half a step of 32.
 constexpr float kHalfOverflow = 65520.0f;
 
-// What the library writes into, instead of a file.
+// The stream that the library writes to.
 class StringStream : public Imf::OStream {
   public:
     explicit StringStream(std::size_t expected_bytes) : OStream("memory") { bytes_.reserve(expected_bytes); }
@@ -62,7 +62,7 @@ class StringStream : public Imf::OStream {
         position_ += n;
     }
     std::uint64_t tellp() override { return position_; }
-    // The library seeks only back, to fill in the table of offsets, and forth to the end.
+    // The library seeks only back to the offset table, and then to the end again.
     void seekp(std::uint64_t position) override {
         if (position > bytes_.size()) bytes_.resize(position);
         position_ = position;
@@ -75,7 +75,7 @@ class StringStream : public Imf::OStream {
     std::size_t position_ = 0;
 };
 
-// What a file of an image takes without compression, and some room for its header: memory is asked for once.
+// The uncompressed size of an image's file with some room for the header: allocated once.
 std::size_t raw_bytes(const Image& image) {
     constexpr std::size_t kHeader = 1 << 16;
     std::size_t bytes_a_pixel = 0;
@@ -148,8 +148,7 @@ Imf::Header imf_header(const Header& header, const Image& image) {
         result.channels().insert(channel.name, Imf::Channel(imf_type(channel.type)));
     Imf::addWrapmodes(result, header.periodic ? "periodic,periodic" : "clamp,clamp");
 
-    // What is there now is the format's own, and the rest of its own names here is added when a file is
-    // written.
+    // The names of attributes that exist already, and of those that the library adds when it writes.
     std::set<std::string> taken{"name", "type", "version", "chunkCount", "tiles", "view", "preview"};
     for (auto own = result.begin(); own != result.end(); ++own) taken.insert(own.name());
     for (const Attribute& attribute : header.attributes) {
@@ -203,18 +202,18 @@ void gather(const Image& image, const Channel& channel, const Block& block, char
     }
 }
 
-// Memory for one block of all channels, and the library's view of it.
+// Memory for one block of all channels, and the library's view (frame buffer) of it.
 class Scratch {
   public:
-    // Samples of one channel lie packed, rows of `width`, whatever the height of the block.
+    // The samples of a channel are packed in rows of `width`, whatever the block's height.
     Scratch(const Image& image, int width, int height) {
         for (const Channel& channel : image.channels)
             planes_.emplace_back(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
                                  sample_size(channel));
     }
 
-    // Fills the memory from the image's block; the slices count x and y from the block's own corner where
-    // `from_corner`, as tiles do, else from the picture's.
+    // Copies the image's block into the memory. The slices count x and y from the block's corner if
+    // `from_corner` (tiles), otherwise from the picture's.
     Imf::FrameBuffer load(const Image& image, const Block& block, bool from_corner) {
         Imf::FrameBuffer buffer;
         for (std::size_t c = 0; c < image.channels.size(); ++c) {
@@ -274,8 +273,7 @@ std::string encode_scanline(const Header& header, const Image& image) {
     check_image(image);
     StringStream stream(raw_bytes(image));
     {
-        // No threads: callers encode several files side by side. The table of offsets is written when this is
-        // gone.
+        // No threads: callers encode several files in parallel. The destructor writes the offset table.
         Imf::OutputFile file(stream, imf_header(header, image), 0);
         const int band = std::min(kBandRows, image.height);
         Scratch scratch(image, image.width, band);

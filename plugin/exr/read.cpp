@@ -16,9 +16,9 @@
 namespace pelagic::exr {
 namespace {
 
-constexpr int kLargestSide = 32768;  // [pixels] 16 times the width of a usual sky: a header may say anything
+constexpr int kLargestSide = 32768;  // [pixels] 16 times a usual sky's; damaged headers may claim anything
 
-// Why a file isn't one of ours; read_rgb() puts its name before it.
+// Why a file is refused. read_rgb() adds its name.
 struct Refusal : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -64,7 +64,7 @@ RgbPixels read_first_part(const std::string& path) {
         throw Refusal(
             "holds only a part of its picture, or more (its data window isn't its display window); "
             "whole pictures are accepted");
-    // In 64 bits: corners may lie anywhere.
+    // 64-bit: corners may lie anywhere in the range of int.
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
     if (width > kLargestSide || height > kLargestSide)
@@ -73,7 +73,7 @@ RgbPixels read_first_part(const std::string& path) {
 
     RgbPixels out{static_cast<int>(width), static_cast<int>(height), {}};
     out.pixels.resize(static_cast<std::size_t>(width * height));
-    // A channel can be read into one place only: a grey one is copied.
+    // The library reads each channel into one slice only: a grey one is copied.
     const bool grey = names[0] == names[1];
     Imf::FrameBuffer buffer;
     constexpr std::size_t kStep = sizeof(std::array<float, 3>);

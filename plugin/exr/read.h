@@ -1,6 +1,6 @@
-// Pictures out of OpenEXR files, as red, green and blue.
+// Reads pictures from OpenEXR files as red, green and blue.
 //
-// Knows the format and no physics: values are handed over as they are in the file, NaN and infinity included.
+// Knows the format and no physics: values are returned as they are in the file, including NaN and infinity.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@ struct RgbPixels {
     std::vector<std::array<float, 3>> pixels;  // rows from the top, x fastest
 };
 
-// The first part of a file, scan lines or tiles (of mip levels the full picture), channels R, G and B or Y
-// alone (a grey picture), each half or float; other channels are not looked at.
-// Throws std::runtime_error, naming the file, what is wrong and what is accepted, for a file that can't be
-// opened, isn't OpenEXR or is damaged; one with deep pixels, without these channels, with channels of
-// integers or of fewer samples than pixels; one whose data don't fill the picture exactly; one larger than
-// 32768 pixels a side.
+// Reads the first part of a file: scan lines or tiles (level 0 if there are mip levels), channels R, G and B,
+// or Y alone (a grey picture), each half or float. Other channels are ignored.
+// Throws std::runtime_error, naming the file, the problem and what is accepted, for a file that can't be
+// opened, isn't OpenEXR or is damaged; for deep pixels; for missing channels, channels of integers or with
+// fewer samples than pixels; for data that don't fill the picture exactly; and for more than 32768 pixels per
+// side.
 RgbPixels read_rgb(const std::filesystem::path& path);
 
 }  // namespace pelagic::exr

@@ -1,9 +1,10 @@
-// Atomic writes by the classic order: hidden file, fsync, rename, fsync of the folder (POSIX rename()
-// replaces a name atomically; without the first fsync a power cut may leave the new name with an empty file).
+// Atomic writes in the classic order: write a hidden file, fsync it, rename it, fsync the folder. (POSIX
+// rename() replaces a name atomically. Without the first fsync a power cut may leave the new name with an
+// empty file.)
 //
-// Who is still writing is told by flock(): a writer holds a lock on its hidden file, and the kernel drops the
-// lock with the process, however it dies. A process number alone would not do: numbers are used again, and in
-// containers every bake may have the same one.
+// Locks (flock()) tell which hidden files are still being written: a writer locks its own, and the kernel
+// releases the lock when the process ends, however it ends. Process numbers alone wouldn't do: they are
+// reused, and in containers every bake may have the same one.
 #include "plugin/files/files.h"
 
 #include <fcntl.h>
@@ -25,15 +26,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTemporaryPrefix = ".pelagic-";
-// Locks may not be seen across machines (NFS with local locks), so another machine's hidden file must also be
-// older than any single write can take [s].
+// Locks may be invisible across machines (NFS with local locks). So another machine's hidden file must also
+// be older than any single write can take [s].
 constexpr std::int64_t kForeignAge_s = 24 * 3600;
-// One write() takes at most this much [bytes]: Linux stops just below 2^31.
+// The largest single write() [bytes]: Linux limits it to just below 2^31.
 constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
-// A name is taken only where two processes share a number (containers); they don't stay in step for long.
+// A name is in use only where two processes have one number (containers), and they soon differ.
 constexpr int kNameAttempts = 1000;
 
-// The reason in words, and what to do about it.
+// A reason and a remedy, in words.
 struct Advice {
     std::string reason;
     std::string remedy;
@@ -62,8 +63,7 @@ Advice advice(int error) {
             return {"a part of the path is a file, not a folder",
                     "move that file away or choose another --out"};
         case ELOOP:
-            return {"the path runs through links that lead in a circle",
-                    "mend the links or choose another --out"};
+            return {"the path contains a loop of symbolic links", "fix the links or choose another --out"};
         case ENAMETOOLONG:
             return {"the path is too long for the file system", "choose a shorter name or --out"};
         case EIO:
@@ -74,7 +74,7 @@ Advice advice(int error) {
         case ESTALE:
             return {"the network folder is gone", "mount it again or choose another --out"};
         default:
-            return {std::generic_category().message(error), "mend that or choose another --out"};
+            return {std::generic_category().message(error), "fix that or choose another --out"};
     }
 }
 
@@ -95,7 +95,7 @@ fs::path folder_of(const fs::path& target) {
     return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-// Ends the hidden file's name: the machine it was written on, '/' replaced because it can't be in a name.
+// The end of a hidden file's name: the machine's name, with '/' replaced.
 std::string host_suffix() {
     std::array<char, 256> host{};
     if (gethostname(host.data(), host.size() - 1) != 0) return "@";
@@ -117,8 +117,8 @@ class Descriptor {
     int number() const { return number_; }
     explicit operator bool() const { return number_ >= 0; }
 
-    // Closes and returns the error, 0 when all is well: some network file systems report a full disk only
-    // here. An interrupted close() has closed on Linux, and all was flushed before.
+    // Closes, and returns the error or 0: some network file systems report a full disk only here. After EINTR
+    // Linux has closed the descriptor, and the data were flushed before.
     int close() {
         const int number = std::exchange(number_, -1);
         return ::close(number) == 0 || errno == EINTR ? 0 : errno;
@@ -128,7 +128,7 @@ class Descriptor {
     int number_;
 };
 
-// Whether this process now has the file to itself. A file system without locks counts as `without_locks`.
+// Whether this process got the lock. `without_locks`: the answer on a file system without locks.
 bool take_lock(int descriptor, bool without_locks) {
     while (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EINTR) continue;
@@ -137,7 +137,7 @@ bool take_lock(int descriptor, bool without_locks) {
     return true;
 }
 
-// A new hidden file in the target's folder, locked; deleted with this object unless it was renamed before.
+// A new, locked hidden file in the target's folder; the destructor deletes it unless it was renamed.
 class Temporary {
   public:
     explicit Temporary(const fs::path& target)
@@ -172,8 +172,8 @@ class Temporary {
         }
     }
 
-    // Closed before the rename, because a full network disk may be reported only by close(); the lock lives
-    // on in `lock_` until the name is the target's, so that nobody takes the file for a leftover.
+    // Closes before the rename, because only close() may report a full network disk. `lock_` keeps the lock
+    // until the file has the target's name, so that nobody deletes it as a leftover.
     void rename_to_target() {
         if (const int error = file_.close(); error != 0) fail_to_write(target_, error);
         if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, errno);
@@ -191,8 +191,7 @@ class Temporary {
                 if (errno == EEXIST || errno == EINTR) continue;
                 fail_to_write(target_, errno);
             }
-            // Somebody who clears leftovers may have been quicker with the lock, and may have deleted the
-            // file.
+            // A process that deletes leftovers may have locked the file first, and may have deleted it.
             struct stat status {};
             if (take_lock(number, true) && fstat(number, &status) == 0 && status.st_nlink > 0) return number;
             ::close(number);
@@ -204,25 +203,25 @@ class Temporary {
     const fs::path& target_;
     fs::path path_;
     bool renamed_ = false;
-    Descriptor file_;  // after path_, which create() fills
-    Descriptor lock_;  // the same open file, and so the same lock
+    Descriptor file_;  // declared after path_, which create() fills
+    Descriptor lock_;  // the same open file description, and so the same lock
 };
 
 void flush_folder(const fs::path& target) {
     const Descriptor folder(open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    // A folder may be writable but not readable: then its flush is left to the system.
+    // A folder may be writable but not readable. Its flush is then left to the system.
     if (!folder) {
         if (errno == EACCES) return;
         fail_to_write(target, errno);
     }
     while (fsync(folder.number()) != 0) {
         if (errno == EINTR) continue;
-        if (errno == EINVAL || errno == ENOTSUP) return;  // file systems that have no flush for folders
+        if (errno == EINVAL || errno == ENOTSUP) return;  // this file system can't flush folders
         fail_to_write(target, errno);
     }
 }
 
-// Deletes the hidden file at `path` if the process that wrote it is gone; whether it did.
+// Deletes the hidden file at `path` if the process that wrote it is gone. Returns whether it did.
 bool remove_if_stale(const fs::path& path, const std::string& own_host) {
     const Descriptor file(open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     struct stat status {};
@@ -230,7 +229,8 @@ bool remove_if_stale(const fs::path& path, const std::string& own_host) {
     const std::int64_t age_s = std::time(nullptr) - status.st_mtime;
     const bool old = age_s > kForeignAge_s;
     if (!old && !path.filename().string().ends_with(own_host)) return false;
-    // Deleted while the lock is held: a writer that has only just made the file sees one or the other.
+    // Deletes while holding the lock: a writer that has just made the file notices either the lock or the
+    // deletion.
     return take_lock(file.number(), old) && unlink(path.c_str()) == 0;
 }
 
@@ -276,8 +276,7 @@ void ensure_folder(const std::filesystem::path& asked) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) fail_to_make_folder(folder, error.value());
-    // Asked of the system rather than of the mode bits: it knows root, access lists and read-only file
-    // systems.
+    // The system's answer, not the mode bits': it includes root, access lists and read-only file systems.
     if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
 }
 

@@ -1,7 +1,6 @@
-// Files that appear under their name only when they are whole, and messages that say what to do when they
-// can't.
+// Files that appear under their name only when they are complete, and error messages that say what to do.
 //
-// Knows no format: every format hands its bytes over. POSIX only (Linux and macOS).
+// Independent of formats: the caller passes bytes. POSIX only (Linux and macOS).
 #pragma once
 
 #include <cstddef>
@@ -17,8 +16,8 @@
 
 namespace pelagic::files {
 
-// A file or folder that can't be written. what() is a whole message for a person: the path, the reason in
-// words and what to do about it.
+// A file or folder that can't be written. what() is a complete message for users: the path, the reason in
+// words and the remedy.
 class FileError : public std::runtime_error {
   public:
     FileError(const std::string& message, std::filesystem::path path, std::error_code code);
@@ -31,36 +30,36 @@ class FileError : public std::runtime_error {
     std::error_code code_;
 };
 
-// Puts `bytes` under the name `target`, replacing what is there, so that at every moment, also across a kill
-// or a power cut, the name has either the old file or the whole new one: written to a hidden file in the same
-// folder, flushed to the disk, renamed, the folder flushed. The folder must exist. A symbolic link at
-// `target` is replaced, not followed. Safe from several threads and processes, also on several machines that
-// share the folder. Throws FileError; then what stood under the name is as it was, and the hidden file is
-// gone. (One exception: an error in the folder's own flush comes after the rename; the whole new file is then
-// under its name.)
+// Puts `bytes` under the name `target`, replacing an existing file. At every moment, even if the process is
+// killed or the power fails, the name has either the old file or the complete new one: the bytes go to a
+// hidden file in the same folder, which is flushed to the disk and renamed; then the folder is flushed. The
+// folder must exist. A symbolic link at `target` is replaced, not followed. Safe with several threads and
+// processes, and with several machines that share the folder. Throws FileError; the name is then as it was,
+// and the hidden file is gone. (One exception: if flushing the folder fails, the rename is done already, and
+// the complete new file has the name.)
 void write_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
 void write_atomically(const std::filesystem::path& target, std::string_view bytes);
 
-// Takes the bytes of a file, piece after piece.
+// Receives the bytes of a file piece by piece.
 using ByteSink = std::function<void(std::string_view)>;
-// Hands the bytes of a file over; they need to live for the call only.
+// Passes the bytes of a file to the sink. They need to live during the call only.
 using Content = std::function<void(const ByteSink&)>;
 
-// The same with bytes that need never be in memory as a whole: each piece goes to the hidden file as it
-// comes. Returns how many they were. What `content` throws passes through, and nothing is changed then.
+// The same for bytes that are never in memory all at once: each piece is written to the hidden file as it
+// comes. Returns the number of bytes. Exceptions of `content` pass through, and nothing is changed then.
 std::uintmax_t write_atomically(const std::filesystem::path& target, const Content& content);
 
-// Deletes the hidden files that write_atomically() left in `folder` (not in its sub-folders) when its process
-// was killed, and returns how many. Files of writers still at work stay. Without effect, and without an
-// error, where there is no such folder or nothing may be deleted in it: leftovers harm nobody.
+// Deletes the hidden files in `folder` (not in its sub-folders) left by write_atomically() in processes that
+// were killed, and returns how many. Files still being written stay. Does nothing, and reports no error, if
+// there is no such folder or if nothing in it may be deleted: leftovers are harmless.
 std::size_t remove_stale_temporaries(const std::filesystem::path& folder);
 
-// Makes sure that `folder` is a folder in which files can be made, making it and its parents where they are
-// missing; an empty path is the working folder. Throws FileError.
+// Makes sure that files can be made in `folder`. Creates the folder and its parents if they are missing. An
+// empty path is the working folder. Throws FileError.
 void ensure_folder(const std::filesystem::path& folder);
 
-// Holds the folder for this process until it is destroyed, waiting for others that do: for files that several
-// runs read, change and write again. Without effect on file systems that have no locks.
+// Locks the folder for this process during the object's lifetime, and waits for other holders: for files that
+// several runs read, change and write again. No effect on file systems without locks.
 class FolderLock {
   public:
     explicit FolderLock(const std::filesystem::path& folder);
@@ -76,7 +75,7 @@ class FolderLock {
 // formats have what a file says about itself. False where there is no such file.
 bool carries(const std::filesystem::path& path, std::string_view text);
 
-// The size in bytes of the regular file at `path` (links followed); none where there is no such file.
+// The size in bytes of the regular file at `path` (links are followed); nullopt if there is none.
 std::optional<std::uintmax_t> file_size(const std::filesystem::path& path);
 
 }  // namespace pelagic::files

@@ -11,11 +11,11 @@
 namespace pelagic::png {
 namespace {
 
-constexpr int kLargest = 1000000;  // [pixels] a side: the library's own limit
-// zlib's effort, 1 … 9: pictures of a sea are noise to it; more effort only takes longer.
+constexpr int kLargest = 1000000;  // [pixels] per side: the library's limit
+// zlib's level, 1 … 9. Pictures of a sea look like noise to it: higher levels only take longer.
 constexpr int kZipLevel = 3;
 
-// What the library's callbacks reach: C++ exceptions must not pass through its C.
+// The state of the library's callbacks. C++ exceptions must not pass through its C code.
 struct Sink {
     std::string bytes;
     std::exception_ptr error;
@@ -34,7 +34,7 @@ extern "C" void pelagic_png_write(png_structp file, png_bytep bytes, std::size_t
 
 extern "C" void pelagic_png_flush(png_structp) {}
 
-// False when the library has given up. No object with a destructor lives here: the library jumps over them.
+// Returns false if the library failed. Has no local with a destructor, because the library uses longjmp().
 bool write(png_structp file, png_infop info, const Image& image) {
     if (setjmp(png_jmpbuf(file)) != 0) return false;
     const auto width = static_cast<png_uint_32>(image.width);
@@ -78,7 +78,7 @@ std::string encode(const Image& image) {
     }
     png_destroy_write_struct(&file, &info);
     if (sink.error) std::rethrow_exception(sink.error);
-    if (!whole) throw std::bad_alloc();  // all else that the library refuses was refused above
+    if (!whole) throw std::bad_alloc();  // the only failure left after the checks above
     return std::move(sink.bytes);
 }
 

@@ -9,15 +9,15 @@
 
 namespace pelagic::png {
 
-// Rows from the top, x fastest, three bytes a pixel: R, G, B, encoded as sRGB has it.
+// Rows from the top, x fastest; three sRGB bytes per pixel: R, G, B.
 struct Image {
     int width = 0, height = 0;  // 1 … 1e6 each
     std::span<const std::uint8_t> rgb;
     std::string comment{};  // ASCII, kept in the file before the pixels; empty: none
 };
 
-// The image as the bytes of a file, marked as sRGB. Throws std::invalid_argument for a size out of range or
-// that doesn't match the number of bytes, std::bad_alloc.
+// The image as the bytes of a file, marked as sRGB. Throws std::invalid_argument if the size is out of range
+// or doesn't match the number of bytes, and std::bad_alloc.
 std::string encode(const Image& image);
 
 }  // namespace pelagic::png

@@ -1,15 +1,17 @@
-// The cascades' fields at a point: evaluate()'s sums (core/evaluate), read from the textures that SeaLayout
-// has filled. Needs the constants kCascades, kCellRungs, kPixelRungs, kChoppy, kCoverage and P, the spline's taps.
+// The cascades' fields at a point: the sums of evaluate() (core/evaluate), read from textures that SeaLayout
+// describes. Needs the constants kCascades, kCellRungs, kPixelRungs, kChoppy, kCoverage and P, the spline's
+// number of taps.
 
 layout(std140) uniform SeaTables {
-    // By (rung · kCascades + cascade), cells before pixels. first.xy: the tile's first texel, .z: its nodes N,
-    // 0 where nothing passes, .w: a multiple of N that makes every node's number positive.
+    // Indexed by rung · kCascades + cascade, cells before pixels. first.xy: the tile's first texel; .z: its
+    // number of nodes N, 0 where the filter lets nothing through; .w: a multiple of N that makes node numbers
+    // positive.
     ivec4 tile_first[(kCellRungs + kPixelRungs) * kTileCascades];
     ivec4 tile_origin[(kCellRungs + kPixelRungs) * kTileCascades];  // .xy: node at or below the origin
-    vec4 tile_scale[(kCellRungs + kPixelRungs) * kTileCascades];    // .xy: the rest, .zw: nodes per metre, split
+    vec4 tile_scale[(kCellRungs + kPixelRungs) * kTileCascades];    // .xy: fraction; .zw: nodes/m, split
     vec4 rungs[kCellRungs + kPixelRungs];  // .x: footprint [m]
-    // Four by rung of pixels: what it hides (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy), and the same mixed
-    // with the next rung.
+    // Four vectors per rung of pixels: its hidden moments (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy), and
+    // the same eight mixed with the next rung.
     vec4 hidden_rungs[4 * kPixelRungs];
 };
 
@@ -17,7 +19,8 @@ uniform sampler2D cell_fields;     // Height, Dx, Dy
 uniform sampler2D pixel_fields;    // ηx, ηy, Dxx, Dyy
 uniform sampler2D pixel_fields_2;  // Dxy
 
-// A point's place on a ladder of footprints: (1 − t) of the lower rung and t of the next. As evaluate.cpp's.
+// A point's place between the levels of filtering (rungs): weight 1 − t for the lower one, t for the next.
+// See evaluate.cpp.
 struct Rung {
     int lower;
     float t;
@@ -35,7 +38,7 @@ Rung rung_of(int first, int count, float footprint_m) {
 
 struct Place {
     ivec2 texel;  // of the first tap
-    vec2 rest;    // 0 … 1 after the node
+    vec2 rest;    // 0 … 1, from the node
 };
 
 Place place_in(int tile, SplitMetres x) {
@@ -108,7 +111,7 @@ PixelFields pixel_cascades(SplitMetres x, Rung rung) {
     return PixelFields(sum.x, sum.y, sum.z, sum.w, dxy);
 }
 
-// What the rung hides, less what the trains hide. May be negative by rounding.
+// The rung's hidden moments without the trains' part. May be negative by rounding.
 PixelMoments hidden_of(Rung rung) {
     vec4 low = hidden_rungs[4 * rung.lower];
     vec4 high = hidden_rungs[4 * rung.lower + 1];

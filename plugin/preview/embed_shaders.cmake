@@ -1,10 +1,10 @@
-# Writes OUT, a C++ file that holds the text of FILES (a list separated by |, relative to ROOT) for
-# shader_source.h, so that the program needs no file beside it.
+# Writes OUT, a C++ source with the text of FILES (a list separated by |, relative to ROOT) for
+# shader_source.h, so that the program needs no shader files at run time.
 string(REPLACE "|" ";" files "${FILES}")
 set(rows "")
 foreach(file ${files})
   file(READ ${ROOT}/${file} text)
-  # A string literal of C++ may be cut anywhere, and compilers need not take long ones.
+  # One literal per line, because compilers may limit the length of a literal.
   string(REPLACE "\n" ")pelagic\" \"\\n\"\n    R\"pelagic(" text "${text}")
   string(APPEND rows "    {\"${file}\", R\"pelagic(${text})pelagic\"},\n")
 endforeach()

@@ -1,4 +1,4 @@
-// One triangle over the whole picture, as far away as there is.
+// One triangle over the whole picture, at the far plane.
 uniform float farthest;
 
 void main() {

@@ -1,4 +1,4 @@
-// OpenGL's objects as values of C++: made with a current context, deleted with one.
+// OpenGL objects as C++ values. The context must be current when they are made and deleted.
 #pragma once
 
 #include <epoxy/gl.h>

@@ -1,4 +1,4 @@
-// How long the GPU takes for each stage of a frame, asked for without waiting for it.
+// GPU time of each stage of a frame, read without waiting.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ class GlStageTimer {
     enum Stage { Upload, Sea, Sky, Show };
     static constexpr int kStages = 4;
 
-    // A stage's time is what the GPU is given while one of these lives; they don't overlap. A measurement is
-    // left out while all of its stage's queries are under way.
+    // Measures a stage during its lifetime; stages don't overlap. If all of the stage's queries are in
+    // flight, the measurement is skipped.
     class Measured {
       public:
         Measured(GlStageTimer& timer, Stage stage) {

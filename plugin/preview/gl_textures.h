@@ -1,4 +1,4 @@
-// Textures of floats that shaders read texel by texel.
+// Textures of floats that shaders read with texelFetch().
 #pragma once
 
 #include "plugin/preview/gl_objects.h"
@@ -10,7 +10,7 @@ inline void bind_texture(int unit, const GlTexture& texture) {
     glBindTexture(GL_TEXTURE_2D, texture.name());
 }
 
-// For what changes a texture: on a unit that every drawing binds anew.
+// Binds a texture for changes, on a unit that every draw call binds again.
 inline void edit_texture(const GlTexture& texture) {
     bind_texture(0, texture);
 }

@@ -1,4 +1,4 @@
-// Frames beside the drawing, seas beside the playing. See live.h.
+// Computes frames and builds seas in the background. See live.h.
 #include "plugin/preview/live.h"
 
 #include <oneapi/tbb/task_arena.h>
@@ -17,7 +17,7 @@ double milliseconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
-// The frames' parallel loops go before the sea's where both want the cores.
+// Runs a build at lower priority than the frames' parallel loops.
 LiveSea::Build in_the_background(LiveSea::Build build) {
     return [build = std::move(build)](const Scene& scene) {
         tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
@@ -77,7 +77,7 @@ LiveStatus LiveSea::status() const {
 
 void LiveSea::compute_frames() {
     std::optional<Frame<float>> frame;
-    // What was computed last, or failed: not again.
+    // The request computed last, whether it succeeded or failed: not repeated.
     std::shared_ptr<const LiveBuild> tried;
     std::optional<double> tried_s;
     std::unique_lock lock(mutex_);
@@ -93,7 +93,7 @@ void LiveSea::compute_frames() {
         std::string error;
         try {
             if (!frame || &frame->sea() != tried->sea.get()) {
-                frame.reset();  // before the new one: half the memory
+                frame.reset();  // before the new one is made: halves the peak memory
                 frame.emplace(tried->sea);
             }
             if (slot.build != tried) {

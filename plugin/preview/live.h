@@ -1,5 +1,5 @@
-// The sea of a window: frames computed beside the drawing of the last one, and a changed sea built beside the
-// playing of the old one. Whoever draws never waits.
+// The sea of a window. Frames are computed while the last one is drawn, and a changed sea is built while the
+// old one plays. The drawing thread never waits.
 #pragma once
 
 #include <array>
@@ -19,75 +19,74 @@
 
 namespace pelagic {
 
-// A sea ready to play, and what drawing it needs to know.
+// A sea that is ready to play, and what is needed to draw it.
 struct LiveBuild {
-    Scene scene;  // that it is of
+    Scene scene;  // the scene it was made from
     std::shared_ptr<const Sea<float>> sea;
-    int query = 0;  // of the sea's plan: what pictures ask
+    int query = 0;  // the picture's query, an index into the plan
     ProjectedGridOptions grid;
-    double build_s = 0.0;  // how long it took
+    double build_s = 0.0;  // time that building took
 };
 
-// Plans and builds what pictures of the scene need. Throws std::invalid_argument with every problem of a
-// scene that validate() refuses.
+// Plans and builds the sea for pictures of the scene. Throws std::invalid_argument with every problem that
+// validate() finds.
 std::shared_ptr<const LiveBuild> build_live(const Scene& scene);
 
-// Whether pictures of the two show the same waves, so that nothing needs to be built.
+// Whether the two scenes have the same waves in pictures, so that nothing needs to be built.
 bool same_sea(const Scene& a, const Scene& b);
 
-// One time of one sea, ready for SeaRenderer::upload().
+// A sea at one time, ready for SeaRenderer::upload().
 struct LiveFrame {
     std::shared_ptr<const LiveBuild> build;
     std::optional<PackedFrame> packed;
-    long number = 0;  // counts finished frames from 1
+    long number = 0;  // of the finished frame, from 1
     double transforms_ms = 0.0, packing_ms = 0.0;
 };
 
 struct LiveStatus {
-    bool building = false;      // a sea, beside the one that plays
-    std::string error;          // of the sea asked for last, or of the frame; empty: all is well
-    long seas = 0, frames = 0;  // how many were finished
+    bool building = false;      // a sea is being built
+    std::string error;          // of the latest sea or frame; empty if it succeeded
+    long seas = 0, frames = 0;  // numbers finished
 };
 
 class LiveSea {
   public:
     using Build = LiveWorker<Scene, LiveBuild>::Make;
 
-    // Two threads: one builds, one computes frames. Frames come first where they share the cores.
+    // Two threads: one builds seas, one computes frames. Frames have priority on the cores.
     explicit LiveSea(Build build = build_live);
-    ~LiveSea();  // waits for the frame and the sea that are being made
+    ~LiveSea();  // waits for the frame and the sea being made
     LiveSea(const LiveSea&) = delete;
     LiveSea& operator=(const LiveSea&) = delete;
 
-    // None of these waits for a computation; all are for the one thread that draws.
+    // None of these waits for a computation. Only the drawing thread may call them.
 
-    // The sea from now on: built beside the one that plays, if its waves are others, and put in its place
-    // between two frames. While one is being built only the latest of further ones is kept.
+    // Requests the sea of this scene. If its waves differ it is built in the background and replaces the
+    // current sea between two frames. During a build only the latest request is kept.
     void ask(const Scene& scene);
-    // The time [s], finite, that the next frame should show, of the latest sea that is ready; the latest
-    // wins. To be called for every picture drawn: a sea that is ready is put in place here.
+    // Requests a frame at this time [s], finite, of the latest sea that is ready; the latest request wins.
+    // Must be called for every picture drawn: this call swaps in a sea that is ready.
     void show(double time_s);
-    // The latest frame finished; null before the first. Stays as it is until the next call.
+    // The latest finished frame; null before the first. Unchanged until the next call.
     const LiveFrame* newest();
     LiveStatus status() const;
 
   private:
     void compute_frames();
 
-    // A frame is written into one slot, one waits to be taken, one is being drawn: nobody waits for
-    // another's.
+    // Triple buffering: one slot is being written, one waits, one is being drawn.
     std::array<LiveFrame, 3> slots_;
     std::size_t written_ = 0, waiting_ = 1, shown_ = 2;  // into slots_
     bool fresh_ = false;                                 // slots_[waiting_] is newer than slots_[shown_]
 
     mutable std::mutex mutex_;
     std::condition_variable wake_;
-    std::shared_ptr<const LiveBuild> build_;  // of the next frame
-    std::optional<double> time_s_;            // of the next frame
+    std::shared_ptr<const LiveBuild> build_;  // for the next frame
+    std::optional<double> time_s_;            // for the next frame
     std::string frame_error_;
     long seas_ = 0, frames_ = 0;
     bool stopping_ = false;
-    std::optional<Scene> asked_;  // the drawing thread's own
+    std::optional<Scene> asked_;  // used by the drawing thread only
     std::thread frames_thread_;
     LiveWorker<Scene, LiveBuild> builder_;
 };

@@ -1,4 +1,4 @@
-// From a shot to a sea that plays. See live.h.
+// Builds a sea that plays from a scene. See live.h.
 #include <chrono>
 #include <stdexcept>
 
@@ -10,7 +10,7 @@
 namespace pelagic {
 namespace {
 
-// What is not of the waves as it is by default, so that changing it changes nothing here.
+// The scene with everything but its waves set to defaults, so that other changes compare equal.
 Scene waves_of(const Scene& scene) {
     Scene waves = scene;
     waves.camera = Camera{};

@@ -1,5 +1,5 @@
-// A thread that makes things beside the running picture: seas, skies. Who asks never waits, and of requests
-// that come while one is being made only the latest is made next.
+// A thread that makes something (a sea, a sky) in the background. Callers never wait. Of requests that come
+// in the meantime only the latest is kept.
 #pragma once
 
 #include <condition_variable>
@@ -15,7 +15,7 @@
 
 namespace pelagic {
 
-// What went wrong in a thread, for people.
+// An exception's message, for users.
 inline std::string message_of(const std::exception_ptr& error) {
     try {
         std::rethrow_exception(error);
@@ -34,9 +34,9 @@ class LiveWorker {
   public:
     using Make = std::function<std::shared_ptr<const Made>(const Asked&)>;
 
-    // `make` runs on the worker's own thread, one request at a time; what it throws becomes error().
+    // `make` runs on the worker's thread, one request at a time. Its exceptions become error().
     explicit LiveWorker(Make make) : make_(std::move(make)), thread_([this] { run(); }) {}
-    // Waits for what is being made; a request that waits is dropped.
+    // Waits for the request being made; drops one that is waiting.
     ~LiveWorker() {
         {
             const std::lock_guard lock(mutex_);
@@ -55,7 +55,7 @@ class LiveWorker {
         }
         wake_.notify_one();
     }
-    // The latest thing made, once; null where there is none.
+    // The latest result, returned once; otherwise null.
     std::shared_ptr<const Made> take() {
         const std::lock_guard lock(mutex_);
         return std::exchange(made_, nullptr);
@@ -64,7 +64,7 @@ class LiveWorker {
         const std::lock_guard lock(mutex_);
         return making_ || asked_.has_value();
     }
-    // Why the latest request came to nothing; empty when it didn't.
+    // Why the latest request failed; empty if it didn't.
     std::string error() const {
         const std::lock_guard lock(mutex_);
         return error_;
@@ -93,7 +93,7 @@ class LiveWorker {
             if (!made) continue;
             made_.swap(made);
             lock.unlock();
-            made.reset();  // what nobody took goes while nobody waits for the lock
+            made.reset();  // frees a result that nobody took, outside the lock
             lock.lock();
         }
     }
@@ -105,7 +105,7 @@ class LiveWorker {
     std::shared_ptr<const Made> made_;
     std::string error_;
     bool making_ = false, stopping_ = false;
-    std::thread thread_;  // the last: it uses all of the above
+    std::thread thread_;  // declared last: it uses all members above
 };
 
 }  // namespace pelagic

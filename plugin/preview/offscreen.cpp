@@ -15,7 +15,7 @@ bool has(const char* extensions, std::string_view wanted) {
            (" " + std::string(extensions) + " ").find(" " + std::string(wanted) + " ") != std::string::npos;
 }
 
-// Where a context may come from, the fastest first: each graphics card, then Mesa without one.
+// Possible EGL displays, fastest first: each graphics card, then Mesa without one.
 std::vector<EGLDisplay> displays() {
     std::vector<EGLDisplay> found;
     const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -41,7 +41,7 @@ struct OffscreenContext::Implementation {
     EGLDisplay display = EGL_NO_DISPLAY;
     EGLContext context = EGL_NO_CONTEXT;
 
-    // Whether there is a context now, and is current.
+    // Makes a context and makes it current. Returns whether that succeeded.
     bool make(EGLDisplay on) {
         if (on == EGL_NO_DISPLAY || !eglInitialize(on, nullptr, nullptr)) return false;
         constexpr std::array kConfig{EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,

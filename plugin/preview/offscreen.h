@@ -11,8 +11,8 @@
 
 namespace pelagic {
 
-// An OpenGL 3.3 core context without window or display (EGL, surfaceless), current on the thread that made
-// it. Throws PreviewError saying what is missing.
+// An OpenGL 3.3 core context without window or display (surfaceless EGL), current on the thread that made it.
+// Throws PreviewError saying what is missing.
 class OffscreenContext {
   public:
     OffscreenContext();
@@ -27,13 +27,13 @@ class OffscreenContext {
 
 struct OffscreenPicture {
     Picture picture;
-    std::string device;  // what drew it
-    std::string note;    // what the scene asks for and the GPU does not do; mostly empty
+    std::string device;  // the driver's name
+    std::string note;    // what the scene asks for and the GPU doesn't do; usually empty
 };
 
-// The scene at `frame` through its camera, `size` pixels (the camera's own where 0), one sample a pixel.
-// Needs a current context. The GPU computes in single precision: a note says so where quality.level asks for
-// double.
+// The scene at `frame` through its camera, in `size` pixels (0: the camera's resolution), one sample per
+// pixel. Needs a current context. The GPU computes in single precision; a note says so if quality.level asks
+// for double.
 OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame,
                                   glm::ivec2 size = glm::ivec2(0));
 

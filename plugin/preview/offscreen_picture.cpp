@@ -25,8 +25,8 @@ OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame,
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (sea->plan().knobs.double_precision)
         drawn.note =
-            "the preview computes in single precision, quality.level \"reference\" in double: use "
-            "pelagic render for that";
+            "the preview computes in single precision, quality.level \"reference\" in double: "
+            "use pelagic render for that";
     return drawn;
 }
 

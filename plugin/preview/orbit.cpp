@@ -1,4 +1,4 @@
-// The preview's camera in an artist's hand. See orbit.h.
+// The preview's camera, controlled by hand. See orbit.h.
 #include "plugin/preview/orbit.h"
 
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace pelagic {
 namespace {
 
 constexpr double kHalfPi = 0.5 * kPi;
-constexpr double kNearest_m = 0.5, kFarthest_m = 40e3;  // of the middle: past it a hand's pixel is a leap
+constexpr double kNearest_m = 0.5, kFarthest_m = 40e3;  // of the pivot: beyond, a mouse pixel is a leap
 constexpr double kZoomStep = 0.15;
-constexpr double kSlowest_mps = 2.0;  // of a flight: near the water a height a second is a crawl
-// Looking level there is no sea in the middle: as far ahead as the eye is used to from this height.
+constexpr double kSlowest_mps = 2.0;  // flight speed near the water, where the height alone would be too slow
+// Looking level, the pivot is this many camera heights ahead.
 constexpr double kHeightsAhead = 15.0;
 
 }  // namespace
@@ -33,7 +33,7 @@ glm::dvec3 OrbitCamera::middle_m() const {
 
 void OrbitCamera::take(const View& view) {
     position_m_ = view.position_m;
-    // Right has a heading even where the gaze has none.
+    // `right` has a heading even if the camera looks straight down.
     heading_ = std::atan2(view.right.x, -view.right.y);
     const glm::dvec3 ahead(std::cos(heading_), std::sin(heading_), 0.0);
     pitch_ = std::atan2(view.forward.z, glm::dot(view.forward, ahead));
@@ -61,7 +61,8 @@ void OrbitCamera::keep_height() {
 void OrbitCamera::orbit(glm::dvec2 angle) {
     const glm::dvec3 middle = middle_m();
     heading_ = std::remainder(heading_ + angle.x, kTwoPi);
-    // As far as the camera's height allows; a middle out of reach of both heights leaves the pitch alone.
+    // The pitch is limited by the camera's range of heights. It stays as it is if the pivot is too far from
+    // both ends.
     const double lowest = std::clamp((middle.z - kHighest_m) / distance_m_, -1.0, 1.0);
     const double highest = std::clamp((middle.z - kLowest_m) / distance_m_, -1.0, 1.0);
     if (lowest < highest) pitch_ = std::clamp(pitch_ + angle.y, std::asin(lowest), std::asin(highest));
@@ -85,8 +86,8 @@ void OrbitCamera::pan(glm::dvec2 pixels, const View& lens) {
 void OrbitCamera::zoom(double steps) {
     const glm::dvec3 middle = middle_m();
     double nearest_m = kNearest_m, farthest_m = kFarthest_m;
-    const double fall = -forward().z;  // metres down a metre ahead
-    // Where the way to the middle leaves the heights that a hand can reach: the zoom ends there.
+    const double fall = -forward().z;  // metres of descent per metre ahead
+    // The zoom ends where the path to the pivot leaves the range of heights.
     if (std::abs(fall) > 1e-9) {
         const double at_lowest_m = (kLowest_m - middle.z) / fall,
                      at_highest_m = (kHighest_m - middle.z) / fall;

@@ -1,9 +1,8 @@
-// How far a point is, in periods of something: products of metres with periods per metre whose fractions keep
-// their digits some hundred kilometres from the origin. Single precision alone would lose a short wave within
-// a few.
+// A point's distance in periods: the product of metres and periods per metre. Its fraction stays exact some
+// hundred kilometres from the origin, where single precision would lose a short wave within a few.
 //
-// Both factors are split into parts of 12 bits, whose products a float holds exactly: metres here, periods
-// per metre on the CPU (split_number() in sea_layout.h).
+// Both factors are split into parts of 12 bits, whose products are exact in single precision: metres here,
+// periods per metre on the CPU (split_number() in sea_layout.h).
 
 struct SplitMetres {
     vec2 coarse;  // multiples of 64 m

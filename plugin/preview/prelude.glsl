@@ -1,4 +1,4 @@
-// What core/base/number.h is for C++: the names that the shared formulas (*.inl) are written with.
+// The GLSL counterpart of core/base/number.h: the operations used by the shared formulas (*.inl).
 #define T float
 
 float select(bool which, float yes, float no) { return which ? yes : no; }
@@ -8,7 +8,7 @@ float magnitude(float x) { return abs(x); }
 float minus_product(float c, float a, float b) { return c - a * b; }
 float square_root(float x) { return sqrt(x); }
 
-// One step of Newton's method after the hardware's power, whose last digits nobody promises.
+// One step of Newton's method corrects the hardware's pow(), which has no guaranteed precision.
 float cube_root(float x) {
     float size = max(abs(x), 1e-30);
     float y = exp2(log2(size) / 3.0);
@@ -16,7 +16,7 @@ float cube_root(float x) {
     return x < 0.0 ? -y : y;
 }
 
-// erfc, by special.glsl's erfcx(x) = exp(x²) erfc(x).
+// erfc from special.glsl's erfcx(x) = exp(x²) erfc(x).
 float complementary_error(float x) {
     float tail = exp(-x * x) * erfcx(abs(x));
     return x < 0.0 ? 2.0 - tail : tail;

@@ -1,7 +1,7 @@
-// The query at one point: what evaluate() answers.
+// The query at one point: the GPU's evaluate().
 
 uniform float whitecap_threshold;
-uniform vec2 finest_m;  // the ladders' first rungs, below which trains are not followed: cells', pixels'
+uniform vec2 finest_m;  // the finest footprints of cells and pixels; trains are filtered no finer
 
 // Height, Dx, Dy of the point that rests at x.
 vec3 query_cell(vec2 rest_m, float cell_m) {

@@ -1,7 +1,7 @@
-// The ray through a pixel, as View::direction(): row 0 of the framebuffer is the picture's last.
+// The ray through a pixel, as in View::direction(). Row 0 of the framebuffer is the bottom of the picture.
 
 uniform vec3 view_forward;
-uniform vec3 view_right;  // times what a pixel covers of tangent
+uniform vec3 view_right;  // times the tangent that a pixel covers
 uniform vec3 view_up;
 uniform vec2 view_centre;  // [px]
 uniform float view_pixel_tangent;

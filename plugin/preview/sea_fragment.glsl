@@ -1,4 +1,4 @@
-// A pixel of the sea: the query at the place at rest that the pixel shows, and the light from there.
+// A pixel of the sea: the query at the point at rest that it shows, and the light from there.
 
 in vec2 rest_m;
 in float pixel_m;

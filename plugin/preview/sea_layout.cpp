@@ -26,10 +26,9 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
     const Plan& plan = sea_->plan();
     const PlannedQuery& planned = plan.queries.at(query);
     if (planned.query.lattice || planned.query.only_cascade)
-        throw std::invalid_argument(
-            "query \"" + planned.query.name +
-            "\" is of a lattice or of one cascade: a picture needs one of points anywhere "
-            "in the whole sea");
+        throw std::invalid_argument("query \"" + planned.query.name +
+                                    "\" is of a lattice or of one cascade: "
+                                    "a picture needs one of points anywhere in the whole sea");
     const ProductSet least = products(Product::Position, Product::Normal, Product::SlopeVariance);
     if ((planned.query.products & least) != least)
         throw std::invalid_argument(
@@ -50,7 +49,7 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
         planes_.push_back({false, 2, {Field::SlopeX, Field::SlopeY}, pixel_size});
     }
 
-    // Differences of doubles: in single precision the finest rungs would keep no digits.
+    // Differences are taken in double: in single precision those of the finest rungs would cancel.
     const QueryStatistics& statistics = sea_->statistics(query);
     const auto whole = hidden_moments<double>(has_trains() ? sea_->trains().outside : statistics.whole);
     const auto left = [&](const SpectralMoments& resolved) {
@@ -78,10 +77,10 @@ SeaLayout::Ladder SeaLayout::ladder_of(const std::vector<double>& footprints_m,
     return ladder;
 }
 
-// Shelves, the largest tiles first, in a picture about as wide as high.
+// Packs tiles in shelves, the largest first, into a texture about as wide as high.
 glm::ivec2 SeaLayout::place(Ladder& ladder) const {
     const int skirt = sea_->plan().knobs.spline_taps - 1;
-    std::map<std::pair<int, int>, std::vector<Tile*>> by_grid;  // rungs may share one
+    std::map<std::pair<int, int>, std::vector<Tile*>> by_grid;  // several rungs may share a grid
     for (Tile& tile : ladder.tiles)
         if (tile.n > 0) by_grid[{tile.cascade, tile.grid}].push_back(&tile);
     if (by_grid.empty()) return glm::ivec2(1);

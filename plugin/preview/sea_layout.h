@@ -1,5 +1,5 @@
-// Where a query's grids and tables lie in the GPU's memory: what a sea has that is the same for all frames
-// and views. Needs no OpenGL.
+// The layout of a query's grids and tables in GPU memory. It is the same for all frames and views of a sea.
+// Needs no OpenGL.
 #pragma once
 
 #include <array>
@@ -12,8 +12,7 @@
 
 namespace pelagic {
 
-// A number as a sum of two floats, the first short enough for its product with another such number to be
-// exact: 12 bits each.
+// A number as the sum of two floats of 12 significant bits, whose products with other such floats are exact.
 struct SplitNumber {
     float high, low;
 };
@@ -21,7 +20,7 @@ SplitNumber split_number(double value);
 
 class SeaLayout {
   public:
-    // Throws std::invalid_argument as PackedFrame.
+    // Throws std::invalid_argument as PackedFrame does.
     SeaLayout(std::shared_ptr<const Sea<float>> sea, int query);
 
     const Sea<float>& sea() const { return *sea_; }
@@ -31,9 +30,9 @@ class SeaLayout {
     bool has_trains() const { return sea_->plan().trains.has_value(); }
     int cascades() const { return static_cast<int>(sea_->plan().cascades.size()); }
 
-    // A texture: rows of `width` texels, the fields side by side and zeros up to `channels`.
+    // A texture: rows of `width` texels, fields interleaved, zeros up to `channels`.
     struct Plane {
-        bool of_cells = false;  // which ladder's grids
+        bool of_cells = false;  // grids of the cells' ladder, otherwise of the pixels'
         int channels = 1;       // 1, 2 or 4
         std::vector<Field> fields;
         glm::ivec2 size{1};
@@ -41,14 +40,14 @@ class SeaLayout {
     const std::vector<Plane>& planes() const { return planes_; }
     void fill(const Frame<float>& frame, std::vector<std::vector<float>>& planes) const;
 
-    // A grid's place: its N × N samples, repeated after the last column and row so that a spline reads across
-    // the period's seam. n = 0: of this cascade nothing passes this footprint.
+    // A grid's place: its N × N samples, with the first columns and rows repeated at the end so that a spline
+    // can read across the periodic border. n = 0: this footprint lets nothing of the cascade through.
     struct Tile {
         glm::ivec2 first{0};
         int n = 0;
         int cascade = 0, grid = 0;
     };
-    // Footprints [m], rising, and by rung · cascades() + cascade the tiles that they see.
+    // Footprints [m], ascending, and the tiles by rung · cascades() + cascade.
     struct Ladder {
         std::vector<double> footprints_m;
         std::vector<Tile> tiles;
@@ -56,14 +55,14 @@ class SeaLayout {
     const Ladder& cells() const { return cells_; }
     const Ladder& pixels() const { return pixels_; }
 
-    // What a rung of pixels hides, less what the trains hide: alone, and its mixed sum with the next rung.
+    // The hidden moments of a rung of pixels without the trains' part: alone, and mixed with the next rung.
     struct HiddenRung {
         HiddenMoments<float> alone{}, with_next{};
     };
     const std::vector<HiddenRung>& hidden() const { return hidden_; }
 
-    // kTrainTexels rows, a column for each train and one more, where the prefix sums end: trains.glsl says
-    // what each row holds.
+    // kTrainTexels rows; one column per train, and one more for the end of the prefix sums. trains.glsl
+    // describes the rows.
     static constexpr int kTrainTexels = 8;
     std::vector<glm::vec4> train_texels() const;
 

@@ -1,4 +1,4 @@
-// Where pictures go: the terms one by one, or their sum. alpha: 1 where there is sea.
+// The render targets: each term separately, or their sum. alpha is 1 where there is sea.
 layout(location = 0) out vec4 sea_out;
 layout(location = 1) out vec4 sun_out;
 layout(location = 2) out vec4 sky_out;

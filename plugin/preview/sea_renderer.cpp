@@ -26,7 +26,7 @@
 namespace pelagic {
 namespace {
 
-// Texture units; the first ones are SeaTextures' own.
+// Texture units. SeaTextures has the first ones.
 enum Unit : int { kSkyMap = SeaTextures::kUnits, kPictures };
 
 constexpr int kTerms = 4;  // sea, sun, sky, foam: sea_outputs.glsl
@@ -37,7 +37,7 @@ void set_uniform(GLint at, const glm::vec3& v) {
     glUniform3f(at, v.x, v.y, v.z);
 }
 
-// What the caller had bound comes back.
+// Restores the caller's framebuffers and viewport.
 class KeptFramebuffer {
   public:
     KeptFramebuffer() {
@@ -212,7 +212,7 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid
 
     const glm::mat4 clip(view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m));
     glUniformMatrix4fv(program.uniform("clip_from_grid"), 1, GL_FALSE, glm::value_ptr(clip));
-    // Reversed depth, near/distance, keeps a float's digits out to the horizon.
+    // Reversed depth, near/distance, keeps precision out to the horizon.
     if (reversed_depth)
         glUniform2f(program.uniform("depth_of_distance"), 0.0f, static_cast<float>(kNear_m));
     else
@@ -309,7 +309,7 @@ void SeaRenderer::show(float exposure) {
         of.program_of(ShaderVariant::of_screen(of.picture_layers, of.picture_plain));
     std::array<GLint, 4> viewport{};
     glGetIntegerv(GL_VIEWPORT, viewport.data());
-    if (viewport[2] < 1 || viewport[3] < 1) return;  // a window without a pixel
+    if (viewport[2] < 1 || viewport[3] < 1) return;  // an empty window
     const GlStageTimer::Measured measured(of.timer, GlStageTimer::Show);
     program.use();
     for (int i = 0; i < kTerms; ++i) bind_texture(kPictures + i, of.pictures[i]);

@@ -1,8 +1,8 @@
-// The sea on the GPU: what evaluate() and shade_sea() compute on the CPU, by the same steps and from the same
-// sources, in OpenGL 3.3 core and single precision.
+// The sea on the GPU: evaluate() and shade_sea() in OpenGL 3.3 core and single precision, by the same steps
+// and from the same sources as on the CPU.
 //
-// The life of a picture: a worker computes a Frame and packs it; the thread that has the OpenGL context
-// uploads what is packed, draws a view of it, and shows the result or reads it back.
+// For a picture, a worker computes a Frame and packs it. The thread with the OpenGL context uploads the
+// packed frame, draws a view of it, and shows the result or reads it back.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@
 
 namespace pelagic {
 
-// What the driver lacks or refuses, and what would help; a message for people.
+// Something that the driver lacks or refuses, and a remedy; what() is a message for users.
 class PreviewError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -30,21 +30,21 @@ class PreviewError : public std::runtime_error {
 
 class SeaLayout;  // sea_layout.h
 
-// One frame's fields in the layout of the textures. Needs no OpenGL: any thread may fill one, one thread at a
-// time; filled again, it allocates nothing.
+// One frame's fields in the layout of the textures. Needs no OpenGL. Any thread may fill it, one at a time.
+// Filling it again allocates nothing.
 class PackedFrame {
   public:
-    // `query`: index into the sea's plan's queries. Throws std::invalid_argument for one on a lattice or of a
-    // single cascade: pictures are of points that lie anywhere, and of the whole sea.
+    // `query`: index into the queries of the sea's plan. Throws std::invalid_argument for a query on a
+    // lattice or of a single cascade: a picture needs arbitrary points and the whole sea.
     PackedFrame(std::shared_ptr<const Sea<float>> sea, int query);
 
-    // `frame` must be of the same sea and have a time: std::invalid_argument otherwise.
+    // Throws std::invalid_argument unless `frame` is of the same sea and has a time.
     void pack(const Frame<float>& frame);
 
     const std::shared_ptr<const SeaLayout>& layout() const { return layout_; }
     double time_s() const { return time_s_; }
     double time_within_loop_s() const { return time_within_loop_s_; }
-    // By texture of the layout: rows of its width, channels side by side.
+    // By texture of the layout: rows of its width, channels interleaved.
     const std::vector<std::vector<float>>& planes() const { return planes_; }
 
   private:
@@ -53,57 +53,61 @@ class PackedFrame {
     double time_s_ = 0.0, time_within_loop_s_ = 0.0;
 };
 
-// What a picture shows in place of the light.
+// What a picture shows instead of the light.
 enum class FalseColour {
     None,
-    FilterLevel,     // which rung of the ladder the pixel's waves come from: hues, blended as they are
-    HiddenVariance,  // σxx + σyy of what the pixel hides
-    Coverage,        // whitecaps
+    FilterLevel,     // the rung that the pixel's waves come from: hues, interpolated between rungs
+    HiddenVariance,  // σxx + σyy of the waves that the pixel hides
+    Coverage,        // of whitecaps
 };
 
 struct DrawOptions {
     LightingChoice lighting;
     FalseColour false_colour = FalseColour::None;
-    bool wireframe = false;  // the grid's lines over black
-    // Each term in a picture of its own, for read_layers(); without, their sum alone: less memory to write.
+    bool wireframe = false;  // the grid's edges on black
+    // Each term in a separate texture, for read_layers(). Otherwise only their sum is written, which is
+    // faster.
     bool layers = false;
 };
 
-// Milliseconds of the latest frame whose times have come back: some frames old, nobody waits for them.
+// Milliseconds of the latest frame whose timer queries have finished: a few frames old, because nothing waits
+// for them.
 struct StageTimes {
     double upload_ms = 0.0, sea_ms = 0.0, sky_ms = 0.0, show_ms = 0.0;  // on the GPU
-    double submit_ms = 0.0;                                             // draw() itself, on the CPU
+    double submit_ms = 0.0;                                             // of draw() on the CPU
 };
 
-// Needs its OpenGL context current on the calling thread, in every call and when it is destroyed.
+// The OpenGL context must be current on the calling thread for every call and for destruction.
 class SeaRenderer {
   public:
-    // Throws PreviewError naming what the context lacks (OpenGL 3.3 core, float textures to draw into).
+    // Throws PreviewError naming what the context lacks: OpenGL 3.3 core, or float textures as render
+    // targets.
     SeaRenderer();
     ~SeaRenderer();
     SeaRenderer(const SeaRenderer&) = delete;
     SeaRenderer& operator=(const SeaRenderer&) = delete;
 
-    // The driver's own names, for messages and benchmarks.
+    // The driver's name for the device, for messages and benchmarks.
     std::string device() const;
 
     void set_sky(const Sky& sky, const WaterBody& water);
-    // The next pictures show this frame. A frame of another sea takes that sea over: textures are made anew,
-    // shaders only where the number of cascades or footprints changed. Returns before the copy is done.
-    // Throws PreviewError when the driver's textures are too small for the sea.
+    // Sets the frame of the next pictures. A frame of another sea replaces that sea: textures are made again,
+    // shaders only if the number of cascades or footprints changed. Returns before the copy is done. Throws
+    // PreviewError if the driver's textures are too small for the sea.
     void upload(const PackedFrame& frame);
     bool has_frame() const;
 
-    // Draws into a picture of its own, view.resolution large. `grid` must be this view's. Nothing uploaded
-    // yet: the sky alone. Throws PreviewError when a shader doesn't compile, with the driver's messages.
+    // Draws a picture of view.resolution into the renderer's own framebuffer. `grid` must be this view's.
+    // Without an uploaded frame only the sky is drawn. Throws PreviewError with the driver's messages if a
+    // shader doesn't compile.
     void draw(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
 
-    // The last picture, through display_colour() (core/lighting/tone.glsl), into the framebuffer that is
-    // bound, filling the current viewport. False colours and wires come as they are.
+    // Shows the last picture in the bound framebuffer, filling the viewport, through display_colour()
+    // (core/lighting/tone.glsl). False colours and wireframes are shown unchanged.
     void show(float exposure);
 
-    // The last picture as numbers, waiting for it. Needs options.layers for the terms one by one; without,
-    // the whole radiance stands in `sea` (and in `sky` where no sea is).
+    // Reads the last picture back, and waits for it. The terms are separate with options.layers. Otherwise
+    // `sea` has the whole radiance (and `sky` has it where there is no sea).
     Picture read_layers() const;
 
     StageTimes times() const;

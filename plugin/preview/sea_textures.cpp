@@ -16,17 +16,17 @@ namespace {
 
 enum Unit : int { kCellFields, kPixelFields, kPixelFields2, kTrainTable, kTrainCycles };
 
-// One line of the driver's tables, as cascades.glsl declares them.
+// One entry of the uniform block of cascades.glsl.
 struct TileRow {
     std::array<std::int32_t, 4> first{}, origin{};
     std::array<float, 4> scale{};
 };
 
-// A tile's place in a world whose origin is the grid's: the phase in double, as evaluate() has it.
+// A tile's entry for the grid's origin. The phase is computed in double, as in evaluate().
 TileRow tile_row(const SeaLayout& layout, const SeaLayout::Tile& tile, glm::dvec2 origin_m) {
     TileRow row;
     if (tile.n == 0) return row;
-    // Nodes are at most 2^28 from the origin: a float's own range of whole numbers, squared, in 64 m steps.
+    // Supports nodes within 2^28 of the origin. A multiple of N this large makes their numbers positive.
     constexpr int kFarthest = 1 << 28;
     row.first = {tile.first.x, tile.first.y, tile.n, kFarthest / tile.n * tile.n};
     const double size_m = layout.sea().plan().cascades[tile.cascade].size_m;
@@ -114,7 +114,7 @@ void SeaTextures::upload(const PackedFrame& frame) {
     time_within_loop_s_ = frame.time_within_loop_s();
 }
 
-// Everything that depends on where the grid's origin is.
+// Uploads what depends on the grid's origin.
 void SeaTextures::upload_tables(glm::dvec2 origin_m) {
     const SeaLayout& layout = *layout_;
     const SeaLayout::Ladder &cells = layout.cells(), &pixels = layout.pixels();

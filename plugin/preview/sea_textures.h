@@ -1,4 +1,4 @@
-// A sea and its latest frame on the GPU, for shaders that ask the query there (query.glsl).
+// A sea and its latest frame on the GPU, for shaders that include query.glsl.
 #pragma once
 
 #include <array>
@@ -16,14 +16,15 @@ namespace pelagic {
 
 class SeaTextures {
   public:
-    static constexpr int kUnits = 5;  // texture units that bind() takes, from 0 on
+    static constexpr int kUnits = 5;  // bind() uses texture units 0 … kUnits − 1
 
     // As SeaRenderer::upload().
     void upload(const PackedFrame& frame);
     bool empty() const { return layout_ == nullptr; }
     const SeaLayout& layout() const { return *layout_; }
 
-    // Everything that query.glsl finds in scope, for points relative to origin_m. The program must be in use.
+    // Binds textures and sets uniforms for query.glsl, for points relative to origin_m. The program must be
+    // in use.
     void bind(const ShaderProgram& program, glm::dvec2 origin_m);
 
   private:

@@ -1,4 +1,4 @@
-// The sea's geometry: the projected grid's points, displaced by the waves that a cell shows.
+// The sea's geometry: points of the projected grid, displaced by the waves that their cells resolve.
 
 layout(location = 0) in vec2 rest_in;  // [m], relative to the grid's origin
 layout(location = 1) in float cell_in;

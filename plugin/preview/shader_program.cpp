@@ -19,8 +19,8 @@ class Shader {
         glGetShaderInfoLog(name_, length + 1, nullptr, messages.data());
         glDeleteShader(name_);
         throw PreviewError(
-            "the driver does not compile a shader of the preview; update it, or use pelagic "
-            "render:\n" +
+            "the driver does not compile a shader of the preview; "
+            "update it, or use pelagic render:\n" +
             source.explain(messages.c_str()));
     }
     ~Shader() { glDeleteShader(name_); }
@@ -47,10 +47,9 @@ ShaderProgram::ShaderProgram(const ShaderSource& vertex, const ShaderSource& fra
     glGetProgramiv(program_.name(), GL_INFO_LOG_LENGTH, &length);
     std::string messages(static_cast<std::size_t>(length) + 1, '\0');
     glGetProgramInfoLog(program_.name(), length + 1, nullptr, messages.data());
-    throw PreviewError(
-        std::string("the driver does not link a shader of the preview; update it, or use pelagic "
-                    "render:\n") +
-        messages.c_str());
+    throw PreviewError(std::string("the driver does not link a shader of the preview; "
+                                   "update it, or use pelagic render:\n") +
+                       messages.c_str());
 }
 
 }  // namespace pelagic

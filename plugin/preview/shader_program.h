@@ -10,11 +10,11 @@ namespace pelagic {
 
 class ShaderProgram {
   public:
-    // Throws PreviewError with the driver's messages, by file and line.
+    // Throws PreviewError with the driver's messages by file and line.
     ShaderProgram(const ShaderSource& vertex, const ShaderSource& fragment);
 
     void use() const { glUseProgram(program_.name()); }
-    // −1, which OpenGL ignores, for one that this variant has no use for.
+    // −1, which OpenGL ignores, for a uniform that this variant doesn't use.
     GLint uniform(const char* name) const { return glGetUniformLocation(program_.name(), name); }
     GLuint name() const { return program_.name(); }
 

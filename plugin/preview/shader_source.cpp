@@ -8,8 +8,8 @@
 namespace pelagic {
 namespace {
 
-// More than any file has: line n of part p is p · kLinesEach + n to the driver. (#line's own file numbers are
-// not in every driver's messages.)
+// Larger than any file: line n of part p has the number p · kLinesEach + n. (Not every driver's messages
+// include the file number of #line.)
 constexpr std::size_t kLinesEach = 10000;
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
@@ -27,7 +27,7 @@ std::string line_of(std::string_view text, std::size_t line) {
     return std::string(text.substr(begin, text.find('\n', begin) - begin));
 }
 
-// A file's comments may hold more than ASCII, which #version 330 forbids; columns don't matter to anybody.
+// Removes comments: #version 330 allows only ASCII.
 std::string without_comments(std::string_view text) {
     std::string out;
     std::istringstream lines{std::string(text)};
@@ -83,7 +83,7 @@ void ShaderSource::add_file(std::string_view path) {
 }
 
 std::string ShaderSource::explain(std::string_view messages) const {
-    // Mesa and most others: "0:12(5): error: …"; NVIDIA: "0(12) : error …".
+    // Mesa and most others write "0:12(5): error: …", NVIDIA "0(12) : error …".
     static const std::regex place(R"(\d+(?::(\d+)\(\d+\)|\((\d+)\)))");
     std::string out;
     std::istringstream lines{std::string(messages)};

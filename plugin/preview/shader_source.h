@@ -1,12 +1,13 @@
-// GLSL put together from the files that C++ is compiled from too, which the program carries in itself.
+// GLSL assembled from the files that C++ is compiled from too; the program contains their text.
 //
-// *.glsl files are taken as they are. *.inl files, written for core/base/number.h, become GLSL line by line:
-//   lines that say no more than `template <…>`, or open or close a namespace, are left empty;
-//   `inline ` and `<T>` are dropped, and so is `name_detail::`;
-//   `const T ` becomes `T `, for GLSL 3.30 takes constants' values literally, and `constexpr double ` becomes
-//   `const T `; an array `T (&w)[P]` becomes `out T w[P]`.
-// T, and the functions of number.h, are the prelude's (prelude.glsl). Lines stay lines, so that a compiler's
-// messages name the line of the source.
+// *.glsl files are used unchanged. *.inl files, written for core/base/number.h, are converted line by line:
+//   lines with only `template <…>`, and lines that open or close a namespace, become empty;
+//   `inline `, `<T>` and `name_detail::` are removed;
+//   `const T ` becomes `T `, because constants of GLSL 3.30 need constant initialisers, `constexpr double `
+// becomes
+//   `const T `, and an array `T (&w)[P]` becomes `out T w[P]`.
+// prelude.glsl defines T and the functions of number.h. Line numbers are kept, so that a compiler's messages
+// refer to the source.
 #pragma once
 
 #include <span>
@@ -21,18 +22,18 @@ struct ShaderFile {
     std::string_view text;
 };
 
-// Every file that the program carries (the generated shader_files.cpp), and one of them, by its path; throws
-// std::logic_error where there is none.
+// All embedded files (the generated shader_files.cpp), and one of them by its path, which throws
+// std::logic_error for an unknown path.
 const std::vector<ShaderFile>& shader_files();
 const ShaderFile& shader_file(std::string_view path);
 
-// The lines of a *.inl file as GLSL.
+// Converts the lines of an *.inl file to GLSL.
 std::string glsl_of_inl(std::string_view text);
 
 // A whole shader for `#version 330 core`.
 class ShaderSource {
   public:
-    // Lines of its own: constants that the files after it find in scope.
+    // Adds lines of GLSL: constants for the files after them.
     void add_constants(std::string_view text);
     void add_file(std::string_view path);
     void add_files(std::span<const std::string_view> paths) {
@@ -40,13 +41,12 @@ class ShaderSource {
     }
     const std::string& text() const { return text_; }
 
-    // A driver's messages, with their places named by path and line, and each line that it complains
-    // about below the message.
+    // A driver's messages with their places as path and line, and with the source line below each message.
     std::string explain(std::string_view messages) const;
 
   private:
     std::string text_ = "#version 330 core\n";
-    std::string first_line() const;  // of the part that comes next
+    std::string first_line() const;  // the #line of the next part
 
     struct Part {
         std::string name, text;

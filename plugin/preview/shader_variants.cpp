@@ -19,7 +19,7 @@ std::vector<std::string_view> joined(std::initializer_list<std::vector<std::stri
     return all;
 }
 
-// What both the sea's shader and the sky's are asked for.
+// The constants that the shaders of sea and sky share.
 std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
            constant("kFalseColour", static_cast<int>(options.false_colour));

@@ -1,5 +1,5 @@
-// Which shaders a picture needs: code of its own for each choice of terms and each kind of sea, so that what
-// is off costs nothing.
+// The shader variants: one for each choice of terms and kind of sea, so that a term that is off costs
+// nothing.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ class ShaderVariant {
     static ShaderVariant of_sky(const DrawOptions& options, int sky_map_size);
     static ShaderVariant of_screen(bool layers, bool plain);
 
-    // The same for variants with the same text.
+    // Equal for variants with equal source text.
     const std::string& key() const { return key_; }
     ShaderSource vertex() const { return source(vertex_); }
     ShaderSource fragment() const { return source(fragment_); }
@@ -31,9 +31,9 @@ class ShaderVariant {
     std::vector<std::string_view> vertex_, fragment_;
 };
 
-// core/lighting's files in their order, without background.glsl and tone.glsl.
+// The files of core/lighting in order, without background.glsl and tone.glsl.
 const std::vector<std::string_view>& lighting_files();
-// The files of the shared formulas and of the query, and the constants that they find in scope.
+// The files of the shared formulas and of the query; their constants.
 const std::vector<std::string_view>& query_files();
 std::string query_constants(const SeaLayout& layout, bool coverage);
 std::string lighting_constants(const LightingChoice& choice, int sky_map_size);

@@ -1,9 +1,9 @@
-// The picture on a screen: its terms added up, through core/lighting/tone.glsl.
+// Shows the picture on a screen: the sum of its terms, through core/lighting/tone.glsl.
 uniform sampler2D sea_picture;
 uniform sampler2D sun_picture;
 uniform sampler2D sky_picture;
 uniform sampler2D foam_picture;
-uniform vec2 picture_from_window;  // pixels of the picture by pixel of the viewport
+uniform vec2 picture_from_window;  // picture pixels per viewport pixel
 uniform vec2 window_first;
 uniform float exposure;
 

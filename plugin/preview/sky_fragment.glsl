@@ -1,4 +1,4 @@
-// Where there is no sea: the sky and the sun's disc (core/lighting/background.glsl).
+// The background where there is no sea: the sky and the sun's disc (core/lighting/background.glsl).
 void main() {
     if (kWireframe || kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);

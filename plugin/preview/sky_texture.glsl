@@ -1,4 +1,4 @@
-// The sky's map and the light, for core/lighting's files.
+// The uniforms of sky and sun, for the files of core/lighting.
 
 uniform sampler2D sky_map;
 uniform vec3 sun_direction;

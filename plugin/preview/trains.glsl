@@ -1,16 +1,16 @@
-// The trochoid trains at a point: evaluate()'s (core/evaluate/trains-inl.h), from tables that SeaLayout has
-// made. Only trains that a footprint lets through are looked at.
+// The trochoid trains at a point, as in evaluate() (core/evaluate/trains-inl.h), from tables that SeaLayout
+// makes. Only the trains that pass the footprint's filter are read.
 //
 // Texels of train i, in column i: 0: kx, ky [cycles/m], each as (high, low); 1: amplitudes of ηx, ηy, Dxx,
-// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m], squared steepness; 4, 5: its moments; 6, 7: those of
-// trains i … last together.
+// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m], squared steepness; 4, 5: its moments; 6, 7: the summed
+// moments of trains i … last.
 uniform sampler2D train_table;
 uniform sampler2D train_cycles;  // phases at the origin, at the frame's time
 uniform int train_count;
-uniform vec4 train_filter;  // n_min, 1/(n_max − n_min), footprints over wavelength that pass whole: 1/n_max, not
-                            // at all: 1/n_min
+uniform vec4 train_filter;  // n_min, 1/(n_max − n_min), and footprints in wavelengths: a train passes
+                            // fully up to 1/n_max and not at all from 1/n_min on
 
-// How many trains, the longest first, are longer than footprint_m / share.
+// The number of trains that are longer than footprint_m / share. Trains are sorted, longest first.
 int trains_above(float footprint_m, float share) {
     int low = 0;
     int high = train_count;
@@ -47,7 +47,7 @@ vec3 cell_trains(SplitMetres x, float cell_m) {
     return sum;
 }
 
-// Added to what the cascades show and to what they hide.
+// Adds the trains' part to the shown and hidden sums of the cascades.
 struct TrainSums {
     PixelFields fields;
     PixelMoments hidden;

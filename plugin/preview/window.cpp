@@ -1,7 +1,7 @@
 // The preview's window. See window.h.
 #include "plugin/preview/window.h"
 
-// Before GLFW, which then leaves OpenGL's declarations to it.
+// Included before GLFW, which then leaves OpenGL's declarations to it.
 #include <epoxy/gl.h>
 
 #define GLFW_INCLUDE_NONE
@@ -35,11 +35,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kTurn_per_px = 0.005;  // [rad]: a window's width turns half round
-constexpr double kHaste = 5.0;          // of a flight with Shift
+constexpr double kTurn_per_px = 0.005;  // [rad]: a window's width is about half a turn
+constexpr double kHaste = 5.0;          // the factor of Shift on a flight's speed
 constexpr std::size_t kHistory = 120;   // pictures in the graph
-constexpr double kSmoothing = 0.1;      // of times on show: readable numbers, not the last picture's
-// A picture that took long must not throw time or a flight far ahead.
+constexpr double kSmoothing = 0.1;      // of the displayed times, to make them readable
+// Limits the step of playing and flying after a slow picture.
 constexpr double kLongestStep_s = 0.25;
 constexpr double kIdle_s = 0.05;  // between pictures that show nothing new
 
@@ -47,7 +47,7 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// GLFW's own words about what went wrong last.
+// GLFW's description of the last error.
 std::string glfw_reason() {
     const char* text = nullptr;
     glfwGetError(&text);
@@ -68,7 +68,7 @@ class Glfw {
     Glfw& operator=(const Glfw&) = delete;
 };
 
-// The window's size: what is asked for, or the shot's, kept within the screen.
+// The window's size: the requested or the shot's, limited by the screen.
 glm::ivec2 window_size(const Scene& scene, const WindowOptions& options) {
     if (options.size.x > 0 && options.size.y > 0) return options.size;
     glm::ivec2 room(1280, 720);
@@ -90,7 +90,7 @@ class Window {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
         glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-        glfwWindowHint(GLFW_DEPTH_BITS, 0);  // the sea has its own
+        glfwWindowHint(GLFW_DEPTH_BITS, 0);  // the renderer has its own depth buffer
         glfwWindowHint(GLFW_STENCIL_BITS, 0);
         window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
         if (window_ == nullptr)
@@ -100,8 +100,8 @@ class Window {
                 "or draw without a window: --offscreen FILE.png");
         glfwMakeContextCurrent(window_);
         glfwSetWindowUserPointer(window_, this);
-        // Before Dear ImGui's own, which calls it: that one only knows which keys are down when a picture
-        // begins, and a short press between two slow pictures must not be lost.
+        // Set before Dear ImGui's callback, which calls this one. Dear ImGui only knows which keys are down
+        // when a picture begins; this one also catches a short press between two slow pictures.
         glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
             if (action == GLFW_RELEASE) return;
             static_cast<Window*>(glfwGetWindowUserPointer(window))
@@ -118,7 +118,7 @@ class Window {
         glfwGetFramebufferSize(window_, &size.x, &size.y);
         return size;
     }
-    // Framebuffer pixels by the window's own units, in which the mouse is told.
+    // Framebuffer pixels per window unit, the unit of mouse positions.
     double mouse_scale() const {
         glm::ivec2 size(0);
         glfwGetWindowSize(window_, &size.x, &size.y);
@@ -134,7 +134,7 @@ class Window {
         int key;
         bool repeated;  // held down
     };
-    // Since the last call, in order.
+    // Presses since the last call, in order.
     std::vector<Press> take_pressed() { return std::exchange(pressed_, {}); }
 
   private:
@@ -147,7 +147,7 @@ class Gui {
     explicit Gui(const Window& window) {
         IMGUI_CHECKVERSION();
         ImGui::CreateContext();
-        ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+        ImGui::GetIO().IniFilename = nullptr;  // writes no settings file
         set_controls_style(window.content_scale());
         ImGui_ImplGlfw_InitForOpenGL(window.get(), true);
         ImGui_ImplOpenGL3_Init("#version 330 core");
@@ -161,7 +161,7 @@ class Gui {
     Gui& operator=(const Gui&) = delete;
 };
 
-// The back buffer as a PNG.
+// Saves the back buffer as a PNG.
 void save_window(glm::ivec2 size, const std::filesystem::path& file) {
     const auto row = static_cast<std::size_t>(size.x) * 3;
     std::vector<std::uint8_t> upwards(row * size.y), rgb(upwards.size());
@@ -175,19 +175,19 @@ void save_window(glm::ivec2 size, const std::filesystem::path& file) {
     files::write_atomically(file, png::encode({.width = size.x, .height = size.y, .rgb = rgb}));
 }
 
-// The first name that is free: NAME.preview.0001.png, …
+// The first free name: NAME.preview.0001.png, …
 std::filesystem::path picture_name(const std::filesystem::path& folder, const std::string& name) {
     for (int i = 1;; ++i) {
         const std::string number = std::to_string(i);
         std::filesystem::path file =
             folder / (name + ".preview." + std::string(4 - std::min<std::size_t>(number.size(), 4), '0') +
                       number + ".png");
-        std::error_code unknown;  // of a folder that can't be looked into: writing says what is wrong
+        std::error_code unknown;  // ignored: writing will report an unreadable folder
         if (!std::filesystem::exists(file, unknown)) return file;
     }
 }
 
-// What is above the water: made beside the picture, as the sea is.
+// Light and water, made in the background like the sea.
 struct LiveSky {
     Sky sky;
     WaterBody water;
@@ -229,7 +229,7 @@ class Preview {
         shown_time_s_ = controls_.time_s;
         readout_.device = renderer_.device();
         camera_.take(view_at(scene.camera, scene.shot.first_frame));
-        // With the screen's own rhythm, except where nobody watches.
+        // Synchronises with the screen, except for a screenshot.
         glfwSwapInterval(options.screenshot ? 0 : 1);
         show_sky(*build_sky(scene));
         lit_ = scene;
@@ -268,7 +268,7 @@ class Preview {
         if (options_.screenshot)
             throw PreviewError("the window was closed before its picture was there: no " +
                                options_.screenshot->string() + "; leave it open, or lower --after");
-        glfwHideWindow(window_.get());  // a sea that is being built is waited for, not looked at
+        glfwHideWindow(window_.get());  // closing waits for a build in progress
     }
 
   private:
@@ -276,7 +276,7 @@ class Preview {
         shown = shown > 0.0 ? shown + kSmoothing * (now - shown) : now;
     }
 
-    // Nothing moves and nobody touches anything: a picture now and then is enough.
+    // Nothing moves and there is no input: pictures may be rare.
     bool is_idle() const {
         return !options_.screenshot && !controls_.playing && !is_flying_ && !readout_.building_sea &&
                !readout_.building_sky && shown_time_s_ == controls_.time_s && !ImGui::IsAnyMouseDown();
@@ -291,7 +291,7 @@ class Preview {
         ImGui::NewFrame();
     }
 
-    // The panel and the keys.
+    // Handles the panel and the keys.
     void act() {
         const auto start = Clock::now();
         const Clicks clicks = draw_controls(controls_, readout_, shot_);
@@ -344,7 +344,7 @@ class Preview {
         }
     }
 
-    // The changed keys, with the camera where it is.
+    // Copies the changed keys, with the camera's current pose.
     void copy() {
         Scene now = controls_.scene;
         if (!readout_.follows_shot) {
@@ -358,24 +358,24 @@ class Preview {
     }
 
     void play(double step_s) {
-        // A shot begins at its beginning: with the first sea.
+        // Playing starts with the first sea.
         if (!controls_.playing || frame_ == nullptr) return;
         controls_.time_s += step_s * controls_.time_scale;
         if (!controls_.repeat) return;
-        // The last frame is on show as long as the others.
+        // The last frame is shown as long as the others.
         const double first_s = shot_.shot.time_s(shot_.shot.first_frame);
         const double length_s = shot_.shot.time_s(shot_.shot.last_frame + 1) - first_s;
         const double within_s = std::fmod(controls_.time_s - first_s, length_s);
         controls_.time_s = first_s + (within_s < 0.0 ? within_s + length_s : within_s);
     }
 
-    // The camera in the hand; while nobody touches it, the shot's own.
+    // Moves the camera by mouse and keys. Until the first movement it follows the shot's.
     void move(double step_s) {
         const ImGuiIO& io = ImGui::GetIO();
         const View lens = lens_now();
         const glm::dvec2 hand(io.MouseDelta.x, io.MouseDelta.y);
         const auto is_dragging = [&](int button) {
-            // A press's own picture still has the way that led to it.
+            // Skips the picture of the press itself: its mouse movement came before.
             return !io.WantCaptureMouse && ImGui::IsMouseDown(button) && !ImGui::IsMouseClicked(button) &&
                    (hand.x != 0.0 || hand.y != 0.0);
         };
@@ -403,9 +403,9 @@ class Preview {
         camera_.fly({.steering = steering, .seconds = step_s, .haste = io.KeyShift ? kHaste : 1.0});
     }
 
-    // The shot's camera at the time on show, with the window's pixels. Its vertical field of view stays when
-    // the window is wider than the shot, its horizontal one when it is narrower: what the shot shows is in
-    // it.
+    // The shot's camera at the displayed time, with the window's resolution. In a window wider than the shot
+    // the vertical field of view is kept, in a narrower one the horizontal: the shot's picture is always
+    // inside.
     View lens_now() const {
         View view = view_at(shot_.camera, 1.0 + shown_time_s_ * shot_.shot.fps);
         const glm::dvec2 shot_size(shot_.camera.resolution);
@@ -422,7 +422,7 @@ class Preview {
         exposure_ = sky.exposure;
     }
 
-    // Asks for what the panel wants, and shows what has been made; waits for neither.
+    // Requests what the panel asks for and takes finished results, without waiting.
     void take_what_is_ready() {
         if (!same_light(lit_, controls_.scene)) {
             lit_ = controls_.scene;
@@ -499,9 +499,9 @@ class Preview {
     SeaRenderer renderer_;
     OrbitCamera camera_;
     float exposure_ = 1.0f;
-    Scene lit_;  // whose light was asked for last
+    Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;
-    long uploaded_ = 0;  // its number
+    long uploaded_ = 0;  // the frame's number
     double shown_time_s_ = 0.0;
     int pictures_ = 0;
     bool is_flying_ = false, save_picture_ = false;

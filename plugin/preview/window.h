@@ -1,4 +1,4 @@
-// The preview's window: plays a shot in real time, with everything that an artist turns beside it.
+// The preview's window: plays a shot in real time, with controls for everything that an artist may change.
 #pragma once
 
 #include <filesystem>
@@ -11,21 +11,20 @@
 namespace pelagic {
 
 struct WindowOptions {
-    std::filesystem::path folder = ".";  // where F12 leaves its pictures
-    glm::ivec2 size{0};          // of the window; 0: the camera's, or what of it the screen has room for
-    int pixel_size = 1;          // 1, 2, 4: a drawn pixel covers this many of the window's, squared
-    std::optional<int> frame{};  // begins there, paused; otherwise it plays from the first
-    // For trying the window without a hand: saves it, panel included, once so many pictures with the sea
-    // were drawn, and closes.
+    std::filesystem::path folder = ".";  // where F12 saves pictures
+    glm::ivec2 size{0};                  // of the window; 0: the camera's resolution, limited by the screen
+    int pixel_size = 1;                  // 1, 2 or 4: a drawn pixel covers pixel_size² of the window's
+    std::optional<int> frame{};          // starts paused at this frame; otherwise plays from the first
+    // For tests of the window: saves it, panel included, after this many pictures with the sea, and closes
+    // it.
     std::optional<std::filesystem::path> screenshot{};
     int screenshot_after = 8;
 };
 
-// Opens the window and returns when it is closed. The scene must be valid. On the calling thread, which must
-// be the program's first (GLFW's rule); one window at a time. Throws PreviewError where there is no display
-// or its OpenGL lacks something, saying what, and where a screenshot is asked for and the sea can't be shown
-// or the window is closed too early; FileError when the screenshot can't be written; and what make_sky()
-// throws.
+// Opens the window and returns when it is closed. The scene must be valid. Must be called on the program's
+// first thread (GLFW's rule), for one window at a time. Throws PreviewError if there is no display or its
+// OpenGL lacks something, and if a screenshot is asked for but the sea can't be shown or the window is closed
+// too early; FileError if the screenshot can't be written; and what make_sky() throws.
 void run_window(const Scene& scene, const WindowOptions& options);
 
 }  // namespace pelagic

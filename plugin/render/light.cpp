@@ -27,7 +27,7 @@ LatLong read_picture(const std::string& file) {
         try {
             return exr::read_rgb(file);
         } catch (const std::runtime_error& error) {
-            throw std::invalid_argument(error.what());  // which names the file
+            throw std::invalid_argument(error.what());  // the message names the file
         }
     }();
     LatLong picture{.width = pixels.width, .height = pixels.height, .radiance = {}};

@@ -9,12 +9,12 @@
 namespace pelagic {
 namespace {
 
-constexpr int kSubpixels = 256;  // what GPUs have, and Mesa's software rasteriser
-// How far beyond the picture, in halves of its width and height, a triangle may reach before it is cut there,
-// so that the integers hold its corners.
+constexpr int kSubpixels = 256;  // as GPUs have, and Mesa's software rasteriser
+// Triangles are clipped this far outside the picture, in halves of its width and height, so that their
+// corners fit the integers.
 constexpr double kGuard = 2.0;
 
-// Signed distances, ≥ 0 inside: the near plane, as OpenGL has it, and the guard's four.
+// Signed distances, ≥ 0 inside, from OpenGL's near plane and from the four planes of the guard band.
 constexpr int kPlanes = 5;
 double inside(int plane, const glm::dvec4& p) {
     switch (plane) {
@@ -36,14 +36,14 @@ std::int64_t cross(glm::ivec2 a, glm::ivec2 b, glm::ivec2 p) {
            (std::int64_t{b.y} - a.y) * (std::int64_t{p.x} - a.x);
 }
 
-// Whether centres on the edge from a to b belong to the triangle on its right, y down.
+// Whether a pixel centre on the edge from a to b belongs to the triangle on the edge's right (y down).
 bool is_top_or_left(glm::ivec2 a, glm::ivec2 b) {
     return b.y < a.y || (b.y == a.y && b.x > a.x);
 }
 
-int first_centre(int coordinate) {  // the first pixel whose centre isn't before it
+int first_centre(int coordinate) {  // the first pixel whose centre is at or after the coordinate
     constexpr int kHalf = kSubpixels / 2;
-    return (coordinate - kHalf + kSubpixels - 1) >> 8;  // floors negative ones, too
+    return (coordinate - kHalf + kSubpixels - 1) >> 8;  // rounds negative values down, too
 }
 
 static_assert(kSubpixels == 1 << 8);
@@ -65,7 +65,7 @@ void Rasteriser::set(std::span<const glm::dvec4> clip, std::span<const std::uint
 }
 
 void Rasteriser::add_clipped(std::uint32_t triangle) {
-    // Each plane cuts one corner off at most and adds one.
+    // Each plane cuts off at most one corner, and adds one.
     std::array<glm::dvec4, 3 + kPlanes> polygon, cut;
     int count = 3;
     for (int i = 0; i < 3; ++i) polygon[i] = clip_[indices_[3 * std::size_t{triangle} + i]];
@@ -75,7 +75,7 @@ void Rasteriser::add_clipped(std::uint32_t triangle) {
             const glm::dvec4 &a = polygon[i], &b = polygon[(i + 1) % count];
             const double at_a = inside(plane, a), at_b = inside(plane, b);
             if (at_a >= 0.0) cut[kept++] = a;
-            // From the inside outwards, so that both triangles of an edge cut it at the same bits.
+            // Always from inside to outside, so that both triangles of an edge get the same bits.
             if (at_a >= 0.0 && at_b < 0.0) cut[kept++] = a + (b - a) * (at_a / (at_a - at_b));
             if (at_a < 0.0 && at_b >= 0.0) cut[kept++] = b + (a - b) * (at_b / (at_b - at_a));
         }
@@ -100,7 +100,7 @@ void Rasteriser::add_piece(std::uint32_t triangle, const std::array<glm::dvec4, 
     Piece piece{.corner = {}, .triangle = triangle};
     for (int i = 0; i < 3; ++i) {
         const glm::dvec3 p = on_screen(corners[i]);
-        if (!(p.z > 0.0)) return;  // a near plane through the eye itself
+        if (!(p.z > 0.0)) return;  // the near plane passes through the eye
         piece.corner[i] = {static_cast<int>(std::lround(p.x / p.z * kSubpixels)),
                            static_cast<int>(std::lround(p.y / p.z * kSubpixels))};
     }
@@ -114,7 +114,7 @@ void Rasteriser::sort_into_bands() {
     const int bands = (resolution_.y + kBandRows - 1) / kBandRows;
     const auto rows_of = [&](const Piece& piece) {
         const auto [low, high] = std::minmax({piece.corner[0].y, piece.corner[1].y, piece.corner[2].y});
-        // Up to and with the row whose centre is on the lowest corner; none: first > last.
+        // Up to and including the row whose centre is at the lowest corner. No rows: first > last.
         return std::pair(std::max(first_centre(low), 0),
                          std::min(first_centre(high + 1) - 1, resolution_.y - 1));
     };
@@ -139,7 +139,7 @@ void Rasteriser::draw(int band, std::span<std::uint32_t> triangles) const {
     const int rows = std::min(kBandRows, resolution_.y - first_row);
     const auto width = static_cast<std::size_t>(resolution_.x);
     std::fill_n(triangles.begin(), width * rows, kNone);
-    std::vector<double> nearness(width * rows, 0.0);  // 1/w of what is shown
+    std::vector<double> nearness(width * rows, 0.0);  // 1/w of the triangle shown
     for (std::size_t at = band_begin_[band]; at < band_begin_[band + 1]; ++at) {
         const Piece& piece = pieces_[band_pieces_[at]];
         const auto& [a, b, c] = piece.corner;
@@ -151,14 +151,14 @@ void Rasteriser::draw(int band, std::span<std::uint32_t> triangles) const {
         const int bottom = std::min(first_centre(y_high + 1) - 1, first_row + rows - 1);
         if (left > right || top > bottom) continue;
 
-        // 1/w is linear on the screen: its plane's coefficients, by the true corners.
+        // 1/w is linear on the screen: the coefficients of its plane, from the unrounded corners.
         const auto corners = corners_on_screen(piece.triangle);
         const glm::dvec3 bc = glm::cross(corners[1], corners[2]), ca = glm::cross(corners[2], corners[0]),
                          ab = glm::cross(corners[0], corners[1]);
         const double determinant = glm::dot(corners[0], bc);
-        if (determinant == 0.0) continue;  // seen along its own plane
+        if (determinant == 0.0) continue;  // seen edge-on
         const glm::dvec3 plane = (bc + ca + ab) / determinant;
-        // Beyond the corners' own only by rounding, which in slivers knows no limit.
+        // 1/w is clamped to the corners' range: rounding may exceed it, in slivers without limit.
         double nearest = 0.0, farthest = std::numeric_limits<double>::infinity();
         for (const glm::dvec3& corner : corners) {
             const double own = corner.z > 0.0 ? 1.0 / corner.z : std::numeric_limits<double>::infinity();
@@ -198,7 +198,8 @@ glm::dvec3 Rasteriser::weights(std::uint32_t triangle, glm::dvec2 pixel) const {
     glm::dvec3 weight(glm::dot(glm::cross(corners[1], corners[2]), p),
                       glm::dot(glm::cross(corners[2], corners[0]), p),
                       glm::dot(glm::cross(corners[0], corners[1]), p));
-    // Their signs are those of the triangle's side; where its corners are all before the eye they agree.
+    // The signs depend on which side of the triangle is seen. If all corners are in front of the eye they
+    // agree.
     if (glm::dot(corners[0], glm::cross(corners[1], corners[2])) < 0.0) weight = -weight;
     weight = glm::max(weight, 0.0);
     const double sum = weight.x + weight.y + weight.z;

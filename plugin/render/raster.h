@@ -1,12 +1,12 @@
-// Which triangle each pixel shows, and where in it: what OpenGL does between a vertex and a fragment shader.
+// Which triangle each pixel shows, and where in it: the step between OpenGL's vertex and fragment shaders.
 //
-// A pixel is covered where its centre lies in a triangle whose corners are rounded to 1/256 of a pixel, and
-// centres on an edge belong to the triangle whose top or left edge it is: of triangles that share an edge,
-// exactly one. Integers, so that this is exact. The nearest triangle is shown; of equally near ones the
-// first. Both sides are drawn. What is nearer than the clip coordinates' near plane is cut off.
+// A pixel is covered if its centre lies in a triangle whose corners are rounded to 1/256 of a pixel. A centre
+// on an edge belongs to the triangle that has it as its top or left edge: of triangles that share an edge,
+// exactly one. The arithmetic is in integers and therefore exact. The nearest triangle is shown; of equally
+// near ones the first. Both sides are drawn. The part in front of the near plane is clipped.
 //
-// Weights are those of the true, unrounded corners, in homogeneous coordinates (Olano and Greer 1997), which
-// need no clipping: perspective-correct.
+// Weights are perspective-correct. They come from the unrounded corners in homogeneous coordinates (Olano and
+// Greer 1997), which need no clipping.
 #pragma once
 
 #include <array>
@@ -24,34 +24,34 @@ class Rasteriser {
   public:
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     static constexpr int kBandRows = 16;
-    static constexpr int kLargestSide = 1 << 18;  // [pixels] what the integers hold
+    static constexpr int kLargestSide = 1 << 18;  // [pixels] limit of the integers
 
-    // clip: OpenGL's clip coordinates by vertex, finite; indices: three a triangle. Both must live, and stay
-    // as they are, until the last call. Throws std::invalid_argument for a resolution out of range.
+    // clip: OpenGL's clip coordinates by vertex, finite. indices: three per triangle. Both must stay alive
+    // and unchanged until the last call. Throws std::invalid_argument for a resolution out of range.
     void set(std::span<const glm::dvec4> clip, std::span<const std::uint32_t> indices, glm::ivec2 resolution);
 
     int band_count() const { return static_cast<int>(band_begin_.size()) - 1; }
 
-    // The triangle that each pixel of a band shows, kNone where there is none: rows band·kBandRows and on,
-    // from the top, x fastest, of whole width, the last band's fewer rows. Bands may be drawn side by side.
+    // Writes the triangle that each pixel of a band shows, or kNone. Rows begin at band·kBandRows, from the
+    // top, x fastest, at full width; the last band may have fewer rows. Bands may be drawn in parallel.
     void draw(int band, std::span<std::uint32_t> triangles) const;
 
-    // The weights of a triangle's corners, in the order of its indices, at a picture point in pixels: each 0
-    // … 1, their sum 1. Where it lies outside of the triangle, as a pixel's centre by the rounding may, the
-    // nearest that are.
+    // The weights of a triangle's corners, in the order of its indices, at a point of the picture in pixels:
+    // each 0 … 1, with the sum 1. A point outside the triangle (rounding may put a pixel's centre there) gets
+    // the nearest weights.
     glm::dvec3 weights(std::uint32_t triangle, glm::dvec2 pixel) const;
 
   private:
-    // A triangle of the screen, or a piece of a clipped one. In 1/256 of a pixel, from the top left corner.
+    // A triangle on the screen, or a part of a clipped one, in 1/256 of a pixel from the top left corner.
     struct Piece {
-        std::array<glm::ivec2, 3> corner;  // to the right in rising y: positive area
+        std::array<glm::ivec2, 3> corner;  // in the order that gives a positive area
         std::uint32_t triangle;
     };
 
     void add_clipped(std::uint32_t triangle);
     void add_piece(std::uint32_t triangle, const std::array<glm::dvec4, 3>& corners);
     void sort_into_bands();
-    // The corner's vertex, in (X w, Y w, w), X and Y in pixels.
+    // The corner's vertex as (X w, Y w, w), with X and Y in pixels.
     glm::dvec3 on_screen(const glm::dvec4& clip) const;
     std::array<glm::dvec3, 3> corners_on_screen(std::uint32_t triangle) const;
 
@@ -59,8 +59,8 @@ class Rasteriser {
     std::span<const std::uint32_t> indices_;
     glm::ivec2 resolution_{0};
     std::vector<Piece> pieces_;
-    std::vector<std::size_t> band_begin_{0};  // into band_pieces_, and the end of the last
-    std::vector<std::uint32_t> band_pieces_;  // rising in each band
+    std::vector<std::size_t> band_begin_{0};  // into band_pieces_; one more for the end of the last band
+    std::vector<std::uint32_t> band_pieces_;  // ascending within each band
 };
 
 }  // namespace pelagic

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/precision.h"
 #include "core/evaluate/values.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Formats every C++ file with clang-format 14, or says which ones it would change.
+# Formats every C++ file with clang-format 14, or lists the files that it would change.
 #   tests/style/format.sh [--check [PROGRAM]]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."

@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bad=0
-# allow ROOM "WHAT IT MAY INCLUDE": every include of the project's own from ROOM must begin with one of these.
+# allow FOLDER "OTHERS": files in FOLDER may include only from FOLDER and OTHERS.
 allow() {
     local found
     found=$(grep -rnoE '#include "(core|plugin|tests)/[a-z]+/' "$1" --include='*.h' --include='*.cpp' --include='*.inl' --include='*.glsl' |

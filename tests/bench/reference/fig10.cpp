@@ -1,13 +1,22 @@
-// Fig. 10 of Bruneton, Neyret, Holzschuch 2010: the energy of each line of a picture, sun, refracted light
-// and sky, by mirrors of very fine geometry (path_tracer.h), by our method, and by a constant BRDF.
+// Fig. 10 of Bruneton, Neyret, Holzschuch 2010: the energy of each line of a picture in sun, refracted light
+// and sky, computed with mirrors of very fine geometry (path_tracer.h), with our method, and with a constant
+// BRDF.
 //   bench_fig10 [full] [KEY=NUMBER…] [plot=FILE.png]
 //
-// Without `full` a smaller picture with fewer samples. Keys: width, height; strata (strata² samples a pixel
-// and pass) and passes; seeds, how many seas are averaged; waves, the tile's resolution; shading, so many
-// samples a side of our pixels; spread, tenths of the sun's radius (below). To find out what an approximation
-// costs: cell, the projected grid's in pixels; pixels, tenths of a pixel by which normals are filtered, 0 for
-// the cell; chop, per cent; facets=1, mirrors are the mesh's own facets; lattice, cells of the mesh per
-// sample of the waves. bands=1 prints every band.
+// Without `full` the picture is smaller and has fewer samples. Keys:
+//   width, height    the picture's size
+//   strata, passes   strata² samples per pixel and pass
+//   seeds            number of seas averaged
+//   waves            the tile's resolution
+//   shading          our pixels have shading² samples
+//   spread           tenths of the sun's radius (see below)
+//   bands            1 prints every band
+// Keys to find the cost of an approximation:
+//   cell             the projected grid's, in pixels
+//   pixels           tenths of a pixel by which normals are filtered; 0: by the cell
+//   chop             choppiness in per cent
+//   facets           1: mirrors are the facets of the mesh
+//   lattice          cells of the mesh per sample of the waves
 
 #include <algorithm>
 #include <chrono>
@@ -28,14 +37,14 @@ namespace pelagic::bench {
 namespace {
 
 constexpr int kBands = 24;
-// Lines whose middle looks further than this at the sea at rest are left out: there are no waves beyond.
+// Lines whose centre sees the sea at rest beyond this are left out: there are no waves.
 constexpr double kHorizon_m = 3000.0, kReach_m = 6000.0;
-// The sun is spread over a disc of 5 times its radius, for both sides, so that 25 times as many samples hit
-// it: 1.3 degrees turn a facet's slope by 0.012, a tenth of what waves do. Far away that changes little; in
-// the foreground, where a few waves show the sun, it moves some of their light to other lines. What the disc
-// as it is gives, and its noise, is printed beside it.
+// The sun is spread over a disc of 5 times its radius, on both sides of the comparison, so that 25 times as
+// many samples hit it. Its 1.3 degrees correspond to a slope of 0.012, a tenth of the waves'. Far away that
+// changes little. In the foreground, where a few waves mirror the sun, some of their light moves to other
+// lines. The result of the true disc, with its noise, is printed as well.
 constexpr int kSunSpread_tenths = 50;
-constexpr double kFromBelow = 1.0;  // any: energies are compared by their ratios
+constexpr double kFromBelow = 1.0;  // arbitrary: only ratios of energies are compared
 
 struct Settings {
     std::map<std::string, int> number{
@@ -61,7 +70,7 @@ const Method kMethods[] = {
 };
 constexpr int kMethodCount = std::size(kMethods), kPaper = 0, kBest = 2, kIntegral = 3, kConstant = 4;
 
-// Energies by band, [term][band], bands from the foreground to the horizon.
+// Energies as [term][band], bands from the foreground to the horizon.
 struct Bands {
     double energy[kTerms][kBands] = {};
     Bands& operator+=(const Bands& other) {
@@ -75,7 +84,7 @@ Bands banded(const Lines& lines) {
     Bands bands;
     const int rows = static_cast<int>(lines.size());
     for (int b = 0; b < kBands; ++b) {
-        // Band 0 is the picture's lowest.
+        // Band 0 is at the bottom of the picture.
         const int end = rows - rows * b / kBands, begin = rows - rows * (b + 1) / kBands;
         for (int row = begin; row < end; ++row)
             for (int t = 0; t < kTerms; ++t) bands.energy[t][b] += lines[row].term[t] / (end - begin);
@@ -94,12 +103,12 @@ double rms_difference(const Bands& bands, const Bands& reference, int term) {
 
 struct Comparison {
     Bands single, all, small_sun, ours[kMethodCount];
-    double noise[kTerms] = {};  // of `all`, root mean square over bands, relative
+    double noise[kTerms] = {};  // of `all`: relative, root mean square over bands
     double small_sun_noise = 0.0;
     double rays = 0.0, missed = 0.0, blocked = 0.0, turned_away = 0.0;
 };
 
-// Root mean square over bands of the mean's standard error, from the passes' scatter.
+// The standard error of the mean, from the scatter of the passes, as root mean square over bands.
 double noise_of(const std::vector<Bands>& passes, int term) {
     const double n = static_cast<double>(passes.size());
     double sum = 0.0;
@@ -115,7 +124,7 @@ double noise_of(const std::vector<Bands>& passes, int term) {
 View camera(const Settings& settings) {
     Camera camera;
     camera.position_m = {0.0, 0.0, 5.0};
-    // Not along the tiles' sides, nor the wind's; the horizon near the upper edge.
+    // Neither along the tiles' sides nor along the wind; the horizon is near the upper edge.
     const double azimuth = 53.0 * kPi / 180.0, down = 10.5 * kPi / 180.0;
     camera.look_at_m =
         camera.position_m + 100.0 * glm::dvec3(std::cos(azimuth), std::sin(azimuth), -std::tan(down));
@@ -137,7 +146,8 @@ struct SeaUnderTest {
     bool agitated;
 };
 
-// Peaks of 20 m and 16 m, so that a tile holds several; the second with the steep waves of a short fetch.
+// Peaks of 20 m and 16 m, so that a tile contains several. The second sea has the steep waves of a short
+// fetch.
 const SeaUnderTest kSeas[] = {{"calm", 5.0, 300e3, false}, {"agitated", 13.0, 10e3, true}};
 
 Comparison compare(const Settings& settings, const SeaUnderTest& under_test, const View& view,
@@ -154,8 +164,8 @@ Comparison compare(const Settings& settings, const SeaUnderTest& under_test, con
                              .resolution = settings["waves"]});
         const SpectralMoments hidden = tile.hidden_from_all();
         std::printf(
-            "  seed %d: waves of %.3f ... %.0f m, Hs %.2f m, slope variance %.5f (hidden at "
-            "footprint 0: %.1e of it)\n",
+            "  seed %d: waves of %.3f ... %.0f m, Hs %.2f m, slope variance %.5f "
+            "(hidden at footprint 0: %.1e of it)\n",
             seed, tile.shortest_m(), tile.size_m(), tile.whole().significant_height_m(), tile.whole().mss(),
             hidden.mss() / tile.whole().mss());
         const auto start = std::chrono::steady_clock::now();
@@ -233,7 +243,8 @@ void print_table(const Comparison& result, bool agitated) {
     for (int m = 0; m < kMethodCount; ++m) {
         std::printf("  %-24s", kMethods[m].name);
         for (int t = 0; t < kTerms; ++t) {
-            // The refracted light is that of the first surface: the model's, and the reference's first hit.
+            // Refracted light is compared at the first surface: that is the model, and the reference's first
+            // hit.
             const double rms =
                 rms_difference(result.ours[m], t == kRefracted ? result.single : result.all, t);
             char text[64];
@@ -304,13 +315,13 @@ void run(const Settings& settings) {
                     1e-3 * under_test.fetch_m);
         const Comparison result = compare(settings, under_test, view, sky);
         std::printf(
-            "  noise: sun %.1f %%, refracted %.2f %%, sky %.2f %%; the disc as it is: %.1f %%, "
-            "differs by %.1f %%\n",
+            "  noise: sun %.1f %%, refracted %.2f %%, sky %.2f %%; "
+            "the disc as it is: %.1f %%, differs by %.1f %%\n",
             100.0 * result.noise[kSun], 100.0 * result.noise[kRefracted], 100.0 * result.noise[kSky],
             100.0 * result.small_sun_noise, 100.0 * rms_difference(result.small_sun, result.all, kSun));
         std::printf(
-            "  of %.3g rays %.2g %% met no sea, %.1f %% were reflected onto it, %.2g %% met a facet "
-            "whose normal faces away\n",
+            "  of %.3g rays %.2g %% met no sea, %.1f %% were reflected onto it, "
+            "%.2g %% met a facet whose normal faces away\n",
             result.rays, 100.0 * result.missed / result.rays, 100.0 * result.blocked / result.rays,
             100.0 * result.turned_away / result.rays);
         std::printf("  one reflection alone differs by: sun %.1f %%, refracted %.1f %%, sky %.1f %%\n",
@@ -328,6 +339,6 @@ void run(const Settings& settings) {
 }  // namespace pelagic::bench
 
 int main(int argc, char** argv) {
-    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // minutes pass between its lines
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // lines are minutes apart
     pelagic::bench::run(pelagic::bench::settings_of(argc, argv));
 }

@@ -1,4 +1,4 @@
-// Paths from the eye. See path_tracer.h.
+// Traces paths from the eye. See path_tracer.h.
 #include "tests/bench/reference/path_tracer.h"
 
 #include <tbb/parallel_for.h>
@@ -13,8 +13,8 @@
 namespace pelagic::bench {
 namespace {
 
-// Unpolarised reflectance of water for light that comes in under this cosine (Hu 2006, Eq. 2; n = 1.34).
-// Written for the reference alone: nothing of what it judges.
+// Unpolarised reflectance of water at this cosine of incidence (Hu 2006, Eq. 2; n = 1.34). Independent of the
+// code that the reference judges.
 double fresnel(double cosine) {
     constexpr double n = 1.34;
     const double c = std::min(std::max(cosine, 0.0), 1.0);
@@ -23,7 +23,7 @@ double fresnel(double cosine) {
     return 0.5 * ratio * ratio * (1.0 + p * p);
 }
 
-// A path that is still under way, and what it carries.
+// A path in progress, with its throughput.
 struct Path {
     SeaRay ray;
     SeaHit hit;
@@ -43,7 +43,7 @@ class Tracer {
            const PathOptions& options)
         : tile_(tile), sea_(sea), view_(view), sky_(sky), wide_(wide), options_(options) {}
 
-    // One line of one pass; sums over its samples.
+    // The sums over the samples of one line and pass.
     struct Sums {
         Line single, all, small_sun;
         double rays = 0.0, missed = 0.0, blocked = 0.0, turned_away = 0.0;
@@ -103,7 +103,7 @@ class Tracer {
         return paths;
     }
 
-    // At each path's hit: what the water sends up, and the ray that goes on.
+    // At each path's hit: adds the light from the water, and makes the reflected ray.
     void reflect(std::vector<Path>& paths, bool first, Sums& sums) const {
         std::vector<glm::vec2> rest_m;
         std::vector<glm::vec3> normals(paths.size());
@@ -120,7 +120,8 @@ class Tracer {
             Path& path = paths[i];
             float cosine = -glm::dot(normals[i], path.ray.direction);
             if (cosine <= 0.0f) {
-                // The facet is seen and its waves' own normal is not, at a crest's outline: the facet's.
+                // At a crest's outline the facet may face the eye and the waves' normal not: uses the
+                // facet's.
                 normals[i] = path.hit.facet_normal;
                 cosine = -glm::dot(normals[i], path.ray.direction);
                 sums.turned_away += 1.0;
@@ -130,8 +131,8 @@ class Tracer {
             sums.all.term[kRefracted] += up;
             if (first) sums.single.term[kRefracted] += up;
             path.weight *= reflected;
-            // Off the facet by more than single precision is wrong by at this distance from the eye, and past
-            // the neighbouring facets, which stand in for a smooth surface.
+            // Starts away from the facet by more than the rounding error at this distance from the eye, and
+            // past the neighbouring facets, which approximate a smooth surface.
             const float off_m = 2e-4f + 2e-6f * path.hit.distance_m;
             path.ray.origin_m += path.hit.distance_m * path.ray.direction + off_m * path.hit.facet_normal;
             path.ray.direction = glm::normalize(path.ray.direction + 2.0f * cosine * normals[i]);
@@ -156,7 +157,7 @@ std::vector<PathPass> trace_paths(const WaveTile& tile, const FinestSea& sea, co
     for (int p = 0; p < options.passes; ++p) {
         std::vector<Tracer::Sums> lines(static_cast<std::size_t>(rows));
         tbb::parallel_for(0, rows, [&](int row) {
-            // A row waits for its own points, not in the middle of them for another row's.
+            // Isolated: while a row waits for its points, the thread must not start another row.
             tbb::this_task_arena::isolate([&] { lines[row] = tracer.line(p, options.first_row + row); });
         });
         PathPass& pass = passes[p];

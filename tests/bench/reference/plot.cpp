@@ -1,4 +1,4 @@
-// gnuplot gets everything through a pipe. See plot.h.
+// Pipes everything to gnuplot. See plot.h.
 #include "tests/bench/reference/plot.h"
 
 #include <sys/wait.h>

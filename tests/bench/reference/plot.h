@@ -1,4 +1,4 @@
-// Curves as a PNG, by gnuplot where it is installed.
+// Curves as a PNG, by gnuplot if it is installed.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ struct Curve {
 };
 
 struct Panel {
-    std::string title, key;  // key: where the curves' names stand, "left top"
+    std::string title, key;  // key: the place of the legend, "left top"
     std::vector<Curve> curves;
 };
 
@@ -23,7 +23,7 @@ struct Sheet {
     std::vector<Panel> panels;  // row after row
 };
 
-// false, with a line on stdout that says why, where there is no gnuplot or it fails.
+// Returns false, with a reason on stdout, if gnuplot isn't there or fails.
 bool plot(const Sheet& sheet);
 
 }  // namespace pelagic::bench

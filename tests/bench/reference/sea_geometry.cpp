@@ -1,4 +1,4 @@
-// Embree's side of the reference. See sea_geometry.h.
+// The reference's use of Embree. See sea_geometry.h.
 #include "tests/bench/reference/sea_geometry.h"
 
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace pelagic::bench {
 namespace {
 
-constexpr int kPatchCells = 64;      // a grid of Embree's: its u and v then have ample digits for the place
-constexpr double kMargin_m = 300.0;  // beside and behind the view: reflected rays rise out of the waves there
+constexpr int kPatchCells = 64;      // per side of an Embree grid: u and v then have enough precision
+constexpr double kMargin_m = 300.0;  // beside and behind the view, where reflected rays still meet waves
 
 void* buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t bytes,
              std::size_t count) {
@@ -80,7 +80,7 @@ FinestSea::FinestSea(const WaveTile& tile, const View& view, double reach_m, int
                                       .width = kPatchCells + 1,
                                       .height = kPatchCells + 1};
     attach(tile_scene_, waves);
-    rtcSetSceneFlags(tile_scene_, RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two facets
+    rtcSetSceneFlags(tile_scene_, RTC_SCENE_FLAG_ROBUST);  // no ray slips between two facets
     rtcCommitScene(tile_scene_);
 
     const glm::dvec2 ahead = glm::normalize(glm::dvec2(view.forward)), across(ahead.y, -ahead.x);

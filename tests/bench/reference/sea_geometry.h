@@ -1,5 +1,5 @@
-// Surfaces that rays are traced against, by Embree: the tile's finest geometry, laid out over the view, and
-// the mesh of a projected grid.
+// Surfaces for tracing rays with Embree: the tile's finest geometry, repeated over the view, and the mesh of
+// a projected grid.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -15,14 +15,14 @@ namespace pelagic::bench {
 
 struct SeaRay {
     glm::vec3 origin_m{0.0f}, direction{0.0f};
-    float from_m = 0.0f;  // hits nearer than this don't count
+    float from_m = 0.0f;  // nearer hits are ignored
 };
 
 struct SeaHit {
-    glm::vec2 rest_m{0.0f};        // where the point hit is at rest; within the tile for the finest geometry
+    glm::vec2 rest_m{0.0f};        // position at rest of the hit; within the tile for the finest geometry
     glm::vec3 facet_normal{0.0f};  // unit, upwards
     float distance_m = 0.0f;
-    float pixel_m = 0.0f, cell_m = 0.0f;  // what a pixel and a cell cover there: of the projected grid alone
+    float pixel_m = 0.0f, cell_m = 0.0f;  // footprints at the hit; of the projected grid only
 };
 
 class EmbreeScene {
@@ -38,8 +38,8 @@ class EmbreeScene {
     RTCScene scene_;
 };
 
-// Every wave of the tile, on a lattice of `cells` cells a side, repeated over what the camera sees up to a
-// distance (and a margin behind it, for reflected rays).
+// Every wave of the tile, on a lattice of `cells` × `cells` cells, repeated over the view up to a distance
+// (and a margin behind it, for reflected rays).
 class FinestSea : EmbreeScene {
   public:
     FinestSea(const WaveTile& tile, const View& view, double reach_m, int cells);
@@ -50,10 +50,10 @@ class FinestSea : EmbreeScene {
   private:
     RTCScene tile_scene_;
     float cell_m_;
-    int patches_;  // a side
+    int patches_;  // per side
 };
 
-// What a rasteriser draws: the projected grid's points, displaced by waves that their cells can show.
+// What a rasteriser draws: the points of the projected grid, displaced by the waves that its cells resolve.
 class ProjectedSea : EmbreeScene {
   public:
     ProjectedSea(const WaveTile& tile, const View& view, double cell_px);

@@ -1,4 +1,4 @@
-// Pixels as the projected grid shades them. See shaded_sea.h.
+// Shades pixels with the projected grid. See shaded_sea.h.
 #include "tests/bench/reference/shaded_sea.h"
 
 #include <tbb/parallel_for.h>
@@ -10,8 +10,8 @@
 namespace pelagic::bench {
 namespace {
 
-// The water's radiance from below in shade_sea()'s own units, found where its share is known: seen from
-// straight above, a mirror's Fresnel term is ((n − 1)/(n + 1))², which the paper rounds to 0.02.
+// The water's radiance from below in the units of shade_sea(), computed where its share is known: straight
+// from above the Fresnel term of a mirror is ((n − 1)/(n + 1))², which the paper rounds to 0.02.
 double radiance_from_below(const LightingChoice& choice, const Sky& sky, const WaterBody& water) {
     const SeaPoint level;
     SeaRadiance seen;
@@ -65,7 +65,7 @@ SeaPixels with_constant_variance(SeaPixels pixels) {
 Lines shaded_lines(const SeaPixels& pixels, const LightingChoice& choice, const Sky& sky, double refracted) {
     const WaterBody water{.reflectance = glm::vec3(0.05f)};
     const double scale = refracted / radiance_from_below(choice, sky, water);
-    // The integral takes a hundred times as long; it is for sky and water, which change little between
+    // The integral takes a hundred times as long. It is used for sky and water, which vary little between
     // samples.
     const std::size_t step = choice.sky_quality == SkyQuality::Integral ? 9 : 1;
     Lines lines(pixels.first.size() - 1);

@@ -1,4 +1,4 @@
-// What pictures are compared by: the mean luminance of each of their lines, term by term.
+// The quantity that pictures are compared by: the mean luminance of each line, by term.
 #pragma once
 
 #include <cmath>
@@ -16,13 +16,13 @@ inline constexpr const char* kTermNames[kTerms] = {"sun", "refracted", "sky"};
 struct Line {
     double term[kTerms] = {};
 };
-using Lines = std::vector<Line>;  // from the first row below the horizon downwards
+using Lines = std::vector<Line>;  // from the first row below the horizon down
 
 inline double luminance(const glm::vec3& colour) {
     return pelagic::luminance(glm::dvec3(colour));
 }
 
-// The sky with the sun's light spread over a disc that is `factor` times as wide: the same irradiance.
+// The sky with its sun spread over a disc `factor` times as wide, with the same irradiance.
 inline Sky with_wider_sun(Sky sky, float factor) {
     const auto cap = [](float radius) { return 1.0 - std::cos(static_cast<double>(radius)); };
     sky.sun_radiance *=

@@ -1,4 +1,4 @@
-// One tile's waves and its plan. See wave_tile.h.
+// The plan and waves of one tile. See wave_tile.h.
 #include "tests/bench/reference/wave_tile.h"
 
 #include <cmath>
@@ -10,10 +10,10 @@
 namespace pelagic::bench {
 namespace {
 
-constexpr double kTime_s = 100.0;  // any: not the moment at which all phases are the random ones
+constexpr double kTime_s = 100.0;  // arbitrary, but not 0, where phases are the random numbers themselves
 
-// From a quarter of the shortest wave, which n_max lets pass whole, to the tile's own size, at which n_min
-// stops all of them; steps of √½, between which evaluate() blends.
+// From a quarter of the shortest wave, which n_max lets pass fully, to the tile's size, at which n_min stops
+// all waves, in steps of √½; evaluate() interpolates between them.
 std::vector<double> ladder(double shortest_m, double size_m) {
     std::vector<double> footprints_m;
     for (double f = 0.25 * shortest_m; f < size_m; f *= std::sqrt(2.0)) footprints_m.push_back(f);
@@ -39,8 +39,8 @@ WaveTile::WaveTile(const WaveTileOptions& options) : size_m_(options.size_m) {
     scene.sea.fetch_m = options.fetch_m;
     scene.waves.choppiness = options.choppiness;
     scene.effects.whitecaps = false;
-    // A second tile, never asked for, so that the first one's band ends where its modes do: its lower edge is
-    // kBandModes waves across it.
+    // A second tile that is never queried limits the first one's band to its modes: the second band begins at
+    // kBandModes waves per tile.
     const double modes = 0.5 * options.resolution - 4.0;
     shortest_m_ = size_m_ / modes;
     scene.waves.cascades = {{.size_m = size_m_, .resolution = options.resolution},
@@ -62,7 +62,7 @@ SpectralMoments WaveTile::hidden_from_all() const {
 }
 
 SurfaceBounds WaveTile::bounds() const {
-    // Five standard deviations: of 1e6 independent heights one is higher.
+    // Five standard deviations: one of 1e6 independent heights exceeds that.
     const double deviation_m = std::sqrt(whole().m0);
     return {.height_m = 5.0 * deviation_m, .reach_m = 5.0 * deviation_m};
 }

@@ -1,6 +1,6 @@
-// The sea that the lighting is validated on (Bruneton, Neyret, Holzschuch 2010, §7.2): one periodic tile of
-// waves that ends at a known wavelength, so that very fine geometry can show all of it, and what pixels hide
-// is exactly what that geometry shows and the filter doesn't.
+// The sea for validating the lighting (Bruneton, Neyret, Holzschuch 2010, §7.2): one periodic tile of waves
+// that ends at a known wavelength. Very fine geometry can show all of its waves, and a pixel hides exactly
+// what that geometry shows and the filter doesn't.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ struct WaveTileOptions {
     double choppiness = 1.0;
     std::uint64_t seed = 1;
     double size_m = 100.0;
-    int resolution = 2048;  // of the waves: the shortest is a little more than two samples long
+    int resolution = 2048;  // of the waves: the shortest is slightly longer than two samples
 };
 
-// The queries of the tile's plan, all of this band alone.
+// The queries of the tile's plan, all of this band only.
 enum TileQuery {
-    kWhole,   // positions and normals of all waves, nothing filtered
+    kWhole,   // positions and normals of all waves, unfiltered
     kCells,   // positions, filtered by cells: a ladder
     kPixels,  // normals and hidden slope variance, filtered by pixels: a ladder
 };
@@ -33,10 +33,10 @@ class WaveTile {
     const Frame<float>& frame() const { return *frame_; }
     double size_m() const { return size_m_; }
     double shortest_m() const { return shortest_m_; }
-    // All that the tile's band holds, and what a footprint of 0 leaves of it: the error of "hides nothing".
+    // Moments of the tile's band, and what a footprint of 0 hides of it: the error of "hides nothing".
     const SpectralMoments& whole() const { return frame_->sea().statistics(kWhole).whole; }
     SpectralMoments hidden_from_all() const;
-    // Of the positions, with room for the highest crest of a few thousand.
+    // Of the positions, with room for the highest crest among a few thousand.
     SurfaceBounds bounds() const;
 
   private:

@@ -23,7 +23,7 @@ TEST(NormalPair, HasTheMomentsOfTwoIndependentNormals) {
     constexpr int kDraws = 400000;
     double m1 = 0, m2 = 0, m3 = 0, m4 = 0, cross = 0, cross_squares = 0, largest = 0;
     for (std::uint32_t i = 0; i < kDraws; ++i) {
-        // The counters that a grid of modes uses: neighbours in one word, negative numbers wrapped.
+        // The kind of counters that grids of modes use: neighbours differ in one word, negative numbers wrap.
         const auto xi = normal_pair({i % 4, i % 1000, 0u - i / 1000, 0u}, 7);
         for (double x : xi) {
             m1 += x;

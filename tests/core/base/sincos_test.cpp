@@ -1,8 +1,8 @@
-// Sine and cosine in vectors against the C library's in double, on every instruction set that this CPU has.
+// Sine and cosine for vectors against the C library in double, on every instruction set of this CPU.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/core/base/sincos_test.cpp"
 #include <hwy/foreach_target.h>
-// foreach_target first: it includes this file once for each instruction set.
+// foreach_target comes first: it includes this file once per instruction set.
 #include "core/base/sincos-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -48,11 +48,11 @@ namespace {
 template <class T>
 std::vector<T> phases() {
     std::vector<T> cycles;
-    for (int i = -64; i <= 64; ++i) cycles.push_back(T(i) / T(16));  // every seam between octants
+    for (int i = -64; i <= 64; ++i) cycles.push_back(T(i) / T(16));  // every border between octants
     for (std::uint32_t i = 0; cycles.size() < 100000; ++i) {
         const auto z = normal_pair({i, 0, 0, 0}, 7);
-        cycles.push_back(static_cast<T>(z[0]));         // within a few turns
-        cycles.push_back(static_cast<T>(1000 * z[1]));  // and well away
+        cycles.push_back(static_cast<T>(z[0]));         // within a few cycles
+        cycles.push_back(static_cast<T>(1000 * z[1]));  // far from 0
     }
     while (cycles.size() % 4 != 0) cycles.push_back(T(0));
     return cycles;
@@ -73,7 +73,7 @@ void expect_close(Work work, double tolerance) {
     EXPECT_LT(worst, tolerance);
 }
 
-// Rounding of the angle, of the polynomial and of the last product: two units in the last place of 1.
+// Rounding of the angle, the polynomial and the last product: two units in the last place of 1.
 TEST(SinCos, MatchesTheCLibraryOnEveryInstructionSet) {
     for (int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
         const int64_t target = left & -left;

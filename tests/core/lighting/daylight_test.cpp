@@ -1,4 +1,4 @@
-// The clear sky, against what light meters say and what energy allows.
+// The clear sky against light meter readings and energy conservation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,8 +38,8 @@ double blueness(glm::vec3 colour) {
 }
 
 TEST(Daylight, AClearDayIsAsBrightAsMeasured) {
-    // Sun 60° high: 80 … 110 klx on the ground, a tenth to a quarter of it from the sky, whose zenith has
-    // 1 … 6 kcd/m².
+    // Sun 60° high: 80 … 110 klx on the ground, a tenth to a quarter of it from the sky; the zenith has 1 … 6
+    // kcd/m².
     for (const double turbidity : {2.0, 3.0}) {
         const Sky sky = sky_at(60.0, turbidity);
         EXPECT_GT(total(sky), 80.0);
@@ -62,16 +62,15 @@ TEST(Daylight, CivilTwilightEndsAtThreeLux) {
 TEST(Daylight, NightIsBlackAndFinite) {
     for (const double elevation : {-30.0, -90.0}) {
         const Sky sky = sky_at(elevation);
-        // All air in sight is in the earth's shadow. (The table that is interpolated reaches a degree
-        // farther.)
+        // All visible air is in the earth's shadow. (The interpolated table extends a degree further.)
         EXPECT_LT(total(sky), 1e-20);
         EXPECT_EQ(sky.sun_radiance, glm::vec3(0.0f));
     }
 }
 
 TEST(Daylight, GivesNoMoreThanComesIn) {
-    // A horizontal square metre outside of the air gets kOutside · sin e. (Lower suns light air beyond the
-    // horizon of that square metre.)
+    // A horizontal square metre outside the atmosphere gets kOutside · sin e. (Lower suns light air beyond
+    // that square metre's horizon.)
     for (const double turbidity : {1.7, 3.0, 10.0})
         for (const double elevation : {10.0, 60.0})
             EXPECT_LT(total(sky_at(elevation, turbidity)), kOutside_klx * std::sin(elevation * kPi / 180.0))
@@ -79,9 +78,8 @@ TEST(Daylight, GivesNoMoreThanComesIn) {
 }
 
 TEST(Daylight, WithoutHazeLittleIsLost) {
-    // Air alone takes nothing but the share it sends back to space, half of what it scatters, and the ozone's
-    // 4 %; with a zenith sun it scatters 1 − e^−0.1. Haze that absorbs 3 % of what it scatters changes
-    // little.
+    // Air alone loses half of the scattered light to space, and 4 % to ozone. With the sun at the zenith it
+    // scatters 1 − e^−0.1. Haze that absorbs 3 % of what it scatters changes little.
     EXPECT_GT(total(sky_at(90.0, 1.7)), 0.88 * kOutside_klx);
     EXPECT_GT(total(sky_at(90.0, 3.0)), 0.85 * kOutside_klx);
 }
@@ -101,9 +99,9 @@ TEST(Daylight, DirectLightRisesWithTheSunAndFallsWithHaze) {
 }
 
 TEST(Daylight, DirectLightFollowsBouguersLaw) {
-    // Straight up the optical thickness at 0.55 μm is turbidity times the air's own 0.097 and the ozone's
-    // 0.03, and the columns in a flat atmosphere grow with 1/sin e: right to 1 % at 30°, where the earth's
-    // roundness and the sum's steps make up half of that.
+    // Vertically the optical thickness at 0.55 μm is turbidity times the air's 0.097, plus the ozone's 0.03.
+    // In a flat atmosphere columns grow with 1/sin e: accurate to 1 % at 30°; half of that is from the
+    // earth's curvature and the integration's steps.
     const int green = static_cast<int>((0.55 - kShortest_um) / (kLongest_um - kShortest_um) * kBands);
     const auto thickness = [&](double turbidity, double elevation) {
         const Atmosphere air(turbidity, 1.0);
@@ -132,8 +130,8 @@ TEST(Daylight, TheSunOutsideIsWhiteAndBright) {
     BandValues all;
     all.fill(1.0);
     const glm::dvec3 sun = colour_of(all);
-    EXPECT_NEAR(luminance(sun), kOutside_klx, 0.01);  // Rec. 709's rounded coefficients
-    // Between the horizon's 5000 K and D65: a little more red than blue.
+    EXPECT_NEAR(luminance(sun), kOutside_klx, 0.01);  // Rec. 709's coefficients are rounded
+    // Between 5000 K and D65: slightly more red than blue.
     EXPECT_GT(sun.x / sun.z, 1.0);
     EXPECT_LT(sun.x / sun.z, 1.4);
     EXPECT_NEAR(sun.y / luminance(sun), 1.0, 0.05);
@@ -148,7 +146,7 @@ TEST(Daylight, ColoursAreThoseOfADay) {
     EXPECT_GT(blueness(low.map.radiance(zenith, 0.0f)), 1.5);
     EXPECT_GT(blueness(down.map.radiance(zenith, 0.0f)), 2.0);  // the blue hour
     EXPECT_LT(blueness(low.sun_radiance), 0.1);
-    // No green casts: green lies between the others, or near them.
+    // No green cast: green lies between the other two, or near them.
     for (const Sky* sky : {&noon, &low, &down})
         for (const glm::vec2 u : {zenith, away, towards, glm::vec2(0.0f, 0.7f)}) {
             const glm::vec3 colour = sky->map.radiance(u, 0.0f);
@@ -162,7 +160,8 @@ TEST(Daylight, TheMapHoldsTheSkyAndNotTheSun) {
     const double rad = kPi / 180.0;
     const glm::vec3 sun(std::cos(40.0 * rad) * std::cos(120.0 * rad),
                         std::cos(40.0 * rad) * std::sin(120.0 * rad), std::sin(40.0 * rad));
-    // The disc's upper edge is a little brighter: its middle is moved by less than a hundredth of its radius.
+    // The disc's upper edge is slightly brighter. That moves its centre by less than a hundredth of the
+    // radius.
     EXPECT_LT(glm::length(sky.sun_direction - sun), 4e-5f);
     double brightest = 0.0;
     glm::vec2 place(0.0f);
@@ -175,11 +174,11 @@ TEST(Daylight, TheMapHoldsTheSkyAndNotTheSun) {
                         (2.0f * kSkyMapExtent / 256.0f) -
                     kSkyMapExtent;
         }
-    // The aureole is round the sun, to a texel or two (it is brighter on the horizon's side), and 1e4 times
+    // The aureole surrounds the sun, to a texel or two (it is brighter towards the horizon), and is 1e4 times
     // fainter than the disc.
     EXPECT_LT(glm::length(place - sky_map_place(sun)), 0.03f);
     EXPECT_GT(bright(sky.sun_radiance), 1e4 * brightest);
-    // The map's own integral is the irradiance: texels' means at their middles, right to a texel's width
+    // The irradiance is the map's integral. Evaluating texels at their centres is accurate to a texel's width
     // squared.
     double irradiance = 0.0;
     const double side = 2.0 * static_cast<double>(kSkyMapExtent) / 256.0;
@@ -191,7 +190,7 @@ TEST(Daylight, TheMapHoldsTheSkyAndNotTheSun) {
                               (1.0 - u2) / std::pow(1.0 + u2, 3.0) * side * side;
         }
     EXPECT_NEAR(irradiance / bright(sky.sky_irradiance), 1.0, 1e-3);
-    // Disc: irradiance = radiance · solid angle · sine.
+    // The disc: irradiance = radiance · solid angle · sine of elevation.
     const double solid_angle = kPi * std::pow(static_cast<double>(sky.sun_angular_radius), 2.0);
     EXPECT_NEAR(bright(sky.sun_irradiance) /
                     (bright(sky.sun_radiance) * solid_angle * static_cast<double>(sky.sun_direction.z)),
@@ -211,8 +210,8 @@ TEST(Daylight, TheSkyIsTheSameOnBothSidesOfTheSunAndTurnsWithIt) {
 }
 
 TEST(Daylight, SmoothWhereTheSunRises) {
-    // Steps of 0.1° while the disc, 0.53° wide, crosses the horizon: the sky changes by a few per cent a
-    // step at most, and the changes of two steps in a row differ little.
+    // Steps of 0.1° while the disc, 0.53° wide, crosses the horizon. The sky changes by a few per cent per
+    // step at most, and consecutive changes differ little.
     double before = 0.0, change_before = 0.0;
     for (int i = 0; i <= 12; ++i) {
         const Sky sky = sky_at(-0.6 + 0.1 * i, 2.0);
@@ -230,7 +229,7 @@ TEST(Daylight, SmoothWhereTheSunRises) {
         }
         before = now;
     }
-    // The disc: nothing while it is below, all of it soon after, rising in between.
+    // The disc: 0 while below the horizon, complete soon after sunrise, increasing in between.
     const glm::vec3 below = sky_at(-0.27, 2.0).sun_radiance;
     EXPECT_EQ(below, glm::vec3(0.0f));
     double last = 0.0;
@@ -242,7 +241,7 @@ TEST(Daylight, SmoothWhereTheSunRises) {
 }
 
 TEST(Daylight, SmoothInTheTable) {
-    // Second differences along a line through the sky, away from the sun: tables that show would have kinks.
+    // Second differences along a line through the sky, away from the sun: visible tables would have kinks.
     const Sky sky = daylight_sky({.sun_elevation_deg = 10.0, .sun_azimuth_deg = 0.0, .turbidity = 2.5}, 256);
     for (int i = 20; i < 230; ++i) {
         const auto at = [&](int k) {
@@ -253,7 +252,7 @@ TEST(Daylight, SmoothInTheTable) {
 }
 
 TEST(Daylight, EveryPixelIsARadiance) {
-    // SkyMap refuses anything else: it is enough that it is made.
+    // No exception: SkyMap would throw for invalid radiances.
     for (const double turbidity : {1.7, 10.0})
         for (const double elevation : {90.0, 0.0, -8.0}) EXPECT_NO_THROW(sky_at(elevation, turbidity));
 }

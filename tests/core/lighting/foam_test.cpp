@@ -1,4 +1,4 @@
-// Whitecaps, and the light out of the water.
+// Whitecaps, and the light scattered back out of the water.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace pelagic::optics {
 namespace {
 
 constexpr double kRadius = 0.00465;
-constexpr double kBumps = 0.1;  // foam's own slope variance
+constexpr double kBumps = 0.1;  // slope variance of the foam's own roughness
 
 dvec3 rough(dvec3 s) {
     return s + dvec3(kBumps, kBumps, 0.0);
@@ -34,7 +34,8 @@ TEST(Foam, VisibleCoverageIsAShareOfProjectedAreas) {
         ASSERT_EQ(optics.visible_coverage(0.0f, v, s), 0.0f);
         ASSERT_EQ(optics.visible_coverage(1.0f, v, s), 1.0f);
     }
-    // Straight down nothing hides anything; at grazing angles foam, being rougher, shows more of itself.
+    // Seen from straight above nothing is hidden. At grazing angles foam, being rougher, shows more of
+    // itself.
     const vec3 s(0.02f, 0.015f, 0.0f);
     EXPECT_NEAR(optics.visible_coverage(0.3f, vec3(0.0f, 0.0f, 1.0f), s), 0.3f, 1e-6f);
     float last = 0.3f;
@@ -46,7 +47,7 @@ TEST(Foam, VisibleCoverageIsAShareOfProjectedAreas) {
     }
 }
 
-// foam.glsl's closed form in double: E max(x, 0) for a normal x by its own integral.
+// The closed form of foam.glsl in double; E max(x, 0) of a normal x by numerical integration.
 double foam(dvec3 v, dvec3 l, dvec3 waves) {
     const dvec3 s = rough(waves);
     const double sine = std::sqrt(v.x * v.x + v.y * v.y);
@@ -85,9 +86,9 @@ TEST(Foam, SingleIsDouble) {
     }
 }
 
-// Diffuse facets that reflect everything send no more than they get: over all directions of the light the
-// share that comes back to any eye is at most 1 (single scattering: what is shaded or faces away is less).
-// 1e-2: the closed form takes the facets' tilt at its mean.
+// Diffuse facets of albedo 1 reflect no more than they receive: the share of light from any direction that
+// reaches any eye is at most 1 (single scattering: light on shaded or averted facets is lost). 1e-2, because
+// the closed form uses the facets' mean tilt.
 TEST(Foam, ReflectsNoMoreThanItGets) {
     Optics optics;
     for (float sigma : {0.01f, 0.15f, 0.4f})
@@ -106,7 +107,7 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
                     const vec3 found =
                         optics.foam_radiance(v, l, frame, vec3(1.0f), float(kRadius), vec3(0.0f), vec3(1.0f));
                     sum += static_cast<double>(found.x) /
-                           (oracle::kPi * kRadius * kRadius);  // per solid angle of sun
+                           (oracle::kPi * kRadius * kRadius);  // per solid angle of the sun
                 }
             sum *= 2.0 * oracle::kPi / (kSteps * kSteps);
             EXPECT_LE(sum, 1.01) << sigma << ' ' << degrees;
@@ -114,7 +115,7 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
         }
 }
 
-// Koepke's 0.22 over black water; bluer than white over blue water, which thin foam lets through.
+// Koepke's 0.22 over black water, and bluish over blue water, which shows through thin foam.
 TEST(Foam, IsKoepkesAndShowsTheWater) {
     Optics optics;
     EXPECT_NEAR(optics.foam_reflectance(vec3(0.0f)).x, 0.22f, 1e-6f);
@@ -123,7 +124,7 @@ TEST(Foam, IsKoepkesAndShowsTheWater) {
     EXPECT_NEAR(foam.z, 0.22f + 0.6f * 0.05f, 1e-6f);
 }
 
-// L = R E_d/(π n²), E_d what the surface lets in, with the way back up from the surface's underside.
+// L = R E_d/(π n²), where E_d is the light that enters, including what the surface's underside reflects.
 TEST(Water, RadianceOutOfTheWater) {
     Optics optics;
     Inputs inputs(32);
@@ -134,7 +135,7 @@ TEST(Water, RadianceOutOfTheWater) {
         const double down = sun * (1.0 - oracle::fresnel(static_cast<double>(l.z))) + sky * (1.0 - 0.06751);
         const double expected = r / (1.0 - 0.48 * r) * down / (oracle::kPi * 1.34 * 1.34);
         const vec3 found = optics.water_radiance(l, vec3(float(sun)), vec3(float(sky)), vec3(float(r)));
-        // 1 − F of a grazing sun keeps 1e-7 of 1.
+        // 1 − F of a grazing sun has an absolute rounding error of 1e-7.
         ASSERT_NEAR(found.x, expected, 1e-4 * expected + 1e-7 * r * sun) << i;
     }
 }
@@ -150,7 +151,7 @@ TEST(Water, ShareOfTheSkyThatStaysOutside) {
     EXPECT_NEAR(sum, 0.06751, 1e-5);
 }
 
-// And 0.48 is the same from below, for what comes up evenly.
+// 0.48 is the same from below, for isotropic light.
 TEST(Water, ShareThatStaysInside) {
     double sum = 0.0;
     constexpr int kSteps = 20000;

@@ -1,4 +1,4 @@
-// How much is reflected, by one facet and by all that are seen.
+// Fresnel reflectance of one facet, and averaged over the visible facets.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kInputs = 100000;
 
-// 1e-4 relative is asked for; the term is never below 0.02, so single precision gives 1e-5.
+// The requirement is 1e-4 relative. The term is at least 0.02, so single precision gives 1e-5.
 TEST(Fresnel, ExactTermIsSnellsAndFresnels) {
     Optics optics;
     Inputs inputs(1);
@@ -23,8 +23,8 @@ TEST(Fresnel, ExactTermIsSnellsAndFresnels) {
     }
 }
 
-// From inside the water: all is reflected beyond the critical angle, cos² = 1 − 1/1.34²; near it the root's
-// own slope is infinite, so that an error of 1e-7 in the cosine is one of 1e-3 there.
+// From inside the water: total reflection beyond the critical angle, cos² = 1 − 1/1.34². Near it the square
+// root is infinitely steep, so that an error of 1e-7 in the cosine becomes 1e-3.
 TEST(Fresnel, TotalReflectionFromBelow) {
     Optics optics;
     const float inside = 1.0f / 1.34f;
@@ -45,9 +45,9 @@ double exact(double cosine) {
     return oracle::fresnel(cosine);
 }
 
-// Against Eq. 24's integral, σ up to 0.5 along the line of sight and across it, and with slopes correlated
-// between the two: ours 0.015 from the exact term's average (0.025 where the two are all but one), Eq. 26
-// 0.065 from Schlick's, for which it was made (at the horizon itself; 0.05 up to 89.5°).
+// Against Eq. 24's integral, for σ up to 0.5 along and across the line of sight, and correlated slopes. Our
+// fit is within 0.015 of the mean of the exact term (0.025 for almost full correlation), Eq. 26 within 0.065
+// of the mean of Schlick's term, for which it was made (0.05 up to 89.5°).
 TEST(Fresnel, EffectiveTermsAreTheAverages) {
     Optics optics;
     for (double degrees : {0.0, 25.0, 50.0, 65.0, 75.0, 80.0, 84.0, 87.0, 89.0, 89.9}) {
@@ -58,7 +58,8 @@ TEST(Fresnel, EffectiveTermsAreTheAverages) {
                 for (double correlation : {0.0, 0.7, 0.99}) {
                     const dvec3 s(along * along, across * across, correlation * along * across);
                     const double with =
-                        s.x + s.z * s.z / s.x;  // the slopes that come with those along the line of sight
+                        s.x +
+                        s.z * s.z / s.x;  // with the slopes correlated with those along the line of sight
                     EXPECT_NEAR(
                         optics.fresnel_effective_exact(c, static_cast<float>(along), static_cast<float>(with),
                                                        static_cast<float>(s.x + s.y - with)),
@@ -73,8 +74,8 @@ TEST(Fresnel, EffectiveTermsAreTheAverages) {
     }
 }
 
-// A level mirror has the term itself. The fit moves the cosine by a part of the variance: 1e-6 of it here,
-// and where the cosine is as small as σ, by σ, against a slope of the term of at most 6.
+// A flat mirror has the term itself. The fit changes the cosine by a fraction of the variance, here 1e-6 of
+// it, and by σ where the cosine is as small as σ; the term's slope is at most 6.
 TEST(Fresnel, EffectiveTermOfAMirrorIsTheTerm) {
     Optics optics;
     for (float c = 0.0f; c <= 1.0f; c += 1e-3f) {

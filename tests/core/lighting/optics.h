@@ -1,5 +1,5 @@
-// The shared shading source, callable function by function, under any sky; and the same physics in double
-// precision, written from the formulas for comparison.
+// The shared shading source, callable by function under any sky, and the same physics in double precision,
+// written independently from the formulas.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct Optics {
     // clang-format on
 };
 
-// A sea of mirrors that reflect everything: the white furnace.
+// A sea that reflects everything: the white furnace.
 struct Furnace {
     Lookup lookup = uniform_sky;
     int kSkyLookups = 0;
@@ -64,7 +64,7 @@ namespace oracle {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kIndex = 1.34;
 
-// From Snell's law and the amplitudes' ratios, not from Hu's g.
+// From Snell's law and the amplitude ratios, not from Hu's g.
 inline double fresnel(double cosine, double index = kIndex) {
     const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine)) / index;
     if (sine >= 1.0) return 1.0;
@@ -78,7 +78,7 @@ inline double schlick(double cosine) {
     return 0.02 + 0.98 * std::pow(1.0 - cosine, 5.0);
 }
 
-// A slope tensor's Cholesky factor: ζ = (a x, b x + c y) for independent normal x, y.
+// The Cholesky factor of a slope covariance: ζ = (a x, b x + c y) for independent normal x, y.
 struct Factor {
     double a, b, c;
     explicit Factor(dvec3 s) : a(std::sqrt(s.x)), b(s.z / a), c(std::sqrt(std::max(s.y - b * b, 0.0))) {}
@@ -101,7 +101,7 @@ inline double lambda(dvec3 d, dvec3 s) {
     return (std::exp(-a * a) - a * root * std::erfc(a)) / (2.0 * a * root);
 }
 
-// The share of what the eye sees that is not hidden from this direction: Eq. 5 over Eq. 10.
+// The fraction of the visible facets that this direction reaches: Eq. 5 over Eq. 10.
 inline double unblocked(dvec3 v, dvec3 l, dvec3 s) {
     if (l.z <= 0.0) return 0.0;
     const double seen = lambda(v, s);
@@ -128,7 +128,7 @@ auto over_visible(dvec3 v, dvec3 s, int steps, Function&& f) {
     return sum / total;
 }
 
-// Eq. 20 with the exact Fresnel term, what is hidden from the sky showing `below`.
+// Eq. 20 with the exact Fresnel term; blocked rays get `below`.
 template <class Radiance>
 double sky(dvec3 v, dvec3 s, double below, int steps, Radiance&& radiance) {
     return over_visible(v, s, steps, [&](dvec2, dvec3 f) {
@@ -141,7 +141,7 @@ double sky(dvec3 v, dvec3 s, double below, int steps, Radiance&& radiance) {
 
 }  // namespace oracle
 
-// Seeded inputs: every other direction is grazing, slopes from a mirror's to a storm's.
+// Seeded random inputs: every other direction is grazing; slopes range from a mirror's to a storm's.
 class Inputs {
   public:
     explicit Inputs(unsigned seed) : random_(seed) {}
@@ -150,13 +150,13 @@ class Inputs {
         return low + (high - low) * std::uniform_real_distribution<double>(0.0, 1.0)(random_);
     }
     double logarithmic(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-    // In the upper half; z down to `lowest`.
+    // In the upper hemisphere, with z ≥ `lowest`.
     vec3 direction(double lowest) {
         const double z = uniform(0.0, 1.0) < 0.5 ? logarithmic(lowest, 1.0) : uniform(lowest, 1.0);
         const double azimuth = uniform(0.0, 2.0 * oracle::kPi), sine = std::sqrt(1.0 - z * z);
         return vec3(dvec3(sine * std::cos(azimuth), sine * std::sin(azimuth), z));
     }
-    // σ from `least` to `most` along either axis, correlation up to `correlation`.
+    // σ in `least` … `most` on either axis, |correlation| up to `correlation`.
     vec3 variance(double least, double most, double correlation) {
         const double x = logarithmic(least, most), y = logarithmic(least, most);
         return vec3(dvec3(x * x, y * y, uniform(-correlation, correlation) * x * y));

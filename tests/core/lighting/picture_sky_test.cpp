@@ -1,4 +1,4 @@
-// Lat-long pictures: where they point, that the sun is counted once, that no light is lost on the way to the
+// Lat-long pictures: their orientation, that the sun counts once, and that no light is lost on the way to the
 // map.
 #include <gtest/gtest.h>
 
@@ -23,12 +23,14 @@ glm::dvec3 towards(double elevation_deg, double azimuth_deg) {
     return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
 }
 
-// The direction of a point of a picture, in pixels from its upper left corner, as design.md's [light] has it.
+// The direction of a point of a picture, in pixels from the upper left corner, as LatLong
+// (core/lighting/sky.h) has it.
 glm::dvec3 direction_at(const LatLong& picture, double x, double y) {
     return towards(90.0 - 180.0 * y / picture.height, 180.0 - 360.0 * x / picture.width);
 }
 
-// Each pixel the mean over parts(direction of its middle)² points, by their solid angles.
+// A picture of a radiance. Each pixel is the mean over parts(direction of its centre)² points, weighted by
+// solid angle.
 LatLong painted(
     int width, int height, const std::function<glm::vec3(glm::dvec3)>& radiance,
     const std::function<int(glm::dvec3)>& parts_at = [](glm::dvec3) { return 1; }) {
@@ -49,7 +51,7 @@ LatLong painted(
     return picture;
 }
 
-// ∫ L cosθ dω of the upper half, pixel by pixel, of even height.
+// ∫ L cosθ dω over the upper half, with constant pixels.
 glm::dvec3 irradiance(const LatLong& picture) {
     glm::dvec3 sum(0.0);
     for (int j = 0; j < picture.height / 2; ++j) {
@@ -62,12 +64,12 @@ glm::dvec3 irradiance(const LatLong& picture) {
     return sum;
 }
 
-// A smooth sky with a direction of its own.
+// A smooth sky that isn't symmetric.
 glm::vec3 plain_sky(glm::dvec3 d) {
     return glm::vec3(2.0 + d.x, 2.0 + 0.5 * d.y, 3.0 + d.z * d.z);
 }
 
-// The same with a sun 100 000 times brighter and a glow round it.
+// The same with a sun 100 000 times as bright, and a glow around it.
 glm::vec3 sunny_sky(glm::dvec3 d, glm::dvec3 sun) {
     const double apart = std::acos(std::min(1.0, glm::dot(d, sun)));
     glm::vec3 colour = plain_sky(d) * static_cast<float>(1.0 + std::exp(-apart / 0.2));
@@ -90,8 +92,9 @@ TEST(PictureSky, UniformPictureOfOneGivesPi) {
 }
 
 TEST(PictureSky, TheMiddleColumnIsXAndAzimuthGrowsToTheLeft) {
-    // Between pixels of 0.7° a smooth sky is right to their angle squared, at the seam behind and round the
-    // zenith, where columns converge, as well; next to the horizon the last row stands for half a pixel more.
+    // Interpolation between pixels of 0.7° is accurate to their angle squared in a smooth sky, also at the
+    // seam behind, and around the zenith, where columns converge. Next to the horizon the last row stands for
+    // half a pixel more.
     const Sky sky = picture_sky(painted(512, 256, plain_sky), 256);
     for (const double azimuth : {0.0, 45.0, 90.0, 135.0, 179.9, -179.9, -90.0})
         for (const double elevation : {1.0, 30.0, 80.0, 89.9, 90.0}) {
@@ -102,9 +105,9 @@ TEST(PictureSky, TheMiddleColumnIsXAndAzimuthGrowsToTheLeft) {
 }
 
 TEST(PictureSky, NoLightIsLostBetweenPictureAndMap) {
-    // Finer than the map, coarser, and not twice as wide as high.
+    // Finer than the map, coarser, and of other proportions than 2 : 1.
     for (const glm::ivec2 size : {glm::ivec2(1024, 512), glm::ivec2(64, 32), glm::ivec2(300, 256)}) {
-        // Stripes three pixels wide and a step: what lookups at single places would miss or double.
+        // Stripes three pixels wide and a step, which point samples would miss or count twice.
         LatLong picture{size.x, size.y, {}};
         for (int j = 0; j < size.y; ++j)
             for (int i = 0; i < size.x; ++i)
@@ -116,8 +119,8 @@ TEST(PictureSky, NoLightIsLostBetweenPictureAndMap) {
 }
 
 TEST(PictureSky, ColumnsThatConvergeAtTheZenithAreAveraged) {
-    // Every other column black: within 10° of the zenith a pixel as wide as high has 6 columns or more, whose
-    // mean is off by at most half a column.
+    // Every other column is black. Within 10° of the zenith a pixel as wide as high has at least 6 columns,
+    // whose mean is off by at most half a column.
     LatLong picture{256, 128, {}};
     for (int i = 0; i < 256 * 128; ++i) picture.radiance.push_back(glm::vec3(i % 2 ? 2.0f : 0.0f));
     const Sky sky = picture_sky(picture, 128);
@@ -130,7 +133,7 @@ TEST(PictureSky, ColumnsThatConvergeAtTheZenithAreAveraged) {
 }
 
 TEST(PictureSky, TheSunIsFoundAndCountedOnce) {
-    // At the seam, low, high, at the zenith; in pixels finer than the disc (0.53°) and wider.
+    // At the seam, low, high, at the zenith; with pixels smaller than the disc (0.53°) and larger.
     for (const glm::dvec2 place :
          {glm::dvec2(35.0, 60.0), glm::dvec2(8.0, 179.9), glm::dvec2(75.0, -120.0), glm::dvec2(89.8, 30.0)})
         for (const int height : {512, 128}) {
@@ -142,17 +145,15 @@ TEST(PictureSky, TheSunIsFoundAndCountedOnce) {
             const LatLong picture = painted(
                 2 * height, height, [&](glm::dvec3 d) { return sunny_sky(d, sun); }, parts);
             const Sky sky = picture_sky(picture, 256);
-            // A tenth of a degree; a disc inside one coarse pixel is known to lie there, and not where: half
-            // a diagonal.
+            // A tenth of a degree. The place of a disc inside one coarse pixel is known to half a diagonal.
             const double apart =
                 std::acos(std::min(1.0, glm::dot(glm::normalize(glm::dvec3(sky.sun_direction)), sun)));
             const double off_deg = pixel_deg < 0.53 ? 0.1 : 0.71 * pixel_deg;
             EXPECT_LT(apart / kDegree, off_deg) << place.x << " " << height;
             expect_close(glm::dvec3(sky.sun_irradiance) + glm::dvec3(sky.sky_irradiance), irradiance(picture),
                          1e-3);
-            // The disc has what was painted, as exactly as its height is known and as 24² points of a pixel
-            // paint a disc: a few per mille. (What is left is the sky as it would be without it: its glow
-            // stays.)
+            // The disc has the light that was painted, up to the error of its elevation and of painting with
+            // 24² points per pixel: a few per mille. (The sky's own light and the glow stay in the sky.)
             const double solid_angle = kTwoPi * (1.0 - std::cos(0.00465));
             const double tolerance = 0.01 + off_deg * kDegree * std::sqrt(1.0 - sun.z * sun.z) / sun.z;
             EXPECT_NEAR(static_cast<double>(sky.sun_irradiance.x) / (3e5 * solid_angle * sun.z), 1.0,
@@ -192,17 +193,17 @@ TEST(PictureSky, SmallAndOddPicturesAreSkies) {
         LatLong picture{size.x, size.y, {}};
         picture.radiance.assign(static_cast<std::size_t>(size.x * size.y), glm::vec3(1.0f));
         EXPECT_NEAR(static_cast<double>(picture_sky(picture, 64).sky_irradiance.x), kPi, 1e-3) << size.x;
-        picture.radiance[0] = glm::vec3(1e6f);  // whatever this is, it stays finite
+        picture.radiance[0] = glm::vec3(1e6f);  // the result stays finite
         const Sky sky = picture_sky(picture, 64);
         EXPECT_TRUE(std::isfinite(sky.sky_irradiance.x) && std::isfinite(sky.sun_radiance.x));
     }
-    // The brightest sun there may be, as low as pixels let it be.
+    // The brightest possible sun in the lowest possible pixel.
     LatLong glaring{64, 32, std::vector<glm::vec3>(64 * 32, glm::vec3(0.0f))};
     glaring.radiance[15 * 64 + 20] = glm::vec3(1e30f);
     const Sky bright = picture_sky(glaring, 64);
     EXPECT_GT(bright.sun_radiance.x, 0.0f);
     EXPECT_TRUE(std::isfinite(bright.sun_radiance.x) && std::isfinite(bright.sun_irradiance.x));
-    // One bright pixel in the night.
+    // One bright pixel in a black sky.
     LatLong night{64, 32, std::vector<glm::vec3>(64 * 32, glm::vec3(0.0f))};
     EXPECT_EQ(picture_sky(night, 64).sky_irradiance, glm::vec3(0.0f));
     night.radiance[8 * 64 + 20] = glm::vec3(5.0f);

@@ -1,6 +1,6 @@
-// The lighting against the waves themselves: a real surface's facets, each a mirror that counts with the area
-// that the eye sees of it (Bruneton, Neyret, Holzschuch 2010, Eq. 10 as a sum instead of a Gaussian). What
-// facets hide from each other is not in it; tests/bench/reference has that.
+// The lighting against the waves themselves: facets of a real surface, each a mirror weighted by its area
+// projected towards the eye (Bruneton, Neyret, Holzschuch 2010, Eq. 10 as a sum instead of a Gaussian).
+// Facets hidden by others aren't excluded; tests/bench/reference does that.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,8 +18,8 @@ namespace {
 constexpr double kTile_m = 100.0;
 constexpr int kPoints = 1024;
 
-// Normals on a lattice over one tile of waves between 0.4 m and 100 m, and the slope variance that the
-// spectrum gives them. Without choppiness, so that every facet has the same area at rest.
+// Normals on a lattice over one tile of waves between 0.4 m and 100 m, and the spectrum's slope variance of
+// those waves. Without choppiness, so that all facets have equal area at rest.
 struct Facets {
     std::vector<glm::vec3> normals;
     glm::vec3 slope_variance{0.0f};
@@ -60,7 +60,7 @@ double fresnel(double c) {
     return 0.5 * ratio * ratio * (1.0 + along * along);
 }
 
-// Mean of `value` over the facets that face the eye.
+// The mean of `value` over the facets that face the eye.
 template <class Value>
 double seen_mean(glm::vec3 to_eye, Value&& value) {
     double sum = 0.0, area = 0.0;
@@ -88,11 +88,11 @@ SeaRadiance shaded(const Sky& sky, const SeaPoint& point) {
     return radiance;
 }
 
-// One tile's variance is within 5 % of the spectrum's, which changes 1 − F̄ by 0.7 % (its logarithm by 0.14
-// times the variance's, at grazing); the fit of F̄ is good to 0.015.
+// One tile's variance is within 5 % of the spectrum's. That changes 1 − F̄ by 0.7 % (at grazing, its
+// logarithm changes by 0.14 times the variance's). The fit of F̄ is accurate to 0.015.
 TEST(LightingReference, RefractedLightIsThatOfTheFacetsSeen) {
     const Sky sky = daylight_sky({});
-    // Straight down onto a mirror F is known: what is left is the water's own radiance.
+    // Seen straight down on a mirror F is known, so this gives the radiance from the water.
     const float from_below = shaded(sky, {}).sea.y / static_cast<float>(1.0 - fresnel(1.0));
     for (const double elevation_deg : {1.0, 5.0, 15.0, 40.0})
         for (const double azimuth_deg : {0.0, 53.0, 90.0, 200.0}) {
@@ -106,8 +106,8 @@ TEST(LightingReference, RefractedLightIsThatOfTheFacetsSeen) {
         }
 }
 
-// A wide sun, so that some 1e4 facets of the tile show it, in patches of some ten: 3 %; and the variance's
-// own 5 % twice over at 1 σ from the middle. A high one: no wave shades it.
+// A wide sun, so that some 1e4 facets of the tile mirror it, in patches of some ten: 3 %. The variance's 5 %
+// enters twice, at 1 σ from the centre. A high sun, so that no wave shades it.
 TEST(LightingReference, SunIsThatOfTheFacetsSeen) {
     Sky sky = daylight_sky({.sun_elevation_deg = 50.0, .sun_azimuth_deg = 0.0});
     sky.sun_angular_radius = 0.03f;

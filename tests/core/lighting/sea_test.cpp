@@ -1,4 +1,4 @@
-// All terms together: shares, variants, hard cases, and the batch that C++ calls.
+// All terms together: their shares, variants, hard cases, and the batch interface of C++.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace pelagic::optics {
 namespace {
 
-// A sky with something of everything.
+// A sky with a sun and a varied map.
 Sky test_sky() {
     constexpr int kSize = 64;
     std::vector<vec3> texels(kSize * kSize);
@@ -69,8 +69,8 @@ void for_all_choices(Function&& f) {
                                  .fresnel = fresnel});
 }
 
-// A term is the same to the bit whichever others are on, and black when it is off; whitecaps alone take their
-// share from the others.
+// A term has the same bits whichever other terms are on, and is black when off. Only whitecaps reduce the
+// others.
 TEST(Sea, VariantsAreTheSameTermsLeftOut) {
     const Sky sky = test_sky();
     std::vector<SeaPoint> points = random_points(20);
@@ -89,7 +89,7 @@ TEST(Sea, VariantsAreTheSameTermsLeftOut) {
     });
 }
 
-// The batch is the shared source under the map's lookups, and each point's answer is its own.
+// The batch gives the results of the shared source with the map's lookups, independently for each point.
 TEST(Sea, BatchIsTheSharedSource) {
     const Sky sky = test_sky();
     const std::vector<SeaPoint> points = random_points(300);
@@ -108,7 +108,7 @@ TEST(Sea, BatchIsTheSharedSource) {
                 const SeaPoint& p = points[i];
                 const auto expected =
                     optics.sea_radiance(p.to_eye, p.normal, p.slope_variance, p.coverage, light);
-                // Other flags, other order of sums: a few units in the last place.
+                // Other compiler flags and order of summation: a few units in the last place.
                 for (int c = 0; c < 3; ++c) {
                     EXPECT_NEAR(found[i].sun[c], expected.sun[c], 1e-4f * expected.sun[c] + 1e-5f);
                     EXPECT_NEAR(found[i].sky[c], expected.sky[c], 1e-4f * expected.sky[c] + 1e-6f);
@@ -124,8 +124,8 @@ TEST(Sea, BatchIsTheSharedSource) {
         }
 }
 
-// Foam takes what it gives: with coverage w the other terms are 1 − w′ of theirs without, and all of them
-// gone at 1.
+// Foam replaces the other terms: with coverage w they are 1 − w′ of their values without foam, and 0 at
+// coverage 1.
 TEST(Sea, SharesAddUpToThePixel) {
     const Sky sky = test_sky();
     std::vector<SeaPoint> clear = random_points(1000), white = clear, covered = clear;
@@ -151,9 +151,9 @@ TEST(Sea, SharesAddUpToThePixel) {
     }
 }
 
-// What is reflected and what comes out of the water share the light by one and the same F̄: over a sky of
-// radiance 1 and water that sends back radiance 1, all of it is seen. The nine lookups bring their own F̄, the
-// fit's error (0.015) from the water's.
+// Reflected light and light from the water share one F̄: under a sky of radiance 1 over water of radiance 1
+// the sum is 1. The nine lookups have their own F̄, which differs from the water's by the fit's error
+// (0.015).
 TEST(Sea, ReflectedAndRefractedShareTheLight) {
     Optics optics;
     optics.kWhitecaps = false;

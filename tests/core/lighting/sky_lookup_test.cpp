@@ -13,7 +13,8 @@
 namespace pelagic::optics {
 namespace {
 
-// A clear evening in one number: bright at the horizon, brighter towards the sun that has just set in +y.
+// A clear evening with one component: bright at the horizon, brighter towards the sun that has just set in
+// +y.
 double evening(dvec3 r) {
     const double height = std::max(r.z, 0.01), towards = r.y;
     return (1.0 - std::exp(-0.32 / height)) * (1.0 + 2.0 * std::exp(-2.0 * (1.0 - towards)));
@@ -61,10 +62,10 @@ double map_radiance(dvec3 r) {
     return static_cast<double>(evening_map().radiance(sky_map_place(vec3(r)), 0.0f).x);
 }
 
-// Root mean square of the relative errors against the same integral in double with 160 × 160 slopes and no
-// filters, from straight down to the horizon, looking towards the glow, away from it, and across. The
-// project's targets for a picture's lines: with the paper's approximations 20 % on a calm sea and 35 % on an
-// agitated one, with our nine lookups 10 % and 15 %, with the integral 5 %.
+// The relative rms error against the same integral in double with 160 × 160 slopes and no filters, from
+// straight down to the horizon, looking towards the glow, away from it and across. Targets: the paper's
+// approximations 20 % on a calm sea and 35 % on a rough one, our nine lookups 10 % and 15 %, the integral 5
+// %.
 double error_of(int lookups, bool exact, dvec3 s) {
     Optics optics = under_the_evening(lookups, exact);
     double sum = 0.0;
@@ -97,8 +98,8 @@ TEST(SkyLookup, TheIntegralIsTheIntegral) {
     EXPECT_LT(error_of(0, true, kAgitated), 0.01);
 }
 
-// Without waves every way is the mirror's: F of the angle times the sky there. 1e-3: the finest level's
-// interpolation moves by a part of a texel's variance, and 1e-5 of slope is left.
+// Without waves the result is the mirror's: F of the angle times the sky there. 1e-3: interpolation in the
+// finest level has a variance of a part of a texel, and slopes have 1e-5 left.
 TEST(SkyLookup, MirrorShowsTheSky) {
     for (int lookups : {0, 1, 9}) {
         Optics optics = under_the_evening(lookups, true);
@@ -111,9 +112,9 @@ TEST(SkyLookup, MirrorShowsTheSky) {
     }
 }
 
-// Crests that have no waves of their own: whichever way a pixel's normal points, folded crests' included, an
-// eye above sees the sky in it, F(v·n) of it and nothing of the sea's own light. 1e-5 of slope is left: at
-// the horizon that is 1e-4 of the place.
+// Crests without smaller waves: for any direction of a pixel's normal, also on folded crests, an eye above
+// sees the sky times F(v·n), and no light from below. The slopes have 1e-5 left, which is 1e-4 in the map
+// near the horizon.
 TEST(SkyLookup, NoCrestMirrorsWhatIsBelowTheHorizon) {
     Inputs inputs(21);
     for (int lookups : {0, 1, 9}) {
@@ -133,7 +134,7 @@ TEST(SkyLookup, NoCrestMirrorsWhatIsBelowTheHorizon) {
     }
 }
 
-// The nine in double, on a sky that is a smooth function of the place, with the level as part of the answer.
+// The nine lookups in double, for a sky that is a smooth function of the place and of the level.
 double smooth(dvec2 u, double level) {
     return (1.0 + 0.3 * u.x - 0.2 * u.y) * std::exp(-0.1 * dot(u, u)) + 0.01 * level;
 }
@@ -144,7 +145,7 @@ double nine(dvec3 v, dvec3 s) {
     const double sigma = std::sqrt(dot(d, turned)), k = v.z / (sigma * sine);
     const dvec2 along = turned / sigma,
                 across = dvec2(-d.y, d.x) * (std::sqrt(s.x * s.y - s.z * s.z) / sigma);
-    // The place's change with the slope, by differences.
+    // The derivative of the place with respect to slope, by differences.
     const auto place = [&](dvec2 slope) {
         const dvec3 f = normalize(dvec3(-slope.x, -slope.y, 1.0)), r = 2.0 * dot(v, f) * f - v;
         return dvec2(r.x, r.y) / (1.0 + r.z);
@@ -179,20 +180,20 @@ TEST(SkyLookup, SingleIsDouble) {
     Inputs inputs(20);
     for (int i = 0; i < 100000; ++i) {
         const vec3 v = inputs.direction(1e-3), s = inputs.variance(1e-3, 0.5, 0.9);
-        if (v.z > 0.9999f) continue;  // straight down no direction is along the line of sight
+        if (v.z > 0.9999f) continue;  // straight down the line of sight has no horizontal direction
         const double expected = nine(normalize(dvec3(v)), dvec3(s));
         const double found = shown(optics, dvec3(v), dvec3(s));
         ASSERT_NEAR(found, expected, 1e-4 * expected + 1e-5) << i;
     }
 }
 
-// The white furnace: a uniform sky of radiance 1 over facets that reflect all. Never more than 1; exactly 1
-// where what is reflected onto the sea shows as much as the sky (1e-5: rounding of 512 terms).
+// The white furnace: a uniform sky of radiance 1 over facets that reflect everything. At most 1, and exactly
+// 1 if light from below is as bright as the sky (1e-5: rounding of 512 terms).
 TEST(SkyLookup, WhiteFurnace) {
     for (int lookups : {0, 9}) {
         Furnace closed, open;
         closed.kSkyLookups = open.kSkyLookups = lookups;
-        // Nothing comes from below: what single scattering leaves.
+        // No light from below: the result of single scattering.
         open.lookup = [](vec2 u, float) { return vec3(dot(u, u) < 1.0f ? 1.0f : 0.0f); };
         for (float sigma : {1e-4f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 2.0f})
             for (double degrees : {0.0, 45.0, 70.0, 80.0, 85.0, 89.0, 90.0}) {

@@ -1,4 +1,4 @@
-// The stereographic map: its levels, its lookup, the projection, and what is baked into it.
+// The stereographic map: levels, lookup, projection, and baking.
 #include "core/lighting/sky_map.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ std::vector<glm::vec3> noise(int size) {
     return texels;
 }
 
-// The middle of a texel of a level.
+// The centre of a texel of a level.
 glm::vec2 middle(const SkyMap& map, int level, int i, int j) {
     const float texel = 2.0f * kSkyMapExtent / static_cast<float>(map.size() >> level);
     return glm::vec2(-kSkyMapExtent) +
@@ -40,7 +40,7 @@ TEST(SkyMap, LevelsAreMeansDownToTheMeanOfAll) {
     ASSERT_EQ(map.level(4).size(), 1u);
     // Sums of 256 numbers below 1 in single precision.
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(static_cast<double>(map.level(4)[0][c]), mean[c], 1e-6);
-    // One texel in between, in the second row and third column of level 1.
+    // A texel of a middle level: second row, third column of level 1.
     const auto& fine = map.level(0);
     const float sum = fine[2 * 16 + 4].x + fine[2 * 16 + 5].x + fine[3 * 16 + 4].x + fine[3 * 16 + 5].x;
     EXPECT_FLOAT_EQ(map.level(1)[1 * 8 + 2].x, 0.25f * sum);
@@ -48,7 +48,7 @@ TEST(SkyMap, LevelsAreMeansDownToTheMeanOfAll) {
 
 TEST(SkyMap, LookupIsTrilinear) {
     const SkyMap map(16, noise(16));
-    constexpr float kTolerance = 4e-6f;  // the place of a texel's middle is rounded to 1e-6 of a texel
+    constexpr float kTolerance = 4e-6f;  // rounds a texel's centre to 1e-6 of a texel
     for (int level = 0; level < 4; ++level) {
         const int n = 16 >> level;
         const auto& texels = map.level(level);
@@ -103,11 +103,11 @@ TEST(SkyMap, ProjectionAndItsInverse) {
     for (float x = -1.2f; x <= 1.2f; x += 0.3f)
         for (float y = -1.2f; y <= 1.2f; y += 0.3f) {
             const glm::vec3 direction = sky_map_direction({x, y});
-            // A few roundings of numbers round 1, enlarged by 1/(1 + r_z) ≤ 2 below the horizon.
+            // A few roundings of numbers near 1, amplified by 1/(1 + r_z) ≤ 2 below the horizon.
             EXPECT_NEAR(glm::length(direction), 1.0f, 1e-6f);
             EXPECT_LT(glm::length(sky_map_place(direction) - glm::vec2(x, y)), 2e-6f);
         }
-    // Down there all places are at the edge, the pole's own included.
+    // Far below the horizon all places are at the edge, including the pole's.
     for (const glm::vec3 down :
          {glm::vec3(0.0f, 0.0f, -1.0f), glm::vec3(1e-20f, 0.0f, -1.0f), glm::vec3(-0.6f, 0.0f, -0.8f)}) {
         const glm::vec2 u = sky_map_place(down);
@@ -120,7 +120,8 @@ SkyDome uniform_dome(float radiance) {
 }
 
 TEST(SkyBake, UniformSkyOfOneGivesPi) {
-    // The horizon's texels are the largest error: their area is known to 1/8², their cosine is below 2 du.
+    // The largest error is from texels on the horizon: their area is known to 1/8², their cosine is below 2
+    // du.
     for (const int size : {64, 256}) {
         const BakedSky baked = bake_sky_map(size, uniform_dome(1.0f));
         EXPECT_NEAR(static_cast<double>(baked.irradiance.x), kPi, 1e-3) << size;
@@ -136,12 +137,12 @@ TEST(SkyBake, IrradianceIsWeightedWithTheCosine) {
 
 TEST(SkyBake, BelowTheHorizonTheSeaReflectsTheSky) {
     const BakedSky baked = bake_sky_map(256, uniform_dome(2.0f));
-    // A uniform sky has L = E/π: below it is diffuse_fresnel() times as bright.
+    // A uniform sky has L = E/π. Below the horizon it is diffuse_fresnel() times as bright.
     EXPECT_NEAR(baked.map.radiance({1.2f, 1.2f}, 0.0f).y, 2.0f * diffuse_fresnel(), 1e-4f);
     EXPECT_NEAR(baked.map.radiance({0.0f, -1.1f}, 0.0f).y, 2.0f * diffuse_fresnel(), 1e-4f);
     EXPECT_FLOAT_EQ(baked.map.radiance({0.0f, 0.9f}, 0.0f).y, 2.0f);
-    // Where the horizon crosses, the mean of the whole map is that of the areas: π of 6.25 is sky. An edge
-    // without antialiasing would be off by a texel's share here and there; sampled 8 × 8 it is right to 1e-4.
+    // The mean of the whole map is that of the areas: π of 6.25 is sky. 8 × 8 samples at the horizon give it
+    // to 1e-4; an edge without antialiasing would be off by parts of texels.
     const float sky = static_cast<float>(kPi) / (4.0f * kSkyMapExtent * kSkyMapExtent);
     EXPECT_NEAR(baked.map.radiance({0.0f, 0.0f}, 8.0f).y, 2.0f * (sky + (1.0f - sky) * diffuse_fresnel()),
                 4e-4f);
@@ -160,7 +161,7 @@ TEST(SkyBake, TexelsThatTheHorizonCrossesAreMixedByArea) {
                     inside += std::hypot(side * (i + (a + 0.5) / kParts) - 1.25,
                                          side * (j + (b + 0.5) / kParts) - 1.25) < 1.0;
             const double share = static_cast<double>(inside) / (kParts * kParts);
-            // 8 × 8 samples: an edge across the texel is off by less than half a row.
+            // 8 × 8 samples: an edge through the texel is off by less than half a row.
             EXPECT_NEAR(static_cast<double>(baked.map.level(0)[static_cast<std::size_t>(j * kSize + i)].x),
                         share + (1.0 - share) * below, 0.5 / 8.0)
                 << i << " " << j;
@@ -172,7 +173,7 @@ TEST(SkyBake, DiffuseFresnelIsTheIntegralOfTheExactTerm) {
     constexpr int kSteps = 20000;
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i) {
-        // With c = cosθ: ∫ F 2 c dc. Snell's law and Fresnel's two amplitudes.
+        // ∫ F 2 c dc with c = cosθ, from Snell's law and Fresnel's two amplitudes.
         const double c = (i + 0.5) / kSteps, t = std::sqrt(1.0 - (1.0 - c * c) / (n * n));
         const double s = (c - n * t) / (c + n * t), p = (t - n * c) / (t + n * c);
         sum += 0.5 * (s * s + p * p) * 2.0 * c / kSteps;

@@ -1,4 +1,4 @@
-// Which facets there are, and which are seen.
+// The distribution of slopes, and their visibility.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace pelagic::optics {
 namespace {
 
 constexpr int kInputs = 100000;
-constexpr double kSlack = 1e-4;  // what the project asks of single precision
+constexpr double kSlack = 1e-4;  // required of single precision
 
 TEST(SpecialFunctions, ErrorFunctionsScaledTail) {
     Optics optics;
@@ -23,8 +23,8 @@ TEST(SpecialFunctions, ErrorFunctionsScaledTail) {
         const double rest = 1.0 - std::sqrt(oracle::kPi) * x * tail;
         ASSERT_NEAR(optics.erfcx_remainder(a), rest, 2e-6 * rest + 1e-14 * x) << a;
     }
-    // Beyond, the asymptotic series: 1/(√π a) (1 − 1/2a² + 3/4a⁴ − 15/8a⁶ …), whose next term is below 1e-7
-    // from 20 on.
+    // Large a: the asymptotic series 1/(√π a) (1 − 1/2a² + 3/4a⁴ − 15/8a⁶ …), whose next term is below 1e-7
+    // from a = 20 on.
     for (float a : {20.0f, 100.0f, 1e3f, 1e8f}) {
         const double x = static_cast<double>(a), q = 1.0 / (2.0 * x * x);
         const double tail = (1.0 - q * (1.0 - 3.0 * q * (1.0 - 5.0 * q))) / (std::sqrt(oracle::kPi) * x);
@@ -36,8 +36,8 @@ TEST(SpecialFunctions, ErrorFunctionsScaledTail) {
     EXPECT_NEAR(optics.erfcx_remainder(0.0f), 1.0f, 2e-6f);
 }
 
-// A facet's world slope and its slope in the frame, by turning the world: what a small change of one does to
-// the other.
+// The covariance in the frame by finite differences: rotates the world and measures how a facet's slope in
+// the frame changes with its world slope.
 dvec3 turned_variance(dvec3 n, dvec3 s) {
     const double q = 1.0 / (1.0 + n.z);
     const dmat3 turn(dvec3(1.0 - n.x * n.x * q, -n.x * n.y * q, -n.x),
@@ -55,8 +55,8 @@ dvec3 turned_variance(dvec3 n, dvec3 s) {
             s.x * x.x * x.y + s.y * y.x * y.y + s.z * (x.x * y.y + x.y * y.x)};
 }
 
-// The tensor in the frame against finite differences (whose own error is 1e-9 relative). Off the diagonal the
-// terms may cancel: the floor is that part of the diagonal.
+// The covariance in the frame against finite differences (with a relative error of 1e-9). Off-diagonal terms
+// may cancel, so the floor is relative to the diagonal.
 TEST(Slopes, FrameCarriesTheTensor) {
     Optics optics;
     Inputs inputs(3);
@@ -74,13 +74,13 @@ TEST(Slopes, FrameCarriesTheTensor) {
     }
 }
 
-// The mirrored ray's height.
+// The height of the mirrored ray.
 double mirrored_height(dvec3 n, dvec3 v) {
     return 2.0 * dot(n, v) * n.z - v.z;
 }
 
-// The bend by its definition: the paper's normal, and from there by bisection as little of v as takes the
-// mirrored ray up to the horizon. Turned far enough it gets there: v itself is mirrored to v.
+// The bent normal by definition: the paper's normal, plus as little of v as brings the mirrored ray up to the
+// horizon, by bisection. Enough of v always does, because v mirrors v to itself.
 dvec3 bent(dvec3 n, dvec3 v) {
     const dvec3 seen = n - 2.0 * std::min(dot(n, v), 0.0) * v;
     if (v.z <= 0.0 || mirrored_height(seen, v) >= 0.0) return seen;
@@ -92,9 +92,9 @@ dvec3 bent(dvec3 n, dvec3 v) {
     return normalize(seen + high * v);
 }
 
-// Normals of all directions, folded crests' as well, seen from above: what comes out faces the eye, mirrors
-// it to the sky, and is no further from the normal than that takes. Rounding: directions are exact to 1e-7,
-// and where the bend only just begins that turns the answer by as much over v_z.
+// Normals in all directions, also of folded crests, seen from above: the result faces the eye, mirrors it to
+// the sky, and is the nearest such normal. Directions are rounded by 1e-7; where bending sets in, the result
+// changes by that over v_z.
 TEST(Slopes, FacingNormalFacesTheEyeAndTheSky) {
     Optics optics;
     Inputs inputs(4);
@@ -119,8 +119,8 @@ TEST(Slopes, FacingNormalFacesTheEyeAndTheSky) {
     for (const int cases : {away, down, folded, kept}) EXPECT_GT(cases, 1000);
 }
 
-// Where a camera among the waves looks up at a crest, every ray that a facing normal mirrors is as good as
-// any: the paper's normal, |n·v| towards the eye.
+// From below the sea's level, as when a camera among the waves looks up at a crest, any mirrored ray is fine:
+// the result is the paper's normal, with |n·v|.
 TEST(Slopes, FacingNormalSeenFromBelowIsThePapers) {
     Optics optics;
     Inputs inputs(7);
@@ -134,8 +134,8 @@ TEST(Slopes, FacingNormalSeenFromBelowIsThePapers) {
     }
 }
 
-// p(ζ) within 5 σ. The determinant cancels with the correlation: 1 − 0.99² leaves 5e-6 of single precision's
-// 1e-7, and the exponent up to 12.5 of that.
+// p(ζ) within 5 σ. The determinant cancels for strong correlation: with 1 − 0.99², a rounding of 1e-7 becomes
+// 5e-6, times an exponent of up to 12.5.
 TEST(Slopes, DensityIsTheGaussian) {
     Optics optics;
     Inputs inputs(5);
@@ -151,7 +151,7 @@ TEST(Slopes, DensityIsTheGaussian) {
     }
 }
 
-// Λ, from 1e-30 (near nadir; below, nothing of it is left beside 1) to grazing.
+// Λ, from 1e-30 (near nadir; smaller values vanish beside 1) to grazing.
 TEST(Slopes, MaskingIsSmiths) {
     Optics optics;
     Inputs inputs(6);
@@ -168,8 +168,8 @@ TEST(Slopes, MaskingIsSmiths) {
     }
 }
 
-// Eq. 11: the density of what is seen integrates to 1 ± 1e-3 at every angle (with Eq. 9 as printed it is 1.11
-// at 80° and 2.56 at 88°).
+// Eq. 11: the density of visible slopes integrates to 1 ± 1e-3 at every angle (with Eq. 9 as printed, 1.11 at
+// 80° and 2.56 at 88°).
 TEST(Slopes, WhatIsSeenAddsUpToOne) {
     Optics optics;
     for (const dvec3 s : {dvec3(0.04, 0.0196, 0.0), dvec3(0.0025, 0.0016, 0.001), dvec3(0.25, 0.01, -0.03),
@@ -181,7 +181,7 @@ TEST(Slopes, WhatIsSeenAddsUpToOne) {
                                    std::cos(theta)));
                 const oracle::Factor factor(s);
                 double sum = 0.0;
-                constexpr int kSteps = 300;  // of 0.04 σ: the ramp's foot costs h²/12, 1e-4
+                constexpr int kSteps = 300;  // of 0.04 σ: the kink of (k + x)₊ costs h²/12, 1e-4
                 for (int i = 0; i < kSteps; ++i)
                     for (int j = 0; j < kSteps; ++j) {
                         const double x = -6.0 + 12.0 * (i + 0.5) / kSteps,
@@ -194,8 +194,8 @@ TEST(Slopes, WhatIsSeenAddsUpToOne) {
             }
 }
 
-// Mean and variance of the visible slopes, in closed form and summed up. The rule's own error: h²/12 σ with h
-// = 0.04.
+// Mean and variance of the visible slopes, in closed form and by summation. The rule's error is h²/12 σ with
+// h = 0.04.
 TEST(Slopes, FacetsThatAreSeenLeanTowardsTheEye) {
     Optics optics;
     for (const dvec3 s : {dvec3(0.04, 0.02, 0.01), dvec3(0.0025, 0.0016, -0.001)})

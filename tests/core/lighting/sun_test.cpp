@@ -1,4 +1,4 @@
-// The reflected sun: Eq. 15, and what the disc's own width makes of it.
+// The reflected sun: Eq. 15, extended by the disc's angular width.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,14 +17,14 @@ dvec2 half_slope(dvec3 v, dvec3 l) {
     return dvec2(-h.x, -h.y) / h.z;
 }
 
-// Two directions across l.
+// Two directions perpendicular to l.
 void across(dvec3 l, dvec3& x, dvec3& y) {
     x = normalize(cross(std::abs(l.x) < 0.7 ? dvec3(1.0, 0.0, 0.0) : dvec3(0.0, 1.0, 0.0), l));
     y = cross(l, x);
 }
 
-// The variance of the half vector's slope over the disc, by moving the light: the disc's is (ρ/2)² along any
-// axis.
+// The variance of the half vector's slope over the disc, by moving the light. The disc's own is (ρ/2)² along
+// any axis.
 dvec3 disc_variance(dvec3 v, dvec3 l) {
     dvec3 x, y;
     across(l, x, y);
@@ -43,10 +43,10 @@ TEST(Sun, DiscsWidthInSlopes) {
     for (int i = 0; i < 100000; ++i) {
         const vec3 v = inputs.direction(1e-3), l = inputs.direction(1e-3);
         const vec3 h = normalize(v + l);
-        if (h.z < 0.05f || dot(v, h) < 0.02f) continue;  // no waves are that steep; see HardCasesStayFinite
+        if (h.z < 0.05f || dot(v, h) < 0.02f) continue;  // steeper than any waves; see HardCasesStayFinite
         const dvec3 expected = disc_variance(dvec3(v), dvec3(l));
         const vec3 found = optics.disc_slope_variance(v, l, h, float(kRadius));
-        // v·h and h_z are rounded to 6e-8 of 1.
+        // v·h and h_z have rounding errors of 6e-8.
         const double slack = 1e-4 + 1e-6 / static_cast<double>(h.z * dot(v, h));
         const double larger = std::max(expected.x, expected.y);
         ASSERT_NEAR(found.x, expected.x, slack * larger) << i;
@@ -55,8 +55,8 @@ TEST(Sun, DiscsWidthInSlopes) {
     }
 }
 
-// The disc blurred by a Gaussian, isotropic, whose squared width has this share: summed over the disc.
-// Coordinates in which the sum of both variances is 1.
+// An isotropic Gaussian convolved with a disc that has this share of the squared width, by summation over the
+// disc. In units in which both variances sum to 1.
 double blurred_disc(double distance, double share) {
     const double radius = 2.0 * std::sqrt(share), sigma2 = 1.0 - share, at = std::sqrt(distance);
     constexpr int kSteps = 96;
@@ -71,8 +71,7 @@ double blurred_disc(double distance, double share) {
     return sum / (kSteps * kSteps);
 }
 
-// Never wrong by more than 4 % of the density's own peak, from a sea that is all Gaussian to one that is all
-// disc.
+// Within 4 % of the density's peak, from purely Gaussian to purely the disc.
 TEST(Sun, ProfileIsABlurredDisc) {
     Optics optics;
     for (double share : {0.001, 0.05, 0.2, 0.4, 0.6, 0.8, 0.9, 0.97}) {
@@ -86,11 +85,12 @@ TEST(Sun, ProfileIsABlurredDisc) {
                 EXPECT_NEAR(found, blurred_disc(r2, share), 0.04 * peak) << share << ' ' << r2;
             }
         }
-        EXPECT_NEAR(sum, 1.0, 2e-3) << share;  // the closed form is exact; the rule's step is not
+        EXPECT_NEAR(sum, 1.0, 2e-3) << share;  // the closed form is exact, the quadrature isn't
     }
 }
 
-// Eq. 15 in double with the profile of sun.glsl's text and a disc's width found by moving the light.
+// Eq. 15 in double, with the profile as the comment in sun.glsl has it and the disc's width by moving the
+// light.
 double reflected(dvec3 v, dvec3 l, dvec3 s) {
     const dvec3 h = normalize(v + l);
     const dvec3 disc = disc_variance(v, l), sum = s + disc;
@@ -112,16 +112,16 @@ double reflected(dvec3 v, dvec3 l, dvec3 s) {
     return std::min(part, 1.0) * rise * rise * (3.0 - 2.0 * rise) * oracle::fresnel(dot(v, h));
 }
 
-// 1e-4 relative, and a floor of 1e-5 of the sun's own radiance. Directions are rounded to 6e-8: of the half
-// vector's slope that is 6e-8/h_z |v + l|, which a mirror-like sea sees as a part of its σ, three of them
-// out.
+// 1e-4 relative, with a floor of 1e-5 of the sun's radiance. Directions are rounded by 6e-8, which makes
+// 6e-8/h_z |v + l| in the half vector's slope. On a mirror-like sea that is a notable part of σ, three σ from
+// the centre.
 TEST(Sun, SingleIsDouble) {
     Optics optics;
     Inputs inputs(11);
     int bright = 0;
     for (int i = 0; i < 200000; ++i) {
         const vec3 v = inputs.direction(1e-3), s = inputs.variance(3e-3, 0.5, 0.9);
-        // A light whose half vector lies within the waves' slopes, or there would be nothing to compare.
+        // Chooses a light whose half vector is within the waves' slopes: elsewhere the result would be 0.
         const oracle::Factor factor{dvec3(s)};
         const double r = 3.0 * std::sqrt(inputs.uniform(0.0, 1.0)), a = inputs.uniform(0.0, 6.3);
         const dvec3 h = normalize(dvec3(-factor.a * r * std::cos(a),
@@ -141,8 +141,7 @@ TEST(Sun, SingleIsDouble) {
     EXPECT_GT(bright, 1000);
 }
 
-// The average of Eq. 15 over the disc, point by point, where the waves are wider than the disc: Gaussian
-// slopes' own blur adds.
+// Where the slopes spread wider than the disc: the mean of Eq. 15 over the disc, point by point.
 TEST(Sun, WideWavesSeeTheAverageOverTheDisc) {
     Optics optics;
     for (const dvec3 s : {dvec3(0.02, 0.015, 0.004), dvec3(0.0002, 0.0001, 0.0)})
@@ -178,8 +177,8 @@ TEST(Sun, WideWavesSeeTheAverageOverTheDisc) {
             }
 }
 
-// A mirror: the disc's image holds what the disc does, L F times its solid angle, nowhere brighter than L F,
-// and nothing beyond its rim. 3 %: the rim is a thirtieth of the radius wide, and F changes across the disc.
+// A mirror: the disc's image has the disc's light, L F times its solid angle; it is nowhere brighter than L
+// F, and black beyond its rim. 3 %: the rim is a thirtieth of the radius wide, and F varies across the disc.
 TEST(Sun, MirrorShowsTheDisc) {
     Optics optics;
     const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), vec3(0.0f));
@@ -212,7 +211,7 @@ TEST(Sun, MirrorShowsTheDisc) {
     }
 }
 
-// No facet shows more than the sun itself, whatever the waves.
+// No facet is brighter than the sun itself, for any waves.
 TEST(Sun, NeverBrighterThanTheSun) {
     Optics optics;
     Inputs inputs(12);
@@ -228,8 +227,8 @@ TEST(Sun, NeverBrighterThanTheSun) {
     }
 }
 
-// Sets without a jump, even where the disc's rim, a thirtieth of its radius wide, comes into the mirror:
-// steps are of a thousandth of the radius, and single precision's directions jitter by as much there.
+// The sun sets without a jump, even where the disc's rim (a thirtieth of its radius) crosses the mirror
+// direction. Steps are a thousandth of the radius, and rounded directions vary by as much.
 TEST(Sun, SetsSmoothly) {
     Optics optics;
     for (const vec3 s : {vec3(0.0f), vec3(0.02f, 0.015f, 0.0f)}) {

@@ -1,4 +1,4 @@
-// Tone mapping, the exposure of a light, and what lies behind the sea.
+// Tone mapping, the exposure for a light, and the background.
 #include "core/lighting/tone.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace pelagic {
 namespace {
 
-// IEC 61966-2-1, from the screen's value to light: the inverse of what is tested.
+// The inverse of IEC 61966-2-1: from a display value to light.
 double light_of(float shown) {
     const auto v = static_cast<double>(shown);
     return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
@@ -25,12 +25,12 @@ double light_of(float shown) {
 TEST(Tone, MiddleGreyStaysWhereItIs) {
     for (const float exposure : {1.0f, 1e-3f, 50.0f}) {
         const glm::vec3 shown = display_colour(glm::vec3(0.18f / exposure), exposure);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(light_of(shown[c]), 0.18, 1e-3);  // 1/2 of a step of 8 bits
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(light_of(shown[c]), 0.18, 1e-3);  // half a step of 8 bits
     }
 }
 
-// Every colour only gets brighter with more light, all three parts, and never leaves 0 … 1, over sixty orders
-// of magnitude. 2e-6: some steps of a single at 1.
+// More light never makes any component darker, and all stay in 0 … 1, over sixty orders of magnitude. 2e-6:
+// some units in the last place at 1.
 TEST(Tone, RisesWithTheLightAndStaysInRange) {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<float> part(0.0f, 1.0f);
@@ -46,7 +46,7 @@ TEST(Tone, RisesWithTheLightAndStaysInRange) {
             }
             before = shown;
         }
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(before[c], 1.0f, 1e-5f);  // whatever is bright is white
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(before[c], 1.0f, 1e-5f);  // very bright colours are white
     }
     EXPECT_EQ(display_colour(glm::vec3(0.0f), 1.0f), glm::vec3(0.0f));
     EXPECT_EQ(display_colour(glm::vec3(-1.0f, -2.0f, 0.0f), 1.0f), glm::vec3(0.0f));
@@ -54,8 +54,8 @@ TEST(Tone, RisesWithTheLightAndStaysInRange) {
     for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::isfinite(display_colour(glm::vec3(most), 1e3f)[c]));
 }
 
-// The hue of a glitter: what the three parts exceed the least by keeps its ratios, from dark to nearly white.
-// A curve of each part alone moves the middle one by half and more.
+// The hue of a glitter: differences to the smallest component keep their ratios, from dark to nearly white.
+// Curves per component would change the middle one by half and more.
 TEST(Tone, KeepsTheHue) {
     const glm::vec3 orange(1.0f, 0.45f, 0.1f);
     const double asked = (0.45 - 0.1) / (1.0 - 0.1);
@@ -72,7 +72,7 @@ Sky sky_of(float radiance) {
     return sky;
 }
 
-// A light that is brighter looks brighter, but less so; the night is dark, and nothing is infinite.
+// A brighter light looks brighter, but less than proportionally. The night is dark, and nothing is infinite.
 TEST(Exposure, FollowsTheLightPartOfTheWay) {
     float exposure_before = std::numeric_limits<float>::infinity(), shown_before = 0.0f;
     for (float radiance = 1e-2f; radiance < 1e3f; radiance *= 1.5f) {
@@ -94,8 +94,8 @@ TEST(Exposure, StopsAreFactorsOfTwo) {
     EXPECT_EQ(exposure_for(sky, 0.0), exposure_for(sky));
 }
 
-// Over the pixels of a picture the disc has its own solid angle π ρ², whether a pixel is much smaller than
-// the disc or larger. The midpoint rule over a grid that is finer than the pixel's edge: 1e-3.
+// Summed over a picture's pixels the disc has its solid angle π ρ², for pixels much smaller or larger than
+// it. The midpoint rule, on a grid finer than a pixel's soft edge, is accurate to 1e-3.
 TEST(Background, DiscHasItsSolidAngleWhateverThePixels) {
     Sky sky;
     sky.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(0.0f)));
@@ -134,8 +134,8 @@ TEST(Background, ShowsTheMapAndTheDiscOnlyWhereTheyAre) {
     EXPECT_EQ(background(sky, -sky.sun_direction, pixel).sun, glm::vec3(0.0f));
 }
 
-// A map that is bright above the horizon and black below: the sky behind the sea is bright down to it, in
-// every direction, while a lookup of the map itself is not.
+// For a map that is bright above the horizon and black below, the background is bright down to the horizon in
+// every direction, while a plain lookup isn't.
 TEST(Background, IsTheSkyDownToTheHorizon) {
     constexpr int kSize = 64;
     std::vector<glm::vec3> texels;
@@ -162,8 +162,8 @@ TEST(Background, IsTheSkyDownToTheHorizon) {
     EXPECT_EQ(background(sky, glm::vec3(0.0f, 0.6f, -0.8f), 1e-3f).sky, glm::vec3(0.0f));
 }
 
-// A pixel's solid angle is t² cos³θ: of a picture of 90° across the parts add up to the sixth of a sphere
-// that a cube's side is.
+// A pixel's solid angle is t² cos³θ: those of a picture 90° wide add up to a sixth of a sphere, as a cube's
+// face.
 TEST(Background, PixelsAnglesFillThePicture) {
     constexpr int kPixels = 200;
     constexpr float kTangent = 2.0f / kPixels;
@@ -176,7 +176,7 @@ TEST(Background, PixelsAnglesFillThePicture) {
                 static_cast<double>(pixel_angle(kTangent, 1.0f / std::sqrt(1.0f + x * x + y * y)));
             sum += angle * angle;
         }
-    EXPECT_NEAR(sum, 4.0 * kPi / 6.0, 1e-4);  // the midpoint rule's own error: kTangent²
+    EXPECT_NEAR(sum, 4.0 * kPi / 6.0, 1e-4);  // the midpoint rule's error: kTangent²
 }
 
 }  // namespace

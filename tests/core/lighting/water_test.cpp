@@ -1,4 +1,4 @@
-// The water's own colour: what the plankton and the rivers do to it.
+// The colour of the water, as plankton and rivers change it.
 #include "core/lighting/water.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@ glm::vec3 colour(WaterKind kind, double chlorophyll) {
     return water_body({.kind = kind, .chlorophyll_mg_m3 = chlorophyll}).reflectance;
 }
 
-// Case 1 waters, Jerlov's and Morel's blue desert: the clearest oceans send back some 5 … 12 % of the blue, a
-// few per cent of the green, and next to no red, which water absorbs within metres.
+// Case 1 waters, from Jerlov and Morel: the clearest oceans reflect some 5 … 12 % of the blue, a few per cent
+// of the green, and hardly any red, which water absorbs within metres.
 TEST(WaterBody, ClearOceanIsDeepBlue) {
     const glm::vec3 c = colour(WaterKind::Ocean, 0.03);
     EXPECT_GT(c.b, 0.05f);
@@ -25,7 +25,7 @@ TEST(WaterBody, ClearOceanIsDeepBlue) {
     EXPECT_LT(c.r, 0.1f * c.b);
 }
 
-// Plankton absorbs blue: the more of it, the greener.
+// Plankton absorbs blue: the more plankton, the greener.
 TEST(WaterBody, PlanktonTurnsBlueIntoGreen) {
     float last = 0.0f;
     for (double chlorophyll : {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0}) {
@@ -47,7 +47,7 @@ TEST(WaterBody, RiversMakeItBrighterAndBrowner) {
     EXPECT_GT(coastal.g, ocean.g);
 }
 
-// 0.33 b_b/(a + b_b) is below 0.33 whatever is in the water, and a negative colour is none.
+// 0.33 b_b/(a + b_b) is below 0.33 for any content, and no component is negative.
 TEST(WaterBody, StaysAReflectance) {
     for (WaterKind kind : {WaterKind::Ocean, WaterKind::Coastal, WaterKind::Turbid}) {
         for (double chlorophyll : {0.0, 1e-300, 1e-3, 1.0, 30.0, 100.0}) {

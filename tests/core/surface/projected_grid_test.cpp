@@ -1,5 +1,5 @@
-// What the projected grid promises: that it covers what may come into view, how large its cells are, and that
-// every pose gives a valid one.
+// The projected grid: it covers everything that may come into view, its cells have the requested size, and
+// every pose gives a valid grid.
 #include "core/surface/projected_grid.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ View view_of(const Shot& shot) {
     Camera camera;
     const double pitch = shot.pitch_deg * kPi / 180.0, azimuth = shot.azimuth_deg * kPi / 180.0;
     camera.position_m = glm::dvec3(shot.at_m, shot.height_m);
-    // A right angle exactly: the cosine of 90° isn't 0.
+    // An exact right angle: std::cos(90°) isn't 0.
     const double level = std::abs(shot.pitch_deg) == 90.0 ? 0.0 : std::cos(pitch);
     camera.look_at_m = camera.position_m + 100.0 * glm::dvec3(level * std::cos(azimuth),
                                                               level * std::sin(azimuth), std::sin(pitch));
@@ -34,13 +34,13 @@ View view_of(const Shot& shot) {
     return view_at(camera, 1.0);
 }
 
-// Where the grid has a cell over p (relative to its origin): rows whose circles are near p are searched.
+// Whether a cell of the grid contains p (relative to its origin). Searches the rows with radii near |p|.
 bool covers(const ProjectedGrid& grid, glm::dvec2 p) {
     const int stride = grid.columns + 1;
     const auto at = [&](int row, int column) { return glm::dvec2(grid.rest_m[row * stride + column]); };
     const auto side = [](glm::dvec2 a, glm::dvec2 b, glm::dvec2 q) {
         const glm::dvec2 u = b - a, v = q - a;
-        // A point on the border of two cells is in both, rounding aside.
+        // A point on a border is in both cells, up to rounding.
         return u.x * v.y - u.y * v.x >= -1e-6 * (glm::length(u) * (glm::length(v) + glm::length(q)));
     };
     const double r = glm::length(p);
@@ -78,8 +78,8 @@ std::string text_of(const Shot& shot) {
            std::to_string(shot.resolution.y);
 }
 
-// Points at rest from which a displacement within the bounds leads into view, drawn backwards: a pixel, a
-// height within the slab on its ray, a displacement. Each must lie in a cell.
+// Draws points at rest that a displacement within the bounds brings into view, in reverse: a pixel, a height
+// within the slab on its ray, a displacement. Each point must lie in a cell.
 TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -102,14 +102,14 @@ TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
         for (int i = 0; i < 60; ++i) {
             const glm::dvec2 pixel(uniform(random) * view.resolution.x, uniform(random) * view.resolution.y);
             const glm::dvec3 d = view.direction(pixel);
-            // The faces of the slab as often as its inside: the extremes lie there.
+            // Often on the faces of the slab, where the extremes lie.
             const double z_m = height_m * std::clamp(3.0 * uniform(random) - 1.5, -1.0, 1.0);
             const double way_m = (z_m - view.position_m.z) / d.z;
             if (!(way_m >= 0.0) || !std::isfinite(way_m)) continue;
             const double turn = 2.0 * kPi * uniform(random);
             const double shift_m = reach_m * std::min(1.5 * uniform(random), 1.0);
             const glm::dvec2 p = way_m * glm::dvec2(d) + shift_m * glm::dvec2(std::cos(turn), std::sin(turn));
-            if (glm::length(p) > farthest_m * 0.999) continue;  // under a twentieth of a pixel to the horizon
+            if (glm::length(p) > farthest_m * 0.999) continue;  // closer than kHorizon_px to the horizon
             ++in_view;
             EXPECT_TRUE(covers(grid, p))
                 << text_of(shot) << " bounds " << height_m << " " << reach_m << " at " << p.x << " " << p.y;
@@ -145,8 +145,8 @@ TEST(ProjectedGrid, EveryPoseGivesAValidGrid) {
     }
 }
 
-// The largest side of a cell on the screen, of the cells from nearest_m on whose corners are all in view,
-// over a sea at rest.
+// The largest side on the screen of a cell whose corners are all in view, not nearer than nearest_m, over a
+// sea at rest.
 double largest_cell_px(const View& view, const ProjectedGrid& grid, double nearest_m) {
     const glm::dmat4 clip = view.clip_from(glm::dvec3(grid.origin_m, 0.0), 0.01);
     const int stride = grid.columns + 1;
@@ -174,7 +174,7 @@ TEST(ProjectedGrid, CellsAreNoLargerThanAsked) {
             for (const double fov_deg : {20.0, 50.0, 90.0}) {
                 const Shot shot{.height_m = height_m, .pitch_deg = pitch_deg, .fov_deg = fov_deg};
                 const View view = view_of(shot);
-                // Waves much lower than the camera is high, and waves as high as that of the lowest.
+                // Waves much lower than the camera, and waves as high as the lowest camera.
                 const ProjectedGrid calm = projected_grid(
                     view, {.bounds = {.height_m = 0.02 * height_m, .reach_m = 0.02 * height_m}});
                 const ProjectedGrid rough = projected_grid(
@@ -183,11 +183,11 @@ TEST(ProjectedGrid, CellsAreNoLargerThanAsked) {
                 EXPECT_LE(largest_cell_px(view, calm, 0.0), 8.0) << text_of(shot);
                 EXPECT_LE(largest_cell_px(view, rough, 6.0), 8.0) << text_of(shot);
             }
-    // And are not much smaller: cells beyond need cost time.
+    // Nor much smaller: needless cells cost time.
     EXPECT_GT(largest_px, 7.0);
 }
 
-// The gap between the last row and the horizon, in pixels up and down the picture.
+// The gap between the last row and the horizon, in pixels along the picture's height.
 TEST(ProjectedGrid, EndsWithinATwentiethOfAPixelOfTheHorizon) {
     for (const double height_m : {0.5, 4.0, 20e3, 1e5})
         for (const double pitch_deg : {-10.0, 0.0, 10.0})
@@ -199,7 +199,7 @@ TEST(ProjectedGrid, EndsWithinATwentiethOfAPixelOfTheHorizon) {
                 const auto row_of = [&](glm::dvec3 d) {
                     return glm::dot(d, view.up) / glm::dot(d, view.forward) / view.pixel_tangent();
                 };
-                // Straight ahead: the middle column is the picture's.
+                // Straight ahead: the grid's middle column is the picture's.
                 const glm::dvec2 last(grid.rest_m[grid.rest_m.size() - 1 - grid.columns / 2]);
                 const double gap_px =
                     row_of(glm::dvec3(glm::normalize(last), 0.0)) - row_of(glm::dvec3(last, -height_m));
@@ -210,7 +210,7 @@ TEST(ProjectedGrid, EndsWithinATwentiethOfAPixelOfTheHorizon) {
             }
 }
 
-// Seen from above, each triangle turns one way, and together they are the grid's area.
+// All triangles have the same orientation seen from above, and their areas add up to the grid's.
 TEST(ProjectedGrid, TrianglesFaceUpAndFillTheGrid) {
     const View view = view_of({.height_m = 10.0, .pitch_deg = -30.0});
     const ProjectedGrid grid = projected_grid(view, {.bounds = {.height_m = 1.0, .reach_m = 0.5}});
@@ -227,14 +227,14 @@ TEST(ProjectedGrid, TrianglesFaceUpAndFillTheGrid) {
         EXPECT_GT(one, 0.0);
         sum += one;
     }
-    // Each side is another triangle's, run through the other way, or the border's.
+    // Each side is shared with another triangle in the opposite direction, or lies on the border.
     std::set<std::pair<std::uint32_t, std::uint32_t>> sides;
     for (std::size_t t = 0; t < triangles.size(); ++t)
         EXPECT_TRUE(sides.insert({triangles[t], triangles[t % 3 == 2 ? t - 2 : t + 1]}).second);
     std::size_t alone = 0;
     for (const auto& [from, to] : sides) alone += !sides.contains({to, from});
     EXPECT_EQ(alone, 2u * (grid.columns + grid.rows));
-    // The border, as one polygon round the nadir (the shoelace formula).
+    // The area inside the border, by the shoelace formula.
     std::vector<glm::dvec2> border;
     const int stride = grid.columns + 1;
     for (int c = 0; c < grid.columns; ++c) border.emplace_back(grid.rest_m[c]);
@@ -249,7 +249,7 @@ TEST(ProjectedGrid, TrianglesFaceUpAndFillTheGrid) {
     EXPECT_NEAR(sum / outline, 1.0, 1e-9);
 }
 
-// The footprints are what neighbours and pixels are apart, measured on the grid itself and on the screen.
+// The footprints agree with distances between neighbours and with pixels on the screen.
 TEST(ProjectedGrid, FootprintsAreDistancesAndPixels) {
     const View view = view_of({.height_m = 6.0, .pitch_deg = -12.0});
     const ProjectedGrid grid = projected_grid(view, {});
@@ -262,8 +262,8 @@ TEST(ProjectedGrid, FootprintsAreDistancesAndPixels) {
                 std::max({glm::length(at(row - 1, column) - p), glm::length(at(row + 1, column) - p),
                           glm::length(at(row, column - 1) - p), glm::length(at(row, column + 1) - p)});
             EXPECT_NEAR(grid.cell_m[row * stride + column] / largest_m, 1.0, 1e-4);
-            // Half a pixel's footprint outwards and inwards is a pixel on the screen, or less off the axis,
-            // and more than half of one within this lens.
+            // Half a footprint outwards and half inwards span a pixel on the screen; off the axis less, but
+            // more than half a pixel within this lens.
             const double half_m = 0.5 * static_cast<double>(grid.pixel_m[row * stride + column]);
             const auto screen = [&](glm::dvec2 q) {
                 const glm::dvec3 d(q, -6.0);
@@ -279,7 +279,7 @@ TEST(ProjectedGrid, FootprintsAreDistancesAndPixels) {
         }
 }
 
-// A shot's frames, each in the size that all together need.
+// The frames of a shot, each in the common size.
 TEST(ProjectedGrid, TakesAGivenSizeInEveryPose) {
     ProjectedGridOptions options{.bounds = {.height_m = 2.0, .reach_m = 2.0}, .significant_height_m = 2.0};
     const View level = view_of({.pitch_deg = 0.0}), down = view_of({.pitch_deg = -80.0});
@@ -290,7 +290,7 @@ TEST(ProjectedGrid, TakesAGivenSizeInEveryPose) {
         const ProjectedGrid grid = projected_grid(view, options);
         EXPECT_EQ((ProjectedGridSize{grid.columns, grid.rows}), needs.size);
         EXPECT_EQ(grid.rest_m.size(), points_of(needs.size));
-        // With its own size no footprint is finer than it said.
+        // In its own size no footprint is finer than promised.
         options.size = {};
         const ProjectedGridNeeds own = projected_grid_needs(view, options);
         const ProjectedGrid alone = projected_grid(view, options);

@@ -1,4 +1,4 @@
-// The ladder of footprints that points at all distances ask for, and the projected grid's points on it.
+// The ladder of footprints for points at all distances, and the query at the projected grid's points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,27 +47,27 @@ TEST(ViewQuery, DoublesFromTheFinestUpToWhereNothingPasses) {
         const Query query =
             view_query(*prepare(scene), {.finest_cell_m = 5.0 * finest_m, .finest_pixel_m = finest_m});
         EXPECT_EQ(query.pixel_m.front(), finest_m);
-        const std::size_t doubled = query.pixel_m[0] > 0.3 ? 1 : 2;  // finer than 80/64/4 m nothing changes
+        const std::size_t doubled = query.pixel_m[0] > 0.3 ? 1 : 2;  // below 80/64/4 m the filter passes all
         for (std::size_t i = doubled; i < query.pixel_m.size(); ++i)
             EXPECT_DOUBLE_EQ(query.pixel_m[i], 2.0 * query.pixel_m[i - 1]);
-        // Footprints that cells ask for lie between their first rung and the next.
+        // Requested footprints lie between the first rung and the next.
         EXPECT_LE(query.cell_m.front(), std::max(5.0 * finest_m, finest_m));
         EXPECT_TRUE(std::equal(query.cell_m.rbegin(), query.cell_m.rend(), query.pixel_m.rbegin()));
         const Plan plan = make_plan(scene, {query});
         const std::vector<int>& levels = plan.queries[0].pixel_levels;
         for (const CascadePlan& cascade : plan.cascades) EXPECT_EQ(cascade.grid_of_level[levels.back()], -1);
-        // One rung less, and something still passes.
+        // One rung earlier some waves still pass.
         EXPECT_GE(plan.cascades[0].grid_of_level[levels[levels.size() - 2]], 0);
     }
 }
 
-// A footprint through which every mode of a cascade passes whole has no grid of its own.
+// A footprint that passes every mode of a cascade needs no grid of its own.
 TEST(ViewQuery, RunsNoTransformTwice) {
     const Scene scene = scene_of_two_tiles();
     const Plan plan = make_plan(scene, {view_query(*prepare(scene))});
     for (const CascadePlan& cascade : plan.cascades) {
-        // By hand: the shortest wave is 1/64 of the tile, or at the band's end; modes a quarter of that and
-        // finer are whole.
+        // By hand: the shortest wave is 1/64 of the tile, or at the band's end. Footprints up to a quarter of
+        // it pass every mode.
         const double shortest_m =
             cascade.size_m / std::min(64.0, cascade.k_upper * cascade.size_m / 6.283185307);
         std::size_t unfiltered = 0;
@@ -82,11 +82,11 @@ TEST(ViewQuery, RunsNoTransformTwice) {
         EXPECT_LT(cascade.grids.size(), plan.levels.size() - unfiltered + 1);
         EXPECT_EQ(cascade.grids[shared].fields, fields_of(plan.queries[0].query.products));
     }
-    // The first tile's band ends at 20 modes of its own: several rungs are below its waves.
+    // The first tile's band ends at 20 modes: several rungs are below its waves.
     EXPECT_EQ(plan.cascades[0].grid_of_level[0], plan.cascades[0].grid_of_level[3]);
 }
 
-// On a rung the ladder is the footprint itself: the same sum in another plan, to rounding.
+// On a rung the ladder equals a plan of that footprint alone, up to rounding.
 TEST(ViewQuery, OnARungAnswersAsAPlanOfThatFootprintAlone) {
     const Scene scene = scene_of_two_tiles();
     const Query ladder = view_query(*prepare(scene));
@@ -118,8 +118,7 @@ TEST(ViewQuery, OnARungAnswersAsAPlanOfThatFootprintAlone) {
     }
 }
 
-// A camera that is whole periods of every tile away sees the same sea, to rounding: 1e6 m and more lose
-// nothing.
+// A camera shifted by whole periods of every tile sees the same sea, up to rounding, even 1e6 m away.
 TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
     Scene scene = scene_of_two_tiles();
     const auto seen = [&](glm::dvec3 shift_m) {
@@ -136,11 +135,11 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
     double waves_m2 = 0.0;
     for (std::size_t i = 0; i < here.rest_m.size(); ++i) {
         const glm::vec2 rest = here.rest_m[i];
-        // The grids differ by the rounding of 2e6 m in double, 2e-10 m, and by a digit of single precision; a
-        // digit at the distance of the point moves it along slopes up to 1.
+        // The grids differ by the rounding of 2e6 m in double, 2e-10 m, and by a unit in the last place of
+        // single precision. Such a unit in the position changes the height along slopes of up to 1.
         const float digit = 4e-7f * (1.0f + glm::length(rest));
         EXPECT_LE(glm::length(rest - there.rest_m[i]), digit);
-        if (glm::length(rest) > 1000.0f) continue;  // beyond, a digit is more than the waves that are left
+        if (glm::length(rest) > 1000.0f) continue;  // beyond, rounding exceeds the resolved waves
         EXPECT_LE(glm::length(a.vectors(Product::Position)[i] - b.vectors(Product::Position)[i]),
                   3.0f * digit + 3e-5f);
         EXPECT_LE(glm::length(a.vectors(Product::Normal)[i] - b.vectors(Product::Normal)[i]),
@@ -158,7 +157,7 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
         }
 }
 
-// Towards the horizon everything is hidden: a flat sea whose slopes' variance is the whole spectrum's.
+// At the horizon all waves are hidden: a flat sea with the slope variance of the whole spectrum.
 TEST(ViewQuery, AtTheHorizonAllIsVariance) {
     const Scene scene = scene_of_two_tiles();
     const Frame<float> frame = frame_of(scene, view_query(*prepare(scene)));
@@ -175,8 +174,8 @@ TEST(ViewQuery, AtTheHorizonAllIsVariance) {
     }
 }
 
-// Ten thousand points of a realisation against the bounds, and neither bound is more than three times what is
-// reached: five deviations against the 3.7 or so that ten thousand correlated points reach.
+// Ten thousand points of a realisation stay within the bounds, and come within a factor of three: the bounds
+// are five deviations, and ten thousand correlated points reach about 3.7.
 TEST(Extent, HoldsTheSeaAndNotMuchMore) {
     Scene scene = scene_of_two_tiles();
     scene.sea.depth_m = 12.0;  // horizontal reach exceeds the vertical one there
@@ -209,8 +208,7 @@ TEST(Extent, HoldsTheSeaAndNotMuchMore) {
     EXPECT_EQ(prepare(scene)->extent.reach_m, 0.0);
 }
 
-// From a calm to a hurricane, in a puddle and over an abyss, up to looping crests: bounds that a grid can
-// use.
+// From calm to hurricane, in a puddle and over an abyss, up to looping crests: the bounds stay usable.
 TEST(Extent, HardCasesStayFinite) {
     for (const double wind_mps : {0.0, 0.1, 80.0})
         for (const double depth_m : {0.01, 10.0, 1e9})
@@ -230,7 +228,7 @@ TEST(Extent, HardCasesStayFinite) {
             }
 }
 
-// However near a camera looks, the wave trains are those of the bake.
+// The trains don't depend on how near a camera is: they are those of the bake.
 TEST(ViewQuery, DoesNotDecideWhichTrainsThereAre) {
     Scene scene;
     scene.waves.model = WaveModel::Trochoid;

@@ -1,4 +1,4 @@
-// The pinhole against the geometry of its definition.
+// The pinhole camera against its geometric definition.
 #include "core/surface/view.h"
 
 #include <gtest/gtest.h>
@@ -63,26 +63,26 @@ TEST(View, TheBordersAreHalfTheFieldOfViewAway) {
     expect_near(view.direction({320.0, 0.0}), glm::normalize(glm::dvec3(0.0, 1.0, tan_top)), 1e-15);
 }
 
-// Whatever is seen through a pixel lands on it, a million metres from the world's origin, too.
+// A point seen through a pixel projects onto that pixel, also a million metres from the world's origin.
 TEST(View, ClipCoordinatesAgreeWithDirections) {
     Camera camera = camera_with({1e6, -1e6, 12.0}, {1e6 + 30.0, -1e6 + 50.0, 4.0});
     camera.resolution = {1920, 800};
     const View view = view_at(camera, 1.0);
     const glm::dvec3 origin_m(1e6 + 5.0, -1e6 - 3.0, 0.0);
     const double near_m = 0.1;
-    const glm::mat4 clip(view.clip_from(origin_m, near_m));  // in single precision, as a shader has it
+    const glm::mat4 clip(view.clip_from(origin_m, near_m));  // in single precision, as in a shader
     for (const glm::dvec2 pixel : {glm::dvec2(0.5, 0.5), {1700.25, 90.0}, {960.0, 400.0}, {3.0, 799.0}})
         for (const double distance_m : {0.2, 30.0, 4000.0}) {
             const glm::dvec3 p = view.position_m - origin_m + distance_m * view.direction(pixel);
             const glm::vec4 c = clip * glm::vec4(glm::vec3(p), 1.0f);
-            // Coordinates of some 10 m in single precision move a point 0.2 m away by up to 1e-6 m: 5e-6 of
-            // the picture's half, and a hundredth of a pixel.
+            // Rounding coordinates of some 10 m to single precision moves a point 0.2 m away by up to 1e-6 m:
+            // 5e-6 of half the picture, a hundredth of a pixel.
             EXPECT_NEAR(0.5 * (1.0 + c.x / c.w) * 1920.0, pixel.x, 0.02);
             EXPECT_NEAR(0.5 * (1.0 - c.y / c.w) * 800.0, pixel.y, 0.02);
             const double depth_m = distance_m * glm::dot(view.direction(pixel), view.forward);
             EXPECT_NEAR(c.z / c.w, 1.0 - 2.0 * near_m / depth_m, 2e-5);
         }
-    // Nothing is clipped for being far: the horizon's depth is 1, within the box.
+    // The projection has no far plane: the horizon's depth is 1.
     const glm::dvec4 horizon = view.clip_from(view.position_m, near_m) * glm::dvec4(1e12 * view.forward, 1.0);
     EXPECT_LE(horizon.z, horizon.w);
     EXPECT_NEAR(horizon.z / horizon.w, 1.0, 1e-12);

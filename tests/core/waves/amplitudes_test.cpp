@@ -1,4 +1,4 @@
-// Energy: the amplitudes hold the spectrum, and a height map holds the amplitudes.
+// Energy: amplitudes contain the energy of the spectrum, and a height map that of the amplitudes.
 #include <gtest/gtest.h>
 
 #include "core/scene/cascade_bands.h"
@@ -13,7 +13,7 @@ using namespace test;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A buoy's hour made up for the test: a wind sea from 4 to 12 s, towards 30°.
+// An invented hour of a buoy: a wind sea from 4 to 12 s, towards 30°.
 MeasuredSpectrum made_up_hour() {
     MeasuredSpectrum hour{.bins = {}, .station = "test", .time = "2020-01-01T00:00:00Z"};
     for (int i = 0; i < 20; ++i) {
@@ -41,7 +41,7 @@ Scene scene_of(const Case& c) {
     scene.sea.depth_m = c.depth_m;
     if (c.swell) scene.sea.swell = {{.height_m = 1.5, .period_s = 11.0, .direction_deg = 80.0}};
     if (c.spectrum == SpectrumKind::File) scene.sea.measured = made_up_hour();
-    // Just enough samples to reach the next band: where an edge could lose cells.
+    // Resolutions just reach the next band, where an edge could lose cells.
     const std::vector<double> sizes_m{500.0, 90.0, 16.0};
     const auto edges = lower_edges(sizes_m);
     scene.waves.cascades = {{sizes_m[0], sufficient_resolution(sizes_m[0], edges[1])},
@@ -50,8 +50,8 @@ Scene scene_of(const Case& c) {
     return scene;
 }
 
-// ∬ Ψ over the wavevectors whose nearest mode of a tile of this size satisfies `held`, from k_from to k_to: a
-// plain midpoint rule in polar coordinates, which shares nothing with the cells' own quadrature.
+// ∬ Ψ over the wavevectors from k_from to k_to whose nearest mode in a tile of this size satisfies `held`: a
+// plain midpoint rule in polar coordinates, independent of the cells' quadrature.
 template <class Held>
 double energy_near_modes(const DirectionalSpectrum& spectrum, double size_m, double k_from, double k_to,
                          Held&& held) {
@@ -70,8 +70,8 @@ double energy_near_modes(const DirectionalSpectrum& spectrum, double size_m, dou
 
 class Amplitudes : public testing::TestWithParam<Case> {};
 
-// ΣE|h|² per cascade = the band's m0, to 1e-3. A cell sampled instead of integrated, a rim of cells left out
-// or an edge cut wrongly would break it.
+// ΣE|h|² of a cascade is its band's m0 to 1e-3. Sampling a cell instead of integrating it, missing a rim of
+// cells or cutting an edge wrongly would fail.
 TEST_P(Amplitudes, HoldTheirBandOfTheSpectrum) {
     const Scene scene = scene_of(GetParam());
     const auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});
@@ -84,8 +84,8 @@ TEST_P(Amplitudes, HoldTheirBandOfTheSpectrum) {
         const double step = 2.0 * kPi / cascade.size_m;
         double upper = cascade.k_upper, expected = 0.0;
         if (c == 2) {
-            // It ends with its last mode: whole cells, whose rim is a staircase within ½ diagonal of the
-            // radius.
+            // The tile's modes end before the band: whole cells, whose rim is a staircase within half a
+            // diagonal of the radius.
             const double inner = (cascade.mode_radius - 0.7072) * step,
                          outer = (cascade.mode_radius + 0.7072) * step;
             upper = inner;
@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"File", SpectrumKind::File, SpreadingKind::Hasselmann, false, kInfinity}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
-// "auto" cascades too: sizes that nobody chose, resolutions just large enough.
+// "auto" cascades: sizes that nobody chose, resolutions that are just large enough.
 TEST(AutomaticCascades, LoseNoEnergyBetweenBands) {
     for (double wind : {5.0, 10.0, 20.0}) {
         Scene scene;
@@ -130,14 +130,14 @@ TEST(AutomaticCascades, LoseNoEnergyBetweenBands) {
         for (int c = 0; c < 3; ++c) {
             const CascadePlan& cascade = frame.sea().plan().cascades[c];
             const double band = moments(spectrum, cascade.k_lower, cascade.k_upper).m0;
-            // At ten peak waves a tile the cell round k = 0 holds nothing: JONSWAP's exp(−1.25·400).
+            // At ten peak waves per tile the cell around k = 0 is empty: JONSWAP's exp(−1.25·400).
             EXPECT_NEAR(frame.sea().expected_m0(c) / band, 1.0, 1e-3) << "wind " << wind << " cascade " << c;
         }
     }
 }
 
-// A height map over one tile has the variance of its own realisation, Σ|h|² (Parseval), to 1e-5: single
-// precision's rounding is 1e-7 a term.
+// A height map over one tile has the variance of its realisation, Σ|h|² (Parseval), to 1e-5. Single precision
+// rounds each term by 1e-7.
 TEST(HeightMap, HasTheVarianceOfItsRealisation) {
     Scene scene;
     scene.sea.swell = {{.height_m = 1.0, .period_s = 9.0, .direction_deg = 130.0}};
@@ -155,7 +155,7 @@ TEST(HeightMap, HasTheVarianceOfItsRealisation) {
             const double variance = mean_of(map, [](auto d) { return double(d.z) * d.z; });
             EXPECT_NEAR(variance / frame.realisation(c).m0, 1.0, 1e-5) << "cascade " << c << " at " << t;
             EXPECT_NEAR(mean, 0.0, 1e-6 * std::sqrt(variance));  // there is no mode 0
-            // And Σ|h|² is the modes' own.
+            // Σ|h|² from the modes.
             double sum = 0.0;
             for (const Mode& mode : modes_of(frame.sea(), c, t)) sum += 2.0 * std::norm(mode.height);
             EXPECT_NEAR(frame.realisation(c).m0 / sum, 1.0, 1e-5);
@@ -163,8 +163,9 @@ TEST(HeightMap, HasTheVarianceOfItsRealisation) {
     }
 }
 
-// Over 16 seeds the mean variance gives Hs within 5 %. The seed-to-seed deviation of m0 in a tile of nine
-// peak waves is 7 %, so the mean's is 1.8 %, Hs's 0.9 %: five of those. A √2 too many is 41 %.
+// Over 16 seeds the mean variance gives Hs to 5 %. m0 in a tile of nine peak waves deviates by 7 % from seed
+// to seed, so the mean by 1.8 % and Hs by 0.9 %; the tolerance is five times that. A spurious √2 would be 41
+// %.
 TEST(HeightMap, HasTheSignificantHeightOfTheSpectrum) {
     Scene scene;
     scene.sea.spectrum = SpectrumKind::PiersonMoskowitz;  // peak wavelength 88 m at 10 m/s
@@ -178,10 +179,10 @@ TEST(HeightMap, HasTheSignificantHeightOfTheSpectrum) {
         variances.push_back(mean_of(sample(frame, 0, tile_points<float>(800.0, 160)).vectors(Displacement),
                                     [](auto d) { return double(d.z) * d.z; }));
     }
-    // The band ends at k = 0.62 rad/m; beyond it is 1 % of m0.
+    // The band ends at k = 0.62 rad/m. Beyond it lies 1 % of m0.
     const double hs = 4.0 * std::sqrt(estimate(variances).mean);
     EXPECT_NEAR(hs / moments(spectrum, 0.0, kInfinity).significant_height_m(), 1.0, 0.05);
-    // Seeds differ: 7 % within a factor of 2.
+    // Seeds differ: by 7 %, within a factor of 2.
     EXPECT_GT(estimate(variances).standard_error * 4.0 / estimate(variances).mean, 0.035);
     EXPECT_LT(estimate(variances).standard_error * 4.0 / estimate(variances).mean, 0.14);
 }

@@ -1,8 +1,8 @@
 // Every derivative field against finite differences of the displacement, in double precision.
 //
-// Central differences of eighth order pass a wave of phase step φ = kh (or ωΔt) with the relative error
-// φ⁸/630 to leading order, so that the root mean square of (difference − field) is at most (k_max h)⁸/630
-// times the field's own.
+// Central differences of eighth order have, for a wave of phase step φ = kh (or ωΔt), the relative error
+// φ⁸/630 to leading order. So the root mean square of (difference − field) is at most (k_max h)⁸/630 times
+// the field's.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,7 +15,7 @@ namespace {
 using namespace test;
 
 constexpr double kSize = 100.0;
-constexpr int kNodes = 512, kModes = 20;  // modes a side, resolution 42
+constexpr int kNodes = 512, kModes = 20;  // 20 modes need a resolution of 42
 constexpr std::array<double, 4> kWeights{4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0};
 
 double truncation(double phase_step) {
@@ -103,8 +103,8 @@ TEST_P(Derivatives, InTimeAreTheVelocity) {
         expect_same(velocity[p], difference[p], truncation(omega_max * kStep_s), "velocity");
 }
 
-// Normals and J aren't linear in the fields: against the cross product of the differenced tangents. Errors of
-// the derivatives, all below 1, enter with factors of order 1: ten times the bound.
+// Normals and J are nonlinear in the fields: compared with the cross product of the differenced tangents.
+// Errors of the derivatives, which are all below 1, enter with factors of order 1: ten times the bound.
 TEST_P(Derivatives, GiveNormalsAndJacobianOfTheDisplacedSurface) {
     const double tolerance = 10.0 * truncation(2.0 * kPi * kModes / kNodes);
     const auto samples = sample(frame_, 0, tile_points<double>(kSize, kNodes));
@@ -129,7 +129,7 @@ TEST_P(Derivatives, GiveNormalsAndJacobianOfTheDisplacedSurface) {
         ASSERT_NEAR(samples.vectors(JacobianMoments)[i].x, n.z, tolerance);
         least_j = std::min(least_j, n.z);
     }
-    EXPECT_LT(least_j, 0.8);  // the cross terms were there to be wrong
+    EXPECT_LT(least_j, 0.8);  // the cross terms are large enough to matter
 }
 
 INSTANTIATE_TEST_SUITE_P(DeepAndShallow, Derivatives,

@@ -1,4 +1,4 @@
-// The horizontal displacement: its sign and size, and what it makes of one wave.
+// Horizontal displacement: its sign and size, and its effect on a single wave.
 #include <gtest/gtest.h>
 
 #include "core/spectrum/dispersion.h"
@@ -9,9 +9,9 @@ namespace {
 
 using namespace test;
 
-// ⟨ηJ⟩ = −λ Σ k E|h|²: J = 1 + ∇·D + DxxDyy − Dxy², and over one tile ⟨η ∇·D⟩ is −λ Σk|h|² by Parseval. The
-// quadratic part adds ⟨η (DxxDyy − Dxy²)⟩, an odd moment of Gaussian fields: 0 in the mean, λ² times a
-// sampling error.
+// ⟨ηJ⟩ = −λ Σ k E|h|². J = 1 + ∇·D + DxxDyy − Dxy², and over one tile ⟨η ∇·D⟩ is −λ Σk|h|² by Parseval. The
+// quadratic part adds ⟨η (DxxDyy − Dxy²)⟩, an odd moment of Gaussian fields: its mean is 0, its sampling
+// error of order λ².
 TEST(HeightTimesJacobian, IsMinusChoppinessTimesSumOfWavenumberTimesEnergy) {
     for (double choppiness : {1.0, 0.02}) {
         std::vector<double> relative;
@@ -34,14 +34,14 @@ TEST(HeightTimesJacobian, IsMinusChoppinessTimesSumOfWavenumberTimesEnergy) {
         }
         const Estimate mean = estimate(relative);
         EXPECT_NEAR(mean.mean, 1.0, 4.0 * mean.standard_error + 1e-5) << "choppiness " << choppiness;
-        // The error is proportional to the choppiness: by seed some 10 % at 1, so 0.2 % at 0.02.
+        // The error is proportional to the choppiness: some 10 % per seed at 1, so 0.2 % at 0.02.
         EXPECT_LT(mean.standard_error, 0.1 * choppiness);
     }
 }
 
-// One wave alone, through the public interface: a swell as long as its tile, seen through a footprint that
-// hides everything shorter than 0.72 of the tile. Left are the modes (±1, 0), which carry the swell, and (0,
-// ±1), which don't depend on x and have no Dx: along x there is one wave.
+// A single wave through the public interface: a swell as long as its tile, with a footprint that hides
+// everything shorter than 0.72 of the tile. This leaves the modes (±1, 0), which carry the swell, and (0,
+// ±1), which don't depend on x and have no Dx. Along x there is one wave.
 struct OneWave {
     double k;
     Frame<double> frame;
@@ -77,8 +77,7 @@ TEST(OneWaveAlone, IsTheTrochoid) {
         const double amplitude = std::abs(harmonic), phase = std::arg(harmonic);
         ASSERT_GT(amplitude, 0.1);
 
-        // η = a cos(kx + φ), Dx = −λ coth(kd) a sin(kx + φ): Lamb's orbits. The spectrum's scalars are
-        // double.
+        // η = a cos(kx + φ), Dx = −λ coth(kd) a sin(kx + φ): Lamb's orbits. The factor is computed in double.
         const double a_x = c.choppiness * amplitude / std::tanh(std::min(wave.k * c.depth_m, 50.0));
         double above = 0.0;
         for (std::size_t i = 0; i < row.size(); ++i) {
@@ -88,8 +87,8 @@ TEST(OneWaveAlone, IsTheTrochoid) {
             const auto& next = row[(i + 1) % row.size()];
             if (row[i].z > level) above += kLength / 512.0 + next.x - row[i].x;
         }
-        // Sharp crests, broad troughs: above its mean level the wave is 2a short of half its length, and 2a
-        // long below it; to the width of two nodes' gaps.
+        // Sharp crests, broad troughs: the part above mean level is 2a shorter than half the length, the part
+        // below 2a longer, up to the spacing of two nodes.
         EXPECT_NEAR(above, 0.5 * kLength - 2.0 * a_x, 2.0 * kLength / 512.0);
         EXPECT_LT(above, 0.5 * kLength - a_x);
     }

@@ -1,4 +1,4 @@
-// How waves move: speed and direction, loops, late and negative times, far from the origin.
+// The motion of waves: speed and direction, loops, late and negative times, far from the origin.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -14,7 +14,7 @@ using namespace test;
 
 constexpr double kDeep = std::numeric_limits<double>::infinity();
 
-// The dispersion relation, written again: g = 9.81 m/s², γ/ρ = 7.3e-5 m³/s².
+// The dispersion relation, independent of the code's: g = 9.81 m/s², γ/ρ = 7.3e-5 m³/s².
 double omega_of(double k, double depth_m) {
     return std::sqrt((9.81 * k + 7.3e-5 * k * k * k) * std::tanh(std::min(k * depth_m, 50.0)));
 }
@@ -29,7 +29,7 @@ Scene swell_alone(double length_m, double depth_m, double direction_deg) {
     return scene;
 }
 
-// A swell as long as its tile, everything shorter hidden by the footprint: one crest (see
+// A swell as long as its tile, with everything shorter hidden by the footprint: one crest (see
 // displacement_test.cpp).
 TEST(Crest, MovesAtThePhaseSpeed) {
     for (double depth_m : {kDeep, 5.0})
@@ -49,21 +49,21 @@ TEST(Crest, MovesAtThePhaseSpeed) {
                 std::size_t top = 0;
                 for (std::size_t i = 0; i < row.size(); ++i)
                     if (row[i].z > row[top].z) top = i;
-                // The parabola through the highest node and its neighbours.
+                // The vertex of the parabola through the highest node and its neighbours.
                 const double a = row[(top + 255) % 256].z, b = row[top].z, c = row[(top + 1) % 256].z;
                 return points[top].x + 0.5 * (a - c) / (a - 2.0 * b + c) * kLength / 256.0;
             };
-            // Two seconds, less than half a wavelength at 11 m/s: no doubt which crest it is.
+            // In two seconds a crest at 11 m/s moves by less than half a wavelength, so it can't be confused.
             double way = crest(4.0) - crest(2.0);
             way -= kLength * std::round(way / kLength);
-            // The parabola is off by (kh)²/24 of h at most, some 1e-5 m; the waves that run against it are
-            // below 1e-4.
+            // The parabola's error is at most (kh)²/24 of h, some 1e-5 m. The waves that travel against it
+            // are below 1e-4 of it.
             EXPECT_NEAR(way, (direction_deg == 0.0 ? 2.0 : -2.0) * speed, 0.01 * speed)
                 << depth_m << ' ' << direction_deg;
         }
 }
 
-// η's Fourier coefficient at mode (mx, my), from the samples of a tile of n nodes a side.
+// The Fourier coefficient of η at mode (mx, my), from a tile's map of n × n nodes.
 std::complex<double> coefficient(const std::vector<double>& map, int n, int mx, int my) {
     std::complex<double> sum = 0.0;
     for (int y = 0; y < n; ++y)
@@ -73,8 +73,8 @@ std::complex<double> coefficient(const std::vector<double>& map, int n, int mx, 
     return sum / (1.0 * n * n);
 }
 
-// In any direction: each notable wave of a swell turns by −ω(k)Δt, so that it travels along +k, and together
-// they travel where the swell was sent.
+// Each large mode of a swell changes its phase by −ω(k)Δt and so travels along +k; together they travel where
+// the swell was sent.
 TEST(Swell, TravelsWhereItWasSentAtTheDispersionRelationsSpeed) {
     for (double depth_m : {kDeep, 5.0})
         for (double direction_deg : {0.0, 80.0, 200.0}) {
@@ -93,20 +93,20 @@ TEST(Swell, TravelsWhereItWasSentAtTheDispersionRelationsSpeed) {
             for (int my = -14; my <= 14; ++my)
                 for (int mx = -14; mx <= 14; ++mx) {
                     const double length = std::hypot(mx, my);
-                    // The swell's cone, 60° to each side, and its wavenumbers; −k holds the conjugate.
+                    // Modes within 60° of the swell's direction and its band; −k has the conjugate.
                     if (length < 4.0 || length > 13.0 || mx * sent.x + my * sent.y < 0.5 * length) continue;
                     const auto h0 = coefficient(before, kNodes, mx, my),
                                h1 = coefficient(after, kNodes, mx, my);
                     if (std::norm(h0) < 1e-5) continue;
                     const double omega = omega_of(2.0 * kPi * length / kSize, depth_m);
-                    // To the spreading's leak into the opposite direction, cos¹⁵⁰ of 60° and more.
+                    // Up to the energy that spreading sends backwards, cos¹⁵⁰ of 60° and more.
                     EXPECT_NEAR(std::abs(h1 / h0 - std::polar(1.0, -omega * kStep_s)), 0.0, 1e-6)
                         << mx << ' ' << my;
                     flux += std::norm(h0) / length * glm::dvec2(mx, my);
                     energy += std::norm(h0);
                 }
             ASSERT_GT(energy, 0.01);
-            // 9° of spreading over some ten notable modes.
+            // Spreading of 9° over some ten large modes.
             const double turn =
                 std::atan2(sent.x * flux.y - sent.y * flux.x, sent.x * flux.x + sent.y * flux.y);
             EXPECT_NEAR(turn * 180.0 / kPi, 0.0, 6.0) << depth_m << ' ' << direction_deg;
@@ -127,7 +127,7 @@ TEST(WindSea, TravelsDownwind) {
         }
         const double turn =
             std::remainder(std::atan2(flux.y, flux.x) - direction_deg * kPi / 180.0, 2.0 * kPi);
-        // Some hundred waves within ±30°: 3° of sampling error.
+        // Some hundred waves within ±30°: a sampling error of 3°.
         EXPECT_NEAR(turn * 180.0 / kPi, 0.0, 9.0);
     }
 }
@@ -141,7 +141,7 @@ TEST(Loop, RepeatsToTheBitAndFreezesNothing) {
     Scene scene;
     scene.shot.loop_s = 10.0;
     scene.sea.swell = {
-        {.height_m = 1.0, .period_s = 30.0, .direction_deg = 0.0}};  // slower than half the loop
+        {.height_m = 1.0, .period_s = 30.0, .direction_deg = 0.0}};  // a period longer than half the loop
     scene.waves.cascades = {{3000.0, 56}, {1000.0, 168}, {100.0, 64}};
     auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement, Product::Velocity))});
     const auto points = random_points<float>(500.0, 500);
@@ -165,8 +165,8 @@ TEST(Loop, RepeatsToTheBitAndFreezesNothing) {
             EXPECT_NEAR(cycles * 10.0, std::round(cycles * 10.0), 1e-9);
             EXPECT_GE(cycles * 10.0, 1.0 - 1e-9);
         }
-    // Nothing stands still: a quarter of the loop apart, two heights of a wave that makes one turn are
-    // independent.
+    // Nothing stands still: a quarter of a loop apart, heights of a wave with one cycle per loop are
+    // uncorrelated.
     frame.set(0.0);
     const auto early = sample(frame, 0, points).vectors(Displacement);
     frame.set(2.5);
@@ -194,14 +194,14 @@ TEST(LateTimes, AreAsExactAsEarlyOnes) {
         const double hs = 4.0 * std::sqrt(reference.realisation(0).m0);
         for (std::size_t i = 0; i < points.size(); i += 97) {
             const double height = direct_height(modes, 150.0, points_d[i]);
-            // Single: sums of some hundred notable terms with rounding of 6e-8 each. Double: phases of 1e6 …
-            // 1e7 cycles keep 1e-9 of a cycle.
+            // Single precision: sums of some hundred large terms, rounded by 6e-8 each. Double: phases of 1e6
+            // … 1e7 cycles are exact to 1e-9 of a cycle.
             EXPECT_NEAR(map[i].z, height, 1e-5 * hs) << t;
             EXPECT_NEAR(map_d[i].z, height, 1e-8 * hs) << t;
         }
         const double variance = mean_of(map, [](auto d) { return double(d.z) * d.z; });
         EXPECT_NEAR(variance / single.realisation(0).m0, 1.0, 1e-5) << t;
-        // Waves that meet their opposites exchange energy in time: some per cent.
+        // Opposite waves exchange energy in time: some per cent.
         EXPECT_NEAR(variance / frame_of<float>(scene, plan).realisation(0).m0, 1.0, 0.2) << t;
     }
     EXPECT_THROW(single.set(std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
@@ -218,7 +218,8 @@ TEST(FarFromTheOrigin, NothingIsLost) {
     const auto points = random_points<float>(60.0, 400);
     const auto near = sample(frame, 0, points);
     const auto far = sample(frame, 0, points, {.origin_m = {1e6, -1e6}, .cell_m = {}, .pixel_m = {}});
-    // An origin apart from the tile: the same points, told differently (1e6 + 17.25 is exact in double).
+    // An origin apart from the points: the same places, expressed differently (1e6 + 17.25 is exact in
+    // double).
     auto moved = points;
     for (auto& point : moved) point -= glm::vec2(17.25f, -8.5f);
     const auto told =
@@ -228,8 +229,8 @@ TEST(FarFromTheOrigin, NothingIsLost) {
             EXPECT_NEAR(far.vectors(Displacement)[i][axis], near.vectors(Displacement)[i][axis], 1e-6);
             EXPECT_NEAR(far.vectors(Normal)[i][axis], near.vectors(Normal)[i][axis], 1e-6);
             EXPECT_NEAR(far.vectors(Velocity)[i][axis], near.vectors(Velocity)[i][axis], 1e-6);
-            // Moving a single-precision position of 30 m rounds it by 2e-6 m; slopes and velocities below 10
-            // a metre.
+            // Rounding a position of 30 m to single precision moves it by 2e-6 m; slopes and velocities
+            // change by less than 10 per metre.
             EXPECT_NEAR(told.vectors(Displacement)[i][axis], near.vectors(Displacement)[i][axis], 1e-5);
             EXPECT_NEAR(told.vectors(Normal)[i][axis], near.vectors(Normal)[i][axis], 1e-4);
         }

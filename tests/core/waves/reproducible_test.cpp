@@ -1,5 +1,5 @@
-// The same scene gives the same bits, whatever the threads, whichever frame comes first; and no transform
-// runs that the plan didn't promise.
+// The same scene gives the same bits, for any number of threads and any order of frames. The transforms
+// executed are those that the plan promises.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -46,7 +46,7 @@ TEST(Threads, ChangeNoBit) {
     const auto run = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         return sample(frame_of<float>(windy(), {everything()}, 0.25), 0,
-                      points);  // Sea, Frame and query alike
+                      points);  // Sea, Frame and query on the same threads
     };
     const auto alone = run(1);
     for (std::size_t threads : {2, 7}) expect_same_bits(alone, run(threads), "threads");
@@ -60,7 +60,7 @@ TEST(Frames, DependOnTheirTimeAlone) {
     const auto seventh = sample(alone, 0, points);
     for (int f = 1; f <= 7; ++f) {
         run.set((f - 1) / 24.0);
-        backwards.set((13 - f) / 24.0);  // frames 13 … 7, and another frame's buffers beside this one's
+        backwards.set((13 - f) / 24.0);  // frames 13 … 7, in a second Frame beside the first
     }
     expect_same_bits(seventh, sample(run, 0, points), "after frames 1 to 6");
     expect_same_bits(seventh, sample(backwards, 0, points), "after frames 13 to 8");
@@ -75,19 +75,19 @@ TEST(Seeds, GiveOtherSeas) {
     scene.shot.seed = 2;
     const auto two = sample(frame_of<float>(scene, {everything()}), 0, points);
     EXPECT_FALSE(same_bits(one.vectors(Position), two.vectors(Position)));
-    EXPECT_TRUE(
-        same_bits(one.vectors(SlopeVariance), two.vectors(SlopeVariance)));  // an expectation: no seed in it
+    EXPECT_TRUE(same_bits(one.vectors(SlopeVariance),
+                          two.vectors(SlopeVariance)));  // an expectation, not of one seed
 }
 
-// What a shot runs, counted by hand for one cascade: the mesh alone is one grid, and two real fields share a
-// transform.
+// The transforms of a shot, counted by hand for one cascade. The mesh alone has one grid, and two real fields
+// share a transform.
 //   position: η, Dx, Dy;  normal: both slopes and Dxx, Dyy, Dxy;  velocity: three;  coverage: Dxx, Dyy, Dxy.
 struct Count {
     const char* name;
     std::vector<MeshAttribute> attributes;
     bool whitecaps;
     double choppiness;
-    std::vector<MapKind> maps;  // as fine as the mesh: the same grid
+    std::vector<MapKind> maps;  // with the mesh's spacing, so that they share its grid
     int fields;
 };
 
@@ -105,7 +105,7 @@ TEST_P(TransformCount, IsTheMinimumAndIsWhatRuns) {
     scene.output.map_resolution = 64;
     const Plan plan = plan_bake(scene);
     EXPECT_EQ(plan.transforms_per_frame(), c.fields);
-    // A column for each mx of the disc, two rows at a time.
+    // One transform for each mx below the radius, then two rows at a time.
     const Grid& grid = plan.cascades[0].grids[0];
     EXPECT_EQ(plan.lines_per_frame(), c.fields * (grid.radius + grid.resolution / 2));
     Frame<float> frame(std::make_shared<const Sea<float>>(plan));
@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Count{"SlopeVarianceMap", {}, true, 1.0, {MapKind::SlopeVariance}, 3}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
-// Larger shots, where the minimum isn't counted by hand: what runs is what was promised.
+// Larger shots, whose minimum isn't counted by hand: executed transforms equal planned ones.
 TEST(ExecutedTransforms, AreThePlansOwnForWholeShots) {
     for (bool tiles : {false, true})
         for (bool whitecaps : {false, true})

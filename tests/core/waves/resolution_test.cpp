@@ -1,4 +1,4 @@
-// Doubling every resolution adds detail and moves nothing.
+// Doubling every resolution adds detail and changes nothing else.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -37,7 +37,7 @@ TEST(DoubledResolution, KeepsEveryAmplitudeToTheBit) {
     EXPECT_GT(fine.sea().cascades()[2].radius, coarse.sea().cascades()[2].radius);  // detail was added
 }
 
-// The difference of the two surfaces of one tile, projected on the modes of the coarse one.
+// The difference of one tile's surfaces, projected onto the modes of the coarser one.
 TEST(DoubledResolution, ChangesNothingBelowTheOldBandLimit) {
     constexpr int kNodes = 144;
     for (int c = 0; c < 3; ++c) {
@@ -47,7 +47,7 @@ TEST(DoubledResolution, ChangesNothingBelowTheOldBandLimit) {
                    fine = frame_of<float>(scene_with(2), {query}, 1.5);
         const auto a = field_at_nodes(coarse, c, Field::Height), b = field_at_nodes(fine, c, Field::Height);
         const int radius = coarse.sea().cascades()[c].radius - 1;
-        // Row by row, then column by column: coefficient (mx, my) of b − a.
+        // The coefficient (mx, my) of b − a, by rows, then by columns.
         std::vector<std::complex<double>> rows(static_cast<std::size_t>(kNodes) * (2 * radius + 1));
         for (int y = 0; y < kNodes; ++y)
             for (int mx = -radius; mx <= radius; ++mx)
@@ -69,16 +69,17 @@ TEST(DoubledResolution, ChangesNothingBelowTheOldBandLimit) {
                 projected += std::norm(sum / (1.0 * kNodes * kNodes));
             }
         const double hs = 4.0 * std::sqrt(coarse.realisation(0).m0);
-        EXPECT_LT(std::sqrt(projected), 1e-6 * hs) << "cascade " << c;  // rounding; 1e-4 is what is asked for
+        EXPECT_LT(std::sqrt(projected), 1e-6 * hs) << "cascade " << c;  // rounding; the requirement is 1e-4
         if (c == 2) {
             EXPECT_GT(whole, 100.0 * projected);
         }
     }
 }
 
-// Through a footprint that both can show, the whole query: all cascades, all products, between nodes too.
+// The whole query through a footprint that both resolutions can show: all cascades, all products, also
+// between nodes.
 TEST(DoubledResolution, ChangesNothingThatAFootprintOfTheOldLimitShows) {
-    // The finest tile of 20 m has 34 modes: wavelengths down to 0.588 m, two samples of 0.294 m.
+    // The finest tile of 20 m has 34 modes: wavelengths down to 0.588 m, two samples of 0.294 m each.
     const auto query = filtered(products(Product::Displacement, Product::Normal), 0.3);
     const auto coarse = frame_of<float>(scene_with(1), {query}, 1.5),
                fine = frame_of<float>(scene_with(2), {query}, 1.5);

@@ -1,5 +1,5 @@
-// What the tests of waves and of the query share: a sea in a few lines, its answers as arrays, its fields
-// node by node, and sums over its modes in double that know nothing of transforms or splines.
+// Helpers for the tests of waves and of the query: a sea in a few lines, query results as arrays, fields by
+// node, and sums over modes in double that use neither transforms nor splines.
 #pragma once
 
 #include <cmath>
@@ -50,7 +50,7 @@ inline Query filtered(ProductSet wanted, double footprint_m) {
     query.cell_m = query.pixel_m = {footprint_m};
     return query;
 }
-// The nodes of one cascade's own tile, n a side.
+// The nodes of one cascade's tile, n × n.
 inline Query tile(ProductSet wanted, int cascade, double size_m, int n) {
     Query query = unfiltered(wanted);
     query.name = "tile";
@@ -63,7 +63,7 @@ template <class T>
 std::vector<glm::vec<2, T>> tile_points(double size_m, int n) {
     return rest_points<T>({.per_side = n, .spacing_m = size_m / n, .first_m = 0.0});
 }
-// Anywhere in a square of this size round the origin.
+// Random points in a square of this size around the origin.
 template <class T>
 std::vector<glm::vec<2, T>> random_points(double size_m, int count, unsigned seed = 1) {
     std::mt19937 generator(seed);
@@ -99,7 +99,7 @@ ProductArrays<T> sample(const Frame<T>& frame, int query, const std::vector<glm:
     return samples;
 }
 
-// One field at the nodes of a grid that is read there, x fastest.
+// A field at the nodes of its grid, x fastest. The grid must be read at its nodes.
 template <class T>
 std::vector<double> field_at_nodes(const Frame<T>& frame, int cascade, Field field) {
     const Grid& grid = frame.sea().plan().cascades.at(cascade).grids.at(0);
@@ -114,11 +114,11 @@ std::vector<double> field_at_nodes(const Frame<T>& frame, int cascade, Field fie
     throw std::logic_error("the grid doesn't hold the field");
 }
 
-// A wave at time t, from the sea's amplitudes alone; phases in long double.
+// A mode at time t from the sea's amplitudes, with phases in long double.
 struct Mode {
     int mx, my;
     double k, omega;
-    std::complex<double> height;  // h(k,t); the mirror image is its conjugate
+    std::complex<double> height;  // h(k,t); −k has the conjugate
 };
 
 template <class T>
@@ -142,7 +142,7 @@ std::vector<Mode> modes_of(const Sea<T>& sea, int cascade, double t_s) {
     return modes;
 }
 
-// η at one point: the plain sum over every mode of one cascade, weighted as a footprint does.
+// η at one point: the direct sum over every mode of one cascade, weighted by the footprint's filter.
 inline double direct_height(const std::vector<Mode>& modes, double size_m, glm::dvec2 x,
                             double footprint_m = 0.0) {
     double sum = 0.0;

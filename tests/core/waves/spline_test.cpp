@@ -1,5 +1,4 @@
-// The spline sampler: its weights, and its error at points between the nodes against a plain sum over the
-// modes.
+// The spline sampler: its weights, and its error between the nodes against a direct sum over the modes.
 #include "core/waves/spline.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +22,7 @@ void expect_partition_of_unity() {
             first += w[i] * (i - P / 2 + 1);
         }
         EXPECT_NEAR(sum, 1.0, 1e-15);
-        EXPECT_NEAR(first, f, 1e-15);  // and of the identity: straight lines are reproduced
+        EXPECT_NEAR(first, f, 1e-15);  // the first moment: straight lines are reproduced
     }
 }
 
@@ -38,8 +37,7 @@ TEST(BSpline, WeightsAreAPartitionOfUnity) {
     EXPECT_NEAR(cubic[3], 0.0, 1e-15);
 }
 
-// Squared amplitude of all images of a wave of f cycles per node, relative to its own: Σ (f/(f + l))^2P over
-// l ≠ 0.
+// The energy of all images of a wave of f cycles per node, relative to its own: Σ (f/(f + l))^2P over l ≠ 0.
 double images(double f, int taps) {
     double sum = 0.0;
     for (int l = 1; l <= 4; ++l) sum += std::pow(f / (f + l), 2 * taps) + std::pow(f / (f - l), 2 * taps);
@@ -84,8 +82,8 @@ TEST(SplineSampling, HasTheErrorOfItsImages) {
             const double difference = heights[i].z - direct_height(modes, 150.0, points[i]);
             error += difference * difference / kPoints;
         }
-        // A mean of 2000 squares; their spread is below √2, the error of the mean then below 3.2 %; and an
-        // image keeps company with the others in a realisation: twice that, five times.
+        // A mean of 2000 squares. Their relative deviation is below √2, so the mean's is below 3.2 %.
+        // Images of one realisation are correlated: twice that; the tolerance is five times.
         EXPECT_NEAR(error / image_energy, 1.0, 0.32) << "quality " << static_cast<int>(c.level);
         EXPECT_LT(std::sqrt(error / energy), c.largest) << "quality " << static_cast<int>(c.level);
         RecordProperty("rms_error_of_level_" + std::to_string(static_cast<int>(c.level)),
@@ -93,8 +91,8 @@ TEST(SplineSampling, HasTheErrorOfItsImages) {
     }
 }
 
-// A height map read between the nodes has the variance of the realisation too, within the images' energy.
-// Points on a shifted lattice fine enough for every mode give a trigonometric polynomial's variance exactly.
+// A height map between the nodes has the variance of the realisation, too, up to the images' energy. A
+// shifted lattice that resolves every mode gives the variance of a trigonometric polynomial exactly.
 TEST(SplineSampling, KeepsTheVarianceOfTheRealisation) {
     Scene scene;
     scene.waves.cascades = {{150.0, 48}};
@@ -103,11 +101,12 @@ TEST(SplineSampling, KeepsTheVarianceOfTheRealisation) {
     for (auto& point : points) point += glm::vec2(0.71f, 1.13f);
     const double variance =
         mean_of(sample(frame, 0, points).vectors(Displacement), [](auto d) { return double(d.z) * d.z; });
-    // rms error 1.5e-5 of the rms height (above), its cross term with the height at most twice that.
+    // The rms error is 1.5e-5 of the rms height (above); its cross term with the height is at most twice
+    // that.
     EXPECT_NEAR(variance / frame.realisation(0).m0, 1.0, 5e-5);
 }
 
-// At the grid's own nodes and between them the sum must be periodic, without a seam.
+// The sum is periodic at the grid's nodes and between them, without a seam.
 TEST(SplineSampling, IsPeriodicAndContinuousAcrossTheSeam) {
     Scene scene;
     scene.waves.cascades = {{150.0, 48}};

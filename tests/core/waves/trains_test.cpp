@@ -1,4 +1,4 @@
-// Wave trains: the energy of their range, what a footprint hides of them, directions, phases.
+// Wave trains: the energy of their range, what a footprint hides, directions and phases.
 #include "core/waves/trains.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ Trains<double> trains_of(const Scene& scene, double footprint_m = 0.0) {
     return make_trains<double>(*prepare(scene), resolve_trains(*prepare(scene), footprint_m));
 }
 
-// One train of a given steepness kh, 10 m long, from a swell whose whole spectrum lies in the range.
+// One train of given steepness kh, 10 m long, from a swell whose whole spectrum is within the range.
 Scene one_train(double kh, double choppiness) {
     Scene scene = trochoid();
     scene.sea.wind_speed_mps = 0.0;
@@ -65,7 +65,7 @@ TEST(TrainsPlan, DefaultRangeHoldsTheSea) {
         EXPECT_EQ(plan.count, 60);
         EXPECT_LE(plan.shortest_m, 0.02);
         const DirectionalSpectrum spectrum(scene.sea);
-        // 0.1 % is longer by design; of what is shorter than 2 cm a light wind's sea has the most.
+        // 0.1 % lies above the range by design; below 2 cm the sea of a light wind has the most.
         EXPECT_GE(moments(spectrum, kTwoPi / plan.longest_m, kTwoPi / plan.shortest_m).m0,
                   0.99 * spectrum.m0());
     }
@@ -83,7 +83,7 @@ TEST(TrainsPlan, TenTrainsAreBelowThePixel) {
         EXPECT_EQ(below, plan.below_pixel);
     }
     EXPECT_LT(resolve_trains(*prepare(scene), 0.005).shortest_m,
-              0.01);  // longer ones alone would all be visible
+              0.01);  // or all trains would be visible
     Scene few = scene;
     few.waves.trains = 8;
     EXPECT_GE(resolve_trains(*prepare(few), 0.5).below_pixel, 4);
@@ -125,7 +125,7 @@ TEST(Trains, AreAGeometricProgression) {
     EXPECT_NEAR(trains.wavelength_m.back() / plan.shortest_m, std::sqrt(ratio), 1e-12);
 }
 
-// The bins' integrals and the band's are cut at other places: both are good to 1e-7.
+// The integrals of the bins and of the band split at different places; each is exact to 1e-7.
 TEST(Trains, HoldTheEnergyOfTheirRange) {
     for (const Scene& scene : many_seas())
         for (const int count : {1, 7, 60, 1000}) {
@@ -173,13 +173,13 @@ TEST(Trains, OfACalmSeaAreFlat) {
     for (const auto m : kSpectralMoments) EXPECT_EQ(total(trains).*m, 0.0);
 }
 
-// Appendix A: 1 − √(1 − k²h²) along the train's direction, for every steepness that doesn't loop; k²h²/2 for
-// small ones, where the printed form has no digits left.
+// Appendix A: 1 − √(1 − k²h²) along the train's direction for every steepness without loops, and k²h²/2 for
+// small ones, where the printed form cancels.
 TEST(TrainVariance, OfOneTrochoidIsTheClosedForm) {
     for (const double kh : {0.9, 0.3, 0.01}) {
         const auto trains = trains_of(one_train(kh, 1.0));
         const double k = kTwoPi / trains.wavelength_m[0], q = k * trains.height_m[0];
-        ASSERT_NEAR(q, kh, 1e-3 * kh);  // the swell's spectrum within the range
+        ASSERT_NEAR(q, kh, 1e-3 * kh);  // not all of the swell's spectrum is in the range
         const SpectralMoments& own = trains.alone[0];
         const double closed = 1.0 - std::sqrt(1.0 - q * q);
         EXPECT_NEAR(own.mss(), closed, 1e-12);
@@ -194,8 +194,8 @@ TEST(TrainVariance, OfOneTrochoidIsTheClosedForm) {
     EXPECT_NEAR(gentle.alone[0].mss(), 0.5 * q * q, 1e-12 * q * q);
 }
 
-// The mean over the displaced surface of slope², (1/λ) ∫ (dz/ds)² / (dx/ds) ds: periodic, so that the
-// midpoint rule converges like its largest harmonic, (q/(1 + √(1 − q²)))^1000.
+// The mean of slope² over the displaced surface, (1/λ) ∫ (dz/ds)² / (dx/ds) ds. The integrand is periodic, so
+// the midpoint rule converges as fast as its harmonics decay, (q/(1 + √(1 − q²)))^1000.
 TEST(TrainVariance, IsTheMeanSquareSlopeOfTheDisplacedSurface) {
     for (const double choppiness : {0.0, 0.5, 1.0})
         for (const double weight_footprint_m : {0.0, 3.0}) {
@@ -218,7 +218,7 @@ TEST(Trains, ThatWouldLoopAreLimited) {
     for (const double choppiness : {1.0, 10.0}) {
         const auto trains = trains_of(one_train(5.0, choppiness));
         const double k = kTwoPi / trains.wavelength_m[0];
-        EXPECT_NEAR(k * trains.height_m[0], 5.0, 0.01);  // the energy stays
+        EXPECT_NEAR(k * trains.height_m[0], 5.0, 0.01);  // the energy is unchanged
         EXPECT_LE(k * trains.horizontal_m[0], 1.0 + 1e-15);
         EXPECT_NEAR(trains.alone[0].mss(), 25.0, 0.1);  // (kh)²/(1 + 0)
         for (const double footprint_m : {0.0, 2.7, 3.0, 4.0, 1e3})
@@ -229,7 +229,7 @@ TEST(Trains, ThatWouldLoopAreLimited) {
     }
 }
 
-// Nothing is lost between what a pixel shows and what it hides, whatever its size.
+// Shown and hidden variances add up to the total for every footprint.
 TEST(TrainVariance, ResolvedAndHiddenAreTheWhole) {
     for (const Scene& scene : many_seas()) {
         const auto trains = trains_of(scene);
@@ -239,7 +239,7 @@ TEST(TrainVariance, ResolvedAndHiddenAreTheWhole) {
             SpectralMoments both = resolved(trains, filter, footprint_m);
             const SpectralMoments rest = hidden(trains, filter, footprint_m);
             both += rest;
-            // Sums of at most 70 terms of any sign.
+            // Sums of at most 70 terms of either sign.
             for (const auto m : kSpectralMoments)
                 EXPECT_NEAR(both.*m, all.*m,
                             1e-14 * (all.xx + all.yy + all.xxxx + all.yyyy + all.m0 + all.m_minus1));
@@ -257,7 +257,7 @@ TEST(TrainVariance, ResolvedAndHiddenAreTheWhole) {
     }
 }
 
-// What is beyond the range is the spectrum's own, both sides of it.
+// The moments outside the range are the spectrum's, on both sides.
 TEST(TrainVariance, OutsideTheRangeIsTheRestOfTheSpectrum) {
     Scene scene = trochoid();
     scene.waves.choppiness = 0.5;
@@ -273,10 +273,9 @@ TEST(TrainVariance, OutsideTheRangeIsTheRestOfTheSpectrum) {
     EXPECT_NEAR(total(trains).m0, spectrum.m0(), 1e-6 * spectrum.m0());
 }
 
-// The trains' own moments are those of the spectrum, within what the trochoid's form and 60 wavelengths
-// change: the slopes of a train of steepness q are steeper by 2/(1 + √(1 − q²)) ≤ 1 + q²/2, here below 1 %,
-// and a bin's slope differs from that at its middle by its width squared, (ln 1.17)²/24 of a factor of up
-// to 4.
+// The trains' moments agree with the spectrum's up to two effects. A trochoid of steepness q has a slope
+// variance larger by 2/(1 + √(1 − q²)) ≤ 1 + q²/2, here below 1 %. And a bin's slope differs from that at its
+// middle by its width squared, (ln 1.17)²/24, times a factor of up to 4.
 TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
     for (const double choppiness : {0.0, 0.8}) {
         Scene scene = trochoid();
@@ -291,8 +290,9 @@ TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
     }
 }
 
-// Over seeds, the energy-weighted mean of k̂ and of its square are the spectrum's. Of 400 seeds the standard
-// error is √(Σh⁴)/(Σh² √400), some 0.02 (a dozen trains hold the energy); three of them.
+// Over seeds, the energy-weighted means of k̂ and of its square are the spectrum's. The standard error over
+// 400 seeds is √(Σh⁴)/(Σh² √400), some 0.02 (a dozen trains hold the energy); the tolerance is three times
+// that.
 TEST(Trains, DirectionsFollowTheSpectrum) {
     Scene scene = trochoid();
     scene.sea.wind_direction_deg = 130.0;
@@ -324,7 +324,7 @@ TEST(Trains, AreTheSeedsOwn) {
     }
 }
 
-// Uniform phases: the mean of e^{iφ} over n has standard error √(1/2n) in each part; three of them.
+// Uniform phases: the mean of e^{iφ} over n has a standard error of √(1/2n) in each part; three times that.
 TEST(Trains, PhasesAreUniform) {
     Scene scene = trochoid();
     scene.waves.trains = 1000;
@@ -333,7 +333,7 @@ TEST(Trains, PhasesAreUniform) {
     for (int seed = 1; seed <= kSeeds; ++seed) {
         scene.shot.seed = static_cast<std::uint64_t>(seed);
         const TrainsPlan plan = resolve_trains(*prepare(scene), 0.0);
-        Scene calm = scene;  // without energy there are no directions to find
+        Scene calm = scene;  // no energy, so directions needn't be computed
         calm.sea.wind_speed_mps = 0.0;
         for (const double cycles : make_trains<double>(*prepare(calm), plan).start_cycles)
             mean += std::polar(1.0 / (1000.0 * kSeeds), kTwoPi * cycles);
@@ -353,14 +353,14 @@ TEST(Trains, LoopExactly) {
     const auto at = [&](double t_s) { return phases_at(trains, {3.0, -4.0}, time_within_loop_s(t_s, 5.0)); };
     EXPECT_EQ(at(0.0), at(5.0));
     EXPECT_EQ(at(0.5), at(5.5));
-    // Thousands of loops later, at a time that is no double: 40 Hz of the time's own rounding.
+    // Thousands of loops later, at a time that isn't a double: 40 Hz times the time's own rounding.
     const auto soon = at(1.0 / 24.0), late = at(1.0 / 24.0 + 5.0 * 4096);
     for (std::size_t i = 0; i < soon.size(); ++i) EXPECT_NEAR(soon[i], late[i], 40.0 * 4e-12);
     EXPECT_EQ(time_within_loop_s(5.0 - 1e-16, 5.0), 0.0);
     EXPECT_EQ(time_within_loop_s(7.25, 0.0), 7.25);
 }
 
-// Against 64 bits of mantissa: the products' own rounding there is 4e8 cycles · 2⁻⁶⁴ = 2e-11.
+// Against a mantissa of 64 bits, where the products round by 4e8 cycles · 2⁻⁶⁴ = 2e-11.
 TEST(Trains, PhasesAreExactFarAwayAndLate) {
     const auto trains = trains_of(trochoid(), 0.01);
     const glm::dvec2 origin_m(1e6 + 0.3, -987654.321);
@@ -387,7 +387,7 @@ TEST(TrainRealisation, IsThatOfTheTrains) {
     }
     EXPECT_NEAR(all.m0, m0, 1e-12 * m0);
     EXPECT_NEAR(all.mss, mss, 1e-12 * mss);
-    EXPECT_NEAR(std::atan2(all.north, all.east), 0.0, 0.5);  // down the wind, of one seed
+    EXPECT_NEAR(std::atan2(all.north, all.east), 0.0, 0.5);  // downwind, for one seed
     const Realisation coarse = realisation(trains, {}, {.cell_m = 10.0, .pixel_m = 1.0});
     EXPECT_NEAR(coarse.m0, resolved(trains, {}, 10.0).m0, 1e-12 * m0);
     EXPECT_NEAR(coarse.m_minus1, resolved(trains, {}, 10.0).m_minus1, 1e-12 * all.m_minus1);

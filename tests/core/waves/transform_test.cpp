@@ -1,4 +1,4 @@
-// Lines against the sum that they are, and the recorded plans.
+// 1-D transforms against the defining sum, and the recorded plans.
 #include "core/waves/transform.h"
 
 #include <fftw3.h>
@@ -15,7 +15,7 @@
 namespace pelagic {
 namespace {
 
-// Rounding of log2(N) stages, each of half a unit in the last place of sums that grow as √N.
+// Rounding of log2(N) stages: half a unit in the last place each, of sums that grow as √N.
 template <class T>
 void expect_the_sum(int n) {
     const std::size_t stride = line_stride<T>(n);
@@ -44,7 +44,7 @@ TEST(LineTransform, IsTheSumWithAPositiveExponent) {
     }
 }
 
-// Another FFTW than Debian's may know nothing of them: then this fails, and only speed is lost.
+// A different build of FFTW may reject the recorded plans. Then this fails, and only speed is lost.
 TEST(LineTransform, RecordedPlansAreThoseOfThisFftw) {
     EXPECT_EQ(fftwf_import_wisdom_from_string(kSingleLineWisdom), 1);
 }

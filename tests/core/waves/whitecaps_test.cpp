@@ -1,4 +1,4 @@
-// Coverage from moments of the Jacobian: the functions of whitecaps.h alone.
+// Coverage from moments of the Jacobian: tests the functions of whitecaps.h alone.
 #include "core/waves/whitecaps.h"
 
 #include <gtest/gtest.h>
@@ -36,10 +36,10 @@ TEST(WilsonHilferty, IsInvertibleRisingAndTheIdentityWithoutSkewness) {
             EXPECT_NEAR(to_normal(y, 0.0), y, 0.0);
         }
     }
-    // Across the switch to the identity, (z² − 1) skewness/6: 1e-4 × 8/6 at three deviations.
+    // Across the threshold to the identity the change is (z² − 1) skewness/6: 1e-4 × 8/6 at three deviations.
     EXPECT_NEAR(to_normal(3.0, 1.01e-4), to_normal(3.0, 0.99e-4), 2e-4);
-    // A Pearson III variable is a shifted gamma: skewness 2 is the exponential, P(x − 1 < z) = 1 − e^(−(z +
-    // 1)). Wilson and Hilferty are good to 0.01 there.
+    // A Pearson III variable is a shifted gamma. Skewness 2 gives the exponential, P(x − 1 < z) = 1 − e^(−(z
+    // + 1)), for which Wilson and Hilferty are accurate to 0.01.
     for (double z : {-0.5, 0.0, 1.0, 2.0})
         EXPECT_NEAR(0.5 * std::erfc(-to_normal(z, 2.0) / std::sqrt(2.0)), 1.0 - std::exp(-(z + 1.0)), 0.01);
 }
@@ -66,15 +66,15 @@ TEST(Coverage, IsAShareThatRisesWithTheThresholdAndTheStepWithoutVariance) {
     EXPECT_EQ(coverage<float>({1.0f, 0.0f, 0.0f}, never, true), 0.0f);
 }
 
-// Two moments are Dupuy and Bruneton's erf to the letter.
+// Two moments give exactly Dupuy and Bruneton's erf.
 TEST(Coverage, OfTwoMomentsIsThePapers) {
     for (double epsilon : {0.2, 0.6, 1.0, 1.3})
         EXPECT_NEAR(coverage<double>({0.95, 0.04, 0.002}, epsilon, false),
                     0.5 * (1.0 + std::erf((epsilon - 0.95) / (std::sqrt(2.0) * 0.2))), 1e-15);
 }
 
-// The strain's covariance of a real sea, and a few shown derivatives: J's cumulants against as many draws of
-// the three Gaussians. 20 batches give the draws' own error; five of those.
+// The strain covariance of a real sea and a few shown derivatives: J's cumulants against random draws of the
+// three Gaussians. 20 batches give the sampling error; the tolerance is five times that.
 class GaussianRemainder : public testing::TestWithParam<double> {};
 
 TEST_P(GaussianRemainder, GivesTheseJacobianMoments) {
@@ -122,11 +122,11 @@ TEST_P(GaussianRemainder, GivesTheseJacobianMoments) {
             for (double value : batches[n]) mean += value / kBatches;
             for (double value : batches[n]) variance += (value - mean) * (value - mean) / (kBatches - 1);
             EXPECT_NEAR(mean, expected[n], 5.0 * std::sqrt(variance / kBatches)) << "cumulant " << n + 1;
-            // The test sees something: the error is small against the cumulant itself, or its scale.
+            // The error is small against the cumulant itself or its scale, so that the test is meaningful.
             EXPECT_LT(5.0 * std::sqrt(variance / kBatches),
                       0.2 * std::max(std::abs(expected[n]), std::pow(sigma, n + 1)));
         }
-        if (GetParam() > 1.0) continue;  // a J that lopsided is calm: coverage is for seas
+        if (GetParam() > 1.0) continue;  // coverage is meant for seas; a J this skewed isn't one
         two_moments_off += std::abs(std::log(coverage(theory, threshold, false) / foam));
         three_moments_off += std::abs(std::log(coverage(theory, threshold, true) / foam));
         EXPECT_NEAR(coverage(theory, threshold, true) / foam, 1.0, 0.1);
@@ -136,7 +136,7 @@ TEST_P(GaussianRemainder, GivesTheseJacobianMoments) {
     }
 }
 
-// The choppiness of a sea, and one at which the quadratic terms of J are as large as the linear ones.
+// The choppiness of a sea, and one at which J's quadratic terms are as large as the linear ones.
 INSTANTIATE_TEST_SUITE_P(Choppiness, GaussianRemainder, testing::Values(1.0, 4.0));
 
 TEST(JacobianMoments, AreExactWhereNothingIsHidden) {
@@ -146,11 +146,11 @@ TEST(JacobianMoments, AreExactWhereNothingIsHidden) {
     EXPECT_EQ(j.third, 0.0f);
 }
 
-// A mip level: parts' moments and the spread of their means. Against the definition, about the whole's mean.
+// Mip levels: the mixture's moments against their definition.
 TEST(MomentSum, IsTheMixtureOfItsParts) {
     std::mt19937 generator(5);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    for (double scale : {1.0, 1e-3}) {  // rough, and a calm sea where squares of the mean would cancel
+    for (double scale : {1.0, 1e-3}) {  // a rough sea, and a calm one, where squares of the mean would cancel
         std::vector<JacobianMoments<float>> parts;
         for (int i = 0; i < 16; ++i) {
             const auto draw = [&] { return uniform(generator) * scale; };
@@ -170,8 +170,8 @@ TEST(MomentSum, IsTheMixtureOfItsParts) {
             third += (part.third + 3.0 * d * part.variance + d * d * d) / 16.0;
         }
         const auto whole = sum.moments();
-        // Rounding of single precision relative to the parts' spread, some 1e-7 of it per operation, and of
-        // the mean.
+        // Rounding in single precision, some 1e-7 per operation, relative to the parts' spread and to the
+        // mean.
         EXPECT_NEAR(whole.mean, mean, 2e-7);
         EXPECT_NEAR(whole.variance / variance, 1.0, 1e-4);
         EXPECT_NEAR(whole.third / std::pow(variance, 1.5), third / std::pow(variance, 1.5),

@@ -1,4 +1,4 @@
-// The command line, run as people run it: what it accepts, what it says, and its exit status.
+// The command line as users run it: what it accepts, its messages, and its exit status.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class Cli : public ::testing::Test {
     Ended cli(std::vector<std::string> arguments) const {
         return run({.arguments = std::move(arguments), .folder = folder()});
     }
-    // The numbers of the mesh layers in a folder below ours.
+    // The numbers of the mesh layers in a subfolder.
     std::vector<std::string> frames_in(const std::string& out) const {
         std::vector<std::string> found;
         for (const auto& [path, bytes] : files_below(folder() / out / "mesh")) {
@@ -186,12 +186,11 @@ TEST_F(Cli, ExplainPrintsThePlanAndWritesNothing) {
     for (const char* part : {"normal", "velocity", "displacement", "transform"})
         EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
     EXPECT_EQ(files_below(folder()).size(), 1u);
-    // A sea of 8192² points is explained as quickly as any: no transform is planned, nothing of its size is
-    // held. A buffer of that size alone (8193² positions, 800 MB) would not fit into the address space that
-    // is allowed here.
+    // Explaining a sea of 8192² points is as quick as any: no transform is planned, nothing of that size
+    // allocated. The address space is limited below one such buffer (8193² positions, 800 MB).
     write_file(folder() / "large.toml",
                "[surface]\nresolution = 8192\n[output]\nmaps = [\"normal\"]\nmap_resolution = 8192\n");
-#if !defined(__SANITIZE_ADDRESS__)  // whose shadow takes terabytes of addresses
+#if !defined(__SANITIZE_ADDRESS__)  // its shadow memory takes terabytes of addresses
     const Ended large = run({.arguments = {"explain", "large.toml"},
                              .folder = folder(),
                              .most_address_space = std::size_t{600} << 20});
@@ -237,7 +236,7 @@ TEST_F(Cli, ALogGetsPlainLinesAndFewOfThem) {
     EXPECT_FALSE(has(ended.err, "\r") || has(ended.err, "\x1b")) << ended.err;
     EXPECT_TRUE(has(ended.err, "building the sea\n")) << ended.err;
     EXPECT_TRUE(has(ended.err, "frame 12: 12 of 12, ")) << ended.err;
-    // The stage, the first and the last frame, and one for every five seconds between.
+    // One line for the stage, the first and the last frame, and every five seconds between.
     EXPECT_LE(std::count(ended.err.begin(), ended.err.end(), '\n'),
               3 + static_cast<long>(ended.seconds / 5.0))
         << ended.err;

@@ -1,5 +1,5 @@
-// pelagic explain, with and without --measure: what it says of a shot and what it costs. Times are never
-// compared: other programs run beside this one.
+// pelagic explain, with and without --measure: its description of a shot and the costs. Times are never
+// compared: other programs run at the same time.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -35,7 +35,7 @@ class Explain : public ::testing::Test {
         arguments.insert(arguments.end(), options.begin(), options.end());
         return run({.arguments = arguments, .folder = folder()});
     }
-    // The table's rows: a name, two counts, three amounts of bytes, twice milliseconds with their spread.
+    // The table's rows: a name, two counts, three byte counts, two times with their spread.
     std::vector<Price> prices(const std::string& shot) const {
         const Ended ended = explain(shot, {"--measure"});
         EXPECT_EQ(ended.status, 0) << ended.err;
@@ -48,7 +48,7 @@ class Explain : public ::testing::Test {
             if (std::smatch m; std::regex_match(line, m, row))
                 found.push_back({m[1], std::stol(m[2]), std::stol(m[3])});
         EXPECT_FALSE(found.empty()) << ended.out;
-        // The last row is what the page above promises.
+        // The last row agrees with the description above.
         std::smatch promised;
         EXPECT_TRUE(
             std::regex_search(ended.out, promised, std::regex(R"(Each frame: (\d+) real transforms)")));
@@ -90,8 +90,8 @@ TEST_F(Explain, GivesEachOutputAndEffectAPrice) {
     EXPECT_EQ(names(rows), expected);
 }
 
-// One mesh on one grid: position's three fields are never alone, normals have the two slopes to themselves
-// and share J's three with whitecaps, velocities have their three; a variance is no field.
+// One mesh on one grid. Position's three fields are always needed; normals need two slopes for themselves,
+// and J's three fields, which they share with whitecaps; velocities need three; a variance needs none.
 TEST_F(Explain, CountsWhatNothingElseNeeds) {
     std::map<std::string, long> transforms, lines;
     for (const Price& price : prices(kOneCascade)) {
@@ -106,7 +106,7 @@ TEST_F(Explain, CountsWhatNothingElseNeeds) {
     EXPECT_EQ(transforms["mesh whitecaps"], 0);
     EXPECT_EQ(transforms["horizontal displacement"], 7);
     EXPECT_EQ(transforms["whitecaps"], 0);
-    // The largest mode of 32 samples is the 15th: 16 columns and 16 pairs of rows a field.
+    // The largest mode of 32 samples is 15: 16 columns and 16 pairs of rows per field.
     EXPECT_EQ(lines["mesh velocity"], 3 * 32);
 }
 
@@ -158,13 +158,12 @@ TEST_F(Explain, CanBeInterrupted) {
     EXPECT_EQ(measuring.wait().status, 128 + SIGINT);
 }
 
-// Grids of 32768² in double, for a mesh and for maps: terabytes.
+// Grids of 32768² in double, for mesh and maps: terabytes.
 TEST_F(Explain, RefusesToMeasureWhatDoesNotFit) {
     const Ended ended = explain(
-        "[quality]\nlevel = \"reference\"\n[waves]\ncascades = [ { size_m = 4000.0, resolution = 8192 }, { "
-        "size_m = "
-        "150.0, resolution = 8192 }, { size_m = 5.0, resolution = 8192 } ]\n[surface]\nresolution = "
-        "8192\nsize_m = 5\n"
+        "[quality]\nlevel = \"reference\"\n[waves]\ncascades = [ { size_m = 4000.0, resolution = 8192 }, "
+        "{ size_m = 150.0, resolution = 8192 }, { size_m = 5.0, resolution = 8192 } ]\n"
+        "[surface]\nresolution = 8192\nsize_m = 5\n"
         "[output]\nmaps = [\"displacement\", \"normal\", \"whitecaps\"]\nmap_resolution = 4000\n",
         {"--measure"});
     EXPECT_EQ(ended.status, 1);
@@ -187,8 +186,8 @@ TEST_F(Explain, RefusesWhereThisProcessGetsNoMemory) {
     EXPECT_TRUE(has(ended.err, "measuring holds the sea twice")) << ended.err;
 }
 
-// 60 trains from 100 m to 1 m: a train every 7.4 %, in the middle of each bin. A mesh of 0.78 m cells shows
-// waves from 1.5625 m: ln(100/1.5625)/ln(100) of the way, 54.2 bins, whose 54 trains are longer.
+// 60 trains from 100 m to 1 m: one every 7.4 %, in the middle of its bin. A mesh with cells of 0.78 m shows
+// waves from 1.5625 m: ln(100/1.5625)/ln(100) of 60 are 54.2 bins, so 54 trains are longer.
 TEST_F(Explain, SaysThatTrainsAreNotTransformed) {
     const Ended ended =
         explain("[waves]\nmodel = \"trochoid\"\nlongest_m = 100\nshortest_m = 1\n[surface]\nsize_m = 200\n");

@@ -1,6 +1,5 @@
-// pelagic render and pelagic preview --offscreen, run as people run them: the files that they leave, what
-// they refuse, and that nothing half is ever under a name. What is in the pictures is tested with their
-// libraries.
+// pelagic render and pelagic preview --offscreen as users run them: the files written, what is rejected, and
+// that no file is ever incomplete. The contents of pictures are tested with their libraries.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -26,7 +25,7 @@ bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
-// A shot whose pictures take a moment.
+// A shot whose pictures take a moment only.
 std::string small_shot(const std::string& quality = "draft") {
     return "[shot]\nname = \"small\"\nframes = [1, 4]\n"
            "[waves]\ncascades = [ { size_m = 100.0, resolution = 32 } ]\n"
@@ -61,12 +60,12 @@ std::set<std::string> exr_channels(const fs::path& file) {
     return names;
 }
 
-// As design.md has them: the picture, and a layer for each term.
+// The picture, and a layer for each term.
 const std::set<std::string> kChannels{"R",     "G",     "B",      "sun.R",  "sun.G",
                                       "sun.B", "sky.R", "sky.G",  "sky.B",  "sea.R",
                                       "sea.G", "sea.B", "foam.R", "foam.G", "foam.B"};
 
-// The largest value in a layer; 0: it is black.
+// The largest value in a layer; 0 means black.
 float brightest(const fs::path& file, const std::string& layer) {
     Imf::InputFile exr(file.c_str());
     const auto [width, height] = exr_size(file);
@@ -91,7 +90,7 @@ class Pictures : public ::testing::Test {
         for (const auto& [path, bytes] : files_below(folder() / out)) names.push_back(path);
         return names;
     }
-    // Refused with this status and all of these words, and nothing was begun: no file, no folder.
+    // Expects rejection with this status and all of these words, without any new file or folder.
     void refused(const std::vector<std::string>& arguments, int status,
                  const std::vector<std::string>& says) {
         const auto entries = [&] {
@@ -140,7 +139,7 @@ TEST_F(Pictures, RenderTakesSizeSamplesTermsAndExposure) {
     EXPECT_GT(brightest(sea, "sea"), 0.0f);
     for (const char* off : {"sun", "sky", "foam"}) EXPECT_EQ(brightest(sea, off), 0.0f) << off;
 
-    // The exposure is the PNG's; the radiance is what it is.
+    // The exposure applies to the PNG; the radiance is unchanged.
     ASSERT_EQ(cli({"render", "small.toml", "--frames", "2", "--out", "dark", "--size", "20x11", "--terms",
                    "sea", "--samples", "2", "--exposure", "-1"})
                   .status,
@@ -185,7 +184,7 @@ TEST_F(Pictures, RenderRefusesWhatItCannotDoBeforeItBegins) {
     refused({"render", "small.toml", "--threads", "0"}, 2, {"--threads"});
     refused({"render"}, 2, {"SHOT.toml is required", "pelagic render --help"});
     refused({"render", "small.toml", "--sample", "2"}, 2, {"'--sample' is not an option", "--samples?"});
-    // 65536 · 16 samples a side are more than a picture can have.
+    // 65536 · 16 samples on a side exceed the limit.
     refused({"render", "small.toml", "--size", "65536x1", "--samples", "16"}, 1,
             {"small.toml: ", "fewer samples"});
     refused({"render", "missing.toml"}, 1, {"missing.toml: the shot file does not exist"});
@@ -241,7 +240,7 @@ TEST_F(Pictures, PreviewSaysThatItsReferenceIsOfSinglePrecision) {
     EXPECT_TRUE(has(ended.err, "pelagic render")) << ended.err;
 }
 
-// What stands in the way is a file, which stops even a superuser.
+// A file is in the way, which stops even root.
 TEST_F(Pictures, AFolderThatCantBeMadeIsSaid) {
     write_file(folder() / "in-the-way", "a file");
     for (const std::vector<std::string>& arguments :
@@ -268,7 +267,7 @@ TEST_F(Pictures, AFullDiskIsSaidAndWhatIsThereIsWhole) {
     EXPECT_TRUE(leftovers(folder() / "disk").empty());
 }
 
-// Many frames, stopped when the first is there.
+// Many frames, interrupted when the first is complete.
 TEST_F(Pictures, AnInterruptedRenderLeavesWholeFilesAndSaysHowMany) {
     std::string text = small_shot();
     text.replace(text.find("[1, 4]"), 6, "[1, 9000]");

@@ -39,7 +39,7 @@ std::string read_all(int descriptor) {
     return text;
 }
 
-// Only what is allowed between fork() and exec().
+// Does only what is allowed between fork() and exec().
 [[noreturn]] void become(const Launch& launch, char* const* arguments, int out, int err) {
     for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) ::signal(signal, SIG_DFL);
     if (launch.ignore_interrupt) ::signal(SIGINT, SIG_IGN);
@@ -97,8 +97,7 @@ std::string why_torn_crate(const std::string& bytes) {
     return number_at(last + 16) + number_at(last + 24) == contents ? "" : "has sections of other lengths";
 }
 
-// The format: eight bytes, then chunks of length, name, content and a sum, to the one that says that it is
-// the last.
+// The format: eight bytes, then chunks of length, name, content and checksum; the last one is IEND.
 std::string why_torn_png(const std::string& bytes) {
     if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) return "does not begin as a PNG";
     for (std::size_t at = 8; at + 12 <= bytes.size();) {
@@ -118,7 +117,7 @@ std::string why_torn(const fs::path& file) {
     if (extension == ".json") return nlohmann::json::accept(read_file(file)) ? "" : "is not JSON";
     if (extension == ".exr") return Imf::checkOpenEXRFile(file.c_str()) ? "is not a whole OpenEXR file" : "";
     if (extension == ".png") return why_torn_png(read_file(file));
-    if (extension == ".toml") return {};  // a test's own
+    if (extension == ".toml") return {};  // written by the test
     return "is of an unknown kind";
 }
 
@@ -126,7 +125,7 @@ bool is_hidden(const fs::path& file) {
     return file.filename().string().starts_with('.');
 }
 
-// A mount namespace of our own: as root, or else as root of a user namespace of our own.
+// Enters a private mount namespace, as root, or else as root of a new user namespace.
 std::string private_mounts() {
     static const std::string problem = [] {
         const std::string user = std::to_string(getuid()), group = std::to_string(getgid());
@@ -220,7 +219,7 @@ std::string Running::messages() const {
 Ended Running::wait() {
     Ended ended;
     char buffer[4096];
-    // The terminal is read until nobody holds its other end.
+    // Reads the terminal until its other end is closed everywhere.
     for (ssize_t n; terminal_ >= 0 && (n = read(terminal_, buffer, sizeof buffer)) > 0;)
         ended.err.append(buffer, static_cast<std::size_t>(n));
     reap(true);

@@ -1,4 +1,4 @@
-// Runs the real program, as a person or a farm does, and looks at what it leaves on disk.
+// Runs the real program as users and farms do, and inspects the files that it leaves.
 #pragma once
 
 #include <sys/types.h>
@@ -12,7 +12,7 @@
 
 namespace pelagic::test {
 
-// A new folder of its own below the system's temporary folder, deleted with all that is in it.
+// A new folder below the system's temporary folder, deleted with its contents.
 class TempFolder {
   public:
     TempFolder();
@@ -31,18 +31,18 @@ struct Launch {
     std::filesystem::path program = PELAGIC_PROGRAM;
     std::filesystem::path stdout_to{};   // empty: captured
     bool terminal = false;               // stderr is a terminal of 80 columns
-    bool ignore_interrupt = false;       // begins with SIGINT ignored, as background jobs of a script do
+    bool ignore_interrupt = false;       // starts with SIGINT ignored, like background jobs of a script
     std::size_t most_address_space = 0;  // bytes; 0: unlimited
 };
 
 struct Ended {
-    int status = -1;  // as shells count: the exit status, or 128 + the signal that killed it
+    int status = -1;  // as in shells: the exit status, or 128 + the number of the signal that killed it
     bool killed = false;
     std::string out, err;
     double seconds = 0.0;
 };
 
-// A started program; ended at the latest with this object.
+// A started program; terminated with this object at the latest.
 class Running {
   public:
     explicit Running(const Launch& launch);
@@ -52,7 +52,7 @@ class Running {
 
     void send(int signal);
     bool has_ended();
-    std::string messages() const;  // what is on its stderr so far; not for a terminal
+    std::string messages() const;  // its stderr so far; not for a terminal
     Ended wait();
 
   private:
@@ -62,7 +62,7 @@ class Running {
     pid_t process_ = -1;
     bool ended_ = false;
     int wait_status_ = 0;
-    int out_ = -1, err_ = -1, terminal_ = -1;  // our ends
+    int out_ = -1, err_ = -1, terminal_ = -1;  // this process's ends
     std::chrono::steady_clock::time_point start_;
 };
 
@@ -71,28 +71,28 @@ Ended run(const Launch& launch);
 void write_file(const std::filesystem::path& file, const std::string& text);
 std::string read_file(const std::filesystem::path& file);
 
-// Every file below the folder, hidden ones too, by its path relative to it.
+// Every file below the folder, including hidden ones, by its relative path.
 std::map<std::string, std::string> files_below(const std::filesystem::path& folder);
 
-// What is wrong with the files below the folder, a line each; empty: all are whole. USD text begins with its
-// header and all its brackets and strings are closed; a crate ends with its contents; JSON parses; OpenEXR's
-// own checker reads every pixel; PNG ends with its last chunk. Shot files, which are the tests' own, are not
-// looked at. Hidden files are looked at by leftovers().
+// The incomplete files below the folder, one line each; empty if all are complete. USD text must begin with
+// its header and close all brackets and strings; a crate must end with its table of contents; JSON must parse;
+// OpenEXR's checker must read every pixel; PNG must end with its last chunk. Skips shot files, which the tests
+// write, and hidden files, which leftovers() lists.
 std::string torn_files(const std::filesystem::path& folder);
 
-// Hidden files: temporaries that a dead writer left.
+// Hidden files: temporaries of writers that died.
 std::vector<std::string> leftovers(const std::filesystem::path& folder);
 
-// In which files two bakes differ, a line each; empty: same files, same bytes.
+// The files in which two bakes differ, one line each; empty if all bytes are equal.
 std::string differences(const std::filesystem::path& a, const std::filesystem::path& b);
 
-// Mounts a file system in memory on the folder, seen by this process and its children only, and gone with
-// them. Empty, or why this machine doesn't let us.
+// Mounts a file system in memory on the folder, visible to this process and its children only, and gone with
+// them. Returns an empty string, or why this machine doesn't allow it.
 struct MemoryDisk {
     std::filesystem::path folder{};
     std::string size = "1m";
     bool read_only = false;
-    bool again = false;  // changes the one that is mounted there
+    bool again = false;  // remounts the one that is there
 };
 std::string mount_disk(const MemoryDisk& disk);
 

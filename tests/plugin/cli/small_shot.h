@@ -9,7 +9,7 @@ struct SmallShot {
     std::string name = "small";
     int frames = 4;
     int seed = 1;
-    int quads = 8;  // a side
+    int quads = 8;  // per side
     bool mesh = true;
     std::string maps = "\"displacement\", \"whitecaps\"";
 };

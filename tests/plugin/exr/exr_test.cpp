@@ -1,4 +1,4 @@
-// What is encoded is read back by OpenEXR's own readers.
+// Encoded files, read back with OpenEXR's own readers.
 #include "plugin/exr/exr.h"
 
 #include <ImfChannelList.h>
@@ -44,7 +44,7 @@ class StringReader : public Imf::IStream {
     std::size_t position_ = 0;
 };
 
-// A channel as the file has it: the picture's top row first.
+// A channel as it is in the file: the picture's top row first.
 struct Plane {
     int width = 0, height = 0;
     std::vector<float> samples;
@@ -110,9 +110,8 @@ std::string refusal(const Header& header, const Image& image) {
     return "(not refused)";
 }
 
-// The contract: column i is x = −L/2 + i·L/N, the bottom row is y = −L/2, upwards is +y. A wave that travels
-// along (1, 2)·2π/L is evaluated at those corners and looked for in the picture, whose rows are counted from
-// the top.
+// The contract: column i is at x = −L/2 + i·L/N, the bottom row is at y = −L/2, and up is +y. A wave along
+// (1, 2)·2π/L is evaluated at those corners and compared with the picture, whose rows begin at the top.
 TEST(Exr, TheBottomRowIsTheSmallestYAndColumnsAreCorners) {
     const int n = 8;
     const double length_m = 100.0;
@@ -133,7 +132,8 @@ TEST(Exr, TheBottomRowIsTheSmallestYAndColumnsAreCorners) {
     }
 }
 
-// Lossless: every bit of every float, with each compression, at odd sizes and more rows than one band.
+// Lossless: every bit of every float, with each compression, at odd sizes, and for more than one band of
+// rows.
 TEST(Exr, FloatsComeBackExactlyWithEveryCompression) {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {7, 1}, {37, 101}, {100000, 2}}) {
         const std::vector<float> samples = noise(width, height, 1);
@@ -154,16 +154,15 @@ TEST(Exr, FloatsComeBackExactlyWithEveryCompression) {
     }
 }
 
-// A half has 11 significant bits: rounding to the nearest is off by at most 2^-12 of the next power of two
-// above, so by 2^-11 of the value; below 2^-14 the step is 2^-24, and half of it the error.
+// A half has 11 significant bits: rounding to nearest is off by at most 2^-11 of the value. Below 2^-14 the
+// step is 2^-24, and the error at most half of it.
 TEST(Exr, HalvesAreRoundedToTheNearest) {
     const int n = 70;
     std::vector<float> samples = noise(n, n, 2);
     samples[0] = 1.0f;
-    samples[1] = -0.333251953125f;  // -1365/4096, a half
-    samples[2] =
-        1.0f + 3.0f / 4096.0f;  // nearer to 1 + 4/4096 than to 1 + 2/4096? halfway: to the even, 1 + 4/4096
-    samples[3] = 65519.0f;      // still nearer to 65504 than to the step beyond
+    samples[1] = -0.333251953125f;       // -1365/4096, exactly a half
+    samples[2] = 1.0f + 3.0f / 4096.0f;  // halfway from 1 + 2/4096 to 1 + 4/4096: rounds to the even one
+    samples[3] = 65519.0f;               // nearer to 65504 than to the next step
     samples[4] = 0.0f;
     const std::string bytes = encode_scanline({}, one_channel(n, n, samples, PixelType::Half));
     const Plane plane = read_scanlines(bytes, "Y");
@@ -176,7 +175,7 @@ TEST(Exr, HalvesAreRoundedToTheNearest) {
             inexact += read != exact;
         }
     }
-    EXPECT_GT(inexact, n * n / 2);  // halves they are
+    EXPECT_GT(inexact, n * n / 2);  // the file has halves indeed
     EXPECT_EQ(plane.at(0, n - 1), 1.0f);
     EXPECT_EQ(plane.at(1, n - 1), samples[1]);
     EXPECT_EQ(plane.at(2, n - 1), 1.0f + 4.0f / 4096.0f);
@@ -189,13 +188,13 @@ TEST(Exr, HalvesAreRoundedToTheNearest) {
     EXPECT_EQ(file.header().compression(), Imf::NO_COMPRESSION);
 }
 
-// Interleaved vectors with a gap after each row, and types that differ from channel to channel.
+// Interleaved vectors with a gap after each row, and different types per channel.
 TEST(Exr, ChannelsAreReadThroughTheirStrides) {
     struct Texel {
         float x, y, z;
     };
     const int width = 5, height = 3, row = 9;
-    std::vector<Texel> texels(row * height, Texel{NAN, NAN, NAN});  // the gaps must not be read
+    std::vector<Texel> texels(row * height, Texel{NAN, NAN, NAN});  // NaN in the gaps shows reads of them
     for (int j = 0; j < height; ++j)
         for (int i = 0; i < width; ++i)
             texels[static_cast<std::size_t>(j * row + i)] = {static_cast<float>(i), static_cast<float>(j),
@@ -252,8 +251,8 @@ TEST(Exr, AttributesComeBack) {
     EXPECT_EQ(Imf::wrapmodes(Imf::InputFile(patch_reader).header()), "clamp,clamp");
 }
 
-// Each level is the caller's own data, not something derived from the level above; sizes are halves rounded
-// down.
+// Each level is the data that the caller gives, not derived from the level before. Sizes are halved and
+// rounded down.
 TEST(Exr, EveryMipLevelIsTheCallersOwn) {
     for (const auto& [width, height] : {std::pair{1, 1}, {200, 131}, {64, 64}, {3, 300}, {128, 1}}) {
         std::vector<std::vector<float>> data;
@@ -321,7 +320,7 @@ TEST(Exr, WhatCannotBeShownIsRefusedByChannelAndPixel) {
         samples[0] = bad;
         EXPECT_THROW(encode_mipmapped({}, std::span(&level, 1)), std::invalid_argument);
     }
-    // 65520 is the first that would round to infinity.
+    // 65520 is the smallest that rounds to infinity.
     const std::vector<float> large{65520.0f};
     EXPECT_NE(refusal({}, one_channel(1, 1, large, PixelType::Half)).find("65504"), std::string::npos);
     EXPECT_EQ(read_scanlines(encode_scanline({}, one_channel(1, 1, large)), "Y").at(0, 0), 65520.0f);
@@ -342,7 +341,7 @@ TEST(Exr, MalformedArgumentsAreRefused) {
     EXPECT_NE(refusal({{{"seed", 1}, {"seed", 2}}}, good).find("twice"), std::string::npos);
 }
 
-// No time stamp and nothing from memory that was not set: the same bytes from copies of the data elsewhere.
+// No time stamp and no uninitialised memory: copies of the data elsewhere give the same bytes.
 TEST(Exr, BytesDependOnTheArgumentsAlone) {
     const std::vector<float> a = noise(70, 33, 7), b = a;
     for (const PixelType type : {PixelType::Float, PixelType::Half}) {

@@ -1,4 +1,4 @@
-// Pictures are read as this project's own writers and OpenEXR's write them; what is no picture is refused.
+// Reads pictures from this project's writers and from OpenEXR's, and rejects files that aren't pictures.
 #include "plugin/exr/read.h"
 
 #include <ImfChannelList.h>
@@ -27,9 +27,9 @@
 namespace pelagic::exr {
 namespace {
 
-constexpr int kWidth = 70, kHeight = 66;  // more than one tile either way
+constexpr int kWidth = 70, kHeight = 66;  // more than one tile in each direction
 
-// Exact in halves: red counts columns, green rows from the top, blue is their product's low bits.
+// Exact as halves: red counts columns, green rows from the top, blue is the low bits of their product.
 std::array<float, 3> pixel(int x, int y) {
     return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(x * y % 64) / 8.0f};
 }
@@ -64,7 +64,7 @@ class ReadRgb : public ::testing::Test {
     std::filesystem::path folder_;
 };
 
-// Rows of rising y, as encoders take them.
+// Rows in order of rising y, as encoders expect them.
 struct Planes {
     int width, height;
     std::array<std::vector<float>, 3> values;
@@ -125,7 +125,7 @@ TEST_F(ReadRgb, GreyAloneAndOtherChannelsBeside) {
 }
 
 TEST_F(ReadRgb, ValuesAreHandedOverAsTheyAre) {
-    // Whoever uses them says what they may be: a NaN isn't made into something else here.
+    // The caller decides which values it accepts: a NaN is returned unchanged.
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::vector<float> values{1.0f, nan, -2.0f, std::numeric_limits<float>::infinity()};
     Imf::Header header(2, 2);
@@ -177,7 +177,7 @@ TEST_F(ReadRgb, RefusesWhatIsNoPicture) {
 
 TEST_F(ReadRgb, RefusesIntegersCropsAndDeepPixels) {
     const auto empty_file = [&](const Imf::Header& header) {
-        // Its rows are never written: the header alone is reason enough.
+        // No rows are written: the header alone is reason to reject the file.
         Imf::OutputFile(path("header.exr").c_str(), header);
         return path("header.exr");
     };

@@ -1,4 +1,4 @@
-// Whole files or none: what is under a name after success, failure and a kill.
+// Complete files or none: what a name has after success, failure and a kill.
 #include "plugin/files/files.h"
 
 #include <fcntl.h>
@@ -40,7 +40,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
     return names;
 }
 
-// The error of writing `bytes` to `target`; code() is 0 and what() empty when nothing was thrown.
+// The error of writing `bytes` to `target`; without an exception code() is 0 and what() empty.
 FileError write_error(const fs::path& target, const std::string& bytes) {
     try {
         write_atomically(target, bytes);
@@ -63,7 +63,7 @@ bool says(const FileError& error, const std::string& text) {
     return std::string(error.what()).find(text) != std::string::npos;
 }
 
-// A folder of its own for each test, gone afterwards.
+// A temporary folder for each test.
 class Files : public testing::Test {
   protected:
     Files() {
@@ -79,7 +79,7 @@ class Files : public testing::Test {
     fs::path folder_;
 };
 
-// A small file system in memory, unmounted at the end; only root may mount.
+// A small file system in memory, unmounted at the end. Only root may mount.
 class Mount {
   public:
     Mount(const fs::path& folder, const std::string& options) : folder_(folder) {
@@ -113,8 +113,8 @@ TEST_F(Files, AFileIsWrittenAndReplacedAndNothingElseIsLeft) {
     EXPECT_EQ(names_in(folder_), std::vector<std::string>{"sea.0001.exr"});
 }
 
-// A name without a folder lies in the working folder, and a name as long as the file system takes leaves room
-// for the hidden one beside it.
+// A name without a folder is in the working folder. A name of the greatest length still leaves room
+// for its hidden file.
 TEST_F(Files, PiecesMakeOneFileAndAnErrorBetweenThemLeavesTheOldOne) {
     const fs::path target = folder_ / "a";
     const std::string large(100000, 'x');
@@ -169,11 +169,11 @@ TEST_F(Files, AFullDiskIsReportedAndTheOldFileStays) {
     EXPECT_TRUE(says(error, "--out")) << error.what();
     EXPECT_EQ(contents(target), "the old one");
     EXPECT_EQ(names_in(disk), std::vector<std::string>{"sea.0001.exr"});
-    // The room is free again: what fits can be written at once.
+    // The space is free again: a file that fits can be written at once.
     EXPECT_NO_THROW(write_atomically(target, std::string(30000, 'y')));
 }
 
-// The same half-way failure where nobody may mount: a limit on file sizes instead of a full disk.
+// The same failure halfway where mounting isn't allowed: a limit on file sizes instead of a full disk.
 TEST_F(Files, AFileOverTheLimitIsReportedAndTheOldFileStays) {
     const fs::path target = folder_ / "sea.0001.exr";
     write_atomically(target, std::string_view("the old one"));
@@ -205,7 +205,7 @@ TEST_F(Files, AReadOnlyFileSystemIsReported) {
     EXPECT_EQ(folder_error(disk / "maps").code().value(), EROFS);
 }
 
-// Root may write everywhere, so root is somebody else for a moment.
+// Root may write everywhere, so root becomes another user for a moment.
 TEST_F(Files, AnUnwritableFolderIsReported) {
     const bool is_root = geteuid() == 0;
     const uid_t nobody = 65534;
@@ -245,7 +245,7 @@ TEST_F(Files, FoldersAreMadeWithTheirParents) {
     EXPECT_NO_THROW(ensure_folder(folder_ / "a" / "b"));
     EXPECT_NO_THROW(ensure_folder(folder_ / "a" / "b"));
     EXPECT_NO_THROW(ensure_folder(folder_ / "a" / "c" / ""));
-    EXPECT_NO_THROW(ensure_folder(""));  // the working folder, as a bare name's parent_path() has it
+    EXPECT_NO_THROW(ensure_folder(""));  // the working folder, as parent_path() of a bare name
     EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b"));
     fs::create_directory_symlink(folder_ / "a", folder_ / "link");
     EXPECT_NO_THROW(ensure_folder(folder_ / "link" / "d"));
@@ -273,8 +273,8 @@ TEST_F(Files, SizesOfRegularFilesOnly) {
     EXPECT_EQ(files::file_size(folder_ / "file" / "deep"), std::nullopt);
 }
 
-// A process that writes all the time is killed until it leaves a hidden file. Under the name is a whole file
-// or none; the leftover goes, also with others at work in the same folder.
+// A process that keeps writing is killed until it leaves a hidden file. The name then has a complete file or
+// none, and the leftover is deleted, also while others work in the same folder.
 TEST_F(Files, AKilledWriterLeavesAWholeFileAndItsLeftoverIsCleared) {
     const fs::path target = folder_ / "sea.0001.exr";
     const std::string bytes(8 << 20, 'x');
@@ -299,7 +299,7 @@ TEST_F(Files, AKilledWriterLeavesAWholeFileAndItsLeftoverIsCleared) {
     for (const std::string& name : names_in(folder_)) EXPECT_EQ(name, "sea.0001.exr");
 }
 
-// Whoever clears leftovers all the time never gets in the way of those who write.
+// A process that keeps deleting leftovers never disturbs the writers.
 TEST_F(Files, WritersAndClearersDoNotDisturbEachOther) {
     const auto repeat_in_child = [](auto&& work) {
         const pid_t child = fork();
@@ -326,8 +326,8 @@ TEST_F(Files, WritersAndClearersDoNotDisturbEachOther) {
     EXPECT_EQ(contents(folder_ / "b"), "999");
 }
 
-// Another machine's lock may not be seen from here: its files go only when they are older than a day. A file
-// that is locked stays at any age, and so does what has another name.
+// Another machine's lock may be invisible here, so its files are deleted only when older than a day. A locked
+// file stays at any age, and so does a file with another kind of name.
 TEST_F(Files, OnlyTheLeftoversOfTheDeadAreCleared) {
     const auto make = [this](const char* name, bool old) {
         std::ofstream(folder_ / name) << "x";

@@ -1,4 +1,4 @@
-// What is written is read back by libpng's simplified reader, which shares only the format with the writer.
+// Written files, read back with libpng's simplified reader, which shares only the format with the writer.
 #include "plugin/png/png.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ std::uint32_t number(const std::string& file, std::size_t at) {
     return value;
 }
 
-// The format: eight bytes, then chunks of length, name, content and a sum.
+// The format: eight bytes, then chunks of length, name, content and checksum.
 std::vector<Chunk> chunks_of(const std::string& file) {
     std::vector<Chunk> chunks;
     for (std::size_t at = 8; at < file.size();) {
@@ -64,7 +64,7 @@ TEST(Png, SaysThatItIsSrgbAndOfEightBits) {
     for (const Chunk& chunk : chunks_of(file)) {
         if (chunk.name == "sRGB") srgb = true;
         if (chunk.name == "IHDR") {
-            EXPECT_EQ(chunk.content.at(8), 8);  // bits a sample
+            EXPECT_EQ(chunk.content.at(8), 8);  // bits per sample
             EXPECT_EQ(chunk.content.at(9), 2);  // truecolour
         }
         EXPECT_NE(chunk.name, "tIME");  // the bytes depend on the picture alone

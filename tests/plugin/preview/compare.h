@@ -14,7 +14,7 @@ struct Difference {
     double median = 0.0, last_percent = 0.0, silhouettes = 0.0;
 };
 
-// Relative differences of the whole radiance over pixels that show the same, sea or sky, as all of their
+// Relative differences of the total radiance, over pixels that show the same kind (sea or sky) as all their
 // neighbours in both pictures.
 inline Difference compare(const Picture& a, const Picture& b) {
     const int width = a.resolution.x, height = a.resolution.y;

@@ -8,7 +8,7 @@
 namespace pelagic::gpu {
 namespace {
 
-constexpr int kWidth = 256;  // elements a row
+constexpr int kWidth = 256;  // elements per row
 constexpr int kInputUnit = 15;
 
 }  // namespace
@@ -24,9 +24,8 @@ ShaderSource caller(ShaderSource source, std::string_view declarations, std::str
         "uniform int texels_each;\n"
         "layout(location = 0) out vec4 answer;\n"
         "vec4 given(int i) {\n"
-        "    return texelFetch(input_texels, ivec2(int(gl_FragCoord.x) * texels_each + i, "
-        "int(gl_FragCoord.y)), "
-        "0);\n"
+        "    ivec2 texel = ivec2(int(gl_FragCoord.x) * texels_each + i, int(gl_FragCoord.y));\n"
+        "    return texelFetch(input_texels, texel, 0);\n"
         "}\n" +
         std::string(declarations) + "\nvoid main() {\n" + std::string(body) + "\n}\n");
     return source;

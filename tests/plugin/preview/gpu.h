@@ -1,4 +1,4 @@
-// Functions of the shaders, called by the batch on whatever OpenGL there is without a display.
+// Calls functions of the shaders in batches, on any OpenGL that works without a display.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -12,15 +12,15 @@
 
 namespace pelagic::gpu {
 
-// One context for the whole program, current on its only thread. Throws PreviewError where there is none, so
-// that tests fail and say so.
+// Makes one context for the whole program, current on its only thread. Throws PreviewError if that fails, so
+// that tests fail with its message.
 void need_context();
 
-// A fragment shader that answers, for element i of a batch, `body`'s expression (a vec4) of the i-th
+// A fragment shader that evaluates, for element i of a batch, the expression in `body` (a vec4) from the i-th
 // `texels` inputs, input(0) … input(texels − 1). `declarations` come before it.
 ShaderSource caller(ShaderSource source, std::string_view declarations, std::string_view body);
 
-// Runs a caller's program over inputs, `texels` for each element.
+// Runs such a program over inputs, `texels` for each element.
 std::vector<glm::vec4> run(const ShaderProgram& program, std::span<const glm::vec4> inputs, int texels);
 ShaderProgram program_of(const ShaderSource& fragment);
 

@@ -1,9 +1,9 @@
 // The lighting's functions in C++ against the GPU: the same text (core/lighting/*.glsl), the same inputs.
 //
-// Both are single precision and round differently. Errors are relative to a result's own size, or to a floor,
-// stated with each function, below which nobody sees it; the bound is 1e-4, plus what the last digit of the
-// inputs changes in C++ itself: a calm sea's glitter seen along the water turns on a difference of directions
-// that has few digits left.
+// Both are single precision and round differently. Errors are relative to the result, or to a floor stated
+// with each function, below which they are invisible. The bound is 1e-4, plus the change of the result in C++
+// when inputs change by their last digit: the glitter of a calm sea at grazing angles depends on a difference
+// of directions with few significant digits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ namespace both {
 
 using namespace glm;
 
-// A function of the inputs below, whose body C++ compiles and the driver gets as text.
+// A function of the inputs below. C++ compiles its body, and the driver gets the same text.
 #define PELAGIC_BOTH(name, ...) \
     vec4 name() {               \
         __VA_ARGS__             \
@@ -60,9 +60,9 @@ struct Functions {
     const float kSkyMapSize;
     vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
 
-    // to_eye, normal, to_sun; hidden slope variance
+    // to_eye, normal, to_sun; slope variance of the hidden waves
     vec3 vv{0.0f}, nn{0.0f}, ll{0.0f}, ss{0.0f};
-    // 1e-4 … 1e3; 0 … 1, grazing cosines often; slopes' standard deviation; coverage
+    // 1e-4 … 1e3; 0 … 1, often grazing cosines; standard deviation of slopes; coverage
     float aa = 0.0f, bb = 0.0f, cc = 0.0f, ww = 0.0f;
 
     void set(const vec4* given) {
@@ -127,7 +127,7 @@ struct Functions {
 
 }  // namespace both
 
-// The sea's surface as pictures see it, grazing views and near-flat pixels often.
+// Inputs as in pictures of the sea, often grazing or nearly flat.
 std::vector<glm::vec4> inputs() {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
@@ -140,11 +140,11 @@ std::vector<glm::vec4> inputs() {
     for (std::size_t i = 0; i < kCount; ++i) {
         const float grazing = std::pow(10.0f, -3.5f * unit(random));
         const glm::vec3 to_eye = direction(i % 2 ? grazing : unit(random));
-        const float tilt = i % 8 == 5 ? 3.0f : 0.2f * unit(random);  // crests about to fold
+        const float tilt = i % 8 == 5 ? 3.0f : 0.2f * unit(random);  // crests close to folding
         const glm::vec3 up = glm::normalize(glm::vec3(tilt * normal(random), tilt * normal(random), 1.0f));
         const float along = std::pow(10.0f, -3.0f + 2.6f * unit(random)), ratio = 0.3f + 0.7f * unit(random);
         const float xy = 0.8f * (2.0f * unit(random) - 1.0f) * along * along * ratio;
-        // The sun anywhere above the horizon, or where it glitters.
+        // The sun anywhere above the horizon, or in the mirror direction.
         const glm::vec3 mirrored = 2.0f * glm::dot(to_eye, up) * up - to_eye;
         const glm::vec3 near_mirror = glm::normalize(
             mirrored + 2.0f * along * glm::vec3(normal(random), normal(random), normal(random)));
@@ -159,7 +159,7 @@ std::vector<glm::vec4> inputs() {
 }
 
 struct Errors {
-    float worst = 0.0f;  // less what the inputs' last digit changes
+    float worst = 0.0f;  // without the change from the inputs' last digits
     float last_permille = 0.0f;
 };
 
@@ -174,7 +174,7 @@ class OnBoth {
         choice_.fresnel = exact ? FresnelFit::Exact : FresnelFit::Paper;
     }
 
-    // floor: of the error's denominator.
+    // floor: the smallest denominator of the relative error.
     Errors compare(const char* name, glm::vec4 (Of::*function)(), const char* text, float floor,
                    std::size_t count = kCount) {
         gpu::need_context();
@@ -209,7 +209,7 @@ class OnBoth {
             float error = 0.0f;
             for (int k = 0; k < 4; ++k) {
                 const float difference = std::abs(answers[i][k] - expected[k]);
-                // A NaN is an error, too.
+                // NaN counts as an error.
                 error = std::max(error, difference <= std::numeric_limits<float>::max()
                                             ? difference / std::max(std::abs(expected[k]), floor)
                                             : std::numeric_limits<float>::infinity());
@@ -226,7 +226,7 @@ class OnBoth {
     }
 
   private:
-    // How much the result moves in C++ when each input does by its last digit: the largest of a few tries.
+    // The largest change of the result in C++, over a few tries, when each input changes by its last digit.
     float last_digit(glm::vec4 (Of::*function)(), std::size_t i, const glm::vec4& expected, float floor) {
         constexpr float kDigit = 1.2e-7f;
         constexpr int kTries = 24;
@@ -237,7 +237,7 @@ class OnBoth {
             std::array<glm::vec4, kTexels> moved;
             for (std::size_t k = 0; k < moved.size(); ++k) {
                 moved[k] = given_[i * kTexels + k];
-                // Directions by a digit of 1, which is their length; variances by one of their own.
+                // Components of directions by a unit in the last place of 1, variances by one of their own.
                 for (int c = 0; c < 4; ++c)
                     moved[k][c] += digit(random) * (k < 3 && c < 3 ? 1.0f : std::abs(moved[k][c]));
             }
@@ -302,7 +302,7 @@ TEST(LightingOnTheGpu, OfOneLookupAndThePapersFresnelIsCPlusPluses) {
 TEST(LightingOnTheGpu, OfTheIntegralIsCPlusPluses) {
     both::Functions<0, true>* of = nullptr;
     OnBoth<both::Functions<0, true>> on(0, true);
-    // A thousand points: each is the sum of 512.
+    // A thousand points, because each is a sum of 512.
     EXPECT_LE(on.compare("sky", &std::remove_pointer_t<decltype(of)>::sky,
                          std::remove_pointer_t<decltype(of)>::sky_text, 1e-2f, 1000)
                   .worst,

@@ -1,8 +1,8 @@
-// A sea that plays while another is built: who draws never waits, the newest wins, and errors are told.
+// A sea that plays while another is built: drawing never waits, the latest request wins, and errors are
+// reported.
 //
-// Threads are steered by gates instead of clocks: a build that must be under way waits until the test lets it
-// go on, so that what is counted doesn't depend on how fast anything is. Waiting for something that must come
-// has an end, which only a test that fails reaches.
+// Gates steer the threads, not clocks: a build waits until the test lets it continue, so that counts don't
+// depend on speed. Waits for events have a time limit, which only a failing test reaches.
 #include "plugin/preview/live.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 namespace pelagic {
 namespace {
 
-// A sea of a few hundred waves.
+// A sea of a few hundred modes.
 Scene small_scene(double wind_mps = 8.0) {
     Scene scene;
     scene.sea.wind_speed_mps = wind_mps;
@@ -39,7 +39,7 @@ std::shared_ptr<const LiveBuild> small_build(const Scene& scene) {
     return std::make_shared<const LiveBuild>(std::move(made));
 }
 
-// Until `happened`, or for far longer than it takes.
+// Waits until `happened`, or for much longer than that takes.
 bool wait_for(const std::function<bool()>& happened) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!happened()) {
@@ -49,7 +49,7 @@ bool wait_for(const std::function<bool()>& happened) {
     return true;
 }
 
-// Builds that wait in front of a gate, except of the first sea.
+// Lets builds wait at a gate, except that of the first sea.
 class Gate {
   public:
     LiveSea::Build build() {
@@ -65,8 +65,8 @@ class Gate {
             return small_build(scene);
         };
     }
-    // Opens for good when it goes, before the sea whose build may still wait: a test that fails must not
-    // hang.
+    // Opens the gate for good when destroyed, which is before the sea whose build may still wait: a failing
+    // test must not hang.
     struct Opener {
         Gate& gate;
         ~Opener() { gate.let_through(1000000); }
@@ -95,16 +95,16 @@ class Gate {
     int let_through_ = 0, inside_ = 0;
 };
 
-// What a window does, picture after picture: asks for the next time and takes what is there.
+// Does what a window does for each picture: requests the next time and takes the latest frame.
 class Player {
   public:
     explicit Player(LiveSea& sea) : sea_(sea) {}
-    // The frame on show after one more picture; null before the first.
+    // The frame shown after one more picture; null before the first.
     const LiveFrame* picture() {
         sea_.show(++time_s_);
         return sea_.newest();
     }
-    // Pictures until a frame of this wind has come; false if it never does.
+    // Draws pictures until a frame of this wind appears; returns false if it never does.
     bool play_until_wind(double wind_mps) {
         return wait_for([&] {
             const LiveFrame* frame = picture();
@@ -129,7 +129,7 @@ TEST(LiveSea, FramesOfTheOldSeaKeepComingWhileTheNewOneIsBuilt) {
     sea.ask(small_scene(12.0));
     ASSERT_TRUE(wait_for([&] { return gate.is_waiting(); }));
     EXPECT_TRUE(sea.status().building);
-    // The build cannot end before the gate opens: every one of these is computed beside it.
+    // The build can't finish before the gate opens: all these frames are computed during it.
     long last = player.picture()->number;
     for (int i = 0; i < 20; ++i) {
         ASSERT_TRUE(wait_for([&] { return player.picture()->number > last; })) << "after " << i;
@@ -216,8 +216,7 @@ TEST(LiveSea, TheFrameIsOfTheTimeAskedForAndOfItAlone) {
         alone.pack(frame);
         EXPECT_EQ(sea.newest()->packed->planes(), alone.planes()) << time_s;
     }
-    // Time stands still: nothing more is computed. Were it otherwise, this many looks would see it now and
-    // then.
+    // Time stands still, so nothing more is computed. This many checks would notice now and then if it were.
     const long frames = sea.status().frames;
     for (int i = 0; i < 50; ++i) {
         sea.show(1e6);
@@ -235,7 +234,7 @@ TEST(LiveSea, AFrameStaysAsItIsUntilTheNextIsTaken) {
         const LiveFrame* taken = player.picture();
         const auto planes = taken->packed->planes();
         const long number = taken->number, finished = sea.status().frames;
-        // Many more are finished meanwhile, each into a slot that is not this one.
+        // Many more are finished meanwhile, each in another slot.
         double time_s = 1000.0 * i;
         ASSERT_TRUE(wait_for([&] {
             sea.show(++time_s);

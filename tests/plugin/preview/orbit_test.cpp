@@ -1,4 +1,4 @@
-// The preview's camera: what a hand does can be undone, what should stay stays, and no pose is special.
+// The preview's camera: movements can be undone, invariants hold, and no pose is special.
 #include "plugin/preview/orbit.h"
 
 #include <gtest/gtest.h>
@@ -13,12 +13,12 @@
 namespace pelagic {
 namespace {
 
-// Sums and a few trigonometric functions in double: some 1e-16 of the largest number, times tens of steps.
+// Sums and a few trigonometric functions in double: some 1e-16 of the largest number, over tens of steps.
 constexpr double kRounding = 1e-12;
 
 constexpr double kHalfPi = 0.5 * kPi;
 
-// Looking along a heading and a pitch, without roll.
+// A pose with a heading and a pitch, without roll.
 View pose(glm::dvec3 position_m, double heading, double pitch) {
     View view;
     view.position_m = position_m;
@@ -29,8 +29,7 @@ View pose(glm::dvec3 position_m, double heading, double pitch) {
     return view;
 }
 
-// Poses from the water's edge to 20 km, at the origin and a million metres away, straight down and up
-// included.
+// Poses from the water's edge to 20 km, at the origin and a million metres away, also straight down and up.
 std::vector<View> poses() {
     std::vector<View> all;
     for (const double height_m : {0.5, 4.0, 300.0, 20e3})
@@ -67,7 +66,7 @@ TEST(Orbit, TheMiddleIsOnTheSeaWhereTheGazeMeetsIt) {
     const OrbitCamera down = camera_at(pose({5.0, 6.0, 100.0}, 0.3, -0.8));
     EXPECT_NEAR(down.middle_m().z, 0.0, 100.0 * kRounding);
     EXPECT_NEAR(down.distance_m(), 100.0 / std::sin(0.8), 100.0 * kRounding);
-    // And straight ahead at a finite distance where it doesn't.
+    // Where the sea isn't in the middle, the pivot is straight ahead at a finite distance.
     for (const double pitch : {0.0, 0.5, -1e-6}) {
         const OrbitCamera level = camera_at(pose({5.0, 6.0, 100.0}, 0.3, pitch));
         EXPECT_GT(level.distance_m(), 100.0);
@@ -81,7 +80,7 @@ TEST(Orbit, TurningRoundKeepsTheMiddleAndTheDistance) {
         const glm::dvec3 middle = camera.middle_m();
         const double distance_m = camera.distance_m();
         const double scale_m = glm::length(middle) + distance_m;
-        // The sea's edge under the camera bounds how far down it may go; these small turns stay above it.
+        // The lowest height limits how far down the camera may go; these small rotations stay above it.
         if (middle.z + distance_m < kLowest_m || view.forward.z > -0.1 || view.position_m.z < 4.0) continue;
         for (const glm::dvec2 angle : {glm::dvec2(0.3, 0.05), glm::dvec2(-2.0, -0.4), glm::dvec2(9.0, 3.0)}) {
             camera.orbit(angle);
@@ -108,7 +107,7 @@ TEST(Orbit, TurnsAreUndoneByTheirOpposites) {
 }
 
 TEST(Orbit, StraightDownIsNoSpecialPose) {
-    // Over the vertical and back in small steps: no direction of the picture moves by more than the step.
+    // Over the vertical and back in small steps: no axis of the picture moves by more than a step.
     for (const bool round_the_middle : {true, false}) {
         const View view = pose({3.0, 4.0, 500.0}, 0.9, -1.4);
         OrbitCamera camera = camera_at(view);
@@ -126,7 +125,7 @@ TEST(Orbit, StraightDownIsNoSpecialPose) {
         EXPECT_TRUE(was_vertical);
         EXPECT_LE(glm::length(last.right - view.right), kRounding);
     }
-    // And there turns are about the picture's middle: up follows the heading.
+    // At the vertical, rotations are about the picture's centre: up follows the heading.
     OrbitCamera camera = camera_at(pose({0.0, 0.0, 500.0}, kHalfPi, -kHalfPi));
     EXPECT_LE(glm::length(camera.view(View{}).up - glm::dvec3(0.0, 1.0, 0.0)), kRounding);
     camera.orbit({0.25, 0.0});
@@ -141,7 +140,7 @@ TEST(Orbit, WhatIsInTheMiddleFollowsTheHand) {
     const glm::dvec3 grabbed = camera.middle_m();
     const glm::dvec2 hand(37.0, -21.0);
     camera.pan(hand, lens);
-    // The pixel that shows the point now, by the pinhole: tangents from the picture's centre.
+    // The pixel that shows the point now, by the pinhole model: tangents from the picture's centre.
     const View view = camera.view(lens);
     const glm::dvec3 to = grabbed - view.position_m;
     const double depth_m = glm::dot(to, view.forward);
@@ -159,7 +158,7 @@ TEST(Orbit, AFlightIsACamerasHeightASecond) {
         camera.fly({.steering = {1.0, 0.0, 0.0}, .seconds = 1.0, .haste = 5.0});  // right of +x is −y
         EXPECT_NEAR(camera.position_m().y, -5.0 * height_m, height_m * kRounding);
     }
-    // Level, the frame rate doesn't matter.
+    // In level flight the frame rate doesn't matter.
     OrbitCamera whole = camera_at(pose({0.0, 0.0, 30.0}, 0.7, 0.0)), halves = whole;
     whole.fly({.steering = {0.3, 1.0, 0.0}, .seconds = 0.5});
     for (int i = 0; i < 2; ++i) halves.fly({.steering = {0.3, 1.0, 0.0}, .seconds = 0.25});

@@ -1,4 +1,4 @@
-// Whole frames: the preview's picture against the CPU's (plugin/render), pixel by pixel, before tone mapping.
+// Whole frames: the preview's picture against the CPU's (plugin/render), by pixel, before tone mapping.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,11 +28,11 @@ void compare_frame(const char* name, Scene scene) {
     const Difference difference = compare(cpu, gpu.picture);
     std::printf("    %s: median %.1e, 99th percentile %.1e, at silhouettes %.1f %% of the pixels\n", name,
                 difference.median, difference.last_percent, 100.0 * difference.silhouettes);
-    // The picture has sea and sky, and each of its terms.
+    // The picture contains sea and sky, and each of the terms.
     const auto sea_pixels = std::count(cpu.sea.begin(), cpu.sea.end(), 1);
     EXPECT_GT(sea_pixels, 640 * 360 / 4);
     EXPECT_LT(difference.silhouettes, 0.25);
-    EXPECT_GT(difference.median, 0.0);  // two programs, not one twice
+    EXPECT_GT(difference.median, 0.0);  // two different implementations
     EXPECT_LE(difference.median, 1e-3);
     EXPECT_LE(difference.last_percent, 1e-2);
 }
@@ -62,7 +62,7 @@ TEST(PreviewsPicture, IsTheCpusOfTrains) {
     compare_frame("of trains", scene);
 }
 
-// A scene's sea at one second, ready to be drawn.
+// A scene's sea at one second, ready to draw.
 struct Stage {
     explicit Stage(const Scene& scene)
         : view(view_at(scene.camera, 1)),
@@ -85,7 +85,7 @@ struct Stage {
     SeaRenderer renderer;
 };
 
-// A term that is off is black, and the others are as they were.
+// A term that is off is black; the others don't change.
 TEST(PreviewsPicture, OfATermThatIsOffHasNoneOfIt) {
     gpu::need_context();
     Scene scene = scene_of({0.0, -60.0, 4.0}, {0.0, 0.0, 0.0});
@@ -102,14 +102,14 @@ TEST(PreviewsPicture, OfATermThatIsOffHasNoneOfIt) {
         foam += static_cast<double>(all.layers[i].foam.y);
         EXPECT_EQ(some.layers[i].sun, glm::vec3(0.0f));
         EXPECT_EQ(some.layers[i].foam, glm::vec3(0.0f));
-        // Foam gives its share of the pixel back.
+        // Without foam the others regain its share of the pixel.
         EXPECT_GE(some.layers[i].sky.y, all.layers[i].sky.y);
     }
     EXPECT_GT(sun, 0.0);
     EXPECT_GT(foam, 0.0);
 }
 
-// Without layers the one picture is their sum.
+// Without layers the single picture is their sum.
 TEST(PreviewsPicture, WithoutLayersIsTheirSum) {
     gpu::need_context();
     Scene scene = scene_of({0.0, -60.0, 4.0}, {0.0, 0.0, 0.0});
@@ -124,7 +124,7 @@ TEST(PreviewsPicture, WithoutLayersIsTheirSum) {
     }
 }
 
-// In place of the light: the grid's lines, and what each pixel's filter does.
+// Pictures without light: the grid's edges, and the state of each pixel's filter.
 TEST(PreviewsPicture, OfWiresAndFalseColoursShowsWhatTheySay) {
     gpu::need_context();
     Scene scene = scene_of({0.0, -60.0, 8.0}, {0.0, 0.0, 0.0});
@@ -154,11 +154,12 @@ TEST(PreviewsPicture, OfWiresAndFalseColoursShowsWhatTheySay) {
         EXPECT_EQ(coverage.layers[i].sea.x > 0.0f, light.layers[i].foam.x > 0.0f) << i;
         foam += coverage.layers[i].sea.x > 0.1f;
     }
-    // Cells of 8 pixels with one diagonal: three lines a cell, some 3 · 8 of its 64 pixels, more far away.
+    // Cells of 8 pixels with one diagonal: three edges per cell, some 3 · 8 of its 64 pixels, and more far
+    // away.
     EXPECT_GT(on_wires, sea_pixels / 5);
     EXPECT_LT(on_wires, sea_pixels);
     EXPECT_GT(foam, 0);
-    // A pixel hides more the farther away it is: levels go from blue to red, and the hidden variance grows.
+    // Farther pixels hide more: levels go from blue to red, and the hidden variance grows.
     const auto row = [&](const Picture& picture, int y) {
         glm::vec3 sum(0.0f);
         for (int x = 0; x < 160; ++x)

@@ -1,8 +1,8 @@
-// The query on the GPU against evaluate(): the same points, footprints and fields through both.
+// The query on the GPU against evaluate(), with the same points, footprints and fields.
 //
-// Single precision on both sides: places on the GPU are as good as evaluate()'s doubles (places.glsl), so
-// that what remains is the rounding of sums of some hundred terms in another order, 1e-7 of the largest, and
-// the last digits of the driver's sines. The bounds allow for ten times what llvmpipe shows.
+// Both are in single precision. The GPU's positions are as exact as evaluate()'s doubles (places.glsl). What
+// remains is the rounding of sums of some hundred terms in another order, 1e-7 of the largest, and the
+// precision of the driver's sines. The bounds are ten times llvmpipe's errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,13 +44,13 @@ struct Answers {
     explicit Answers(std::size_t n) : position(n), normal(n), slope_variance(n), coverage(n) {}
 };
 
-// The points that both sides are asked for: rest [m], cell and pixel [m].
+// The points asked of both: rest [m], cell and pixel [m].
 struct Asked {
     std::vector<glm::vec2> rest_m;
     std::vector<float> cell_m, pixel_m;
 };
 
-// Footprints from below the ladder to beyond it; as far from the origin as such a pixel is.
+// Footprints from below the ladder to beyond it, at distances where such pixels occur.
 Asked points(std::size_t count) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
@@ -122,7 +122,7 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
     std::vector<float> normal_error, coverage_error;
     float position_error = 0.0f, hidden_error = 0.0f, steepest = 0.0f, most_hidden = 0.0f, most_foam = 0.0f;
     for (std::size_t i = 0; i < count; ++i) {
-        // A float's own step at this distance is no error of the waves.
+        // The spacing of floats at this distance is no error of the waves.
         const float step_m = 2e-7f * glm::length(asked.rest_m[i]);
         position_error =
             std::max(position_error,
@@ -143,7 +143,7 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
         "%.2e mss\n",
         position_error, normal_error[count / 2], normal_error[count - count / 1000],
         coverage_error[count - count / 1000], coverage_error[last], hidden_error);
-    // The scene has what is compared.
+    // The scene has waves, so that the comparison means something.
     EXPECT_GT(steepest, 0.01f);
     EXPECT_GT(most_hidden, 0.005f);
     EXPECT_LT(position_error, 5e-6f);

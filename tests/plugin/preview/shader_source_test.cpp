@@ -1,4 +1,4 @@
-// The rules by which shared formulas become GLSL, and what a driver's messages are turned into.
+// The conversion of shared formulas to GLSL, and of a driver's messages.
 #include "plugin/preview/shader_source.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(ShaderSource, SaysWhichLineOfWhichFileADriverMeans) {
     ShaderSource source;
     source.add_constants("const int kOne = 1;\n");
     source.add_file("core/lighting/special.glsl");
-    // Mesa's form and NVIDIA's; what names no file stays as it is.
+    // Messages of Mesa and of NVIDIA; those without a place are unchanged.
     EXPECT_EQ(source.explain("0:1(7): error: odd\n"), "constants:1: error: odd\n    const int kOne = 1;\n");
     EXPECT_EQ(source.explain("0(10001) : error C0000: odd\n"),
               "core/lighting/special.glsl:1 : error C0000: odd\n"

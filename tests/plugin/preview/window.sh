@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The preview's window on a display in memory, drawn in software: it opens, plays a small shot, saves itself and
-# closes; and without a display it says what to do.
+# The preview's window on a virtual display with software rendering: it opens, plays a small shot, saves
+# itself and closes. Without a display it says what to do.
 #   window.sh PELAGIC FOLDER
 set -euo pipefail
 program=$1
@@ -32,7 +32,7 @@ grep -q "xvfb-run" "$folder/no-display.txt" || fail "no word of xvfb-run: $(cat 
 LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 640x400x24" "$program" preview "$folder/small.toml" \
     --size 640x360 --scale 4 --screenshot "$folder/window.png" --after 3
 
-# The panel takes the left half: right of it are sky and sea, left of it letters and sliders.
+# The panel covers the left half: sky and sea are on the right, text and sliders on the left.
 python3 - "$folder/window.png" <<'PYTHON'
 import struct, sys, zlib
 
@@ -46,7 +46,7 @@ while at < len(data):
     at += size + 12
 lines, stride = zlib.decompress(packed), 3 * width
 rows, above = [], bytearray(stride)
-for y in range(height):  # the five filters of PNG
+for y in range(height):  # PNG's five filter types
     start = y * (stride + 1)
     how, row = lines[start], bytearray(lines[start + 1:start + 1 + stride])
     for i in range(stride):

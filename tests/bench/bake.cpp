@@ -84,7 +84,7 @@ std::vector<PackedMap> maps_to_pack() {
     scene.output.mesh = MeshFormat::None;
     scene.output.maps = {MapKind::Displacement, MapKind::Normal, MapKind::Whitecaps, MapKind::SlopeVariance};
     const Plan plan = plan_bake(scene);
-    const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan);
+    const std::unique_ptr<Sequence> sequence = make_sequence(plan);
     FrameSlot slot;
     sequence->compute(1, slot);
 
@@ -92,13 +92,13 @@ std::vector<PackedMap> maps_to_pack() {
                                 {"normal, half, levels", exr::PixelType::Half, {}},
                                 {"whitecaps, float, levels", exr::PixelType::Float, {}},
                                 {"slope variance, float, levels", exr::PixelType::Float, {}}};
-    maps[0].levels.push_back({kN, slot.maps[0].values.vectors(Product::Displacement)});
-    const std::vector<glm::vec3>& normal = slot.maps[1].values.vectors(Product::Normal);
+    maps[0].levels.push_back({kN, slot.outputs[0]->values.vectors(Product::Displacement)});
+    const std::vector<glm::vec3>& normal = slot.outputs[1]->values.vectors(Product::Normal);
     maps[1].levels = normal_mips({.n = kN, .texels = normal, .periodic = true});
     maps[1].levels.insert(maps[1].levels.begin(), {kN, normal});
 
     std::vector<JacobianMoments<float>> full;
-    for (const glm::vec3& j : slot.maps[2].values.vectors(Product::JacobianMoments))
+    for (const glm::vec3& j : slot.outputs[2]->values.vectors(Product::JacobianMoments))
         full.push_back({j.x, j.y, j.z});
     auto moments = moment_mips({.n = kN, .texels = full, .periodic = true});
     moments.insert(moments.begin(), {kN, full});
@@ -108,11 +108,10 @@ std::vector<PackedMap> maps_to_pack() {
         for (const JacobianMoments<float>& j : level.texels)
             texels.emplace_back(coverage(j, threshold, plan.knobs.third_moment), j.mean, j.variance);
     }
-    for (std::size_t i = 0; i < slot.maps[3].hidden.size(); ++i) {
-        const int n = kN >> i;
-        maps[3].levels.push_back(
-            {n, std::vector<glm::vec3>(static_cast<std::size_t>(n) * n, slot.maps[3].hidden[i])});
-    }
+    // One value for all texels of a level.
+    const glm::vec3 hidden = slot.outputs[3]->values.vectors(Product::SlopeVariance).front();
+    for (int n = kN; n >= 1; n /= 2)
+        maps[3].levels.push_back({n, std::vector<glm::vec3>(static_cast<std::size_t>(n) * n, hidden)});
     return maps;
 }
 
@@ -170,10 +169,8 @@ void overlap_table(const Scene& scene, Sequence& sequence, int rounds, const fs:
         sequence.encode(slot);
     }
     std::uintmax_t bytes = 0, bytes_a_frame = 0;
-    const FileSink sink = [&](const std::string& path, const FileContent& content) {
-        const std::uintmax_t size = files::write_atomically(folder / path, content);
-        bytes += size;
-        return size;
+    const FileSink sink = [&](const FileJob& file) {
+        bytes += files::write_atomically(folder / file.path, file.content);
     };
     const auto nothing = [](int, int) {};
     const auto compute = [&](int item, int place) { sequence.compute(item + 1, slots[place]); };
@@ -242,7 +239,7 @@ int run(int argc, char** argv) {
         return 2;
     }
     const Scene scene = million_vertices(frames);
-    const std::unique_ptr<Sequence> sequence = make_sequence(scene, plan_bake(scene));
+    const std::unique_ptr<Sequence> sequence = make_sequence(plan_bake(scene));
     packing_table();
     overlap_table(scene, *sequence, rounds, folder);
     std::printf("  peak memory of this process: %.0f MiB\n", peak_mib());

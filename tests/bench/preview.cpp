@@ -2,6 +2,7 @@
 // near and far. On a real GPU, frame times as well.
 
 #include <epoxy/gl.h>
+#include <array>
 
 #include <cstdio>
 #include <memory>
@@ -51,7 +52,7 @@ void pictures() {
         options.samples = 1;
         const Sky sky = make_sky(scene);
         Picture cpu;
-        Renderer(scene, options, sky).render(5, cpu);
+        Renderer(scene, options, sky, std::array{5}).render(5, cpu);
         const Difference difference = compare(cpu, render_offscreen(scene, sky, 5).picture);
         std::printf("  %-28s %9.1e %18.1e   <= 1e-3 %s, <= 1e-2 %s\n", name, difference.median,
                     difference.last_percent, verdict(difference.median <= 1e-3),
@@ -63,7 +64,7 @@ void pictures() {
 class Drawn {
   public:
     Drawn(const Scene& scene, const LightingChoice& lighting)
-        : sea_(std::make_shared<const Sea<float>>(picture_plan(scene))),
+        : sea_(std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}))),
           view_(view_at(scene.camera, 1)),
           grid_(projected_grid(view_, projected_grid_options(*prepare(scene)))) {
         options_.lighting = lighting;

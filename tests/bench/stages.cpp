@@ -28,7 +28,9 @@ void table(int n) {
         for (Query& query : queries) query.cell_m = query.pixel_m = {0.0};
         return Frame<float>(std::make_shared<const Sea<float>>(make_plan(scene, queries)));
     };
-    std::vector<Query> on_nodes = queries_of(plan_bake(scene)), between = on_nodes;
+    std::vector<Query> on_nodes;
+    for (const PlannedQuery& planned : plan_bake(scene).queries) on_nodes.push_back(planned.query);
+    std::vector<Query> between = on_nodes;
     between[0].lattice.reset();
     Frame<float> node_frame = make_frame(on_nodes), spline_frame = make_frame(between);
     const auto points = rest_points<float>({.per_side = n + 1, .spacing_m = 400.0 / n, .first_m = -200.0});

@@ -54,7 +54,8 @@ TEST_P(HardCases, GiveSoundAnswers) {
     for (const Problem& problem : validate(scene)) ADD_FAILURE() << text_of(problem);
     ProductSet all;
     all.set();
-    auto queries = queries_of(plan_bake(scene));
+    std::vector<Query> queries;
+    for (const PlannedQuery& planned : plan_bake(scene).queries) queries.push_back(planned.query);
     for (Query& query : queries) query.products = all;
     queries.push_back(filtered(all, 3.0));
     const Plan plan = make_plan(scene, queries);

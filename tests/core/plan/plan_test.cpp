@@ -1,7 +1,9 @@
 // The closure: what is asked for is there, and nothing else.
 #include "core/plan/plan.h"
+#include "core/plan/fingerprint.h"
 
 #include <gtest/gtest.h>
+#include <array>
 
 #include "core/plan/products.h"
 
@@ -66,6 +68,14 @@ TEST(Plan, HasNothingToRunWithoutWindAndSwell) {
     for (const CascadePlan& cascade : plan.cascades) EXPECT_FALSE(cascade.why_empty.empty());
 }
 
+// Of all outputs, at the first frame.
+std::string fingerprints(const Plan& plan) {
+    std::string all;
+    for (const PlannedOutput& output : plan.outputs)
+        all += frame_fingerprint(plan, output, output_fingerprint(plan, output), 1) + " ";
+    return all;
+}
+
 // The grid of the camera: its points are counted, its page says so, and its fingerprint knows the camera.
 TEST(Plan, AProjectedGridIsPlannedForTheCamerasOwnShot) {
     Scene scene = scene_with({MeshAttribute::Normal});
@@ -73,23 +83,25 @@ TEST(Plan, AProjectedGridIsPlannedForTheCamerasOwnShot) {
         scene.camera.position_m.z = height_m;
         return plan_bake(scene);
     };
-    EXPECT_EQ(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
+    EXPECT_EQ(fingerprints(with_camera_at(4.0)), fingerprints(with_camera_at(5.0)));
     scene.surface.kind = SurfaceKind::ProjectedGrid;
-    EXPECT_NE(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
+    EXPECT_NE(fingerprints(with_camera_at(4.0)), fingerprints(with_camera_at(5.0)));
     const Plan plan = plan_bake(scene);
-    const ProjectedGridNeeds needs = projected_grid_needs(*prepare(scene));
+    const ProjectedGridNeeds needs =
+        projected_grid_needs(view_at(scene.camera, 1), projected_grid_options(*prepare(scene)));
     EXPECT_EQ(plan.queries[0].query.points, points_of(needs.size));
-    EXPECT_EQ(plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
+    EXPECT_LE(plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
+    EXPECT_GT(2.0 * plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
     EXPECT_FALSE(plan.queries[0].query.lattice);
     EXPECT_NE(explain(plan).find(std::to_string(needs.size.columns) + " × " +
-                                 std::to_string(needs.size.rows) + " cells"),
+                                 std::to_string(needs.size.rows) + " quads"),
               std::string::npos);
     // Higher up the finest cell is larger: fewer waves are computed.
     EXPECT_LT(with_camera_at(500.0).lines_per_frame(), plan.lines_per_frame());
     // Without a mesh the camera is the root's alone.
     scene.output.mesh = MeshFormat::None;
     scene.output.maps = {MapKind::Normal};
-    EXPECT_EQ(with_camera_at(4.0).fingerprint, with_camera_at(5.0).fingerprint);
+    EXPECT_EQ(fingerprints(with_camera_at(4.0)), fingerprints(with_camera_at(5.0)));
 }
 
 TEST(Plan, SharesAGridBetweenQueriesOfOneFootprint) {
@@ -169,9 +181,9 @@ TEST(Plan, RefusesMalformedFootprints) {
 
 TEST(Plan, FingerprintFollowsTheSeaAndNotTheRangeOfFrames) {
     Scene scene;
-    const auto before = plan_bake(scene).fingerprint;
+    const auto before = fingerprints(plan_bake(scene));
     scene.shot.last_frame = 480;
-    EXPECT_EQ(plan_bake(scene).fingerprint, before);
+    EXPECT_EQ(fingerprints(plan_bake(scene)), before);
     for (auto change :
          {+[](Scene& s) { s.shot.seed = 2; }, +[](Scene& s) { s.sea.wind_speed_mps = 10.5; },
           +[](Scene& s) { s.waves.choppiness = 0.9; }, +[](Scene& s) { s.surface.resolution = 128; },
@@ -179,9 +191,9 @@ TEST(Plan, FingerprintFollowsTheSeaAndNotTheRangeOfFrames) {
           +[](Scene& s) { s.quality.level = QualityLevel::Draft; }}) {
         Scene other = scene;
         change(other);
-        EXPECT_NE(plan_bake(other).fingerprint, before);
+        EXPECT_NE(fingerprints(plan_bake(other)), before);
     }
-    EXPECT_EQ(plan_bake(scene).fingerprint_text().size(), 16u);
+    EXPECT_EQ(output_fingerprint(plan_bake(scene), plan_bake(scene).outputs.front()).size(), 16u);
 }
 
 // A bake that took hours isn't done again for another sun.
@@ -204,9 +216,9 @@ TEST(Plan, FingerprintKnowsNoLightAndOnlyAGridOfTheCameraKnowsTheCamera) {
         },
         [](Scene& s) { s.surface.cell_px = 9.0; }};
     const auto changed = [](Scene scene, void (*change)(Scene&)) {
-        const auto before = plan_bake(scene).fingerprint;
+        const auto before = fingerprints(plan_bake(scene));
         change(scene);
-        return plan_bake(scene).fingerprint != before;
+        return fingerprints(plan_bake(scene)) != before;
     };
     Scene patch = scene_with({}), grid = patch, maps_alone = patch;
     grid.surface.kind = maps_alone.surface.kind = SurfaceKind::ProjectedGrid;
@@ -229,6 +241,59 @@ TEST(Plan, AnswersAtOnceForTheLargestSea) {
     EXPECT_GT(plan.frame_bytes(), std::size_t{1} << 30);  // nothing of which was allocated
     const std::string page = explain(plan);
     EXPECT_NE(page.find("8192"), std::string::npos);
+}
+
+// A made-up effect that remembers: its row is all that the plan needs to know of it.
+TEST(Effects, MayAskForFieldsProductsBytesAndEarlierTimes) {
+    const std::array table{EffectRow{
+        "memory", [](const Scene& scene) { return scene.effects.whitecaps; }, "whitecaps are off",
+        [](Scene& scene) { scene.effects.whitecaps = false; }, [] { return FieldSet(); },
+        [] { return ProductSet(); },
+        [](const Scene&) {
+            Query query;
+            query.name = "memory's points";
+            query.products = products(Product::Velocity);
+            query.points = 64;
+            return EffectNeeds{
+                .queries = {query}, .bytes = 4096, .earlier = TimeLattice{.step_s = 0.25, .count = 8}};
+        }}};
+    Scene scene;
+    Query asked;
+    asked.name = "points";
+    asked.products = products(Product::Position);
+    const Plan without = make_plan(scene, {asked}, {.effects = {}});
+    const Plan with = make_plan(scene, {asked}, {.effects = table});
+    ASSERT_EQ(with.effects.size(), 1u);
+    ASSERT_EQ(with.queries.size(), 2u);
+    EXPECT_EQ(with.effects[0].queries, std::vector<int>{1});
+    EXPECT_EQ(fields_of_plan(without) & velocity_fields(), FieldSet());
+    EXPECT_EQ(fields_of_plan(with) & velocity_fields(), velocity_fields());
+    EXPECT_GT(with.frame_bytes(), without.frame_bytes() + 4096);
+    EXPECT_NE(explain(with).find("memory: 1 queries"), std::string::npos);
+    scene.effects.whitecaps = false;
+    EXPECT_TRUE(make_plan(scene, {asked}, {.effects = table}).effects.empty());
+}
+
+// The times are multiples of the step, not later than the frame's own, and the same for neighbouring frames.
+TEST(Effects, RememberOnALatticeOfAbsoluteTimes) {
+    const TimeLattice lattice{.step_s = 0.25, .count = 3};
+    EXPECT_EQ(times_before(lattice, 1.1), (std::vector<double>{1.0, 0.75, 0.5}));
+    EXPECT_EQ(times_before(lattice, 1.2), times_before(lattice, 1.1));
+    EXPECT_EQ(times_before(lattice, 1.0), times_before(lattice, 1.1));
+    EXPECT_EQ(times_before(lattice, -0.1), (std::vector<double>{-0.25, -0.5, -0.75}));
+    const TimeLattice odd{.step_s = 0.1, .count = 1};
+    for (int i = 0; i < 1000; ++i) EXPECT_LE(times_before(odd, 0.1 * i).front(), 0.1 * i);
+}
+
+// What a camera sees never decides which rungs there are, only how many of them are needed.
+TEST(Plan, ALaddersRungsArePowersOfTwoWhoeverAsks) {
+    const auto prepared = prepare(Scene{});
+    for (const double finest_m : {0.003, 0.1, 0.7, 1.0, 33.0}) {
+        const Query query =
+            view_query(*prepared, {.finest_cell_m = 6.0 * finest_m, .finest_pixel_m = finest_m});
+        for (const double rung_m : query.pixel_m) EXPECT_EQ(std::exp2(std::round(std::log2(rung_m))), rung_m);
+        EXPECT_LE(query.cell_m.front(), 6.0 * finest_m);
+    }
 }
 
 }  // namespace

@@ -92,30 +92,29 @@ Scene camera_scene() {
     return scene;
 }
 
-// The mesh of each frame is the core's answer for that frame's grid, with the footprints of its points.
-TEST(ProjectedGridBake, IsWhatTheCameraSeesWithOneTopology) {
+// The mesh of each frame is the core's answer for that frame's own grid, with the footprints of its points.
+TEST(ProjectedGridBake, IsWhatTheCameraSeesAtEachFrame) {
     const Scene scene = camera_scene();
     const Plan plan = plan_bake(scene);
-    const auto sequence = make_sequence(scene, plan);
+    const auto sequence = make_sequence(plan);
     Frame<float> frame(std::make_shared<const Sea<float>>(plan));
-    ProjectedGridOptions options = projected_grid_options(*prepare(scene));
+    const ProjectedGridOptions options = projected_grid_options(*prepare(scene));
     const auto alone = [&](int f) { return projected_grid_needs(view_at(scene.camera, f), options).size; };
     ASSERT_FALSE(alone(1) == alone(2));
-    const ProjectedGridSize size = projected_grid_needs(*prepare(scene)).size;
-    EXPECT_EQ(size.columns, std::max(alone(1).columns, alone(2).columns));
-    EXPECT_EQ(size.rows, std::max(alone(1).rows, alone(2).rows));
-    EXPECT_EQ(plan.queries.front().query.points, points_of(size));
-    options.size = size;
+    EXPECT_EQ(plan.queries.front().query.points, points_of({std::max(alone(1).columns, alone(2).columns),
+                                                            std::max(alone(1).rows, alone(2).rows)}));
     FrameSlot slot;
     for (const int f : {1, 2}) {
         sequence->compute(f, slot);
+        const Values& mesh = slot.outputs.front()->values;
+        const ProjectedGridSize size = alone(f);
         const ProjectedGrid grid = projected_grid(view_at(scene.camera, f), options);
         const std::size_t count = points_of(size);
         ASSERT_EQ(grid.rest_m.size(), count);
         for (const std::size_t got :
-             {slot.mesh.vectors(Product::Position).size(), slot.mesh.vectors(Product::Normal).size(),
-              slot.mesh.vectors(Product::Velocity).size(), slot.mesh.vectors(Product::SlopeVariance).size(),
-              slot.mesh.numbers(Product::Coverage).size()})
+             {mesh.vectors(Product::Position).size(), mesh.vectors(Product::Normal).size(),
+              mesh.vectors(Product::Velocity).size(), mesh.vectors(Product::SlopeVariance).size(),
+              mesh.numbers(Product::Coverage).size()})
             EXPECT_EQ(got, count);
         std::vector<glm::vec3> position(count), normal(count), variance(count);
         frame.set(scene.shot.time_s(f));
@@ -132,23 +131,22 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesWithOneTopology) {
                  results);
         float nearest_m = 1e9f;
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::vec3 p = slot.mesh.vectors(Product::Position)[i],
-                            v = slot.mesh.vectors(Product::Velocity)[i];
+            const glm::vec3 p = mesh.vectors(Product::Position)[i], v = mesh.vectors(Product::Velocity)[i];
             ASSERT_TRUE(
-                std::isfinite(p.x + p.y + p.z + v.x + v.y + v.z + slot.mesh.numbers(Product::Coverage)[i]));
+                std::isfinite(p.x + p.y + p.z + v.x + v.y + v.z + mesh.numbers(Product::Coverage)[i]));
             // In the world: the camera's nadir away from where the grid has its origin; the sum is rounded
             // once.
             EXPECT_EQ(p, glm::vec3(static_cast<float>(grid.origin_m.x + static_cast<double>(position[i].x)),
                                    static_cast<float>(grid.origin_m.y + static_cast<double>(position[i].y)),
                                    position[i].z));
-            EXPECT_EQ(slot.mesh.vectors(Product::Normal)[i], normal[i]);
-            EXPECT_EQ(slot.mesh.vectors(Product::SlopeVariance)[i], variance[i]);
+            EXPECT_EQ(mesh.vectors(Product::Normal)[i], normal[i]);
+            EXPECT_EQ(mesh.vectors(Product::SlopeVariance)[i], variance[i]);
             nearest_m = std::min(nearest_m, std::hypot(p.x - 2e3f, p.y - (f == 1 ? -60.0f : -50.0f)));
         }
         EXPECT_LT(nearest_m, 60.0f);
         // Far away everything is hidden, near by much is shown: footprints differ from point to point.
-        EXPECT_LT(slot.mesh.vectors(Product::SlopeVariance).front().x,
-                  0.9f * slot.mesh.vectors(Product::SlopeVariance).back().x);
+        EXPECT_LT(mesh.vectors(Product::SlopeVariance).front().x,
+                  0.9f * mesh.vectors(Product::SlopeVariance).back().x);
     }
 }
 
@@ -336,7 +334,7 @@ TEST_F(Bakes, AFileThatCantBeWrittenEndsTheBakeWithAllBeforeItRecordedAndNothing
     scene.output.mesh = MeshFormat::Usdc;
     scene.output.maps = {MapKind::Displacement, MapKind::Normal};
     scene.output.map_resolution = 8;
-    const fs::path in_the_way = folder_ / "maps/normal.0006.exr";
+    const fs::path in_the_way = folder_ / "maps/sea.normal.0006.exr";
     fs::create_directories(in_the_way);
     const BakeOptions options{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
     try {

@@ -48,8 +48,8 @@ TEST_F(BakeResume, WholeFramesAreKept) {
 
 TEST_F(BakeResume, AMissingOrTruncatedFileIsMadeAgain) {
     fs::remove(folder() / "out/mesh/small.0002.usda");
-    fs::remove(folder() / "out/maps/whitecaps.0004.exr");
-    fs::resize_file(folder() / "out/maps/displacement.0006.exr", 200);
+    fs::remove(folder() / "out/maps/small.whitecaps.0004.exr");
+    fs::resize_file(folder() / "out/maps/small.displacement.0006.exr", 200);
     fs::resize_file(folder() / "out/mesh/small.0007.usda", 0);
     const Ended ended = bake();
     EXPECT_EQ(ended.status, 0);
@@ -87,7 +87,7 @@ TEST_F(BakeResume, AChangedShotIsMadeAgain) {
 TEST_F(BakeResume, AnAddedMapIsMadeForEveryFrame) {
     write_shot({.frames = 8, .maps = "\"displacement\", \"whitecaps\", \"normal\""});
     EXPECT_EQ(bake().status, 0);
-    EXPECT_TRUE(fs::exists(folder() / "out/maps/normal.0008.exr"));
+    EXPECT_TRUE(fs::exists(folder() / "out/maps/small.normal.0008.exr"));
     expect_as_new();
 }
 
@@ -115,8 +115,9 @@ TEST_F(BakeResume, FramesOfAnotherVersionThatWereNotAskedForAreNamed) {
 TEST_F(BakeResume, OneFrameAloneOnOneThreadIsTheSameBitsAsInARunOnTwo) {
     ASSERT_EQ(bake({"--frames", "1-8", "--threads", "2"}, "run").status, 0);
     ASSERT_EQ(bake({"--frames", "7", "--threads", "1"}, "alone").status, 0);
-    for (const char* file : {"mesh/small.0007.usda", "maps/displacement.0007.exr", "maps/whitecaps.0007.exr",
-                             "small.usda", "mesh/small.topology.usda", "mesh/small.manifest.usda"}) {
+    for (const char* file :
+         {"mesh/small.0007.usda", "maps/small.displacement.0007.exr", "maps/whitecaps.0007.exr", "small.usda",
+          "mesh/small.topology.usda", "mesh/small.manifest.usda"}) {
         ASSERT_TRUE(fs::exists(folder() / "alone" / file)) << file;
         EXPECT_EQ(read_file(folder() / "alone" / file), read_file(folder() / "run" / file)) << file;
     }

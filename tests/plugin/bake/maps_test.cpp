@@ -43,7 +43,7 @@ class BakedMaps : public ::testing::Test {
 
 TEST_F(BakedMaps, HeightsHaveTheVarianceOfTheirRealisation) {
     const auto heights =
-        test::read_scanlines(bake_map(MapKind::Displacement, "maps/displacement.0001.exr"), "B");
+        test::read_scanlines(bake_map(MapKind::Displacement, "maps/sea.displacement.0001.exr"), "B");
     double mean = 0.0, squares = 0.0;
     for (const float z : heights.values) mean += static_cast<double>(z);
     mean /= static_cast<double>(heights.values.size());
@@ -59,7 +59,7 @@ TEST_F(BakedMaps, HeightsHaveTheVarianceOfTheirRealisation) {
 TEST_F(BakedMaps, LieAsAMapWithNorthOnTop) {
     // The texel in column i, j rows from the bottom, is the sea at (−L/2 + i L/N, −L/2 + j L/N), asked for
     // directly.
-    const fs::path file = bake_map(MapKind::Displacement, "maps/displacement.0001.exr");
+    const fs::path file = bake_map(MapKind::Displacement, "maps/sea.displacement.0001.exr");
     Frame<float> frame(std::make_shared<const Sea<float>>(plan_bake(scene_)));
     frame.set(0.0);
     const int i = 17, j = 101;
@@ -75,7 +75,7 @@ TEST_F(BakedMaps, LieAsAMapWithNorthOnTop) {
 }
 
 TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
-    const fs::path file = bake_map(MapKind::Whitecaps, "maps/whitecaps.0001.exr");
+    const fs::path file = bake_map(MapKind::Whitecaps, "maps/sea.whitecaps.0001.exr");
     const auto mean = test::read_level(file, "mean", 0), variance = test::read_level(file, "variance", 0);
     const auto coarse_mean = test::read_level(file, "mean", 1),
                coarse_variance = test::read_level(file, "variance", 1);
@@ -115,7 +115,7 @@ TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
 }
 
 TEST_F(BakedMaps, SlopeVarianceOfACoarserLevelHidesMore) {
-    const fs::path file = bake_map(MapKind::SlopeVariance, "maps/slope-variance.0001.exr");
+    const fs::path file = bake_map(MapKind::SlopeVariance, "maps/sea.slope-variance.0001.exr");
     const Plan plan = plan_bake(scene_);
     EXPECT_EQ(plan.transforms_per_frame(), 0) << "variances alone need no transform";
     const Sea<float> sea(plan);

@@ -1,5 +1,6 @@
 // Whole frames: the preview's picture against the CPU's (plugin/render), by pixel, before tone mapping.
 #include <gtest/gtest.h>
+#include <array>
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ void compare_frame(const char* name, Scene scene) {
     options.samples = 1;
     const Sky sky = make_sky(scene);
     Picture cpu;
-    Renderer(scene, options, sky).render(5, cpu);
+    Renderer(scene, options, sky, std::array{5}).render(5, cpu);
     const OffscreenPicture gpu = render_offscreen(scene, sky, 5);
     ASSERT_EQ(gpu.picture.resolution, cpu.resolution);
     const Difference difference = compare(cpu, gpu.picture);
@@ -67,7 +68,7 @@ struct Stage {
     explicit Stage(const Scene& scene)
         : view(view_at(scene.camera, 1)),
           grid(projected_grid(view, projected_grid_options(*prepare(scene)))) {
-        const auto sea = std::make_shared<const Sea<float>>(picture_plan(scene));
+        const auto sea = std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}));
         Frame<float> frame(sea);
         frame.set(1.0);
         PackedFrame packed(sea, 0);
@@ -177,8 +178,8 @@ TEST(PreviewsPicture, OfWiresAndFalseColoursShowsWhatTheySay) {
 TEST(PackedFrame, RefusesWhatIsNotAPicturesOwn) {
     Scene scene = scene_of({0.0, -60.0, 4.0}, {0.0, 0.0, 0.0});
     scene.waves.cascades = {{100.0, 32}};
-    const auto sea = std::make_shared<const Sea<float>>(picture_plan(scene));
-    const auto other = std::make_shared<const Sea<float>>(picture_plan(scene));
+    const auto sea = std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}));
+    const auto other = std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}));
     PackedFrame packed(sea, 0);
     Frame<float> without_time(sea), of_another(other);
     of_another.set(0.0);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/task_arena.h>
+#include <numeric>
 
 #include <algorithm>
 #include <atomic>
@@ -42,8 +43,14 @@ Scene calm_scene() {
     return scene;
 }
 
+std::vector<int> all_frames(const Scene& scene) {
+    std::vector<int> frames(static_cast<std::size_t>(scene.shot.last_frame - scene.shot.first_frame + 1));
+    std::iota(frames.begin(), frames.end(), scene.shot.first_frame);
+    return frames;
+}
+
 Picture picture_of(const Scene& scene, const RenderOptions& options, int frame = 1) {
-    Renderer renderer(scene, options, uniform_sky());
+    Renderer renderer(scene, options, uniform_sky(), all_frames(scene));
     Picture picture;
     EXPECT_TRUE(renderer.render(frame, picture));
     return picture;
@@ -168,7 +175,7 @@ TEST(Render, SameBitsForAnyNumberOfThreadsAndOrderOfFrames) {
     };
     const Picture one = on_threads(1);
     EXPECT_TRUE(same_bits(one, on_threads(4)));
-    Renderer renderer(scene, options, uniform_sky());
+    Renderer renderer(scene, options, uniform_sky(), all_frames(scene));
     Picture again;
     ASSERT_TRUE(renderer.render(9, again));
     EXPECT_FALSE(same_bits(one, again));  // the sea moves
@@ -246,7 +253,7 @@ TEST(Render, TermsThatAreOffAreBlack) {
     sky.sun_irradiance = glm::vec3(4.0f);
     const auto with = [&](LightingChoice lighting) {
         lighting.sky_quality = SkyQuality::One;
-        Renderer renderer(scene, {.lighting = lighting}, sky);
+        Renderer renderer(scene, {.lighting = lighting}, sky, all_frames(scene));
         Picture picture;
         EXPECT_TRUE(renderer.render(1, picture));
         return picture;
@@ -292,7 +299,7 @@ TEST(Render, QualityChoosesTheLighting) {
 
 TEST(Render, TellsHowFarItIsAndStopsWhenAsked) {
     Scene scene = small_scene();
-    Renderer renderer(scene, render_options(scene), uniform_sky());
+    Renderer renderer(scene, render_options(scene), uniform_sky(), all_frames(scene));
     Picture picture;
     double done = 0.0;
     EXPECT_TRUE(renderer.render(1, picture, {.progress = [&](double part) {
@@ -306,11 +313,14 @@ TEST(Render, TellsHowFarItIsAndStopsWhenAsked) {
 
 TEST(Render, RefusesWhatItCannotDo) {
     Scene scene = small_scene();
-    EXPECT_THROW(Renderer(scene, {.lighting = {}, .samples = 0}, uniform_sky()), std::invalid_argument);
-    EXPECT_THROW(Renderer(scene, {.lighting = {}, .samples = kMostSamples + 1}, uniform_sky()),
+    EXPECT_THROW(Renderer(scene, {.lighting = {}, .samples = 0}, uniform_sky(), all_frames(scene)),
                  std::invalid_argument);
+    EXPECT_THROW(
+        Renderer(scene, {.lighting = {}, .samples = kMostSamples + 1}, uniform_sky(), all_frames(scene)),
+        std::invalid_argument);
     scene.camera.resolution = {65536, 2};
-    EXPECT_THROW(Renderer(scene, {.lighting = {}, .samples = 8}, uniform_sky()), std::invalid_argument);
+    EXPECT_THROW(Renderer(scene, {.lighting = {}, .samples = 8}, uniform_sky(), all_frames(scene)),
+                 std::invalid_argument);
     scene.light.sky = "/nowhere/sky.exr";
     try {
         make_sky(scene);

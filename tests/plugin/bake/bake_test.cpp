@@ -158,11 +158,11 @@ TEST_F(Bakes, AProjectedGridIsTheCamerasOwn) {
     for (const char* file :
          {"mesh/sea.topology.usda", "mesh/sea.0001.usda", "mesh/sea.0002.usda", "sea.usda"})
         EXPECT_TRUE(fs::exists(folder_ / file)) << file;
-    // Another pose is another mesh; to a patch it is nothing.
+    // Another pose is another mesh, at the frame that has it; to a patch it is nothing.
     const BakeOptions again{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
     EXPECT_EQ(bake(scene, again).kept, 2);
     scene.camera.keys.back().position_m.z += 1.0;
-    EXPECT_EQ(bake(scene, again).kept, 0);
+    EXPECT_EQ(bake(scene, again).kept, 1);
     scene.surface = {.size_m = 100.0, .resolution = 8};
     bake(scene, again);
     scene.camera.keys.back().position_m.z += 1.0;
@@ -231,9 +231,8 @@ TEST_F(Bakes, AMadeUpBuoysSeaComesBack) {
                          "2024-10-03T06:00:00Z");
 }
 
-// Two shots of different names in one folder share the names of their maps: what another one has replaced is
-// not whole.
-TEST_F(Bakes, MapsThatAnotherShotHasReplacedAreBakedAgain) {
+// Two shots in one folder leave each other's files alone, and each names the other's.
+TEST_F(Bakes, TwoShotsShareAFolder) {
     Scene one = small_scene(), two = small_scene();
     one.output.mesh = two.output.mesh = MeshFormat::None;
     one.output.maps = two.output.maps = {MapKind::Displacement};
@@ -241,13 +240,17 @@ TEST_F(Bakes, MapsThatAnotherShotHasReplacedAreBakedAgain) {
     one.shot.name = "one";
     two.shot.name = "two";
     two.shot.seed = 2;
-    const auto kept = [&](const Scene& scene) {
-        return bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept;
+    const auto baked = [&](const Scene& scene) {
+        return bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
     };
-    EXPECT_EQ(kept(one), 0);
-    EXPECT_EQ(kept(one), 3);
-    EXPECT_EQ(kept(two), 0);
-    EXPECT_EQ(kept(one), 0);
+    EXPECT_EQ(baked(one).kept, 0);
+    EXPECT_EQ(baked(one).kept, 3);
+    EXPECT_EQ(baked(two).kept, 0);
+    const BakeReport again = baked(one);
+    EXPECT_EQ(again.kept, 3);
+    EXPECT_EQ(again.foreign,
+              (std::vector<std::string>{"maps/two.displacement.####.exr: 3 files of another shot",
+                                        "two.json: of another shot"}));
 }
 
 std::string bytes_of(const fs::path& file) {
@@ -279,7 +282,7 @@ TEST_F(Bakes, MeshesAreInTheFormatThatIsAskedForAndThePagesAreText) {
         const auto files = record.at("frames").at("2").at("files");
         EXPECT_EQ(files.size(), 1u);
         const std::string file = "mesh/sea.0002" + std::string(extension);
-        EXPECT_EQ(files.at(file).get<std::uintmax_t>(), fs::file_size(folder_ / file));
+        EXPECT_EQ(files.at(file).at("bytes").get<std::uintmax_t>(), fs::file_size(folder_ / file));
         EXPECT_EQ(bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr}).kept, 3);
     }
 }

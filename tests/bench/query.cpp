@@ -1,0 +1,97 @@
+// What a call of the query costs where few points are asked for at a time: prepared, and with evaluate(),
+// which prepares anew at each call. One thread; points lie scattered, as rays and floats do.
+//   query [REPEATS]      default 40
+
+#include <tbb/global_control.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/evaluate/prepared_query.h"
+#include "core/evaluate/values.h"
+#include "tests/bench/timing.h"
+
+namespace pelagic::bench {
+namespace {
+
+constexpr std::size_t kBatches[] = {1, 16, 4096};
+constexpr std::size_t kPoints = 1 << 14;  // asked for in one repeat, in batches
+
+struct Case {
+    std::string name;
+    Scene scene;
+    ProductSet products;
+};
+
+// The least time of a call [ns], of `repeats` rounds in which all batches take turns.
+void table(const Case& at, int repeats) {
+    Query query;
+    query.name = "points";
+    query.products = at.products;
+    query.cell_m = query.pixel_m = {0.5};
+    Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(at.scene, {query})));
+    frame.set(3.0);
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> inside(-200.0f, 200.0f);
+    std::vector<glm::vec2> rest(kPoints);
+    for (glm::vec2& point : rest) point = {inside(random), inside(random)};
+    Values values;
+    values.resize(at.products, kPoints);
+    const Results<float> results = values.results();
+    const PreparedQuery<float> prepared(frame, 0, at.products);
+    const auto in_batches = [&](std::size_t batch, const auto& ask) {
+        return [&, batch, ask] {
+            for (std::size_t first = 0; first < kPoints; first += batch)
+                ask(Points<float>{.count = batch, .rest_m = {&rest[first]}}, results.from_point(first));
+        };
+    };
+    std::vector<Timed> timed;
+    for (const std::size_t batch : kBatches) {
+        timed.push_back({"", in_batches(batch, [&](const Points<float>& points, const Results<float>& to) {
+                             prepared.evaluate(points, to);
+                         })});
+        timed.push_back({"", in_batches(batch, [&](const Points<float>& points, const Results<float>& to) {
+                             evaluate(frame, 0, points, to);
+                         })});
+    }
+    interleave(timed, repeats);
+    const auto ns_a_call = [&](std::size_t i) {
+        return timed[i].least() * 1e6 * static_cast<double>(kBatches[i / 2]) / kPoints;
+    };
+    const double own_ns = ns_a_call(4) / static_cast<double>(kBatches[2]);
+    std::printf("\n%s: a point's own time %.0f ns, as one of %zu\n  %8s %14s %14s %8s\n", at.name.c_str(),
+                own_ns, kBatches[2], "points", "prepared ns", "evaluate ns", "ratio");
+    for (std::size_t b = 0; b < std::size(kBatches); ++b)
+        std::printf("  %8zu %14.0f %14.0f %8.2f\n", kBatches[b], ns_a_call(2 * b), ns_a_call(2 * b + 1),
+                    ns_a_call(2 * b) / ns_a_call(2 * b + 1));
+    const double call_ns = ns_a_call(0) - own_ns;
+    std::printf("  one point: %.0f ns beside its own time; target at most 2000: %s\n", call_ns,
+                verdict(call_ns <= 2000.0));
+}
+
+void run(int repeats) {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    std::printf("A call of the query, least of %d repeats, one thread\n", repeats);
+    const ProductSet floats = products(Product::Position, Product::Normal, Product::Velocity);
+    ProductSet all;
+    all.set();
+    Scene trains;
+    trains.waves.model = WaveModel::Trochoid;
+    table({"default sea, position", Scene(), products(Product::Position)}, repeats);
+    table({"default sea, position, normal, velocity", Scene(), floats}, repeats);
+    table({"default sea, everything", Scene(), all}, repeats);
+    table({"60 wave trains, position", trains, products(Product::Position)}, repeats);
+    table({"60 wave trains, everything", trains, all}, repeats);
+}
+
+}  // namespace
+}  // namespace pelagic::bench
+
+int main(int argc, char** argv) {
+    pelagic::bench::run(argc > 1 ? std::max(1, std::atoi(argv[1])) : 40);
+    return 0;
+}

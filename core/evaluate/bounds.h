@@ -58,7 +58,7 @@ class FrameBounds {
     // Of all points that rest in the region. `most_blocks`: into how many the region is split at most; more
     // are tighter and take longer. Throws std::invalid_argument for a region that isn't one or no blocks,
     // std::logic_error when the frame was set since.
-    DisplacementBounds region(const RestRegion& region, int most_blocks = 1024) const;
+    DisplacementBounds region(const RestRegion& region, int most_blocks = 4096) const;
     // Of all points everywhere.
     DisplacementBounds everywhere() const;
 
@@ -73,7 +73,7 @@ class FrameBounds {
     };
     struct GridBounds {
         double size_m = 1.0;
-        int n = 1;
+        int n = 1;                      // cells along an axis
         std::array<Pyramid, 3> fields;  // height, Dx, Dy
     };
     using Block = RestRegion;

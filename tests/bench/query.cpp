@@ -1,5 +1,6 @@
 // What a call of the query costs where few points are asked for at a time: prepared, and with evaluate(),
-// which prepares anew at each call. One thread; points lie scattered, as rays and floats do.
+// which prepares anew at each call. One thread; points lie scattered, as rays and floats do. And what bounds
+// of a region cost.
 //   query [REPEATS]      default 300
 
 #include <tbb/global_control.h>
@@ -12,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/constants.h"
+#include "core/evaluate/bounds.h"
 #include "core/evaluate/prepared_query.h"
 #include "core/evaluate/values.h"
 #include "tests/bench/timing.h"
@@ -79,6 +82,29 @@ void table(const Case& at, int repeats) {
                 verdict(call_ns <= 2000.0));
 }
 
+// What bounds cost beside the frame that they are of: made once after set(), then asked for regions.
+void bounds_table(const std::string& name, const Scene& scene, int repeats) {
+    Query query;
+    query.name = "points";
+    query.products = products(Product::Position);
+    query.cell_m = query.pixel_m = {0.5};
+    Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(scene, {query})));
+    double t_s = 0.0;
+    frame.set(t_s);
+    FrameBounds<float> bounds(frame, 0);
+    const double side_m = 2.0 * kTwoPi / frame.sea().plan().from->spectrum.longest_peak_wavenumber();
+    const RestRegion region{{0.0, 0.0}, {side_m, side_m}};
+    std::vector<Timed> timed{{"set", [&] { frame.set(t_s += 0.04); }},
+                             {"refresh", [&] { bounds.refresh(); }}};
+    constexpr int kBlocks[] = {1, 64, 1024, 4096};
+    for (const int blocks : kBlocks)
+        timed.push_back({"a region of two peak waves, at most " + std::to_string(blocks) + " blocks",
+                         [&, blocks] { bounds.region(region, blocks); }});
+    interleave(timed, repeats);
+    std::printf("\nBounds, %s: µs\n", name.c_str());
+    for (const Timed& of : timed) std::printf("  %-50s %10.1f\n", of.name.c_str(), 1e3 * of.least());
+}
+
 void run(int repeats) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     std::printf("A call of the query, least of %d repeats, one thread\n", repeats);
@@ -92,6 +118,8 @@ void run(int repeats) {
     table({"default sea, everything", Scene(), all}, repeats);
     table({"60 wave trains, position", trains, products(Product::Position)}, repeats);
     table({"60 wave trains, everything", trains, all}, repeats);
+    bounds_table("default sea", Scene(), std::max(1, repeats / 10));
+    bounds_table("60 wave trains", trains, std::max(1, repeats / 10));
 }
 
 }  // namespace

@@ -222,7 +222,8 @@ TEST(FrameBounds, AreNotMuchWiderThanWhatIsReached) {
             }
             std::printf("%-34s %8.0f %8.2f %8.2f %22.2f\n", c.name.c_str(), waves * peak_m, height, reach,
                         of_expected);
-            EXPECT_LT(height, c.scene.waves.model == WaveModel::Fft ? 1.5 : 2.5) << c.name;
+            // Many trains over many waves need more blocks than are given here.
+            EXPECT_LT(height, c.scene.waves.model == WaveModel::Fft ? 1.5 : 3.0) << c.name;
         }
     }
 }

@@ -14,9 +14,13 @@ struct Chunk {
     static constexpr std::size_t kPoints = 256;  // a multiple of every vector's length
     using Values = std::array<T, kPoints>;
 
-    // 1 … kPoints. Vectors work on whole multiples of their length: what lies beyond is finite and is not
-    // read.
+    static constexpr std::size_t kLongestVector = 64 / sizeof(T);
+
+    // 1 … kPoints. Vectors work on whole multiples of their length: what lies beyond, up to padded(), is
+    // finite and goes nowhere.
     std::size_t count = 0;
+    std::size_t padded() const { return (count + kLongestVector - 1) / kLongestVector * kLongestVector; }
+
     alignas(64) Values rest_x, rest_y;  // [m], relative to the query's origin
     // Σ over the components so far, by field; only the wanted ones are set.
     alignas(64) std::array<Values, kFieldCount> sums;

@@ -188,11 +188,9 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
 
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
-    Places<T> x, y;
-    constexpr std::size_t kLongest = 64 / sizeof(T);  // a vector's last lanes are somewhere in the grid, too
-    const std::size_t count = (chunk.count + kLongest - 1) / kLongest * kLongest;
-    Locate(args, args.origin_nodes_x, chunk.rest_x.data(), count, x);
-    Locate(args, args.origin_nodes_y, chunk.rest_y.data(), count, y);
+    Places<T> x, y;  // a vector's last lanes are somewhere in the grid, too
+    Locate(args, args.origin_nodes_x, chunk.rest_x.data(), chunk.padded(), x);
+    Locate(args, args.origin_nodes_y, chunk.rest_y.data(), chunk.padded(), y);
     if (args.sampling == Sampling::Nodes)
         AddNodes(args, chunk, x, y);
     else if (args.taps == 6)

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "core/evaluate/chunk.h"
-#include "core/evaluate/evaluate.h"
+#include "core/evaluate/results.h"
 #include "core/evaluate/trains.h"
 #include "core/plan/plan.h"
 
@@ -17,6 +17,7 @@ template <class T>
 struct GridArgs {
     Sampling sampling = Sampling::Spline;
     int taps = 6, n = 1;
+    double size_m = 1.0;  // of the tile
     double nodes_per_m = 1.0, origin_nodes_x = 0.0,
            origin_nodes_y = 0.0;                  // where the chunk's origin lies, 0 … n
     std::array<const T*, kFieldCount> samples{};  // as Frame::samples(); null: not wanted

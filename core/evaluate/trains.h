@@ -24,7 +24,7 @@ struct TrainArgs {
     // Footprints [m] of all points, or of each in the chunk's order, where there is an array. Cells filter
     // positions and velocities, pixels the derivatives.
     T cell_m = T(0), pixel_m = T(0);
-    const T* cell_of = nullptr;   // kPoints long; values beyond the chunk's count are not used
+    const T* cell_of = nullptr;   // padded() long; values beyond the chunk's count are not used
     const T* pixel_of = nullptr;  // the same
     // Where given: what pixel_of (or pixel_m) hides.
     HiddenChunk<T>* hidden = nullptr;

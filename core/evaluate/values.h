@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <glm/vec3.hpp>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "core/evaluate/evaluate.h"
@@ -30,12 +31,16 @@ class ProductArrays {
         return numbers_[index(product)].size() + vectors_[index(product)].size();
     }
 
-    const std::vector<glm::vec<3, T>>& vectors(VectorProduct product) const {
+    const std::vector<glm::vec<3, T>>& vectors(VectorProduct product) const& {
         return vectors_[index(product)];
     }
-    std::vector<glm::vec<3, T>>& vectors(VectorProduct product) { return vectors_[index(product)]; }
-    const std::vector<T>& numbers(NumberProduct product) const { return numbers_[index(product)]; }
-    std::vector<T>& numbers(NumberProduct product) { return numbers_[index(product)]; }
+    std::vector<glm::vec<3, T>>& vectors(VectorProduct product) & { return vectors_[index(product)]; }
+    std::vector<glm::vec<3, T>> vectors(VectorProduct product) && {  // of a temporary: lives on
+        return std::move(vectors_[index(product)]);
+    }
+    const std::vector<T>& numbers(NumberProduct product) const& { return numbers_[index(product)]; }
+    std::vector<T>& numbers(NumberProduct product) & { return numbers_[index(product)]; }
+    std::vector<T> numbers(NumberProduct product) && { return std::move(numbers_[index(product)]); }
 
     // Views of these arrays, for evaluate(): valid until they are resized.
     Results<T> results() {

@@ -103,6 +103,7 @@ void Frame<T>::set(double t_s) {
     if (!(std::abs(t_s) <= kLatest_s))
         throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
     is_set_ = false;  // stays so if a task throws
+    ++times_set_;
     time_s_ = t_s;
     time_within_loop_s_ = pelagic::time_within_loop_s(t_s, sea_->loop_s());
     executed_lines_ += sum_of_each(blocks_, [this](const Block& block) { return transform_columns(block); });

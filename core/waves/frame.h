@@ -28,6 +28,8 @@ class Frame {
 
     static constexpr double kLatest_s = 1e12;  // a phase in cycles then still has four digits after the point
     bool is_set() const { return is_set_; }
+    // Calls of set() since the frame was made: who keeps what it held knows by it that this has changed.
+    long times_set() const { return times_set_; }
 
     const Sea<T>& sea() const { return *sea_; }
     double time_s() const { return time_s_; }
@@ -87,7 +89,7 @@ class Frame {
     std::size_t block_modes_ = 0, line_values_ = 0;  // sizes of a scratch's buffers
     mutable tbb::enumerable_thread_specific<Scratch> scratches_;
     double time_s_ = 0.0, time_within_loop_s_ = 0.0;
-    long executed_transforms_ = 0, executed_lines_ = 0;
+    long executed_transforms_ = 0, executed_lines_ = 0, times_set_ = 0;
     bool is_set_ = false;
 };
 

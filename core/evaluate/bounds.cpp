@@ -1,0 +1,407 @@
+#include "core/evaluate/bounds.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <stdexcept>
+
+#include "core/base/constants.h"
+#include "core/plan/grid_layout.h"
+
+namespace pelagic {
+namespace {
+
+using Interval = DisplacementBounds::Interval;
+
+constexpr std::array<Field, 3> kFields{Field::Height, Field::Dx, Field::Dy};
+// Cells along the side of a pyramid's finest block.
+constexpr int kBlockCells = 2;
+// What evaluate() rounds, in units of the largest number that it adds up: some forty products and sums.
+template <class T>
+constexpr double kRounding = 64.0 * static_cast<double>(std::numeric_limits<T>::epsilon());
+
+std::array<Interval DisplacementBounds::*, 3> axes() {
+    return {&DisplacementBounds::z, &DisplacementBounds::dx, &DisplacementBounds::dy};
+}
+
+void widen(Interval& interval, double by) {
+    interval.lo -= by;
+    interval.hi += by;
+}
+void include(Interval& interval, const Interval& other) {
+    interval.lo = std::min(interval.lo, other.lo);
+    interval.hi = std::max(interval.hi, other.hi);
+}
+void include(DisplacementBounds& bounds, const DisplacementBounds& other) {
+    for (const auto axis : axes()) include(bounds.*axis, other.*axis);
+}
+
+// cos of a phase [cycles] that lies within `by` of `cycles`.
+Interval cosine(double cycles, double by) {
+    if (by >= 0.5) return {-1.0, 1.0};
+    const double phase = std::abs(cycles - std::round(cycles));
+    const double a = std::cos(kTwoPi * (phase - by)), b = std::cos(kTwoPi * (phase + by));
+    return {0.5 - phase <= by ? -1.0 : std::min(a, b), phase <= by ? 1.0 : std::max(a, b)};
+}
+
+// Whether a grid's spline is bounded by its coefficients at half the spacing: nearer to it by a factor of
+// four, for four times the work, which only grids that aren't large are worth.
+bool is_refined(const Grid& grid) {
+    constexpr int kLargestResolution = 512;
+    return grid.sampling == Sampling::Spline && grid.resolution <= kLargestResolution;
+}
+
+// The same periodic spline's coefficients at half the spacing, 2n × 2n: knots inserted (Lane and Riesenfeld
+// 1980), whose mask is the binomial coefficients of P over 2^(P−1) along each axis.
+template <class T>
+std::vector<T> refined_spline(const T* samples, int n, int taps) {
+    const std::vector<T> mask =
+        taps == 6 ? std::vector<T>{1, 6, 15, 20, 15, 6, 1} : std::vector<T>{1, 4, 6, 4, 1};
+    const int middle = taps / 2;
+    const T scale = T(1) / static_cast<T>(1 << (taps - 1));
+    const auto side = static_cast<std::size_t>(2 * n), stride = line_stride<T>(n);
+    // Coefficient k is Σ_j mask[k − 2j + P/2] c_j.
+    const auto each_tap = [&](int k, const auto& add) {
+        const int first = (k - middle + 1) >> 1, last = (k + middle) >> 1;
+        for (int j = first; j <= last; ++j) add(((j % n) + n) % n, scale * mask[k - 2 * j + middle]);
+    };
+    std::vector<T> wide(side * n), refined(side * side);  // along x first
+    for (int k = 0; k < 2 * n; ++k)
+        each_tap(k, [&](int j, T weight) {
+            for (int y = 0; y < n; ++y) wide[y * side + k] += weight * samples[y * stride + j];
+        });
+    for (int k = 0; k < 2 * n; ++k)
+        each_tap(k, [&](int j, T weight) {
+            for (std::size_t x = 0; x < side; ++x) refined[k * side + x] += weight * wide[j * side + x];
+        });
+    return refined;
+}
+
+// Blocks first … last of an axis of a period: one piece, or two where they lie across its seam.
+struct Pieces {
+    int count = 0;
+    std::array<std::array<int, 2>, 2> of{};
+};
+Pieces pieces_of(double from_cells, double to_cells, int n) {
+    // The query reduces a place to its tile in another order: by so much the two may differ.
+    const double slack = 1e-6 + 1e-14 * std::max(std::abs(from_cells), std::abs(to_cells));
+    const double first = std::floor(from_cells - slack), last = std::floor(to_cells + slack);
+    if (!(last - first + 1.0 < n)) return {1, {{{0, (n - 1) / kBlockCells}}}};
+    const double tile = std::floor(first / n) * n;
+    const int begin = static_cast<int>(first - tile), end = static_cast<int>(last - tile);
+    if (end < n) return {1, {{{begin / kBlockCells, end / kBlockCells}}}};
+    return {2, {{{begin / kBlockCells, (n - 1) / kBlockCells}, {0, (end - n) / kBlockCells}}}};
+}
+
+}  // namespace
+
+glm::dvec2 DisplacementBounds::reach_m() const {
+    return {std::max(std::abs(dx.lo), std::abs(dx.hi)), std::max(std::abs(dy.lo), std::abs(dy.hi))};
+}
+
+template <class T>
+FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRange cells)
+    : frame_(&frame), planned_(&frame.sea().plan().queries.at(query_index)), cells_(cells) {
+    const Plan& plan = frame.sea().plan();
+    const Query& query = planned_->query;
+    if (!(query.products[index(Product::Position)] || query.products[index(Product::Displacement)]))
+        throw std::invalid_argument("query \"" + query.name + "\" holds no positions to bound");
+    if (!(cells.finest_m >= 0.0) || !(cells.coarsest_m >= cells.finest_m))
+        throw std::invalid_argument("footprints to bound must rise from 0 or more");
+    // From the rung at or below the finest to the one at or above the coarsest; what lies beyond the ladder
+    // is held within it.
+    const std::vector<double>& ladder_m = query.cell_m;
+    const auto above = std::upper_bound(ladder_m.begin() + 1, ladder_m.end(), cells.finest_m);
+    const auto first = above - ladder_m.begin() - 1;
+    const auto last = std::min<std::ptrdiff_t>(
+        std::lower_bound(ladder_m.begin() + first, ladder_m.end(), cells.coarsest_m) - ladder_m.begin(),
+        std::ssize(ladder_m) - 1);
+    levels_.assign(planned_->cell_levels.begin() + first, planned_->cell_levels.begin() + last + 1);
+    for (double* of : {&cells_.finest_m, &cells_.coarsest_m}) *of = std::max(*of, ladder_m.front());
+    if (plan.trains && !query.only_cascade) {
+        const Trains<T>& trains = frame.sea().trains();
+        for (std::size_t i = 0; i < trains.count(); ++i) {
+            const double k = kTwoPi / trains.wavelength_m[i];
+            finest_weight_.push_back(plan.filter.weight(k, cells_.finest_m));
+            if (finest_weight_.back() == 0.0) {  // the longest come first
+                finest_weight_.pop_back();
+                break;
+            }
+            coarsest_weight_.push_back(plan.filter.weight(k, cells_.coarsest_m));
+        }
+        for (std::size_t f = 0; f < kFields.size(); ++f) {
+            const std::vector<T>& amplitude = trains.amplitude[index(kFields[f])];
+            train_amplitudes_[f].assign(amplitude.begin(), amplitude.begin() + std::ssize(finest_weight_));
+            if (plan.dropped[index(kFields[f])]) train_amplitudes_[f].assign(finest_weight_.size(), 0.0);
+        }
+    }
+    refresh();
+}
+
+template <class T>
+void FrameBounds<T>::refresh() {
+    if (!frame_->is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
+    const Plan& plan = frame_->sea().plan();
+    struct Place {
+        int cascade, grid;
+        bool operator==(const Place&) const = default;
+    };
+    std::vector<Place> places;
+    grid_of_level_.assign(levels_.size(), {});
+    grids_.clear();
+    smallest_block_m_ = 0.0;
+    for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c)
+        for (std::size_t l = 0; l < levels_.size(); ++l) {
+            const int g = plan.cascades[c].grid_of_level[levels_[l]];
+            if (g < 0) continue;
+            const auto found = std::find(places.begin(), places.end(), Place{c, g});
+            grid_of_level_[l].push_back(static_cast<int>(found - places.begin()));
+            if (found != places.end()) continue;
+            places.push_back({c, g});
+            GridBounds& grid = grids_.emplace_back();
+            grid.size_m = plan.cascades[c].size_m;
+            const Grid& planned = plan.cascades[c].grids[g];
+            grid.n = planned.resolution * (is_refined(planned) ? 2 : 1);
+            smallest_block_m_ = std::max(smallest_block_m_, 0.5 * kBlockCells * grid.size_m / grid.n);
+        }
+    tbb::parallel_for(std::size_t(0), places.size() * kFields.size(), [&](std::size_t i) {
+        const Place& place = places[i / kFields.size()];
+        const std::size_t field = i % kFields.size();
+        grids_[i / kFields.size()].fields[field] = pyramid_of(place.cascade, place.grid, kFields[field]);
+    });
+    times_set_ = frame_->times_set();
+}
+
+// A point between nodes i and i + 1 sees the taps round them, or, where grids are read at nodes, one of the
+// two.
+template <class T>
+typename FrameBounds<T>::Pyramid FrameBounds<T>::pyramid_of(int cascade, int grid, Field field) const {
+    const T* samples = frame_->samples(cascade, grid, field);
+    Pyramid pyramid;
+    if (!samples) return pyramid;
+    const Plan& plan = frame_->sea().plan();
+    const Grid& planned = plan.cascades[cascade].grids[grid];
+    const int taps = planned.sampling == Sampling::Nodes ? 2 : plan.knobs.spline_taps;
+    const int window = kBlockCells + taps - 1, before = taps / 2 - 1;
+    std::vector<T> refined;
+    int n = planned.resolution;
+    std::size_t stride = line_stride<T>(n);
+    if (is_refined(planned)) {
+        refined = refined_spline(samples, n, taps);
+        samples = refined.data();
+        stride = n *= 2;
+    }
+    const auto wrapped = [n](int i) { return ((i % n) + n) % n; };
+
+    // Along x first, then along y.
+    Level level;
+    level.side = (n + kBlockCells - 1) / kBlockCells;
+    const auto side = static_cast<std::size_t>(level.side);
+    std::vector<T> row_low(side * n), row_high(side * n);
+    for (int y = 0; y < n; ++y)
+        for (int block = 0; block < level.side; ++block) {
+            const T* row = samples + static_cast<std::size_t>(y) * stride;
+            T low = std::numeric_limits<T>::infinity(), high = -low;
+            for (int i = 0; i < window; ++i) {
+                const T value = row[wrapped(block * kBlockCells - before + i)];
+                low = std::min(low, value);
+                high = std::max(high, value);
+            }
+            row_low[y * side + block] = low;
+            row_high[y * side + block] = high;
+        }
+    level.low.assign(side * side, std::numeric_limits<T>::infinity());
+    level.high.assign(side * side, -std::numeric_limits<T>::infinity());
+    for (int block = 0; block < level.side; ++block)
+        for (int i = 0; i < window; ++i) {
+            const std::size_t row = wrapped(block * kBlockCells - before + i) * side;
+            for (std::size_t x = 0; x < side; ++x) {
+                T &low = level.low[block * side + x], &high = level.high[block * side + x];
+                low = std::min(low, row_low[row + x]);
+                high = std::max(high, row_high[row + x]);
+            }
+        }
+    pyramid.levels.push_back(std::move(level));
+    while (pyramid.levels.back().side > 1) {
+        const Level& fine = pyramid.levels.back();
+        Level coarse;
+        coarse.side = (fine.side + 1) / 2;
+        const std::size_t count = static_cast<std::size_t>(coarse.side) * coarse.side;
+        coarse.low.assign(count, std::numeric_limits<T>::infinity());
+        coarse.high.assign(count, -std::numeric_limits<T>::infinity());
+        for (int y = 0; y < fine.side; ++y)
+            for (int x = 0; x < fine.side; ++x) {
+                const std::size_t from = static_cast<std::size_t>(y) * fine.side + x,
+                                  to = static_cast<std::size_t>(y / 2) * coarse.side + x / 2;
+                coarse.low[to] = std::min(coarse.low[to], fine.low[from]);
+                coarse.high[to] = std::max(coarse.high[to], fine.high[from]);
+            }
+        pyramid.levels.push_back(std::move(coarse));
+    }
+    return pyramid;
+}
+
+// `cycles`: the trains' phases at origin_m, where the block's coordinates begin.
+template <class T>
+DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vector<double>& cycles,
+                                             glm::dvec2 origin_m) const {
+    constexpr int kMostBlocks = 4;  // along an axis: coarser blocks serve longer pieces
+    DisplacementBounds bounds;
+    for (const std::vector<int>& of_level : grid_of_level_) {
+        DisplacementBounds sum{{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
+        for (const int g : of_level) {
+            const GridBounds& grid = grids_[g];
+            const double per_m = grid.n / grid.size_m;
+            const auto along = [&](int axis) {
+                return pieces_of((origin_m[axis] + block.min_m[axis]) * per_m,
+                                 (origin_m[axis] + block.max_m[axis]) * per_m, grid.n);
+            };
+            const Pieces x = along(0), y = along(1);
+            for (std::size_t f = 0; f < kFields.size(); ++f) {
+                const Pyramid& pyramid = grid.fields[f];
+                if (pyramid.levels.empty()) continue;
+                Interval found;
+                for (int py = 0; py < y.count; ++py)
+                    for (int px = 0; px < x.count; ++px) {
+                        const auto [x0, x1] = x.of[px];
+                        const auto [y0, y1] = y.of[py];
+                        int l = 0;
+                        while (std::max((x1 >> l) - (x0 >> l), (y1 >> l) - (y0 >> l)) >= kMostBlocks) ++l;
+                        const Level& level = pyramid.levels[l];
+                        for (int j = y0 >> l; j <= y1 >> l; ++j)
+                            for (int i = x0 >> l; i <= x1 >> l; ++i) {
+                                const std::size_t at = static_cast<std::size_t>(j) * level.side + i;
+                                include(found, {static_cast<double>(level.low[at]),
+                                                static_cast<double>(level.high[at])});
+                            }
+                    }
+                const Level& all = pyramid.levels.back();
+                widen(found, kRounding<T> * static_cast<double>(std::max(-all.low[0], all.high[0])));
+                Interval& axis = sum.*axes()[f];
+                axis.lo += found.lo;
+                axis.hi += found.hi;
+            }
+        }
+        include(bounds, sum);
+    }
+    const Trains<T>& trains = frame_->sea().trains();
+    const glm::dvec2 middle = 0.5 * (block.min_m + block.max_m), half = 0.5 * (block.max_m - block.min_m);
+    // Waves that are long against the block by value and slope at its middle, of which the sums are bounded:
+    // what is left is second order, |a| δ²/2 where the phase turns by δ. The others each by itself.
+    constexpr double kSmooth = 1.0;
+    std::array<glm::dvec2, 3> slopes{glm::dvec2(0.0), glm::dvec2(0.0), glm::dvec2(0.0)};
+    for (std::size_t i = 0; i < finest_weight_.size(); ++i) {
+        const double kx = trains.kx_cycles_per_m[i], ky = trains.ky_cycles_per_m[i];
+        const double phase = cycles[i] - kx * middle.x - ky * middle.y;
+        const double by = std::abs(kx) * half.x + std::abs(ky) * half.y + 1e-9, radians = kTwoPi * by;
+        const double weight = 0.5 * (finest_weight_[i] + coarsest_weight_[i]);
+        const double weight_by = 0.5 * (finest_weight_[i] - coarsest_weight_[i]) + kRounding<T>;
+        const bool is_smooth = radians < kSmooth;
+        const double cosine_at = std::cos(kTwoPi * phase), sine_at = std::sin(kTwoPi * phase);
+        const Interval cosine_of = is_smooth ? Interval() : cosine(phase, by),
+                       sine_of = is_smooth ? Interval() : cosine(phase - 0.25, by);
+        for (std::size_t f = 0; f < kFields.size(); ++f) {
+            const double amplitude = train_amplitudes_[f][i];
+            if (amplitude == 0.0) continue;
+            Interval& axis = bounds.*axes()[f];
+            widen(axis, std::abs(amplitude) * weight_by);
+            const double shown = weight * amplitude;
+            if (is_smooth) {
+                const double value = shown * (f == 0 ? cosine_at : sine_at);
+                axis.lo += value;
+                axis.hi += value;
+                // Along κ the phase falls.
+                const double slope = shown * (f == 0 ? sine_at : -cosine_at) * kTwoPi;
+                slopes[f] += slope * glm::dvec2(kx, ky);
+                widen(axis, 0.5 * std::abs(shown) * radians * radians);
+            } else {
+                const Interval& wave = f == 0 ? cosine_of : sine_of;
+                axis.lo += std::min(shown * wave.lo, shown * wave.hi);
+                axis.hi += std::max(shown * wave.lo, shown * wave.hi);
+            }
+        }
+    }
+    for (std::size_t f = 0; f < kFields.size(); ++f)
+        widen(bounds.*axes()[f], std::abs(slopes[f].x) * half.x + std::abs(slopes[f].y) * half.y);
+    return bounds;
+}
+
+// The block that exceeds most what the region surely reaches is split, until none exceeds it by much: every
+// point of a block lies above its lower bound, so that the region reaches at least the highest of those.
+template <class T>
+DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blocks) const {
+    constexpr double kTolerance = 0.05;  // of what is surely reached
+    if (!is_current())
+        throw std::logic_error("the frame was set to another time: refresh() makes the bounds valid again");
+    for (int axis = 0; axis < 2; ++axis)
+        if (!(region.min_m[axis] <= region.max_m[axis]) || !std::isfinite(region.min_m[axis]) ||
+            !std::isfinite(region.max_m[axis]))
+            throw std::invalid_argument("a region reaches from its least to its greatest corner, finite");
+    if (most_blocks < 1) throw std::invalid_argument("a region is at least one block");
+    const glm::dvec2 origin_m = 0.5 * (region.min_m + region.max_m);
+    const std::vector<double> cycles =
+        finest_weight_.empty() ? std::vector<double>()
+                               : phases_at(frame_->sea().trains(), origin_m, frame_->time_within_loop_s());
+
+    struct Part {
+        Block block;
+        DisplacementBounds bounds;
+        double excess;
+        bool operator<(const Part& other) const { return excess < other.excess; }
+    };
+    DisplacementBounds settled, reached;  // the latter inside out until something is: lo ≥ the region's least
+    reached.z = reached.dx =
+        reached.dy = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    const auto excess_of = [&](const DisplacementBounds& bounds) {
+        double most = 0.0;
+        for (const auto axis : axes()) {
+            const Interval &is = bounds.*axis, &sure = reached.*axis;
+            const double beyond = std::max(is.hi - sure.hi, sure.lo - is.lo);
+            if (beyond > 0.0) most = std::max(most, beyond / std::max(sure.hi - sure.lo, 1e-3 * beyond));
+        }
+        return most;
+    };
+    std::priority_queue<Part> parts;
+    const auto add = [&](const Block& block) {
+        const DisplacementBounds bounds = bounds_of(block, cycles, origin_m);
+        for (const auto axis : axes()) {
+            (reached.*axis).hi = std::max((reached.*axis).hi, (bounds.*axis).lo);
+            (reached.*axis).lo = std::min((reached.*axis).lo, (bounds.*axis).hi);
+        }
+        parts.push({block, bounds, excess_of(bounds)});
+    };
+    add({region.min_m - origin_m, region.max_m - origin_m});
+    for (int blocks = 1; !parts.empty();) {
+        Part part = parts.top();
+        parts.pop();
+        const glm::dvec2 side = part.block.max_m - part.block.min_m;
+        const int longer = side.y > side.x ? 1 : 0;
+        if (blocks >= most_blocks || side[longer] <= smallest_block_m_ ||
+            excess_of(part.bounds) <= kTolerance) {
+            include(settled, part.bounds);
+            continue;
+        }
+        Block low = part.block, high = part.block;
+        low.max_m[longer] = high.min_m[longer] = 0.5 * (part.block.min_m[longer] + part.block.max_m[longer]);
+        add(low);
+        add(high);
+        ++blocks;
+    }
+    return settled;
+}
+
+template <class T>
+DisplacementBounds FrameBounds<T>::everywhere() const {
+    if (!is_current())
+        throw std::logic_error("the frame was set to another time: refresh() makes the bounds valid again");
+    constexpr double kAll_m = 1e300;  // longer than every tile and every wave
+    return bounds_of({glm::dvec2(-kAll_m), glm::dvec2(kAll_m)}, std::vector<double>(finest_weight_.size()),
+                     glm::dvec2(0.0));
+}
+
+template class FrameBounds<float>;
+template class FrameBounds<double>;
+
+}  // namespace pelagic

@@ -1,0 +1,345 @@
+#include "core/evaluate/prepared_query.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "core/base/number.h"
+#include "core/evaluate/trains.h"
+
+namespace pelagic {
+namespace {
+
+// A point's place on a ladder of footprints: (1 − t) of the lower rung and t of the next.
+template <class T>
+struct Rung {
+    std::size_t lower;
+    T t;
+};
+
+template <class T>
+Rung<T> rung_of(const std::vector<double>& ladder_m, const Strided<const T>& footprint_m, std::size_t point) {
+    if (!footprint_m || ladder_m.size() == 1) return {0, T(0)};
+    const double wanted = std::min(static_cast<double>(footprint_m[point]), ladder_m.back());
+    if (!(wanted > ladder_m.front()))
+        return {0, T(0)};  // the finest rung, for a footprint that is no number, too
+    const auto above = std::upper_bound(ladder_m.begin() + 1, ladder_m.end() - 1, wanted);
+    const std::size_t upper = static_cast<std::size_t>(above - ladder_m.begin());
+    const double lower_m = ladder_m[upper - 1], upper_m = ladder_m[upper];
+    return {upper - 1, static_cast<T>((wanted - lower_m) / (upper_m - lower_m))};
+}
+
+#include "core/evaluate/hidden.inl"
+
+// What a rung of pixels hides of `whole`: less what passes through the cascades.
+template <class T>
+HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& rung,
+                           const HiddenMoments<double>& whole) {
+    const double t = static_cast<double>(rung.t);
+    const auto left = [&](std::size_t moment) {
+        const auto m = kHiddenMoments[moment];
+        const double here = statistics.resolved[rung.lower].*m;
+        if (!(t > 0.0)) return whole[moment] - here;  // there may be no next rung
+        return whole[moment] - blended_moment(here, statistics.resolved_next[rung.lower].*m,
+                                              statistics.resolved[rung.lower + 1].*m, t);
+    };
+    const auto hidden = possible_moments(
+        PixelMoments<double>(left(0), left(1), left(2), left(3), left(4), left(5), left(6), left(7)));
+    const auto narrow = [](double value) { return static_cast<T>(value); };
+    return {narrow(hidden.xx),   narrow(hidden.xy),   narrow(hidden.yy),   narrow(hidden.xxxx),
+            narrow(hidden.xxxy), narrow(hidden.xxyy), narrow(hidden.xyyy), narrow(hidden.yyyy)};
+}
+
+// A view beginning at a later point.
+template <class Value>
+Strided<Value> from_point(const Strided<Value>& view, std::size_t first) {
+    return view ? Strided<Value>{&view[first], view.stride_bytes} : view;
+}
+
+}  // namespace
+
+template <class T>
+struct PreparedQuery<T>::Call {
+    const Points<T>& points;
+    const Results<T>& results;
+    const Place& place;
+    FieldSet needed;
+    bool wants_hidden, on_ladder;
+    bool differ_in_hidden;  // where trains see each point's own pixel, or cascades a ladder
+};
+
+template <class T>
+PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductSet wanted,
+                                glm::dvec2 origin_m)
+    : frame_(&frame),
+      planned_(&frame.sea().plan().queries.at(query_index)),
+      statistics_(&frame.sea().statistics(query_index)),
+      wanted_(wanted),
+      kernels_(evaluate_kernels<T>()) {
+    const Plan& plan = frame.sea().plan();
+    const Query& query = planned_->query;
+    for (const ProductRow& row : kProductTable)
+        if (wanted[index(row.product)] && !query.products[index(row.product)])
+            throw std::invalid_argument("query \"" + query.name + "\" does not hold \"" + row.name +
+                                        "\": ask for it when the plan is made");
+    has_trains_ = plan.trains && !query.only_cascade;
+    if ((wanted & hidden_products()).any())
+        hidden_ = hidden_at<T>(*statistics_, {0, T(0)},
+                               hidden_moments<double>(has_trains_ ? hidden(frame.sea().trains(), plan.filter,
+                                                                           query.pixel_m.front())
+                                                                  : statistics_->whole));
+    for (const std::vector<int>* levels : {&planned_->cell_levels, &planned_->pixel_levels})
+        for (const int level : *levels)
+            if (std::none_of(levels_.begin(), levels_.end(),
+                             [&](const LevelGrids& there) { return there.level == level; }))
+                levels_.push_back({level, {}});
+    place_.origin_m = origin_m;
+    refresh();
+}
+
+template <class T>
+void PreparedQuery<T>::refresh() {
+    if (!frame_->is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
+    const Plan& plan = frame_->sea().plan();
+    const FieldSet needed = fields_of(wanted_) & ~plan.dropped;
+    for (LevelGrids& of : levels_) {
+        of.grids.clear();
+        for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
+            const CascadePlan& cascade = plan.cascades[c];
+            const int g = cascade.grid_of_level[of.level];
+            if (g < 0) continue;
+            const Grid& grid = cascade.grids[g];
+            GridArgs<T>& args = of.grids.emplace_back();
+            args.sampling = grid.sampling;
+            args.taps = plan.knobs.spline_taps;
+            args.n = grid.resolution;
+            args.size_m = cascade.size_m;
+            args.nodes_per_m = grid.resolution / cascade.size_m;
+            args.cell_group = cell_fields();
+            for (std::size_t f = 0; f < kFieldCount; ++f)
+                if (needed[f]) args.samples[f] = frame_->samples(c, g, static_cast<Field>(f));
+        }
+    }
+    place_ = place_of(place_.origin_m);
+    times_set_ = frame_->times_set();
+}
+
+template <class T>
+typename PreparedQuery<T>::Place PreparedQuery<T>::place_of(glm::dvec2 origin_m) const {
+    Place place{origin_m, {}, {}};
+    for (const LevelGrids& of : levels_) {
+        std::vector<glm::dvec2>& nodes = place.nodes.emplace_back();
+        for (const GridArgs<T>& grid : of.grids) {
+            // The origin's own phase within the tile, in double: the rest of the way is short.
+            const auto phase = [&](double x) {
+                const double tiles = x / grid.size_m;
+                return (tiles - std::floor(tiles)) * grid.n;
+            };
+            nodes.emplace_back(phase(origin_m.x), phase(origin_m.y));
+        }
+    }
+    if (has_trains_)
+        place.start_cycles = phases_at(frame_->sea().trains(), origin_m, frame_->time_within_loop_s());
+    return place;
+}
+
+template <class T>
+typename PreparedQuery<T>::Call PreparedQuery<T>::call(const Points<T>& points, const Results<T>& results,
+                                                       const Place& place) const {
+    const ProductSet given = results.given();
+    const bool many_pixels = planned_->pixel_levels.size() > 1;
+    return {
+        .points = points,
+        .results = results,
+        .place = place,
+        .needed = fields_of(given) & ~frame_->sea().plan().dropped,
+        .wants_hidden = (given & hidden_products()).any(),
+        .on_ladder = (points.cell_m && planned_->cell_levels.size() > 1) || (points.pixel_m && many_pixels),
+        .differ_in_hidden = points.pixel_m && (has_trains_ || many_pixels)};
+}
+
+template <class T>
+void PreparedQuery<T>::evaluate(const Points<T>& points, const Results<T>& results) const {
+    const ProductSet given = results.given();
+    for (const ProductRow& row : kProductTable)
+        if (given[index(row.product)] && !wanted_[index(row.product)])
+            throw std::invalid_argument("query \"" + planned_->query.name + "\" was prepared without \"" +
+                                        row.name + "\"");
+    if (!is_current())
+        throw std::logic_error("the frame was set to another time: refresh() makes the query valid again");
+    if (points.count == 0) return;
+    const auto at = [&](const Place& place) {
+        const Call call = this->call(points, results, place);
+        constexpr std::size_t kPoints = Chunk<T>::kPoints;
+        const auto work = [&](std::size_t begin, std::size_t end) {
+            Chunk<T> chunk;
+            HiddenChunk<T> hidden_of;
+            for (std::size_t c = begin; c < end; ++c) run(call, c * kPoints, chunk, hidden_of);
+        };
+        if (points.count <= kPoints) return work(0, 1);
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, (points.count + kPoints - 1) / kPoints),
+            [&](const tbb::blocked_range<std::size_t>& range) { work(range.begin(), range.end()); });
+    };
+    if (points.origin_m == place_.origin_m)
+        at(place_);
+    else
+        at(place_of(points.origin_m));
+}
+
+template <class T>
+void PreparedQuery<T>::run(const Call& call, std::size_t first, Chunk<T>& chunk,
+                           HiddenChunk<T>& hidden_of) const {
+    const Plan& plan = frame_->sea().plan();
+    chunk.count = std::min(Chunk<T>::kPoints, call.points.count - first);
+    const std::size_t padded = chunk.padded();
+    const auto take = [&](const auto& rest_m) {
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            const glm::vec<2, T> rest = rest_m[i];
+            chunk.rest_x[i] = rest.x;
+            chunk.rest_y[i] = rest.y;
+        }
+    };
+    if (call.points.rest_m.stride_bytes == sizeof(glm::vec<2, T>))
+        take(&call.points.rest_m[first]);  // side by side: in vectors
+    else
+        take(from_point(call.points.rest_m, first));
+    std::fill(chunk.rest_x.begin() + chunk.count, chunk.rest_x.begin() + padded, T(0));
+    std::fill(chunk.rest_y.begin() + chunk.count, chunk.rest_y.begin() + padded, T(0));
+    // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
+    for (typename Chunk<T>::Values& sum : chunk.sums) std::fill(sum.begin(), sum.begin() + padded, T(0));
+    if (call.on_ladder) {
+        add_ladder(call, first, chunk, hidden_of);
+    } else {
+        for (std::size_t l = 0; l < levels_.size(); ++l) {
+            FieldSet fields;
+            if (levels_[l].level == planned_->cell_levels.front()) fields |= cell_fields();
+            if (levels_[l].level == planned_->pixel_levels.front()) fields |= ~cell_fields();
+            add_grids(call, l, {fields, nullptr, nullptr}, chunk);
+        }
+    }
+    add_own_footprints(call, first, chunk, hidden_of);
+    kernels_.derive({.chunk = &chunk,
+                     .results = call.results.from_point(first),
+                     .hidden = hidden_,
+                     .hidden_of = call.wants_hidden && call.differ_in_hidden ? &hidden_of : nullptr,
+                     .whitecap_threshold = static_cast<T>(frame_->sea().whitecap_threshold()),
+                     .third_moment = plan.knobs.third_moment});
+}
+
+template <class T>
+void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Share& share,
+                                 Chunk<T>& chunk) const {
+    const FieldSet fields = share.fields & call.needed;
+    if (fields.none()) return;
+    const std::vector<GridArgs<T>>& grids = levels_[level].grids;
+    for (std::size_t g = 0; g < grids.size(); ++g) {
+        GridArgs<T> args = grids[g];
+        bool any = false;
+        for (std::size_t f = 0; f < kFieldCount; ++f) {
+            if (!fields[f]) args.samples[f] = nullptr;
+            any = any || args.samples[f];
+        }
+        if (!any) continue;
+        args.origin_nodes_x = call.place.nodes[level][g].x;
+        args.origin_nodes_y = call.place.nodes[level][g].y;
+        args.cell_weight = share.cell_weight;
+        args.pixel_weight = share.pixel_weight;
+        kernels_.add_grid(args, chunk);
+    }
+}
+
+// Each point between two rungs: the levels one after another, each with the points' shares in it.
+template <class T>
+void PreparedQuery<T>::add_ladder(const Call& call, std::size_t first, Chunk<T>& chunk,
+                                  HiddenChunk<T>& hidden_of) const {
+    const Query& query = planned_->query;
+    const std::size_t padded = chunk.padded();
+    std::array<Rung<T>, Chunk<T>::kPoints> cell, pixel;
+    for (std::size_t i = 0; i < chunk.count; ++i) {
+        cell[i] = rung_of(query.cell_m, call.points.cell_m, first + i);
+        pixel[i] = rung_of(query.pixel_m, call.points.pixel_m, first + i);
+    }
+    typename Chunk<T>::Values cell_weight, pixel_weight;
+    const auto shares = [&](const std::vector<int>& levels, int level, const auto& rungs,
+                            typename Chunk<T>::Values& weight) {
+        bool any = false;
+        std::fill(weight.begin(), weight.begin() + padded, T(0));
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            if (levels[rungs[i].lower] == level) weight[i] += T(1) - rungs[i].t;
+            if (rungs[i].t > T(0) && levels[rungs[i].lower + 1] == level) weight[i] += rungs[i].t;
+            any = any || weight[i] > T(0);
+        }
+        return any;
+    };
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+        const int level = levels_[l].level;
+        FieldSet fields;
+        if (shares(planned_->cell_levels, level, cell, cell_weight)) fields |= cell_fields();
+        if (shares(planned_->pixel_levels, level, pixel, pixel_weight)) fields |= ~cell_fields();
+        add_grids(call, l, {fields, cell_weight.data(), pixel_weight.data()}, chunk);
+    }
+    if (!call.wants_hidden || !call.differ_in_hidden || has_trains_) return;
+    const HiddenMoments<double> whole = hidden_moments<double>(statistics_->whole);
+    for (auto& moment : hidden_of.moments)
+        std::fill(moment.begin() + chunk.count, moment.begin() + padded, T(0));
+    for (std::size_t i = 0; i < chunk.count; ++i) {
+        const HiddenMoments<T> left = hidden_at<T>(*statistics_, pixel[i], whole);
+        for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
+    }
+}
+
+// The trains, which see each point's own footprints, and what all together hide.
+template <class T>
+void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Chunk<T>& chunk,
+                                          HiddenChunk<T>& hidden_of) const {
+    if (!has_trains_) return;
+    const Points<T>& points = call.points;
+    const std::size_t padded = chunk.padded();
+    typename Chunk<T>::Values cell, pixel;
+    const auto own = [&](const Strided<const T>& footprint_m, double finest_m,
+                         typename Chunk<T>::Values& of) {
+        const T finest = static_cast<T>(finest_m);
+        for (std::size_t i = 0; i < padded; ++i) {
+            const T wanted = i < chunk.count ? footprint_m[first + i] : finest;
+            of[i] = wanted > finest ? wanted : finest;  // the finest for one that is no number, too
+        }
+    };
+    const Query& query = planned_->query;
+    if (points.cell_m) own(points.cell_m, query.cell_m.front(), cell);
+    if (points.pixel_m) own(points.pixel_m, query.pixel_m.front(), pixel);
+    const Plan& plan = frame_->sea().plan();
+    const bool varied = call.wants_hidden && call.differ_in_hidden;
+    if (varied)
+        for (auto& moment : hidden_of.moments)
+            std::fill(moment.begin() + chunk.count, moment.begin() + padded, T(0));
+    add_trains<T>({.trains = &frame_->sea().trains(),
+                   .start_cycles = call.place.start_cycles.data(),
+                   .filter = plan.filter,
+                   .wanted = call.needed,
+                   .cell_m = static_cast<T>(query.cell_m.front()),
+                   .pixel_m = static_cast<T>(query.pixel_m.front()),
+                   .cell_of = points.cell_m ? cell.data() : nullptr,
+                   .pixel_of = points.pixel_m ? pixel.data() : nullptr,
+                   .hidden = varied ? &hidden_of : nullptr},
+                  chunk);
+    if (!varied || plan.cascades.empty()) return;
+    for (std::size_t i = 0; i < chunk.count; ++i) {
+        HiddenMoments<double> whole;
+        for (std::size_t m = 0; m < whole.size(); ++m)
+            whole[m] = static_cast<double>(hidden_of.moments[m][i]);
+        const HiddenMoments<T> left =
+            hidden_at<T>(*statistics_, rung_of(query.pixel_m, points.pixel_m, first + i), whole);
+        for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
+    }
+}
+
+template class PreparedQuery<float>;
+template class PreparedQuery<double>;
+
+}  // namespace pelagic

@@ -1,0 +1,73 @@
+// The query for hosts that ask for few points often (rays, floats): what doesn't depend on the points, kept.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/evaluate/evaluate.h"
+#include "core/evaluate/kernels.h"
+
+namespace pelagic {
+
+// One query of a frame, ready to be asked. Made by whoever owns the frame, which it must not outlive and
+// which must stay where it is; valid until the frame's next set(), after which refresh() makes it so again.
+template <class T>
+class PreparedQuery {
+  public:
+    // `query`: index into the plan's queries. `wanted`: the products that results may hold. `origin_m`: that
+    // of the points that will be asked for; others are answered as well, but their phases are reduced anew at
+    // each call. Throws std::invalid_argument when the query doesn't hold a product, or the frame has no
+    // time, std::out_of_range when there is no such query.
+    PreparedQuery(const Frame<T>& frame, int query, ProductSet wanted, glm::dvec2 origin_m = glm::dvec2(0.0));
+
+    // After the frame's set(). Throws std::invalid_argument when the frame has no time.
+    void refresh();
+    bool is_current() const { return frame_->times_set() == times_set_; }
+
+    // As evaluate(), to the bit, from any number of threads at once. A chunk of points or less is done by the
+    // calling thread alone and takes no memory. Throws std::invalid_argument for a product that isn't among
+    // the wanted, std::logic_error when the frame was set since.
+    void evaluate(const Points<T>& points, const Results<T>& results) const;
+
+  private:
+    // A level of the plan and its grids, cascade after cascade; those through which nothing passes are left
+    // out.
+    struct LevelGrids {
+        int level;
+        std::vector<GridArgs<T>> grids;  // where the origin lies stands in Place
+    };
+    // Where the points' origin lies.
+    struct Place {
+        glm::dvec2 origin_m;
+        std::vector<std::vector<glm::dvec2>> nodes;  // in each of a level's grids, 0 … n
+        std::vector<double> start_cycles;            // of each train
+    };
+    // What one call has in common for all its points.
+    struct Call;
+    // How a level's grids count at a chunk's points.
+    struct Share {
+        FieldSet fields;
+        const T *cell_weight, *pixel_weight;
+    };
+
+    Place place_of(glm::dvec2 origin_m) const;
+    Call call(const Points<T>& points, const Results<T>& results, const Place& place) const;
+    void run(const Call& call, std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const;
+    void add_grids(const Call& call, std::size_t level, const Share& share, Chunk<T>& chunk) const;
+    void add_ladder(const Call& call, std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const;
+    void add_own_footprints(const Call& call, std::size_t first, Chunk<T>& chunk,
+                            HiddenChunk<T>& hidden_of) const;
+
+    const Frame<T>* frame_;
+    const PlannedQuery* planned_;
+    const QueryStatistics* statistics_;
+    ProductSet wanted_;
+    EvaluateKernels<T> kernels_;
+    bool has_trains_ = false;
+    HiddenMoments<T> hidden_{};  // of pixels that are all the query's first
+    std::vector<LevelGrids> levels_;
+    Place place_;
+    long times_set_ = -1;
+};
+
+}  // namespace pelagic

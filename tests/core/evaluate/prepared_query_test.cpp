@@ -1,0 +1,206 @@
+// What is kept between calls changes no bit of the answers, and is refused where it is out of date.
+#include "core/evaluate/prepared_query.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+ProductSet all_products() {
+    ProductSet all;
+    all.set();
+    return all;
+}
+
+struct Case {
+    const char* name;
+    WaveModel model;
+    bool cascades, ladder;
+};
+constexpr Case kCases[] = {{"cascades", WaveModel::Fft, true, false},
+                           {"cascades on a ladder", WaveModel::Fft, true, true},
+                           {"trains", WaveModel::Trochoid, false, true},
+                           {"trains and a cascade on a ladder", WaveModel::Trochoid, true, true}};
+
+template <class T>
+Frame<T> frame_of(const Case& c) {
+    Scene scene;
+    scene.waves.model = c.model;
+    if (c.cascades) scene.waves.cascades = {{.size_m = 60.0, .resolution = 64}};
+    if (c.model == WaveModel::Trochoid && c.cascades) scene.waves.shortest_m = 5.0;
+    Query query = unfiltered(all_products());
+    query.cell_m = query.pixel_m = {0.5};
+    if (c.ladder && c.cascades) query.cell_m = query.pixel_m = {0.5, 1.0, 2.0, 4.0};
+    return test::frame_of<T>(scene, {query}, 3.25);
+}
+
+// Points, and each one's footprints where the case has any.
+template <class T>
+struct Asked {
+    explicit Asked(bool footprints, std::size_t count)
+        : rest(random_points<T>(500.0, static_cast<int>(count))) {
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> size(0.0, 6.0);
+        if (!footprints) return;
+        for (std::size_t i = 0; i < count; ++i) {
+            cell_m.push_back(static_cast<T>(size(random)));
+            pixel_m.push_back(static_cast<T>(size(random)));
+        }
+    }
+    Points<T> points(std::size_t first, std::size_t count) const {
+        Points<T> points{.origin_m = origin_m, .count = count, .rest_m = {rest.data() + first}};
+        if (!cell_m.empty()) {
+            points.cell_m = {cell_m.data() + first};
+            points.pixel_m = {pixel_m.data() + first};
+        }
+        return points;
+    }
+    glm::dvec2 origin_m{0.0};
+    std::vector<glm::vec<2, T>> rest;
+    std::vector<T> cell_m, pixel_m;
+};
+
+template <class T>
+bool same_bits(const ProductArrays<T>& a, const ProductArrays<T>& b) {
+    const auto same = [](const auto& x, const auto& y) {
+        return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
+    };
+    return std::all_of(kProductTable.begin(), kProductTable.end(), [&](const ProductRow& row) {
+        if (row.components == 1) {
+            const auto product = NumberProduct::checked(row.product);
+            return same(a.numbers(product), b.numbers(product));
+        }
+        const auto product = VectorProduct::checked(row.product);
+        return same(a.vectors(product), b.vectors(product));
+    });
+}
+
+template <class T>
+void expect_the_same_bits_in_any_batches(const Case& c) {
+    constexpr std::size_t kCount = 700;
+    const Frame<T> frame = frame_of<T>(c);
+    const PreparedQuery<T> prepared(frame, 0, all_products());
+    Asked<T> asked(c.ladder, kCount);
+    for (const glm::dvec2 origin_m : {glm::dvec2(0.0), glm::dvec2(1e6 + 0.375, -3e5)}) {
+        asked.origin_m = origin_m;
+        ProductArrays<T> whole;
+        whole.resize(all_products(), kCount);
+        evaluate(frame, 0, asked.points(0, kCount), whole.results());
+        std::mt19937 random(3);
+        for (const std::size_t most : {std::size_t(1), std::size_t(5), std::size_t(40), std::size_t(400)}) {
+            ProductArrays<T> pieces;
+            pieces.resize(all_products(), kCount);
+            for (std::size_t first = 0; first < kCount;) {
+                const std::size_t count = std::min<std::size_t>(1 + random() % most, kCount - first);
+                prepared.evaluate(asked.points(first, count), pieces.results().from_point(first));
+                first += count;
+            }
+            EXPECT_TRUE(same_bits(whole, pieces)) << c.name << ", at most " << most << " points at a time";
+        }
+    }
+}
+
+TEST(PreparedQuery, GivesTheSameBitsInBatchesOfAnySize) {
+    for (const Case& c : kCases) {
+        expect_the_same_bits_in_any_batches<float>(c);
+        expect_the_same_bits_in_any_batches<double>(c);
+    }
+}
+
+// Which products are asked for together changes none of them.
+TEST(PreparedQuery, GivesEachProductAloneAsAmongAll) {
+    for (const Case& c : kCases) {
+        const Frame<float> frame = frame_of<float>(c);
+        const PreparedQuery<float> prepared(frame, 0, all_products());
+        const Asked<float> asked(c.ladder, 50);
+        Values together, single;
+        together.resize(all_products(), 50);
+        single.resize(all_products(), 50);
+        prepared.evaluate(asked.points(0, 50), together.results());
+        for (const ProductRow& row : kProductTable) {
+            Values alone;
+            alone.resize(products(row.product), 50);
+            prepared.evaluate(asked.points(0, 50), alone.results());
+            if (row.components == 1)
+                single.numbers(NumberProduct::checked(row.product)) =
+                    alone.numbers(NumberProduct::checked(row.product));
+            else
+                single.vectors(VectorProduct::checked(row.product)) =
+                    alone.vectors(VectorProduct::checked(row.product));
+        }
+        EXPECT_TRUE(same_bits(together, single)) << c.name;
+    }
+}
+
+TEST(PreparedQuery, AnswersSeveralThreadsAtOnce) {
+    constexpr std::size_t kCount = 2000, kThreads = 4;
+    for (const Case& c : kCases) {
+        const Frame<float> frame = frame_of<float>(c);
+        const PreparedQuery<float> prepared(frame, 0, all_products());
+        const Asked<float> asked(c.ladder, kCount);
+        Values whole, pieces;
+        whole.resize(all_products(), kCount);
+        pieces.resize(all_products(), kCount);
+        evaluate(frame, 0, asked.points(0, kCount), whole.results());
+        const Results<float> results = pieces.results();
+        std::vector<std::thread> threads;
+        for (std::size_t t = 0; t < kThreads; ++t)
+            threads.emplace_back([&, t] {
+                for (std::size_t i = t; i < kCount; i += kThreads)
+                    prepared.evaluate(asked.points(i, 1), results.from_point(i));
+            });
+        for (std::thread& thread : threads) thread.join();
+        EXPECT_TRUE(same_bits(whole, pieces)) << c.name;
+    }
+}
+
+TEST(PreparedQuery, IsRefusedAfterSetUntilItIsRefreshed) {
+    for (const Case& c : kCases) {
+        Frame<float> frame = frame_of<float>(c);
+        PreparedQuery<float> prepared(frame, 0, all_products());
+        const Asked<float> asked(c.ladder, 20);
+        Values values, expected;
+        values.resize(all_products(), 20);
+        expected.resize(all_products(), 20);
+        EXPECT_NO_THROW(prepared.evaluate(asked.points(0, 20), values.results()));
+        frame.set(11.0);
+        EXPECT_FALSE(prepared.is_current());
+        EXPECT_THROW(prepared.evaluate(asked.points(0, 20), values.results()), std::logic_error);
+        prepared.refresh();
+        prepared.evaluate(asked.points(0, 20), values.results());
+        evaluate(frame, 0, asked.points(0, 20), expected.results());
+        EXPECT_TRUE(same_bits(values, expected)) << c.name;
+    }
+}
+
+TEST(PreparedQuery, RefusesWhatItWasNotPreparedFor) {
+    const Frame<float> frame = frame_of<float>(kCases[0]);
+    const PreparedQuery<float> prepared(frame, 0, products(Product::Position));
+    const Asked<float> asked(false, 3);
+    for (const ProductRow& row : kProductTable) {
+        if (row.product == Product::Position) continue;
+        Values values;
+        values.resize(products(row.product), 3);
+        EXPECT_THROW(prepared.evaluate(asked.points(0, 3), values.results()), std::invalid_argument);
+    }
+    Scene scene;
+    scene.waves.cascades = {{40.0, 32}};
+    const Query positions = unfiltered(products(Product::Position));
+    const Frame<float> holds_one = test::frame_of<float>(scene, {positions});
+    EXPECT_THROW(PreparedQuery<float>(holds_one, 0, all_products()), std::invalid_argument);
+    const Frame<float> unset(std::make_shared<const Sea<float>>(make_plan(scene, {positions})));
+    EXPECT_THROW(PreparedQuery<float>(unset, 0, products(Product::Position)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace pelagic

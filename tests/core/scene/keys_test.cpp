@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/scene/canonical.h"
+#include "core/scene/member_count.h"
 #include "core/scene/shot_text.h"
 #include "core/scene/validate.h"
 #include "key_samples.h"
@@ -78,6 +79,7 @@ TEST(Keys, PathsAreFound) {
             EXPECT_EQ(&key, &keys()[count++]);
         }
     EXPECT_EQ(count, keys().size());
+    EXPECT_EQ(key_tables().size(), member_count<Scene>());
 }
 
 TEST(Keys, LabelsAreTheNamesWithoutUnits) {

@@ -247,7 +247,9 @@ std::vector<DescribedKey> described(const Scene& scene, FeedSet parts) {
         }
         KeyValue value = value_of(scene, key);
         if (std::holds_alternative<std::monostate>(value)) continue;
-        std::string text = value_text(key, value);
+        const auto* entries = std::get_if<std::vector<KeyEntry>>(&value);
+        const bool is_word = entries && entries->empty() && !key.empty_word.empty();
+        std::string text = is_word ? key.empty_word : value_text(key, value);
         out.push_back({key.path, std::move(value), std::move(text)});
     }
     return out;

@@ -178,7 +178,7 @@ std::string value_text(const Key& key, const KeyValue& value);
 struct DescribedKey {
     std::string path;  // "sea.fetch_m"
     KeyValue value;
-    std::string text;  // as a shot file writes it
+    std::string text;  // as a shot file writes it; a word that stands for no entries without quotes
 
     // "sea_fetch_m": for formats whose names are identifiers.
     std::string identifier() const;

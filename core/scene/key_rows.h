@@ -19,10 +19,10 @@ namespace pelagic {
 // ---- Members as values, and back. take() is false, and changes nothing, where the value is of another type.
 
 template <class Member>
-struct Member_ {};
+struct MemberValue {};
 
 template <>
-struct Member_<bool> {
+struct MemberValue<bool> {
     static constexpr KeyType kType = KeyType::Truth;
     static KeyValue value(bool member) { return member; }
     static bool take(const KeyValue& value, bool& member) {
@@ -32,7 +32,7 @@ struct Member_<bool> {
 };
 
 template <std::integral Integer>
-requires(!std::same_as<Integer, bool>) struct Member_<Integer> {
+requires(!std::same_as<Integer, bool>) struct MemberValue<Integer> {
     static constexpr KeyType kType = KeyType::Integer;
     static constexpr std::int64_t kLeast = std::numeric_limits<Integer>::min();
     static constexpr std::int64_t kLargest =  // a shot file's integers have 63 bits and a sign
@@ -52,7 +52,7 @@ requires(!std::same_as<Integer, bool>) struct Member_<Integer> {
 };
 
 template <>
-struct Member_<double> {
+struct MemberValue<double> {
     static constexpr KeyType kType = KeyType::Number;
     static KeyValue value(double member) { return member; }
     static bool take(const KeyValue& value, double& member) {
@@ -64,7 +64,7 @@ struct Member_<double> {
 };
 
 template <>
-struct Member_<std::optional<double>> {
+struct MemberValue<std::optional<double>> {
     static constexpr KeyType kType = KeyType::Number;
     static KeyValue value(const std::optional<double>& member) {
         return member ? KeyValue(*member) : KeyValue();
@@ -72,13 +72,13 @@ struct Member_<std::optional<double>> {
     static bool take(const KeyValue& value, std::optional<double>& member) {
         if (std::holds_alternative<std::monostate>(value)) return member.reset(), true;
         double number = 0.0;
-        if (!Member_<double>::take(value, number)) return false;
+        if (!MemberValue<double>::take(value, number)) return false;
         return member = number, true;
     }
 };
 
 template <>
-struct Member_<std::string> {
+struct MemberValue<std::string> {
     static constexpr KeyType kType = KeyType::Text;
     static KeyValue value(const std::string& member) { return member; }
     static bool take(const KeyValue& value, std::string& member) {
@@ -89,7 +89,7 @@ struct Member_<std::string> {
 
 template <class Choice>
 requires std::is_enum_v<Choice>
-struct Member_<Choice> {
+struct MemberValue<Choice> {
     static constexpr KeyType kType = KeyType::Word;
     static KeyValue value(Choice member) { return std::string(word_of(member)); }
     static bool take(const KeyValue& value, Choice& member) {
@@ -102,7 +102,7 @@ struct Member_<Choice> {
 
 template <class Choice>
 requires std::is_enum_v<Choice>
-struct Member_<std::vector<Choice>> {
+struct MemberValue<std::vector<Choice>> {
     static constexpr KeyType kType = KeyType::Words;
     static KeyValue value(const std::vector<Choice>& member) {
         std::vector<std::string> words;
@@ -124,7 +124,7 @@ struct Member_<std::vector<Choice>> {
 };
 
 template <>
-struct Member_<glm::dvec3> {
+struct MemberValue<glm::dvec3> {
     static constexpr KeyType kType = KeyType::Point;
     static KeyValue value(const glm::dvec3& member) {
         return std::vector<double>{member.x, member.y, member.z};
@@ -138,9 +138,9 @@ struct Member_<glm::dvec3> {
 };
 
 template <>
-struct Member_<std::array<int, 2>> {
+struct MemberValue<std::array<int, 2>> {
     static constexpr KeyType kType = KeyType::Pair;
-    static constexpr std::int64_t kLeast = Member_<int>::kLeast, kLargest = Member_<int>::kLargest;
+    static constexpr std::int64_t kLeast = MemberValue<int>::kLeast, kLargest = MemberValue<int>::kLargest;
     static KeyValue value(const std::array<int, 2>& member) {
         return std::vector<std::int64_t>{member[0], member[1]};
     }
@@ -155,15 +155,15 @@ struct Member_<std::array<int, 2>> {
 };
 
 template <>
-struct Member_<glm::ivec2> {
+struct MemberValue<glm::ivec2> {
     static constexpr KeyType kType = KeyType::Pair;
-    static constexpr std::int64_t kLeast = Member_<int>::kLeast, kLargest = Member_<int>::kLargest;
+    static constexpr std::int64_t kLeast = MemberValue<int>::kLeast, kLargest = MemberValue<int>::kLargest;
     static KeyValue value(const glm::ivec2& member) {
-        return Member_<std::array<int, 2>>::value({member.x, member.y});
+        return MemberValue<std::array<int, 2>>::value({member.x, member.y});
     }
     static bool take(const KeyValue& value, glm::ivec2& member) {
         std::array<int, 2> numbers{};
-        if (!Member_<std::array<int, 2>>::take(value, numbers)) return false;
+        if (!MemberValue<std::array<int, 2>>::take(value, numbers)) return false;
         member = {numbers[0], numbers[1]};
         return true;
     }
@@ -191,10 +191,9 @@ struct About {
 };
 
 // A key of the struct Owner that describes so many of its members.
-template <class Owner_, std::size_t kMembers_>
+template <class Owner, std::size_t kCount>
 struct Row {
-    using Owner = Owner_;
-    static constexpr std::size_t kMembers = kMembers_;
+    static constexpr std::size_t kMembers = kCount;
     Key key;
     std::function<KeyValue(const Owner&)> get;
     std::function<bool(Owner&, const KeyValue&)> set;
@@ -202,10 +201,10 @@ struct Row {
 
 template <class Pointer>
 struct Pointee;
-template <class Owner_, class Value_>
-struct Pointee<Value_ Owner_::*> {
-    using Owner = Owner_;
-    using Value = Value_;
+template <class OfStruct, class OfType>
+struct Pointee<OfType OfStruct::*> {
+    using Owner = OfStruct;
+    using Value = OfType;
 };
 
 // What a shot file may say for this key, from its type, range and choices.
@@ -218,10 +217,10 @@ Key key_about(const About& about, KeyType type);
 
 template <class Value>
 Key key_of_member(const About& about) {
-    Key key = key_about(about, Member_<Value>::kType);
-    if constexpr (requires { Member_<Value>::kLeast; }) {
-        key.least = Member_<Value>::kLeast;
-        key.largest = Member_<Value>::kLargest;
+    Key key = key_about(about, MemberValue<Value>::kType);
+    if constexpr (requires { MemberValue<Value>::kLeast; }) {
+        key.least = MemberValue<Value>::kLeast;
+        key.largest = MemberValue<Value>::kLargest;
     }
     key.is_optional = std::same_as<Value, std::optional<double>>;
     const auto add_choices = [&]<class Choice>(Choice) {
@@ -243,9 +242,10 @@ Key key_of_member(const About& about) {
 template <auto kMember, class Owner = typename Pointee<decltype(kMember)>::Owner,
           class Value = typename Pointee<decltype(kMember)>::Value>
 Row<Owner, 1> row(const About& about) {
-    return {key_of_member<Value>(about),
-            [](const Owner& owner) { return Member_<Value>::value(owner.*kMember); },
-            [](Owner& owner, const KeyValue& value) { return Member_<Value>::take(value, owner.*kMember); }};
+    return {
+        key_of_member<Value>(about),
+        [](const Owner& owner) { return MemberValue<Value>::value(owner.*kMember); },
+        [](Owner& owner, const KeyValue& value) { return MemberValue<Value>::take(value, owner.*kMember); }};
 }
 
 // The same in the entries of a list, where it has no default: an entry without it means nothing.
@@ -279,8 +279,7 @@ auto entries(const About& about, Rows... rows) {
     const Entry first{};
     std::size_t index = 0;
     ((key.entry_keys[index++].fallback = rows.get(first)), ...);
-    // The names of keys are literals; entries point at copies that the rows hold for as long as the program
-    // runs.
+    // Entries point at the names of these rows, which last as long as the program.
     const auto shared = std::make_shared<const std::tuple<Rows...>>(std::move(rows)...);
     const auto get = [shared](const Owner& owner) {
         std::vector<KeyEntry> out;

@@ -224,16 +224,33 @@ std::string value_text(const Key& key, const KeyValue& value) {
     return std::visit(Visitor{key}, value);
 }
 
-std::vector<std::pair<std::string, KeyValue>> described(const Scene& scene, FeedSet parts) {
-    std::vector<std::pair<std::string, KeyValue>> out;
+std::string DescribedKey::identifier() const {
+    std::string out = path;
+    std::replace(out.begin(), out.end(), '.', '_');
+    return out;
+}
+
+std::variant<double, std::string> DescribedKey::number_or_text() const {
+    if (const auto* number = std::get_if<double>(&value)) return *number;
+    if (const auto* word = std::get_if<std::string>(&value)) return *word;
+    return text;
+}
+
+std::vector<DescribedKey> described(const Scene& scene, FeedSet parts) {
+    std::vector<DescribedKey> out;
     for (const Key& key : keys()) {
         if (!key.has_value() || (key.feeds & parts).none()) continue;
         if (key.type == KeyType::DataFile) {
-            if (scene.sea.measured) out.emplace_back("sea.spectrum_station", scene.sea.measured->station);
+            if (const auto& measured = scene.sea.measured)
+                out.push_back({"sea.spectrum_station", measured->station, quoted_text(measured->station)});
             continue;
         }
-        KeyValue value = key.get(scene);
-        if (!std::holds_alternative<std::monostate>(value)) out.emplace_back(key.path, std::move(value));
+        KeyValue value = value_of(scene, key);
+        if (std::holds_alternative<std::monostate>(value)) continue;
+        const auto* entries = std::get_if<std::vector<KeyEntry>>(&value);
+        const bool is_word = entries && entries->empty() && !key.empty_word.empty();
+        std::string text = is_word ? key.empty_word : value_text(key, value);
+        out.push_back({key.path, std::move(value), std::move(text)});
     }
     return out;
 }

@@ -17,11 +17,11 @@ struct Built {
 
 void add_shot(Built& out) {
     const auto frames_of = [](const Shot& shot) {
-        return Member_<std::array<int, 2>>::value({shot.first_frame, shot.last_frame});
+        return MemberValue<std::array<int, 2>>::value({shot.first_frame, shot.last_frame});
     };
     const auto set_frames = [](Shot& shot, const KeyValue& value) {
         std::array<int, 2> frames{};
-        if (!Member_<std::array<int, 2>>::take(value, frames)) return false;
+        if (!MemberValue<std::array<int, 2>>::take(value, frames)) return false;
         shot.first_frame = frames[0];
         shot.last_frame = frames[1];
         return true;

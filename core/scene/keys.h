@@ -173,8 +173,21 @@ Problem unknown_word(const Key& key, const std::string& path, std::string_view w
 // As a shot file writes it: "10", "[0, -60, 4]", "\"auto\"", "[{ height_m = 1.5, … }]". Nothing: "".
 std::string value_text(const Key& key, const KeyValue& value);
 
-// What the scene says about these parts, for the headers of files: path and value of each key that has one.
-// A measured spectrum is described by its station and time, not by its file.
-std::vector<std::pair<std::string, KeyValue>> described(const Scene& scene, FeedSet parts);
+// ---- What a scene says about itself, for the headers of files
+
+struct DescribedKey {
+    std::string path;  // "sea.fetch_m"
+    KeyValue value;
+    std::string text;  // as a shot file writes it; a word that stands for no entries without quotes
+
+    // "sea_fetch_m": for formats whose names are identifiers.
+    std::string identifier() const;
+    // For formats that know no more than numbers and texts.
+    std::variant<double, std::string> number_or_text() const;
+};
+
+// The keys that feed these parts and have a value. A measured spectrum is described by its station and time,
+// not by its file.
+std::vector<DescribedKey> described(const Scene& scene, FeedSet parts);
 
 }  // namespace pelagic

@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/scene/keys.h"
 #include "core/scene/names.h"
-#include "core/scene/text.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/exr/exr.h"
 
@@ -218,7 +218,6 @@ class MapPart final : public OutputPart {
                 low[c] = std::min(low[c], t[c]);
                 high[c] = std::max(high[c], t[c]);
             }
-        const SeaState& sea = scene().sea;
         exr::Header header;
         header.periodic = periodic_;
         header.attributes = {
@@ -234,29 +233,17 @@ class MapPart final : public OutputPart {
             {"time", scene().shot.time_s(frame)},
             {"fps", scene().shot.fps},
             {"frame", frame},
-            {"seed", std::to_string(scene().shot.seed)},
-            {"windSpeed_mps", sea.wind_speed_mps},
-            {"windTowards_deg", sea.wind_direction_deg},
-            {"spectrum", std::string(word_of(sea.spectrum))},
             {"fingerprint", made_of},
             {"software", std::string("pelagic " PELAGIC_VERSION)}};
         if (periodic_) header.attributes.push_back({"period", size_m_});  // absent: it does not repeat
         if (scene().shot.loop_s > 0.0) header.attributes.push_back({"loop", scene().shot.exact_loop_s()});
-        if (!sea.swell.empty()) header.attributes.push_back({"swell", swell_text()});
-        if (sea.measured) {
-            header.attributes.push_back({"station", sea.measured->station});
-            header.attributes.push_back({"measuredAt", sea.measured->time});
-        }
+        for (const DescribedKey& key : described(scene(), output_.feeds))
+            std::visit(
+                [&](const auto& value) {
+                    header.attributes.push_back({"pelagic." + key.path, value});
+                },
+                key.number_or_text());
         return header;
-    }
-
-    // "1.6 m 11 s towards 110 deg, …"
-    std::string swell_text() const {
-        std::string text;
-        for (const Swell& swell : scene().sea.swell)
-            text += (text.empty() ? "" : ", ") + number_text(swell.height_m) + " m " +
-                    number_text(swell.period_s) + " s towards " + number_text(swell.direction_deg) + " deg";
-        return text;
     }
 
     std::shared_ptr<SquareCache> squares_;

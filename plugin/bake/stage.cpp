@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -31,29 +30,13 @@ double roughness(const Plan& plan) {
                                                       plan.surface->needs(first).finest_pixel_m));
 }
 
-// A key's value in the stage's metadata: the key's path with _ for dots and brackets.
-std::string identifier(std::string_view path) {
-    std::string name(path);
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return c == '.' || c == '[' || c == ']'; }, '_');
-    return name;
-}
-
-usd::CustomValue custom_value(const std::string& path, const KeyValue& value) {
-    return std::visit(
-        [&]<class Value>(const Value& v) -> usd::CustomValue {
-            if constexpr (std::is_same_v<Value, bool> || std::is_same_v<Value, std::int64_t> ||
-                          std::is_same_v<Value, double> || std::is_same_v<Value, std::string> ||
-                          std::is_same_v<Value, std::vector<double>>) {
-                return v;
-            } else if constexpr (std::is_same_v<Value, std::vector<std::int64_t>>) {
-                return std::vector<double>(v.begin(), v.end());
-            } else {
-                const Key* key = find_key(path);
-                return key ? value_text(*key, value) : std::string();
-            }
-        },
-        value);
+// A key in the stage's metadata: truths, integers, numbers and points as such, the rest as a shot file writes
+// it.
+usd::CustomValue custom_value(const DescribedKey& key) {
+    if (const auto* truth = std::get_if<bool>(&key.value)) return *truth;
+    if (const auto* integer = std::get_if<std::int64_t>(&key.value)) return *integer;
+    if (const auto* point = std::get_if<std::vector<double>>(&key.value)) return *point;
+    return std::visit([](const auto& value) { return usd::CustomValue(value); }, key.number_or_text());
 }
 
 usd::Camera camera_of(const Scene& scene, std::string_view fingerprint) {
@@ -97,8 +80,8 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh) {
         {"fingerprint", mesh.fingerprint()},
         {"significant_height_m", 4.0 * std::sqrt(plan.from->spectrum.m0())},
     };
-    for (const auto& [path, value] : described(scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam)))
-        stage.custom_data.push_back({identifier(path), custom_value(path, value)});
+    for (const DescribedKey& key : described(scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam)))
+        stage.custom_data.push_back({key.identifier(), custom_value(key)});
     return stage;
 }
 

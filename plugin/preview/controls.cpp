@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "core/scene/limits.h"
+#include "core/scene/keys.h"
 #include "core/scene/names.h"
 
 namespace pelagic {
@@ -35,17 +35,17 @@ void tooltip(const char* text) {
 
 struct SliderLook {
     double low = 0.0, high = 1.0;
-    const char* format = "%.2f";
-    const char* help = "";
+    std::string format = "%.2f";
+    std::string help = {};
     bool logarithmic = false;
 };
 
 bool slider(const char* label, double& value, const SliderLook& look) {
     const ImGuiSliderFlags flags =
         ImGuiSliderFlags_AlwaysClamp | (look.logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-    const bool changed =
-        ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &look.low, &look.high, look.format, flags);
-    tooltip(look.help);
+    const bool changed = ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &look.low, &look.high,
+                                             look.format.c_str(), flags);
+    tooltip(look.help.c_str());
     return changed;
 }
 
@@ -73,46 +73,100 @@ void choose(const char* label, Choice& value, const std::array<std::pair<Choice,
     tooltip(help);
 }
 
-void waves_section(Controls& controls, const Readout& readout) {
-    if (!section("Wind and waves")) return;
-    Scene& scene = controls.scene;
-    SeaState& sea = scene.sea;
-    slider("Wind", sea.wind_speed_mps,
-           {.low = 0.0, .high = 40.0, .format = "%.1f m/s", .help = "Wind speed, 10 m above the sea"});
-    slider("Direction", sea.wind_direction_deg,
-           {.low = -180.0,
-            .high = 180.0,
-            .format = "%.0f°",
-            .help = "Where the wind blows to, counter-clockwise from +x (east); 90° is north"});
-    double fetch_km = sea.fetch_m * 1e-3;
-    if (slider("Fetch", fetch_km,
-               {.low = 1.0,
-                .high = 3000.0,
-                .format = "%.0f km",
-                .help = "How much open water the wind has had: little gives a short, steep, young sea",
-                .logarithmic = true}))
-        sea.fetch_m = fetch_km * 1e3;
-    slider("Choppiness", scene.waves.choppiness,
-           {.low = 0.0, .high = 2.0, .help = "How sharp the crests are; 1 is nature's, 0 leaves them round"});
-    for (std::size_t i = 0; i < sea.swell.size(); ++i) {
-        Swell& swell = sea.swell[i];
+// ---- Controls made of the table of keys
+
+// "%.1f m/s": with as many digits as the slider's range asks for.
+std::string format_of(const Key& key) {
+    constexpr double kSpan = 100.0, kShortSpan = 10.0;  // from tens on no decimals, below ones two
+    const SoftRange& soft = *key.soft;
+    const double span = soft.is_logarithmic ? soft.low * kSpan : soft.high - soft.low;
+    const char* digits = span > kSpan ? "%.0f" : span >= kShortSpan ? "%.1f" : "%.2f";
+    const std::string unit = key.unit == "degrees" ? "°" : key.unit == "pixels" ? " px" : ' ' + key.unit;
+    return digits + (key.unit.empty() ? "" : unit);
+}
+
+// A slider over the useful part of what the key accepts.
+bool key_slider(const Key& key, KeyValue& value) {
+    const bool is_integer = std::holds_alternative<std::int64_t>(value);
+    double number = is_integer ? static_cast<double>(std::get<std::int64_t>(value)) : std::get<double>(value);
+    const SliderLook look{.low = key.soft->low,
+                          .high = key.soft->high,
+                          .format = format_of(key),
+                          .help = key.help,
+                          .logarithmic = key.soft->is_logarithmic};
+    if (!slider(key.label.c_str(), number, look)) return false;
+    if (is_integer)
+        value = static_cast<std::int64_t>(std::llround(number));
+    else
+        value = number;
+    return true;
+}
+
+bool key_words(const Key& key, std::string& word) {
+    const auto shown = [](std::string text) {
+        if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
+        return text;
+    };
+    bool changed = false;
+    if (ImGui::BeginCombo(key.label.c_str(), shown(word).c_str())) {
+        for (const KeyChoice& choice : key.choices)
+            if (choice.is_built && ImGui::Selectable(shown(choice.word).c_str(), choice.word == word)) {
+                word = choice.word;
+                changed = true;
+            }
+        ImGui::EndCombo();
+    }
+    tooltip(key.help.c_str());
+    return changed;
+}
+
+bool key_entries(const Key& key, std::vector<KeyEntry>& entries) {
+    bool changed = false;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        ImGui::TextDisabled(sea.swell.size() > 1 ? "Swell %zu" : "Swell", i + 1);
-        slider("Height", swell.height_m,
-               {.low = 0.0, .high = 10.0, .format = "%.1f m", .help = "Significant height of the swell"});
-        slider("Period", swell.period_s,
-               {.low = 3.0, .high = 25.0, .format = "%.1f s", .help = "Peak period: longer is longer waves"});
-        slider("Towards", swell.direction_deg,
-               {.low = -180.0,
-                .high = 180.0,
-                .format = "%.0f°",
-                .help = "Where it travels to, counter-clockwise from +x (east)"});
+        ImGui::TextDisabled(entries.size() > 1 ? "%s %zu" : "%s", key.label.c_str(), i + 1);
+        for (std::size_t k = 0; k < key.entry_keys.size(); ++k)
+            changed = key_slider(key.entry_keys[k], entries[i].values[k].second) || changed;
         ImGui::PopID();
     }
+    return changed;
+}
+
+// Whether it was changed.
+bool key_control(Scene& scene, const Key& key) {
+    KeyValue value = value_of(scene, key);
+    bool changed = false;
+    if (auto* truth = std::get_if<bool>(&value)) {
+        changed = ImGui::Checkbox(key.label.c_str(), truth);
+        tooltip(key.help.c_str());
+    } else if (auto* word = std::get_if<std::string>(&value)) {
+        changed = key_words(key, *word);
+    } else if (auto* entries = std::get_if<std::vector<KeyEntry>>(&value)) {
+        changed = key_entries(key, *entries);
+    } else {
+        changed = key_slider(key, value);
+    }
+    if (changed) set_value(scene, key, value);
+    return changed;
+}
+
+void key_controls(Scene& scene, const PanelSection& section) {
+    for (const std::string_view path : section.paths) key_control(scene, key_of(path));
+}
+
+// In the order of panel_sections().
+enum Section { kWavesSection, kSkySection, kWaterSection, kPictureSection };
+
+const PanelSection& keys_of(Section section) {
+    return panel_sections().at(section);
+}
+
+void waves_section(Controls& controls, const Readout& readout) {
+    if (!section(keys_of(kWavesSection).title)) return;
+    const bool had_whitecaps = controls.scene.effects.whitecaps;
+    key_controls(controls.scene, keys_of(kWavesSection));
     // Foam that is computed is shown, also in a shot that begins without.
-    if (ImGui::Checkbox("Whitecaps", &scene.effects.whitecaps) && scene.effects.whitecaps)
-        controls.draw.lighting.whitecaps = true;
-    tooltip("Foam where waves break. Off, nothing of it is computed: no transform, no shader");
+    if (controls.scene.effects.whitecaps && !had_whitecaps) controls.draw.lighting.whitecaps = true;
     if (readout.building_sea)
         ImGui::TextColored(
             kAccent, readout.has_sea ? "Building this sea; the last one plays on …" : "Building the sea …");
@@ -121,42 +175,21 @@ void waves_section(Controls& controls, const Readout& readout) {
                             readout.times.build_s);
 }
 
-void sky_section(Light& light, const Readout& readout) {
-    if (!section("Sun and sky")) return;
-    const bool daylight = light.sky == Light{}.sky;
+void sky_section(Scene& scene, const Readout& readout) {
+    if (!section(keys_of(kSkySection).title)) return;
+    const bool daylight = scene.light.sky == Light{}.sky;
     if (!daylight) {
-        ImGui::TextDisabled("Sky: %s", std::filesystem::path(light.sky).filename().string().c_str());
+        ImGui::TextDisabled("Sky: %s", std::filesystem::path(scene.light.sky).filename().string().c_str());
         tooltip("The sun stands where the picture has it");
     }
     ImGui::BeginDisabled(!daylight);
-    slider("Sun height", light.sun_elevation_deg,
-           {.low = -10.0, .high = 90.0, .format = "%.1f°", .help = "Elevation of the sun above the horizon"});
-    slider("Sun towards", light.sun_azimuth_deg,
-           {.low = -180.0,
-            .high = 180.0,
-            .format = "%.0f°",
-            .help = "Azimuth: where the sun stands, counter-clockwise from +x (east)"});
-    slider("Turbidity", light.turbidity,
-           {.low = limits::kTurbidity.low,
-            .high = limits::kTurbidity.high,
-            .format = "%.1f",
-            .help = "Haze: 2 is mountain air, 3 a clear day, 6 and more is hazy"});
+    key_controls(scene, keys_of(kSkySection));
     ImGui::EndDisabled();
     if (readout.building_sky) ImGui::TextColored(kAccent, "Building this sky …");
 }
 
-void water_section(Water& water) {
-    if (!section("Water")) return;
-    static constexpr std::array kTypes{std::pair{WaterType::Ocean, "Ocean"},
-                                       std::pair{WaterType::Coastal, "Coastal"},
-                                       std::pair{WaterType::Turbid, "Turbid"}};
-    choose("Type", water.type, kTypes, "What floats in it besides plankton: nothing, some silt, much of it");
-    slider("Chlorophyll", water.chlorophyll_mg_m3,
-           {.low = limits::kChlorophyll_mg_m3.low,
-            .high = 30.0,
-            .format = "%.2f mg/m³",
-            .help = "Plankton: little leaves the water blue, much turns it green",
-            .logarithmic = true});
+void water_section(Scene& scene) {
+    if (section(keys_of(kWaterSection).title)) key_controls(scene, keys_of(kWaterSection));
 }
 
 void light_section(LightingChoice& choice) {
@@ -200,7 +233,7 @@ void light_section(LightingChoice& choice) {
 }
 
 void picture_section(Controls& controls, const Readout& readout) {
-    if (!section("Picture")) return;
+    if (!section(keys_of(kPictureSection).title)) return;
     slider("Exposure", controls.exposure_stops,
            {.low = -6.0,
             .high = 6.0,
@@ -210,12 +243,7 @@ void picture_section(Controls& controls, const Readout& readout) {
     choose("Resolution", controls.pixel_size, kSizes,
            "Of the drawn picture, against the window's: lower it where the graphics are slow");
     ImGui::TextDisabled("%d × %d pixels drawn", readout.drawn_px.x, readout.drawn_px.y);
-    slider(
-        "Cells", controls.scene.surface.cell_px,
-        {.low = 2.0,
-         .high = 32.0,
-         .format = "%.0f px",
-         .help = "Side of the grid's cells on the screen: smaller shows finer silhouettes, and is slower"});
+    key_controls(controls.scene, keys_of(kPictureSection));
     static constexpr std::array kColours{std::pair{FalseColour::None, "Light"},
                                          std::pair{FalseColour::FilterLevel, "Filter levels"},
                                          std::pair{FalseColour::HiddenVariance, "Hidden slopes"},
@@ -311,8 +339,8 @@ void panel(Controls& controls, const Readout& readout, const Scene& shot, Clicks
     }
     if (!readout.message.empty()) warning(readout.message);
     waves_section(controls, readout);
-    sky_section(controls.scene.light, readout);
-    water_section(controls.scene.water);
+    sky_section(controls.scene, readout);
+    water_section(controls.scene);
     light_section(controls.draw.lighting);
     picture_section(controls, readout);
     camera_section(readout, clicks);
@@ -401,6 +429,17 @@ void help() {
 }
 
 }  // namespace
+
+const std::vector<PanelSection>& panel_sections() {
+    static const std::vector<PanelSection> sections{
+        {"Wind and waves",
+         {"sea.wind_speed_mps", "sea.wind_direction_deg", "sea.fetch_m", "waves.choppiness", "sea.swell",
+          "effects.whitecaps"}},
+        {"Sun and sky", {"light.sun_elevation_deg", "light.sun_azimuth_deg", "light.turbidity"}},
+        {"Water", {"water.type", "water.chlorophyll_mg_m3"}},
+        {"Picture", {"surface.cell_px"}}};
+    return sections;
+}
 
 Controls controls_for(const Scene& scene) {
     Controls controls;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -66,7 +67,12 @@ Clicks draw_controls(Controls& controls, const Readout& readout, const Scene& sh
 // before the first frame.
 void set_controls_style(float scale);
 
-// The keys that differ, as tables of a shot file; empty: none does.
-std::string changed_keys(const Scene& shot, const Scene& now);
+// The keys that the panel shows, section by section, by their paths: sliders, words and boxes, made of what
+// core/scene/keys.h says about each.
+struct PanelSection {
+    const char* title;
+    std::vector<std::string_view> paths;
+};
+const std::vector<PanelSection>& panel_sections();
 
 }  // namespace pelagic

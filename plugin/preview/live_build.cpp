@@ -8,21 +8,6 @@
 #include "plugin/preview/live.h"
 
 namespace pelagic {
-namespace {
-
-// The scene with everything but its waves set to defaults, so that other changes compare equal.
-Scene waves_of(const Scene& scene) {
-    Scene waves = scene;
-    waves.camera = Camera{};
-    waves.light = Light{};
-    waves.water = Water{};
-    waves.surface = Surface{};
-    waves.output = Output{};
-    return waves;
-}
-
-}  // namespace
-
 std::shared_ptr<const LiveBuild> build_live(const Scene& scene) {
     std::string problems;
     for (const Problem& problem : validate(scene))
@@ -40,7 +25,8 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene) {
 }
 
 bool same_sea(const Scene& a, const Scene& b) {
-    return canonical(waves_of(a)) == canonical(waves_of(b));
+    const FeedSet sea = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Quality);
+    return canonical(a, sea) == canonical(b, sea);
 }
 
 }  // namespace pelagic

@@ -22,6 +22,7 @@
 
 #include "core/lighting/tone.h"
 #include "core/scene/canonical.h"
+#include "core/scene/shot_text.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/files/files.h"
@@ -203,13 +204,8 @@ std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
 }
 
 bool same_light(const Scene& a, const Scene& b) {
-    const auto light = [](const Scene& scene) {
-        Scene alone;
-        alone.light = scene.light;
-        alone.water = scene.water;
-        return canonical(alone);
-    };
-    return light(a) == light(b);
+    const FeedSet light = feeds(Feed::Light, Feed::Water);
+    return canonical(a, light) == canonical(b, light);
 }
 
 class Preview {
@@ -352,7 +348,7 @@ class Preview {
             now.camera.position_m = millimetres(camera_.position_m());
             now.camera.look_at_m = millimetres(camera_.middle_m());
         }
-        const std::string keys = changed_keys(shot_, now);
+        const std::string keys = shot_text(now, shot_);
         glfwSetClipboardString(window_.get(),
                                keys.empty() ? "# nothing differs from the shot\n" : keys.c_str());
     }

@@ -241,6 +241,7 @@ py::dict described_key(const Key& key) {
     out["feeds"] = feeds;
     out["built"] = key.is_built;
     out["keys"] = inner;
+    out["entry"] = key.entry_name;
     return out;
 }
 
@@ -304,7 +305,7 @@ void add_scene(py::module_& module) {
         "keys", &described_keys,
         "Every key of a shot file as a dictionary: path, name, label, type, unit, help, accepted, default, "
         "required, range, soft_range (of a slider), logarithmic, choices, feeds (what depends on it), built, "
-        "and the keys of a list's entries.");
+        "the keys of a list's entries, and the entries' class.");
 }
 
 }  // namespace pelagic::python

@@ -11,7 +11,7 @@
 #include "core/lighting/tone.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
-#include "core/scene/names.h"
+#include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/exr/exr.h"
@@ -43,6 +43,10 @@ Ranges ranges_of(const Sky& sky) {
     return {.sun = type(most + largest(sky.sun_radiance)), .whole = type(most)};
 }
 
+// What a picture depends on, besides the camera at its frame.
+constexpr FeedSet kFeedsBesideTheView =
+    feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Grid, Feed::Light, Feed::Water);
+
 std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
@@ -50,26 +54,30 @@ std::array<float, 3> packed(glm::vec3 v) {
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
     const Scene& scene = context.scene;
     const View view = view_at(scene.camera, frame);
-    return {{"content", std::string("radiance; the layers add up to R, G, B")},
-            {"unit", std::string(scene.light.sky == Light{}.sky ? "kcd/m2, linear Rec. 709"
-                                                                : "the sky picture's own, linear")},
-            {"time", scene.shot.time_s(frame)},
-            {"fps", scene.shot.fps},
-            {"frame", frame},
-            {"seed", std::to_string(scene.shot.seed)},
-            {"windSpeed_mps", scene.sea.wind_speed_mps},
-            {"windTowards_deg", scene.sea.wind_direction_deg},
-            {"spectrum", std::string(word_of(scene.sea.spectrum))},
-            {"cameraPosition_m", packed(glm::vec3(view.position_m))},
-            {"cameraForward", packed(glm::vec3(view.forward))},
-            {"horizontalFieldOfView_deg", scene.camera.fov_deg},
-            {"sunDirection", packed(context.sky.sun_direction)},
-            {"sky", scene.light.sky},
-            {"exposure", static_cast<double>(exposure_for(context.sky, context.exposure_stops))},
-            {"samplesPerPixel", context.options.samples * context.options.samples},
-            {"fingerprint", context.made_of},
-            {"instructionSet", std::string(instruction_set())},
-            {"software", std::string("pelagic " PELAGIC_VERSION)}};
+    std::vector<exr::Attribute> attributes{
+        {"content", std::string("radiance; the layers add up to R, G, B")},
+        {"unit", std::string(scene.light.sky == Light{}.sky ? "kcd/m2, linear Rec. 709"
+                                                            : "the sky picture's own, linear")},
+        {"time", scene.shot.time_s(frame)},
+        {"fps", scene.shot.fps},
+        {"frame", frame},
+        {"cameraPosition_m", packed(glm::vec3(view.position_m))},
+        {"cameraForward", packed(glm::vec3(view.forward))},
+        {"horizontalFieldOfView_deg", scene.camera.fov_deg},
+        {"sunDirection", packed(context.sky.sun_direction)},
+        {"exposure", static_cast<double>(exposure_for(context.sky, context.exposure_stops))},
+        {"samplesPerPixel", context.options.samples * context.options.samples},
+        {"fingerprint", context.made_of},
+        {"instructionSet", std::string(instruction_set())},
+        {"software", std::string("pelagic " PELAGIC_VERSION)}};
+    // The camera is described above, as it is at this frame.
+    for (const DescribedKey& key : described(scene, kFeedsBesideTheView))
+        std::visit(
+            [&](const auto& value) {
+                attributes.push_back({"pelagic." + key.path, value});
+            },
+            key.number_or_text());
+    return attributes;
 }
 
 }  // namespace
@@ -90,8 +98,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source) : camera_(so
     source_ = Fingerprint()
                   .add(source.drawn_by_gpu ? "drawn picture" : "picture")
                   .add("revision " + std::to_string(kRevision))
-                  .add(canonical(source.scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Grid,
-                                                     Feed::Light, Feed::Water)))
+                  .add(canonical(source.scene, kFeedsBesideTheView))
                   .add(plan_text(plan, 0))
                   .add(source.sky_content)
                   .add("samples " + std::to_string(source.options.samples) + " terms " + digit(lighting.sun) +

@@ -22,8 +22,8 @@ Scene scene_with_lists() {
     return scene;
 }
 
-// One change for each member of each struct of scene.h, the range of frames excepted. (A member that is
-// missing in canonical.cpp doesn't compile.)
+// One change for each member of each struct of scene.h, the range of frames excepted. (A member without a
+// key doesn't compile.)
 const std::vector<std::function<void(Scene&)>>& changes() {
     static const std::vector<std::function<void(Scene&)>> list{
         [](Scene& s) { s.shot.name = "see"; },

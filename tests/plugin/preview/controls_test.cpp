@@ -1,34 +1,32 @@
-// What the panel gives back as a shot file.
+// What the panel shows, and how it begins.
 #include "plugin/preview/controls.h"
 
 #include <gtest/gtest.h>
 
+#include "core/scene/keys.h"
+
 namespace pelagic {
 namespace {
 
-TEST(ChangedKeys, NothingChangedIsNoText) {
-    EXPECT_EQ(changed_keys(Scene{}, Scene{}), "");
-}
-
-TEST(ChangedKeys, OnlyWhatDiffersInTheTablesOfAShotFile) {
-    Scene now;
-    now.sea.wind_speed_mps = 12.5;
-    now.sea.fetch_m = 1e5;
-    now.sea.swell = {{.height_m = 1.5, .period_s = 11.0, .direction_deg = 80.0}};
-    now.camera.position_m = {1e6, -2.5, 0.5};
-    now.water.type = WaterType::Turbid;
-    now.effects.whitecaps = false;
-    EXPECT_EQ(changed_keys(Scene{}, now),
-              "[sea]\n"
-              "wind_speed_mps = 12.5\n"
-              "fetch_m = 100000\n"
-              "swell = [{ height_m = 1.5, period_s = 11, direction_deg = 80 }]\n"
-              "\n[camera]\n"
-              "position_m = [1000000, -2.5, 0.5]\n"
-              "\n[water]\n"
-              "type = \"turbid\"\n"
-              "\n[effects]\n"
-              "whitecaps = false\n");
+// What the panel shows is in the table of keys, and each slider moves within what its key accepts.
+TEST(Panel, ShowsKeysOfTheTable) {
+    for (const PanelSection& section : panel_sections()) {
+        EXPECT_FALSE(section.paths.empty()) << section.title;
+        for (const std::string_view path : section.paths) {
+            const Key* key = find_key(path);
+            ASSERT_NE(key, nullptr) << path;
+            EXPECT_TRUE(key->is_built && key->set) << path;
+            EXPECT_FALSE(key->help.empty() || key->label.empty()) << path;
+            const auto expect_slider = [](const Key& k) {
+                ASSERT_TRUE(k.soft && k.range) << k.path;
+                EXPECT_TRUE(k.range->holds(k.soft->low) && k.range->holds(k.soft->high)) << k.path;
+                EXPECT_LT(k.soft->low, k.soft->high) << k.path;
+                EXPECT_TRUE(!k.soft->is_logarithmic || k.soft->low > 0.0) << k.path;
+            };
+            if (key->type == KeyType::Number || key->type == KeyType::Integer) expect_slider(*key);
+            for (const Key& inner : key->entry_keys) expect_slider(inner);
+        }
+    }
 }
 
 TEST(Controls, BeginAsTheShotHasIt) {

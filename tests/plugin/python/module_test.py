@@ -48,6 +48,65 @@ class Scene(unittest.TestCase):
         scene.waves.shortest_m = None
         self.assertEqual(scene.validate(), [])
 
+    def test_every_key_of_the_table_is_an_attribute(self):
+        scene = pelagic.Scene()
+        written = 0
+        for key in pelagic.keys():
+            table, name = key["path"].split(".")
+            holder = getattr(scene, table)
+            if key["type"] in ("data file", "data time"):
+                self.assertIsNone(getattr(holder, name))
+                continue
+            if not key["built"] and key["default"] is None:
+                self.assertNotIn(name, dir(holder), key["path"])  # nothing holds it yet
+                continue
+            default = getattr(holder, name)
+            self.assertEqual(default, key["default"], key["path"])
+            self.assertIn(key["help"], getattr(type(holder), name).__doc__)
+            other = {"truth": lambda: not default, "integer": lambda: default + 2, "number": lambda: 7.25,
+                     "text": lambda: "other", "word": lambda: key["choices"][-1]["word"],
+                     "words": lambda: tuple(c["word"] for c in key["choices"][:1]),
+                     "point": lambda: (1.0, 2.0, 3.5), "pair": lambda: (3, 5), "entries": lambda: ()}[key["type"]]()
+            if key["type"] == "entries":
+                entry = getattr(pelagic, key["entry"])
+                other = (entry(*({"point": (1.0, 2.0, 3.0), "integer": 64}.get(k["type"], 3.5) for k in key["keys"])),)
+                setattr(holder, name, [dict(zip(entry._fields, other[0]))])  # a dictionary does as well
+                self.assertEqual(getattr(holder, name), other, key["path"])
+            setattr(holder, name, other)
+            self.assertEqual(getattr(getattr(scene, table), name), other, key["path"])
+            with self.assertRaises((TypeError, ValueError), msg=key["path"]):
+                setattr(holder, name, {1: 2})
+            written += 1
+        self.assertGreater(written, 40)
+
+    def test_keys_are_described(self):
+        keys = {key["path"]: key for key in pelagic.keys()}
+        wind = keys["sea.wind_speed_mps"]
+        self.assertEqual((wind["unit"], wind["default"], wind["range"]), ("m/s", 10.0, (0.0, 80.0)))
+        self.assertEqual((wind["feeds"], wind["built"], wind["label"]), (["waves"], True, "Wind speed"))
+        self.assertLess(wind["soft_range"][1], wind["range"][1])
+        self.assertFalse(keys["effects.spray"]["built"])
+        self.assertEqual([c["word"] for c in keys["surface.kind"]["choices"] if c["built"]], ["patch", "projected-grid"])
+        self.assertEqual([k["name"] for k in keys["sea.swell"]["keys"]], ["height_m", "period_s", "direction_deg"])
+
+    def test_a_table_lives_as_long_as_somebody_holds_it_and_can_be_given_to_another_scene(self):
+        light = pelagic.Scene().light
+        light.turbidity = 5.0
+        self.assertEqual(light.turbidity, 5.0)
+        scene = pelagic.Scene()
+        scene.light = light
+        light.turbidity = 2.0
+        self.assertEqual(scene.light.turbidity, 5.0)
+
+    def test_lists_take_entries_or_dictionaries_with_all_of_their_keys(self):
+        sea = pelagic.Scene().sea
+        for wrong in ([{"height_m": 1.0}], [dict(height_m=1.0, period_s=9.0, direction_deg=0.0, more=1)], [3], "auto", 3):
+            with self.assertRaisesRegex(TypeError, "sea.swell.*accepted: "):
+                sea.swell = wrong
+        with self.assertRaisesRegex(TypeError, r"sea.swell\[0\].period_s = 'long'"):
+            sea.swell = [dict(height_m=1.0, period_s="long", direction_deg=0.0)]
+        self.assertEqual(sea.swell, ())
+
     def test_a_misspelt_key_is_refused_not_added(self):
         with self.assertRaises(AttributeError):
             pelagic.Scene().sea.wind_speed = 3.0

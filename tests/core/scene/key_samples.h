@@ -1,0 +1,79 @@
+// Values of any key, for tests that go over the whole table.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/scene/keys.h"
+
+namespace pelagic::test {
+
+// The ends of a key's range as values of its type: a number, a point of equal numbers, …
+inline KeyValue value_at(const Key& key, double number) {
+    const auto integer = static_cast<std::int64_t>(number);
+    switch (key.type) {
+        case KeyType::Integer:
+            return integer;
+        case KeyType::Pair:
+            return std::vector<std::int64_t>{integer, integer};
+        case KeyType::Point:
+            return std::vector<double>(3, number);
+        default:
+            return number;
+    }
+}
+
+// An entry whose keys are all good.
+inline KeyEntry good_entry(const Key& list) {
+    KeyEntry entry;
+    for (const Key& key : list.entry_keys) entry.values.emplace_back(key.name, key.fallback);
+    if (list.path == "camera.keys") entry.values[1].second = std::vector<double>{0.0, -60.0, 4.0};
+    return entry;
+}
+
+// The same type, another value: near the one that is there and within the range.
+inline KeyValue another_value(const Key& key, const KeyValue& now) {
+    struct Visitor {
+        const Key& key;
+        double moved(double value) const {
+            const double up = value + 0.25;
+            return key.range && !key.range->holds(up) ? value - 0.25 : up;
+        }
+        KeyValue operator()(std::monostate) const { return key.range->low; }
+        KeyValue operator()(bool truth) const { return !truth; }
+        KeyValue operator()(std::int64_t integer) const { return integer + (integer < 8 ? 1 : -2); }
+        KeyValue operator()(double value) const {
+            // Depth may be infinite.
+            return value > 1e300 ? KeyValue(key.range->high) : KeyValue(moved(value));
+        }
+        KeyValue operator()(const std::string& text) const {
+            if (key.choices.empty()) return text + "x";
+            const auto here = std::find_if(key.choices.begin(), key.choices.end(),
+                                           [&](const KeyChoice& choice) { return choice.word == text; });
+            return here + 1 == key.choices.end() ? key.choices.front().word : (here + 1)->word;
+        }
+        KeyValue operator()(std::vector<double> point) const {
+            point[2] = moved(point[2]);
+            return point;
+        }
+        KeyValue operator()(std::vector<std::int64_t> pair) const {
+            pair[1] += 1;
+            return pair;
+        }
+        KeyValue operator()(std::vector<std::string> words) const {
+            if (words.empty())
+                words.push_back(key.choices.front().word);
+            else
+                words.pop_back();
+            return words;
+        }
+        KeyValue operator()(std::vector<KeyEntry> entries) const {
+            entries.push_back(good_entry(key));
+            return entries;
+        }
+    };
+    return std::visit(Visitor{key}, now);
+}
+
+}  // namespace pelagic::test

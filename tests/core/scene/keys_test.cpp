@@ -1,0 +1,297 @@
+// The table of keys: each is described, reaches its member, is checked, and counts where it says it does.
+#include "core/scene/keys.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/scene/canonical.h"
+#include "core/scene/member_count.h"
+#include "core/scene/shot_text.h"
+#include "core/scene/validate.h"
+#include "key_samples.h"
+
+namespace pelagic {
+namespace {
+
+using test::another_value;
+using test::good_entry;
+using test::value_at;
+
+// A key and, inside the entries of lists, theirs.
+template <class Visit>
+void for_each_key(const Visit& visit) {
+    for (const Key& key : keys()) {
+        visit(key);
+        for (const Key& inner : key.entry_keys) visit(inner);
+    }
+}
+
+TEST(Keys, EachIsDescribed) {
+    std::set<std::string> paths;
+    for_each_key([&](const Key& key) {
+        SCOPED_TRACE(key.path);
+        EXPECT_TRUE(paths.insert(key.path).second) << "twice";
+        EXPECT_TRUE(key.path.ends_with('.' + key.name));
+        EXPECT_FALSE(key.help.empty() || key.label.empty());
+        EXPECT_EQ(key.help.find("not built"), std::string::npos) << "is a property, not a word of the help";
+        const bool is_inner = key.path.find("[]") != std::string::npos;
+        EXPECT_EQ(key.is_required, is_inner);
+        EXPECT_EQ(key.feeds.any(), !is_inner);
+        if (!is_inner && !key.has_value()) {
+            EXPECT_FALSE(key.is_built);
+            EXPECT_FALSE(key.meanwhile.empty()) << "what to do instead?";
+            return;
+        }
+        EXPECT_FALSE(key.accepted.empty());
+        EXPECT_EQ(std::holds_alternative<std::monostate>(key.fallback), key.is_optional) << "its default";
+        const bool is_choice = key.type == KeyType::Word || key.type == KeyType::Words;
+        EXPECT_EQ(is_choice, !key.choices.empty());
+        EXPECT_EQ(key.type == KeyType::Entries, !key.entry_keys.empty());
+        EXPECT_EQ(key.type == KeyType::Entries, !key.entry_name.empty());
+        const bool has_suffix = [&] {
+            for (const char* suffix : {"_m", "_deg", "_mps", "_s", "_px", "_mg_m3"})
+                if (key.name.ends_with(suffix)) return true;
+            return false;
+        }();
+        EXPECT_TRUE(!has_suffix || !key.unit.empty());
+        if (key.soft) {
+            EXPECT_TRUE(key.range->holds(key.soft->low) && key.range->holds(key.soft->high));
+            EXPECT_LT(key.soft->low, key.soft->high);
+            EXPECT_TRUE(!key.soft->is_logarithmic || key.soft->low > 0.0);
+        }
+    });
+}
+
+TEST(Keys, PathsAreFound) {
+    for_each_key([](const Key& key) { EXPECT_EQ(find_key(key.path), &key); });
+    for (const char* none : {"", "sea", "sea.", "sea.wind", "sea.swell[]", "sea.swell[0].height_m"})
+        EXPECT_EQ(find_key(none), nullptr) << none;
+    EXPECT_THROW(key_of("sea.wind"), std::logic_error);
+    EXPECT_THROW(value_of(Scene{}, key_of("quality.frame_ms")), std::logic_error);
+    std::size_t count = 0;
+    for (const KeyTable& table : key_tables())
+        for (const Key& key : table.keys) {
+            EXPECT_EQ(key.path, table.name + '.' + key.name);
+            EXPECT_EQ(&key, &keys()[count++]);
+        }
+    EXPECT_EQ(count, keys().size());
+    EXPECT_EQ(key_tables().size(), member_count<Scene>());
+}
+
+TEST(Keys, LabelsAreTheNamesWithoutUnits) {
+    EXPECT_EQ(key_of("sea.wind_speed_mps").label, "Wind speed");
+    EXPECT_EQ(key_of("water.chlorophyll_mg_m3").label, "Chlorophyll");
+    EXPECT_EQ(key_of("camera.position_m").label, "Position");
+    EXPECT_EQ(key_of("effects.whitecaps").label, "Whitecaps");
+}
+
+// Each member stands behind its own key: what is written is read, and nothing else has changed.
+TEST(Keys, EachReachesAMemberOfItsOwn) {
+    for (const Key& key : keys()) {
+        if (!key.set) continue;
+        SCOPED_TRACE(key.path);
+        Scene scene;
+        const KeyValue wanted = another_value(key, key.fallback);
+        EXPECT_FALSE(set_value(scene, key, wanted).has_value());
+        EXPECT_EQ(value_of(scene, key), wanted);
+        for (const Key& other : keys()) {
+            if (!other.has_value() || other.path == key.path) continue;
+            EXPECT_EQ(value_of(scene, other), other.fallback) << other.path;
+        }
+        Scene copied;
+        for (const KeyTable& table : key_tables()) table.copy(scene, copied);
+        EXPECT_EQ(value_of(copied, key), wanted);
+    }
+}
+
+TEST(Keys, ValuesOfAnotherTypeAreRefusedAndChangeNothing) {
+    const std::vector<KeyValue> values{KeyValue(),
+                                       true,
+                                       std::int64_t{3},
+                                       2.5,
+                                       std::string("x"),
+                                       std::vector<double>{1.0},
+                                       std::vector<std::int64_t>{1},
+                                       std::vector<std::string>{"x"},
+                                       std::vector<KeyEntry>(1)};
+    for (const Key& key : keys()) {
+        if (!key.set) continue;
+        for (const KeyValue& value : values) {
+            Scene scene;
+            const std::optional<Problem> problem = set_value(scene, key, value);
+            const bool integer_for_number =
+                key.type == KeyType::Number && std::holds_alternative<std::int64_t>(value);
+            const bool same_type = value.index() == key.fallback.index() ||
+                                   (key.is_optional && std::holds_alternative<double>(value));
+            const bool is_fitting =
+                integer_for_number || (same_type && key.choices.empty() && key.type != KeyType::Point &&
+                                       key.type != KeyType::Pair && key.type != KeyType::Entries);
+            EXPECT_EQ(problem.has_value(), !is_fitting) << key.path << ' ' << value.index();
+            if (!problem) continue;
+            EXPECT_TRUE(problem->key.starts_with(key.path)) << problem->key;
+            EXPECT_FALSE(problem->accepted.empty());
+            EXPECT_EQ(value_of(scene, key), key.fallback) << key.path;
+        }
+    }
+    Scene scene;
+    const auto problem = set_value(scene, key_of("sea.spectrum"), std::string("jonsvap"));
+    ASSERT_TRUE(problem);
+    EXPECT_NE(problem->problem.find("nearest is \"jonswap\""), std::string::npos);
+}
+
+// A scene whose only unusual value is this one. Keys of wave trains mean nothing without them.
+Scene scene_with(const Key& key, const KeyValue& value) {
+    Scene scene;
+    if (key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m")
+        scene.waves.model = WaveModel::Trochoid;
+    EXPECT_FALSE(set_value(scene, key, value).has_value()) << key.path;
+    return scene;
+}
+
+std::string text_of(const std::vector<Problem>& problems) {
+    std::string text;
+    for (const Problem& problem : problems) text += pelagic::text_of(problem) + '\n';
+    return text;
+}
+
+TEST(Keys, RangesAreCheckedEndsIncluded) {
+    int checked = 0;
+    const auto check = [&](const Key& key, const std::string& path, const auto& problems_with) {
+        if (!key.range) return;
+        ++checked;
+        SCOPED_TRACE(path);
+        const auto [low, high] = *key.range;
+        for (const double end : {low, high}) EXPECT_EQ(text_of(problems_with(value_at(key, end))), "") << end;
+        const bool is_whole = key.type == KeyType::Integer || key.type == KeyType::Pair;
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        for (const double bad : {is_whole ? low - 1 : std::nextafter(low, -kInfinity),
+                                 is_whole ? high + 1 : std::nextafter(high, kInfinity)}) {
+            const std::vector<Problem> problems = problems_with(value_at(key, bad));
+            ASSERT_EQ(problems.size(), 1u) << bad << '\n' << text_of(problems);
+            EXPECT_EQ(problems[0].key, path);
+            EXPECT_NE(problems[0].accepted.find(pelagic::text_of(*key.range)), std::string::npos);
+        }
+    };
+    for (const Key& key : keys()) {
+        check(key, key.path, [&](const KeyValue& value) { return validate(scene_with(key, value)); });
+        for (std::size_t i = 0; i < key.entry_keys.size(); ++i)
+            check(key.entry_keys[i], key.path + "[0]." + key.entry_keys[i].name, [&](const KeyValue& value) {
+                KeyEntry entry = good_entry(key);
+                entry.values[i].second = value;
+                return validate(scene_with(key, std::vector<KeyEntry>{entry}));
+            });
+    }
+    EXPECT_GT(checked, 20);
+}
+
+TEST(Keys, WhatIsNotBuiltIsRefusedAsTheTableSays) {
+    for (const Key& key : keys()) {
+        if (!key.has_value()) continue;
+        for (const KeyChoice& choice : key.choices) {
+            if (choice.is_built) continue;
+            const bool is_list = key.type == KeyType::Words;
+            const auto problems = validate(scene_with(
+                key, is_list ? KeyValue(std::vector<std::string>{choice.word}) : KeyValue(choice.word)));
+            ASSERT_EQ(problems.size(), 1u) << key.path << ' ' << choice.word << '\n' << text_of(problems);
+            EXPECT_EQ(problems[0].problem, "is not built yet");
+        }
+        if (key.is_built) continue;
+        const auto problems = validate(scene_with(key, another_value(key, key.fallback)));
+        ASSERT_EQ(problems.size(), 1u) << key.path;
+        EXPECT_EQ(problems[0].problem, "is not built yet");
+        EXPECT_EQ(problems[0].accepted, value_text(key, key.fallback));
+    }
+}
+
+// The whole point of the parts: a key changes the texts of those that it feeds, and of no other.
+TEST(Keys, EachChangesTheCanonicalTextOfWhatItFeeds) {
+    for (const Key& key : keys()) {
+        if (!key.set) continue;
+        const Scene changed = [&] {
+            Scene scene;
+            set_value(scene, key, another_value(key, key.fallback));
+            return scene;
+        }();
+        for (std::size_t part = 0; part < kFeeds; ++part) {
+            const FeedSet only(1ull << part);
+            EXPECT_EQ(canonical(changed, only) != canonical(Scene{}, only), key.feeds[part])
+                << key.path << " and " << pelagic::text_of(only);
+        }
+        EXPECT_EQ(canonical(changed) != canonical(Scene{}), key.path != "shot.frames") << key.path;
+        EXPECT_EQ(described(changed, key.feeds).size(),
+                  described(Scene{}, key.feeds).size() + (key.is_optional ? 1u : 0u));
+    }
+}
+
+// A line for each key, in the order of the table: whoever looks for one finds it by its path.
+TEST(Keys, TheCanonicalTextHasALineAKey) {
+    Scene scene;
+    scene.sea.swell = {{1.0, 9.0, 0.0}, {2.0, 10.0, 1.0}};
+    EXPECT_EQ(canonical(scene, feeds(Feed::Foam, Feed::Grid)),
+              "surface.cell_px = 8\neffects.whitecaps = true\n");
+    EXPECT_NE(canonical(scene).find(
+                  "\nsea.swell = [{ height_m = 1, period_s = 9, direction_deg = 0 }, { height_m = 2, "),
+              std::string::npos);
+    EXPECT_EQ(canonical(scene).find("waves.longest_m"), std::string::npos) << "it has no value";
+}
+
+// OpenEXR's readers before 2.0 know names of at most 31 bytes; ours begin with "pelagic.".
+TEST(Keys, NamesInHeadersAreShort) {
+    for (const DescribedKey& key : described(Scene{}, all_feeds())) {
+        EXPECT_LE(("pelagic." + key.path).size(), 31u) << key.path;
+        EXPECT_EQ(key.identifier().find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"),
+                  std::string::npos);
+    }
+}
+
+TEST(Keys, AMeasuredSpectrumIsDescribedByItsStationAndCountsByItsContent) {
+    Scene scene;
+    scene.sea.spectrum = SpectrumKind::File;
+    scene.sea.measured = MeasuredSpectrum{
+        {{0.1, 1.0, 0.5, 0.1, 0.2, 0.3, true}}, "41010", "2019-02-06T00:40:00Z", "folder/41010w2019.txt"};
+    std::map<std::string, std::string> said;
+    for (const DescribedKey& key : described(scene, feeds(Feed::Waves))) said[key.path] = key.text;
+    EXPECT_EQ(said.at("sea.spectrum_station"), "\"41010\"");
+    EXPECT_EQ(said.at("sea.spectrum_time"), "2019-02-06T00:40:00Z");
+    EXPECT_FALSE(said.contains("sea.spectrum_file"));
+    Scene elsewhere = scene;
+    elsewhere.sea.measured->file = "another/41010w2019.txt";
+    EXPECT_EQ(canonical(elsewhere), canonical(scene));
+    elsewhere.sea.measured->bins[0].c1_im = 0.11;
+    EXPECT_NE(canonical(elsewhere, feeds(Feed::Waves)), canonical(scene, feeds(Feed::Waves)));
+}
+
+TEST(ShotText, NothingDiffersIsNoText) {
+    EXPECT_EQ(shot_text(Scene{}), "");
+    Scene scene;
+    scene.sea.fetch_m = 1e5;
+    EXPECT_EQ(shot_text(scene, scene), "");
+}
+
+TEST(ShotText, OnlyWhatDiffersInTheTablesOfAShotFile) {
+    Scene now;
+    now.sea.wind_speed_mps = 12.5;
+    now.sea.fetch_m = 1e5;
+    now.sea.swell = {{.height_m = 1.5, .period_s = 11.0, .direction_deg = 80.0}};
+    now.camera.position_m = {1e6, -2.5, 0.5};
+    now.water.type = WaterType::Turbid;
+    now.effects.whitecaps = false;
+    EXPECT_EQ(shot_text(now),
+              "[sea]\n"
+              "wind_speed_mps = 12.5\n"
+              "fetch_m = 100000\n"
+              "swell = [{ height_m = 1.5, period_s = 11, direction_deg = 80 }]\n"
+              "\n[camera]\n"
+              "position_m = [1000000, -2.5, 0.5]\n"
+              "\n[water]\n"
+              "type = \"turbid\"\n"
+              "\n[effects]\n"
+              "whitecaps = false\n");
+}
+
+}  // namespace
+}  // namespace pelagic

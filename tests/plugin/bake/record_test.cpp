@@ -1,0 +1,60 @@
+// What a bake's record says about the shot: every key, as a value.
+#include "plugin/bake/record.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/scene/keys.h"
+
+namespace pelagic {
+namespace {
+
+// The type that JSON has for a value of a key; null where nothing is given, and for infinity.
+struct IsJsonOf {
+    const nlohmann::json& json;
+    bool operator()(std::monostate) const { return json.is_null(); }
+    bool operator()(bool) const { return json.is_boolean(); }
+    bool operator()(std::int64_t) const { return json.is_number_integer(); }
+    bool operator()(double number) const { return std::isfinite(number) ? json.is_number() : json.is_null(); }
+    bool operator()(const std::string& text) const { return json == text; }
+    template <class Element>
+    bool operator()(const std::vector<Element>& list) const {
+        return json.is_array() && json.size() == list.size();
+    }
+};
+
+TEST(Record, HasEveryKeyAsAValue) {
+    Scene scene;
+    scene.surface.size_m = 40.0;
+    scene.surface.resolution = 16;
+    scene.sea.swell = {{1.0, 9.0, 10.0}, {0.5, 7.0, 90.0}};
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("pelagic-record-" + std::to_string(getpid()) + ".json");
+    Record record;
+    record.describe(plan_bake(scene), SpectralMoments{}, 0.0);
+    record.save(file);
+    std::ifstream stream(file);
+    const auto settings = nlohmann::json::parse(stream).at("settings");
+    std::filesystem::remove(file);
+    std::size_t found = 0;
+    for (const Key& key : keys()) {
+        ASSERT_EQ(settings.contains(key.path), key.has_value()) << key.path;
+        if (!key.has_value()) continue;
+        ++found;
+        EXPECT_TRUE(std::visit(IsJsonOf{settings.at(key.path)}, value_of(scene, key)))
+            << key.path << ": " << settings.at(key.path);
+    }
+    EXPECT_EQ(settings.size(), found);
+    EXPECT_EQ(settings.at("sea.swell")[1],
+              (nlohmann::json{{"height_m", 0.5}, {"period_s", 7.0}, {"direction_deg", 90.0}}));
+    EXPECT_EQ(settings.at("sea.wind_speed_mps"), 10);
+    EXPECT_TRUE(settings.at("sea.depth_m").is_null()) << "infinite";
+    EXPECT_TRUE(settings.at("waves.longest_m").is_null()) << "not given";
+    EXPECT_EQ(settings.at("camera.look_at_m"), (nlohmann::json{0.0, 0.0, 0.0}));
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,194 @@
+// Every key of the table in a shot file: read at both ends of its range, refused beyond, and written back.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+
+#include "core/scene/canonical.h"
+#include "core/scene/keys.h"
+#include "core/scene/shot_text.h"
+#include "core/scene/validate.h"
+#include "plugin/shot/shot.h"
+#include "tests/core/scene/key_samples.h"
+
+namespace pelagic {
+namespace {
+
+const std::filesystem::path kMadeUp = std::filesystem::path(PELAGIC_SOURCE_DIR) / "tests/plugin/shot/data";
+
+// Keys of wave trains mean nothing without them.
+std::string shot_with(const Key& key, const std::string& value) {
+    const bool of_trains =
+        key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m";
+    return (of_trains ? "waves.model = \"trochoid\"\n" : "") + key.path + " = " + value + '\n';
+}
+
+std::string refusal(const std::string& text) {
+    try {
+        parse_shot(text, kMadeUp / "s.toml");
+    } catch (const ShotError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(ShotKeys, AreReadAtTheEndsOfTheirRangesAndRefusedBeyond) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    int checked = 0;
+    const auto check = [&](const Key& key, const std::string& path, const auto& text_of_value) {
+        if (!key.range) return;
+        ++checked;
+        SCOPED_TRACE(path);
+        const auto [low, high] = *key.range;
+        for (const double end : {low, high}) EXPECT_EQ(refusal(text_of_value(test::value_at(key, end))), "");
+        const bool is_whole = key.type == KeyType::Integer || key.type == KeyType::Pair;
+        for (const double bad : {is_whole ? low - 1 : std::nextafter(low, -kInfinity),
+                                 is_whole ? high + 1 : std::nextafter(high, kInfinity)}) {
+            const std::string message = refusal(text_of_value(test::value_at(key, bad)));
+            EXPECT_NE(message.find(": " + path + " = "), std::string::npos) << message;
+            EXPECT_NE(message.find("is outside the range; accepted: "), std::string::npos) << message;
+        }
+    };
+    for (const Key& key : keys()) {
+        check(key, key.path, [&](const KeyValue& value) { return shot_with(key, value_text(key, value)); });
+        for (std::size_t i = 0; i < key.entry_keys.size(); ++i)
+            check(key.entry_keys[i], key.path + "[0]." + key.entry_keys[i].name, [&](const KeyValue& value) {
+                KeyEntry entry = test::good_entry(key);
+                entry.values[i].second = value;
+                return shot_with(key, value_text(key, std::vector<KeyEntry>{entry}));
+            });
+    }
+    EXPECT_GT(checked, 20);
+}
+
+TEST(ShotKeys, OfEveryKeyAValueThatIsNoneOfItsTypeIsRefusedWithWhatIsAccepted) {
+    for (const Key& key : keys()) {
+        if (!key.has_value()) continue;
+        const std::string message = refusal(shot_with(key, "12:30:00"));  // no key is a time of day
+        EXPECT_NE(message.find(key.path + " = 12:30:00: is a time of day; accepted: " + key.accepted),
+                  std::string::npos)
+            << message;
+    }
+}
+
+class RandomValues {
+  public:
+    explicit RandomValues(unsigned seed) : random_(seed) {}
+
+    double below(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random_);
+    }
+    std::size_t index(std::size_t count) {
+        return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
+    }
+
+    KeyValue of(const Key& key) {
+        const double low = key.range ? std::max(key.range->low, -1e4) : 0.0;
+        const double high = key.range ? std::min(key.range->high, 1e4) : 1e4;
+        switch (key.type) {
+            case KeyType::Truth:
+                return index(2) == 1;
+            case KeyType::Integer:
+                return static_cast<std::int64_t>(below(low, high + 1.0));
+            case KeyType::Number:
+                if (key.path == "shot.loop_s")
+                    return static_cast<double>(index(100));  // whole at whole rates
+                if (key.path == "shot.fps") return static_cast<double>(1 + index(60));
+                return below(low, high);
+            case KeyType::Word:
+                return key.choices[index(key.choices.size())].word;
+            case KeyType::Point:
+                return std::vector<double>{below(low, high), below(low, high), below(low, high)};
+            case KeyType::Pair: {
+                const auto first = static_cast<std::int64_t>(below(low, high));
+                return std::vector<std::int64_t>{first, first + static_cast<std::int64_t>(index(100))};
+            }
+            case KeyType::Words: {
+                std::vector<std::string> words;
+                for (const KeyChoice& choice : key.choices)
+                    if (index(2) == 1) words.push_back(choice.word);
+                return words;
+            }
+            case KeyType::Entries: {
+                std::vector<KeyEntry> entries;
+                for (std::size_t left = index(3); left > 0; --left) {
+                    KeyEntry& entry = entries.emplace_back();
+                    for (const Key& inner : key.entry_keys) entry.values.emplace_back(inner.name, of(inner));
+                }
+                return entries;
+            }
+            case KeyType::Text:
+                return std::string(key.path == "light.sky" ? "daylight" : "A-1_b");
+            case KeyType::DataFile:
+            case KeyType::DataTime:
+                break;
+        }
+        return {};
+    }
+
+  private:
+    std::mt19937 random_;
+};
+
+// Any scene that validate() accepts comes back from its own shot file, bit by bit, whatever its keys say.
+TEST(ShotKeys, AreWrittenAndReadBack) {
+    std::set<std::string> changed;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        RandomValues random(seed);
+        Scene scene;
+        for (const Key& key : keys()) {
+            if (!key.set) continue;
+            // Keys of trains are refused without them, and only then.
+            Scene other = scene;
+            ASSERT_FALSE(set_value(other, key, random.of(key)).has_value()) << key.path;
+            if (!validate(other).empty()) continue;
+            scene = other;
+            if (value_of(scene, key) != key.fallback) changed.insert(key.path);
+        }
+        const std::string text = shot_text(scene);
+        const Scene read = parse_shot(text, "s.toml");
+        EXPECT_EQ(canonical(read, all_feeds()), canonical(scene, all_feeds())) << text;
+        EXPECT_EQ(shot_text(read), text);
+    }
+    for (const Key& key : keys()) {
+        const bool has_one_text = key.path == "light.sky";
+        const bool has_one_word = key.type == KeyType::Words && !key.choices.front().is_built;
+        const bool has_one_scheme = key.path == "output.mesh_scheme";
+        const bool can_change = key.set && key.is_built && !has_one_text && !has_one_word && !has_one_scheme;
+        EXPECT_EQ(changed.contains(key.path), can_change) << key.path;
+    }
+}
+
+TEST(ShotKeys, AMeasuredSpectrumIsNamedByItsFileAndTime) {
+    const Scene scene = parse_shot(
+        "[sea]\nspectrum = \"file\"\nspectrum_file = \"made-99001w2021.txt\"\nspectrum_time = "
+        "2021-03-01T02:50:00+02:00\n",
+        kMadeUp / "s.toml");
+    const std::string text = shot_text(scene);
+    EXPECT_NE(text.find("spectrum_time = 2021-03-01T00:50:00Z\n"), std::string::npos) << text;
+    EXPECT_EQ(canonical(parse_shot(text, "elsewhere.toml")), canonical(scene)) << text;
+}
+
+TEST(ShotKeys, HelpSaysOfEachWhatDependsOnItAndWhatIsNotBuilt) {
+    const std::string help = describe_keys();
+    for (const KeyTable& table : key_tables())
+        EXPECT_NE(help.find('[' + table.name + "]  " + table.help), std::string::npos) << table.name;
+    for (const Key& key : keys()) {
+        const std::size_t at = help.find("\n  " + key.path);
+        ASSERT_NE(at, std::string::npos) << key.path;
+        const std::string part = help.substr(at, help.find("\n  ", help.find("feeds", at)) - at);
+        EXPECT_NE(part.find("feeds " + text_of(key.feeds)), std::string::npos) << part;
+        EXPECT_NE(part.find(key.help), std::string::npos) << part;
+        EXPECT_EQ(part.find("not built yet") != std::string::npos,
+                  !key.is_built || std::any_of(key.choices.begin(), key.choices.end(),
+                                               [](const KeyChoice& choice) { return !choice.is_built; }))
+            << part;
+        for (const Key& inner : key.entry_keys)
+            EXPECT_NE(help.find("\n  " + inner.path + '\n'), std::string::npos) << inner.path;
+    }
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -5,5 +5,5 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 mode=(-i)
 [ "${1:-}" != "--check" ] || mode=(--dry-run -Werror)
-find core plugin tests -name node_modules -prune -o \( -name '*.cpp' -o -name '*.h' -o -name '*.inl' \) -print0 |
+find core plugin tests examples -name node_modules -prune -o \( -name '*.cpp' -o -name '*.h' -o -name '*.inl' \) -print0 |
     xargs -0 "${2:-clang-format-14}" "${mode[@]}"

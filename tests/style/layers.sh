@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks that includes go down the README's layer table only.
+# Checks that includes go down the layer table of README.md only.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bad=0

@@ -295,8 +295,12 @@ void add_scene(py::module_& module) {
         const py::object made = add_table_class(module, base, table);
         scene.def_property(
             table.name.c_str(), [made](const std::shared_ptr<Scene>& self) { return made(self); },
-            [&table](Scene& self, const TableOfScene& other) {
-                const Scene from = *other.scene;
+            [&table, made](Scene& self, const py::object& other) {
+                if (!py::isinstance(other, made))
+                    throw py::type_error(table.name + ": accepted: a " +
+                                         std::string(py::str(made.attr("__name__"))) +
+                                         ", such as another scene's");
+                const Scene from = *other.cast<const TableOfScene&>().scene;
                 table.copy(from, self);
             },
             ("[" + table.name + "]: " + table.help).c_str());

@@ -97,6 +97,8 @@ class Scene(unittest.TestCase):
         scene.light = light
         light.turbidity = 2.0
         self.assertEqual(scene.light.turbidity, 5.0)
+        with self.assertRaisesRegex(TypeError, "accepted: a SeaTable"):
+            scene.sea = light
 
     def test_lists_take_entries_or_dictionaries_with_all_of_their_keys(self):
         sea = pelagic.Scene().sea

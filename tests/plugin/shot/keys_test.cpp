@@ -149,7 +149,10 @@ TEST(ShotKeys, AreWrittenAndReadBack) {
         }
         const std::string text = shot_text(scene);
         const Scene read = parse_shot(text, "s.toml");
-        EXPECT_EQ(canonical(read, all_feeds()), canonical(scene, all_feeds())) << text;
+        for (const Key& key : keys()) {
+            if (!key.has_value()) continue;
+            EXPECT_EQ(value_of(read, key), value_of(scene, key)) << key.path << '\n' << text;
+        }
         EXPECT_EQ(shot_text(read), text);
     }
     for (const Key& key : keys()) {

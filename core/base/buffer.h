@@ -1,6 +1,6 @@
-// Memory for numbers that vectors read: aligned to a cache line, zero at first, in huge pages where it is
-// large (a transform that walks down the columns of a large grid would otherwise miss the page table at every
-// step).
+// Memory for numbers that vectors read: aligned to a cache line, zero at first unless asked otherwise, in
+// huge pages where it is large (a transform that walks down the columns of a large grid would otherwise miss
+// the page table at every step).
 #pragma once
 
 #include <sys/mman.h>
@@ -21,20 +21,11 @@ class Buffer {
     static constexpr std::size_t kSlack = 64 / sizeof(float);
 
     Buffer() = default;
-    explicit Buffer(std::size_t count) : size_(count) {  // throws std::bad_alloc
-        constexpr std::size_t kLine = 64, kHugePage = std::size_t(2) << 20;
-        const std::size_t bytes = (count + kSlack) * sizeof(T);
-        const std::size_t alignment = bytes >= 2 * kHugePage ? kHugePage : kLine;
-        void* memory = nullptr;
-        if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
-        data_.reset(static_cast<T*>(memory));
-#ifdef MADV_HUGEPAGE
-        // A wish: refused is fine. The last, partial page stays as it is: it would be memory that nobody has
-        // counted.
-        if (alignment == kHugePage) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
-#endif
-        std::memset(data_.get(), 0, bytes);
-    }
+    explicit Buffer(std::size_t count) : Buffer(count, 0) {}  // throws std::bad_alloc
+
+    // Without clearing what the caller overwrites before anybody reads it: zero is only the slack.
+    static Buffer uncleared(std::size_t count) { return Buffer(count, count); }
+
     T* data() {
         return data_.get();
     }
@@ -58,6 +49,23 @@ class Buffer {
     struct Free {
         void operator()(T* p) const { std::free(p); }
     };
+
+    // Zero from `cleared_from` on.
+    Buffer(std::size_t count, std::size_t cleared_from) : size_(count) {
+        constexpr std::size_t kLine = 64, kHugePage = std::size_t(2) << 20;
+        const std::size_t bytes = (count + kSlack) * sizeof(T);
+        const std::size_t alignment = bytes >= 2 * kHugePage ? kHugePage : kLine;
+        void* memory = nullptr;
+        if (posix_memalign(&memory, alignment, bytes) != 0) throw std::bad_alloc();
+        data_.reset(static_cast<T*>(memory));
+#ifdef MADV_HUGEPAGE
+        // A wish: refused is fine. The last, partial page stays as it is: it would be memory that nobody has
+        // counted.
+        if (alignment == kHugePage) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+#endif
+        std::memset(data_.get() + cleared_from, 0, bytes - cleared_from * sizeof(T));
+    }
+
     std::unique_ptr<T, Free> data_;
     std::size_t size_ = 0;
 };

@@ -4,26 +4,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <span>
 
 #include "core/base/constants.h"
+#include "core/base/disc.h"
 #include "core/spectrum/gauss.h"
 
 namespace pelagic {
 namespace {
 
 constexpr double kPolarWithin = 8.0, kSixteenWithin = 48.0, kFourWithin = 192.0;
-
-// The smallest my ≥ 0 with mx² + my² ≥ square, at most `most`.
-int first_my_beyond(double square, int mx, int most) {
-    const double rest = square - static_cast<double>(mx) * mx;
-    if (!(rest > 0.0)) return 0;
-    if (rest > static_cast<double>(most) * most) return most;
-    int my = static_cast<int>(std::ceil(std::sqrt(rest)));
-    while (my > 0 && static_cast<double>(my - 1) * (my - 1) >= rest) --my;
-    while (static_cast<double>(my) * my < rest) ++my;
-    return std::min(my, most);
-}
 
 }  // namespace
 
@@ -95,7 +85,7 @@ void CellEnergies::column(int mx, int height, const FourWays& energy) const {
     };
     int my = 0;
     for (const Ring& ring : rings_) {
-        const int ring_end = first_my_beyond(ring.end, mx, end);
+        const int ring_end = first_beyond(ring.end, mx, end);
         while (my < ring_end) {
             if (mx == 0 && my == 0) {
                 put(my++, {});

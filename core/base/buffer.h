@@ -26,24 +26,12 @@ class Buffer {
     // Without clearing what the caller overwrites before anybody reads it: zero is only the slack.
     static Buffer uncleared(std::size_t count) { return Buffer(count, count); }
 
-    T* data() {
-        return data_.get();
-    }
-    const T* data() const {
-        return data_.get();
-    }
-    std::size_t size() const {
-        return size_;
-    }
-    bool empty() const {
-        return size_ == 0;
-    }
-    T& operator[](std::size_t i) {
-        return data_.get()[i];
-    }
-    const T& operator[](std::size_t i) const {
-        return data_.get()[i];
-    }
+    T* data() { return data_.get(); }
+    const T* data() const { return data_.get(); }
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    T& operator[](std::size_t i) { return data_.get()[i]; }
+    const T& operator[](std::size_t i) const { return data_.get()[i]; }
 
   private:
     struct Free {

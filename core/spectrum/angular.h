@@ -106,7 +106,6 @@ class MaximumEntropy {
     std::complex<double> c1_;
 };
 
-using AngularShape =
-    std::variant<CosinePower, SechSquared, CosineSquared, SecondHarmonic, MaximumEntropy>;
+using AngularShape = std::variant<CosinePower, SechSquared, CosineSquared, SecondHarmonic, MaximumEntropy>;
 
 }  // namespace pelagic

@@ -113,7 +113,8 @@ void CellEnergies::run(const Ring& ring, int mx, int first_my, int end_my, const
     static constexpr double kOffset = 0.28867513459481287;  // 1/(2√3): two Gauss nodes in a cell
     static constexpr std::array<double, 2> kTwo{-kOffset, kOffset};
     static constexpr std::array<double, 1> kOne{0.0};
-    const auto offsets = ring.rule == Rule::Four ? std::span<const double>(kTwo) : std::span<const double>(kOne);
+    const auto offsets =
+        ring.rule == Rule::Four ? std::span<const double>(kTwo) : std::span<const double>(kOne);
     const double weight = step_ * step_ / static_cast<double>(offsets.size() * offsets.size());
     const TablePanel& panel = table_.panels()[ring.panel];
     std::array<double, Nodes::kMost + kDensitySlack> k, cosine, sine;
@@ -228,7 +229,8 @@ void CellEnergies::sixteen(int mx, int my, Sum& sum) const {
     Nodes nodes;
     for (std::size_t done = 0; p < panels.size() && done < kCount; ++p) {
         for (std::size_t i = 0; i < kCount; ++i)
-            if (k[i] >= panels[p].k_lo && k[i] < panels[p].k_hi) nodes.put(k[i], x[i] / k[i], y[i] / k[i], weight[i]);
+            if (k[i] >= panels[p].k_lo && k[i] < panels[p].k_hi)
+                nodes.put(k[i], x[i] / k[i], y[i] / k[i], weight[i]);
         done += nodes.count;
         add(p, nodes, sum);
     }

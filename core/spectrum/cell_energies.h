@@ -20,8 +20,8 @@ namespace pelagic {
 
 class CellEnergies {
   public:
-    // Of the grid with cells of 2π/size_m and the band k_lower ≤ k < k_upper [rad/m]; k_upper may be infinite.
-    // The table must outlive this.
+    // Of the grid with cells of 2π/size_m and the band k_lower ≤ k < k_upper [rad/m]; k_upper may be
+    // infinite. The table must outlive this.
     CellEnergies(const SpectrumTable& table, double size_m, double k_lower, double k_upper);
 
     // Energies [m²], ≥ 0, of the modes (mx, my), (−mx, −my), (mx, −my) and (−mx, my), my = 0 … height,
@@ -50,8 +50,8 @@ class CellEnergies {
     const SpectrumTable& table_;
     DensityKernels kernels_;
     double step_, k_lower_, k_upper_;
-    std::vector<Ring> rings_;          // rising
-    std::vector<double> cuts_;         // kinks and edges of the band, in cells
+    std::vector<Ring> rings_;   // rising
+    std::vector<double> cuts_;  // kinks and edges of the band, in cells
 };
 
 }  // namespace pelagic

@@ -38,7 +38,8 @@ void Column(double x_cells, double y_offset, int first_my, double step, std::siz
 
 HWY_INLINE V Polynomial(const std::array<double, TableTerm::kCoefficients>& coefficients, V t) {
     V value = Set(coefficients.back());
-    for (int i = TableTerm::kCoefficients - 2; i >= 0; --i) value = hn::MulAdd(value, t, Set(coefficients[i]));
+    for (int i = TableTerm::kCoefficients - 2; i >= 0; --i)
+        value = hn::MulAdd(value, t, Set(coefficients[i]));
     return value;
 }
 

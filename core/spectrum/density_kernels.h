@@ -22,8 +22,8 @@ struct DensityKernels {
                    double* cosine, double* sine);
     // Adds the term's part of Ψ, times `weight`, at wavenumbers k in the direction (cosine, sine) and its
     // three mirror images.
-    void (*add_density)(const TablePanel&, const TableTerm&, double weight, std::size_t count, const double* k,
-                        const double* cosine, const double* sine, const FourWays& sum);
+    void (*add_density)(const TablePanel&, const TableTerm&, double weight, std::size_t count,
+                        const double* k, const double* cosine, const double* sine, const FourWays& sum);
 };
 
 // For the CPU that runs this.

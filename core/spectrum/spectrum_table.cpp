@@ -9,7 +9,9 @@ namespace pelagic {
 namespace {
 
 constexpr int kNodes = TableTerm::kCoefficients;
-constexpr double kWidestPanel = 1.12;  // from end to end; a swell's hump is 14 % wide in k
+// Widths that count as 1: a swell's hump in deep water, relative to k, and its spreading [rad].
+constexpr double kUsualWidth = 0.14;
+constexpr double kWidestPanel = 0.09;  // relative to k, where the hump has its usual width
 
 using Values = std::array<double, kNodes>;
 
@@ -21,7 +23,7 @@ double node(int i) {
 // The powers' coefficients of the polynomial through the values at the nodes.
 Values interpolate(const Values& at_nodes) {
     struct Chebyshev {
-        double cosine[kNodes][kNodes];  // T_m at node j, times 2/n; m = 0: 1/n
+        double cosine[kNodes][kNodes];   // T_m at node j, times 2/n; m = 0: 1/n
         double power[kNodes][kNodes]{};  // T_m's coefficient of t^p
         Chebyshev() {
             for (int m = 0; m < kNodes; ++m)
@@ -43,6 +45,13 @@ Values interpolate(const Values& at_nodes) {
     return out;
 }
 
+// How wide a swell's hump is at this wavenumber: half as wide where waves feel the bottom, a third where they
+// are capillary. Wind seas' peaks are no narrower.
+double hump_width(const WavePoint& point) {
+    return std::min(1.0,
+                    SwellEnergy::kRelativeWidth / kUsualWidth * point.omega / (point.k * point.domega_dk));
+}
+
 struct Sampled {
     double norm, parameter;
 };
@@ -54,6 +63,30 @@ struct Sample {
     Sampled operator()(const MaximumEntropy& shape) const { return {shape.numerator(), 0.0}; }
 };
 
+// How much the parameters of the spreadings change from k0 to k1, as logarithms: young seas in strong wind
+// lose theirs within a few per cent of k. A parameter near 0 says the same as 0.
+double parameter_change(const DirectionalSpectrum& spectrum, double k0, double k1) {
+    constexpr double kNearZero = 0.05;
+    double most = 0.0;
+    for (const WaveSystem& system : spectrum.systems()) {
+        const auto at = [&](double k) {
+            const AngularShape shape = system.shape(wave_point(spectrum.dispersion(), k));
+            return std::log(kNearZero + std::abs(std::visit(Sample(), shape).parameter));
+        };
+        most = std::max(most, std::abs(at(k1) - at(k0)));
+    }
+    return most;
+}
+
+// Where the panel that begins at k ends; the last two before the kink share what is left.
+double panel_end(const DirectionalSpectrum& spectrum, double k, double kink) {
+    constexpr double kMostChange = 1.0;
+    double step = 1.0 + kWidestPanel * hump_width(wave_point(spectrum.dispersion(), k));
+    while (parameter_change(spectrum, k, std::min(kink, k * step)) > kMostChange) step = std::sqrt(step);
+    if (k * step >= kink) return kink;
+    return k * step * step >= kink ? std::sqrt(k * kink) : k * step;
+}
+
 }  // namespace
 
 SpectrumTable::SpectrumTable(const DirectionalSpectrum& spectrum) {
@@ -63,24 +96,17 @@ SpectrumTable::SpectrumTable(const DirectionalSpectrum& spectrum) {
     std::sort(kinks_.begin(), kinks_.end());
     kinks_.erase(std::unique(kinks_.begin(), kinks_.end()), kinks_.end());
 
-    // Widths that count as 1: those of a swell's hump in deep water, in k, and of its spreading.
-    constexpr double kUsualWidth = 0.14, kSwellInOmega = SwellEnergy::kRelativeWidth;
     for (std::size_t i = 0; i + 1 < kinks_.size(); ++i) {
-        const double ratio = kinks_[i + 1] / kinks_[i];
-        const int pieces = std::max(1, static_cast<int>(std::ceil(std::log(ratio) / std::log(kWidestPanel))));
-        for (int piece = 0; piece < pieces; ++piece) {
+        for (double k = kinks_[i]; k < kinks_[i + 1];) {
             TablePanel panel;
-            panel.k_lo = piece == 0 ? kinks_[i] : panels_.back().k_hi;
-            panel.k_hi = piece + 1 == pieces ? kinks_[i + 1]
-                                             : kinks_[i] * std::pow(ratio, (piece + 1.0) / pieces);
+            panel.k_lo = k;
+            panel.k_hi = k = panel_end(spectrum, k, kinks_[i + 1]);
             panel.first_term = terms_.size();
             const double middle = 0.5 * (panel.k_lo + panel.k_hi), half = 0.5 * (panel.k_hi - panel.k_lo);
             std::array<WavePoint, kNodes> points;
             for (int n = 0; n < kNodes; ++n)
                 points[n] = wave_point(spectrum.dispersion(), middle + half * node(n));
-            const WavePoint& at_middle = points[kNodes / 2];
-            panel.width = std::min(1.0, kSwellInOmega / kUsualWidth * at_middle.omega /
-                                            (at_middle.k * at_middle.domega_dk));
+            panel.width = hump_width(points[kNodes / 2]);
             for (const WaveSystem& system : spectrum.systems()) {
                 Values amplitude{}, parameter{};
                 double largest = 0.0;

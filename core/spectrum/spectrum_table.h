@@ -1,10 +1,10 @@
 // A DirectionalSpectrum as polynomials, for loops that ask it millions of times.
 //
-// Between two kinks every law is smooth, so that in a panel at most 12 % wide each system's S_k/k and the
+// Between two kinks every law is smooth, so that in a panel at most 9 % wide each system's S_k/k and the
 // parameter of its spreading are polynomials of degree 7 in k, through the Chebyshev nodes: k S_k D is right
 // to 1e-6 of its largest value, and to 1e-3 of itself down to a millionth of that. What depends on direction
-// stays a closed form in cos θ and sin θ. No trigonometry, no dispersion relation and no power of ω
-// is left for the loop.
+// stays a closed form in cos θ and sin θ. No trigonometry, no dispersion relation and no power of ω is left
+// for the loop.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace pelagic {
 struct TableTerm {
     static constexpr int kCoefficients = 8;
 
-    std::size_t shape;                  // index into AngularShape, which f follows from
+    std::size_t shape;  // index into AngularShape, which f follows from
     double cos_direction, sin_direction;
     std::array<double, kCoefficients> amplitude{};  // S_k/k times the shape's norm [m⁴/rad]
     std::array<double, kCoefficients> parameter{};  // CosinePower's s, SechSquared's β, SecondHarmonic's Δ

@@ -24,8 +24,8 @@ LevelSums::LevelSums(double size_m, int radius, const FootprintFilter& filter,
         // In modes: shorter waves than `none` don't pass, longer ones than `whole` do.
         const double whole = coarsest_m > 0.0 ? size_m / (filter.n_max * coarsest_m) * kRounding
                                               : std::numeric_limits<double>::infinity();
-        const double none = coarsest_m > 0.0 ? size_m / (filter.n_min * coarsest_m)
-                                             : std::numeric_limits<double>::infinity();
+        const double none =
+            coarsest_m > 0.0 ? size_m / (filter.n_min * coarsest_m) : std::numeric_limits<double>::infinity();
         const auto rings = static_cast<std::size_t>(
             std::upper_bound(rings_.begin(), rings_.end(), whole * whole) - rings_.begin());
         const Slot slot{pair.a_m, pair.b_m, rings, rings > 0 ? rings_[rings - 1] : 0.0, none * none};
@@ -59,8 +59,8 @@ void LevelSums::add(void (*moments)(const MomentArgs&), const ColumnSums& column
     }
     for (std::size_t s = 0; s < slots_.size(); ++s) {
         const Slot& slot = slots_[s];
-        add_range(first_beyond(slot.from, mx, height + 1), first_beyond(slot.end, mx, height + 1),
-                  slot.a_m, slot.b_m, part[rings_.size() + s]);
+        add_range(first_beyond(slot.from, mx, height + 1), first_beyond(slot.end, mx, height + 1), slot.a_m,
+                  slot.b_m, part[rings_.size() + s]);
     }
 }
 

@@ -1,8 +1,8 @@
 // What a cascade's modes hold of a query's moments, through each of its footprints: sums over the lattice.
 //
 // A footprint lets the longest waves through whole and the shortest not at all; between the two lies one
-// octave of wavelength. So a mode is added once, to the ring of wavevectors that it lies in, and once more for
-// each footprint whose octave it lies in, with its weight. The rings are the same for every cascade and
+// octave of wavelength. So a mode is added once, to the ring of wavevectors that it lies in, and once more
+// for each footprint whose octave it lies in, with its weight. The rings are the same for every cascade and
 // footprint: a pair of footprints has the same sum, to the bit, whatever else is asked for.
 #pragma once
 

@@ -55,7 +55,8 @@ void Amplitudes(const AmplitudeArgs<T>& args) {
     const auto mx = hn::Set(whole, std::int64_t{args.mx});
     for (std::size_t i = 0; i < args.count; i += hn::Lanes(d)) {
         const std::size_t left = args.count - i;
-        const auto my = hn::Iota(whole, static_cast<std::int64_t>(args.first_my) + static_cast<std::int64_t>(i));
+        const auto my =
+            hn::Iota(whole, static_cast<std::int64_t>(args.first_my) + static_cast<std::int64_t>(i));
         // A mode's counter is (cascade, mx, my, 0), negative numbers wrapped as 32 bits do.
         const auto draw = [&](V energy, auto x, auto y, T* re, T* im, double sign) HWY_ATTR {
             V a = hn::Zero(d), b = hn::Zero(d);

@@ -40,8 +40,8 @@ struct FrequencyArgs {
 // What moments are made of, by my from 0 up in column mx, a mode and its mirror image (mx, −my) together. Of
 // a pair ±k the energy is E(k) + E(−k), what travels along k is E(k) − E(−k).
 struct ColumnSums {
-    double *even, *odd;      // energy of (mx, my) plus, and less, that of (mx, −my) [m²]
-    double *east, *north;    // what travels along them, over k: their sum, and their difference [m³]
+    double *even, *odd;    // energy of (mx, my) plus, and less, that of (mx, −my) [m²]
+    double *east, *north;  // what travels along them, over k: their sum, and their difference [m³]
     double *per_k, *per_omega, *chop2;  // 1/k [m], 1/ω [s], the square of choppiness · coth(kd)/k [m²]
 };
 struct ColumnArgs {

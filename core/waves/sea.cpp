@@ -23,7 +23,9 @@ constexpr int kBlockColumns = 16;
 // Of one column at a time.
 struct ColumnScratch {
     explicit ColumnScratch(int height)
-        : stride_(height + 1 + kDensitySlack), values_(11 * stride_), modes_(2 * (2 * height + 1 + kDensitySlack)) {}
+        : stride_(height + 1 + kDensitySlack),
+          values_(11 * stride_),
+          modes_(2 * (2 * height + 1 + kDensitySlack)) {}
 
     // By my from 0 up.
     FourWays energies() { return {row(0), row(1), row(2), row(3)}; }

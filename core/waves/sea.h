@@ -66,8 +66,8 @@ template <class T>
 class Sea {
   public:
     // On all threads of the calling arena; the same bits whatever their number. A mode's amplitude depends on
-    // the spectrum, the cascade's size and band, and the seed: not on resolutions, nor on what is asked of the
-    // sea. Throws BuildCancelled.
+    // the spectrum, the cascade's size and band, and the seed: not on resolutions, nor on what is asked of
+    // the sea. Throws BuildCancelled.
     explicit Sea(Plan, const BuildWatch& watch = {});
 
     const Plan& plan() const { return plan_; }

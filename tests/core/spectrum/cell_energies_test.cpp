@@ -51,9 +51,9 @@ void expect_reference(const SeaState& state, const Band& band) {
             for (int way = 0; way < 4; ++way) {
                 if (mx == 0 && my == 0) continue;
                 const double x = kSignX[way] * mx * step, y = kSignY[way] * my * step;
-                const double expected = oracle::cell_energy(
-                    sea, {x - 0.5 * step, x + 0.5 * step, y - 0.5 * step, y + 0.5 * step, band.k_lower,
-                          band.k_upper});
+                const double expected =
+                    oracle::cell_energy(sea, {x - 0.5 * step, x + 0.5 * step, y - 0.5 * step, y + 0.5 * step,
+                                              band.k_lower, band.k_upper});
                 const double energy = column.rows[way][my];
                 columns[mx].worst = std::max(columns[mx].worst, std::abs(energy - expected));
                 if (way > 1 && (mx == 0 || my == 0)) continue;  // once each
@@ -77,10 +77,14 @@ void expect_reference(const SeaState& state, const Band& band) {
     EXPECT_LE(all.worst, 1e-4 * r.m0);
     const double strain = r.xxxx + 2.0 * r.xxyy + r.yyyy;
     for (double SpectralMoments::*m : kSpectralMoments) {
-        const bool is_slope = m == &SpectralMoments::xx || m == &SpectralMoments::xy || m == &SpectralMoments::yy;
-        const bool is_height = m == &SpectralMoments::m0 || m == &SpectralMoments::east ||
-                               m == &SpectralMoments::north;
-        const double scale = is_slope ? r.mss() : is_height ? r.m0 : m == &SpectralMoments::m_minus1 ? r.m_minus1 : strain;
+        const bool is_slope =
+            m == &SpectralMoments::xx || m == &SpectralMoments::xy || m == &SpectralMoments::yy;
+        const bool is_height =
+            m == &SpectralMoments::m0 || m == &SpectralMoments::east || m == &SpectralMoments::north;
+        const double scale = is_slope                          ? r.mss()
+                             : is_height                       ? r.m0
+                             : m == &SpectralMoments::m_minus1 ? r.m_minus1
+                                                               : strain;
         EXPECT_NEAR(all.ours.*m, r.*m, 1e-4 * scale) << "moment " << (m == &SpectralMoments::m0 ? "m0" : "");
     }
 }
@@ -123,7 +127,8 @@ TEST(CellEnergies, AreTheReferencesInHardCases) {
                 state.fetch_m = fetch;
                 state.depth_m = depth;
                 state.wind_direction_deg = -70.0;
-                SCOPED_TRACE(testing::Message() << "wind " << wind << ", fetch " << fetch << ", depth " << depth);
+                SCOPED_TRACE(testing::Message()
+                             << "wind " << wind << ", fetch " << fetch << ", depth " << depth);
                 for (const Band& band : bands_about(DirectionalSpectrum(state).peak_wavenumber()))
                     expect_reference(state, band);
             }
@@ -185,7 +190,8 @@ TEST(CellEnergies, DependOnTheModeAlone) {
         for (int height : {0, 1, 6, 100, 333}) {
             const Column low(cells, mx, height);
             for (int way = 0; way < 4; ++way)
-                for (int my = 0; my <= height; ++my) ASSERT_EQ(low.rows[way][my], tall.rows[way][my]) << mx << ' ' << my;
+                for (int my = 0; my <= height; ++my)
+                    ASSERT_EQ(low.rows[way][my], tall.rows[way][my]) << mx << ' ' << my;
         }
         if (mx == 0)
             for (int my = 0; my <= 461; ++my) {

@@ -1,5 +1,5 @@
-// Energy integrated over the cells of wavevector grids: nothing lost, nothing counted twice. The grids are the
-// product's, single cells the reference's.
+// Energy integrated over the cells of wavevector grids: nothing lost, nothing counted twice. The grids are
+// the product's, single cells the reference's.
 #include "core/spectrum/cell_energies.h"
 
 #include <gtest/gtest.h>
@@ -107,7 +107,9 @@ TEST(CellEnergy, NeighbouringBandsShareNothing) {
     for (double edge : {0.03, 0.04, 0.0499, 0.07}) {
         oracle::Cell below = cell, above = cell;
         below.k_hi = above.k_lo = edge;
-        EXPECT_NEAR((oracle::cell_energy(sea, below) + oracle::cell_energy(sea, above)) / oracle::cell_energy(sea, cell), 1.0, 1e-5)
+        EXPECT_NEAR((oracle::cell_energy(sea, below) + oracle::cell_energy(sea, above)) /
+                        oracle::cell_energy(sea, cell),
+                    1.0, 1e-5)
             << edge;
     }
 }
@@ -117,14 +119,15 @@ TEST(CellEnergy, PartsOfACellAddUpToIt) {
     state.swell = {{1.0, 9.0, 60.0}};
     const DirectionalSpectrum sea(state);
     // Over the origin; on a side of it; across an axis; far out, where the product rule works.
-    for (const oracle::Cell& whole : {oracle::Cell{-0.1, 0.15, -0.2, 0.1}, oracle::Cell{0.0, 0.1, -0.05, 0.05},
-                              oracle::Cell{0.1, 0.2, -0.02, 0.06}, oracle::Cell{2.0, 2.05, 1.0, 1.05}}) {
+    for (const oracle::Cell& whole :
+         {oracle::Cell{-0.1, 0.15, -0.2, 0.1}, oracle::Cell{0.0, 0.1, -0.05, 0.05},
+          oracle::Cell{0.1, 0.2, -0.02, 0.06}, oracle::Cell{2.0, 2.05, 1.0, 1.05}}) {
         double sum = 0.0;
         for (int y = 0; y < 5; ++y) {
             for (int x = 0; x < 5; ++x) {
                 const double w = (whole.kx1 - whole.kx0) / 5, h = (whole.ky1 - whole.ky0) / 5;
-                sum += oracle::cell_energy(sea, {whole.kx0 + x * w, whole.kx0 + (x + 1) * w, whole.ky0 + y * h,
-                                         whole.ky0 + (y + 1) * h});
+                sum += oracle::cell_energy(sea, {whole.kx0 + x * w, whole.kx0 + (x + 1) * w,
+                                                 whole.ky0 + y * h, whole.ky0 + (y + 1) * h});
             }
         }
         EXPECT_NEAR(sum / oracle::cell_energy(sea, whole), 1.0, 1e-5) << whole.kx0;
@@ -150,10 +153,12 @@ TEST(CellEnergy, AQuarterPlaneHoldsItsQuarter) {
     state.wind_direction_deg = 45.0;
     const DirectionalSpectrum sea(state);
     const double all = oracle::cell_energy(sea, {-9, 9, -9, 9});
-    const double left = oracle::cell_energy(sea, {-9, 0, 0, 9}), right = oracle::cell_energy(sea, {0, 9, -9, 0});
+    const double left = oracle::cell_energy(sea, {-9, 0, 0, 9}),
+                 right = oracle::cell_energy(sea, {0, 9, -9, 0});
     EXPECT_NEAR(left, right, 1e-6 * all);
-    EXPECT_NEAR(oracle::cell_energy(sea, {0, 9, 0, 9}) + oracle::cell_energy(sea, {-9, 0, -9, 0}) + left + right, all,
-                1e-6 * all);
+    EXPECT_NEAR(
+        oracle::cell_energy(sea, {0, 9, 0, 9}) + oracle::cell_energy(sea, {-9, 0, -9, 0}) + left + right, all,
+        1e-6 * all);
     EXPECT_EQ(oracle::cell_energy(sea, {0.1, 0.2, 0.1, 0.2, 0.3, 0.4}), 0.0);  // the band misses the cell
 }
 

@@ -33,7 +33,8 @@ void expect_moments(const SpectralMoments& ours, const SpectralMoments& referenc
     for (auto m : {&SpectralMoments::m0, &SpectralMoments::east, &SpectralMoments::north})
         near(m, reference.m0);
     near(&SpectralMoments::m_minus1, reference.m_minus1);
-    for (auto m : {&SpectralMoments::xx, &SpectralMoments::xy, &SpectralMoments::yy}) near(m, reference.mss());
+    for (auto m : {&SpectralMoments::xx, &SpectralMoments::xy, &SpectralMoments::yy})
+        near(m, reference.mss());
     for (auto m : {&SpectralMoments::xxxx, &SpectralMoments::xxxy, &SpectralMoments::xxyy,
                    &SpectralMoments::xyyy, &SpectralMoments::yyyy})
         near(m, strain);
@@ -53,7 +54,8 @@ void expect_reference(const Plan& plan) {
         // cells that it crosses are off by up to 2 % of their little energy.
         double off = 0.0, all = 0.0;
         for (std::size_t i = 0; i < forward.size(); ++i) {
-            off += std::norm(forward[i] - expected.forward[i]) + std::norm(backward[i] - expected.backward[i]);
+            off +=
+                std::norm(forward[i] - expected.forward[i]) + std::norm(backward[i] - expected.backward[i]);
             all += std::norm(expected.forward[i]) + std::norm(expected.backward[i]);
         }
         EXPECT_LE(std::sqrt(off), 5e-4 * std::sqrt(all)) << "cascade " << c;
@@ -207,9 +209,9 @@ TEST(Construction, OnAnyNumberOfThreadsGivesTheSameBits) {
             const Cascade<float>&a = one.cascades()[c], &b = many.cascades()[c];
             ASSERT_EQ(a.modes(), b.modes());
             if (a.modes() == 0) continue;
-            for (const auto part : {&Cascade<float>::forward_re, &Cascade<float>::forward_im,
-                                    &Cascade<float>::backward_re, &Cascade<float>::backward_im,
-                                    &Cascade<float>::chop})
+            for (const auto part :
+                 {&Cascade<float>::forward_re, &Cascade<float>::forward_im, &Cascade<float>::backward_re,
+                  &Cascade<float>::backward_im, &Cascade<float>::chop})
                 EXPECT_EQ(std::memcmp((a.*part).data(), (b.*part).data(), a.modes() * sizeof(float)), 0);
             EXPECT_EQ(one.expected_m0(static_cast<int>(c)), many.expected_m0(static_cast<int>(c)));
         }

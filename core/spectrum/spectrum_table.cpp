@@ -66,7 +66,7 @@ struct Sample {
 // How much the parameters of the spreadings change from k0 to k1, as logarithms: young seas in strong wind
 // lose theirs within a few per cent of k. A parameter near 0 says the same as 0.
 double parameter_change(const DirectionalSpectrum& spectrum, double k0, double k1) {
-    constexpr double kNearZero = 0.05;
+    constexpr double kNearZero = 0.01;
     double most = 0.0;
     for (const WaveSystem& system : spectrum.systems()) {
         const auto at = [&](double k) {
@@ -80,7 +80,7 @@ double parameter_change(const DirectionalSpectrum& spectrum, double k0, double k
 
 // Where the panel that begins at k ends; the last two before the kink share what is left.
 double panel_end(const DirectionalSpectrum& spectrum, double k, double kink) {
-    constexpr double kMostChange = 1.0;
+    constexpr double kMostChange = 0.5;
     double step = 1.0 + kWidestPanel * hump_width(wave_point(spectrum.dispersion(), k));
     while (parameter_change(spectrum, k, std::min(kink, k * step)) > kMostChange) step = std::sqrt(step);
     if (k * step >= kink) return kink;

@@ -1,10 +1,10 @@
 // A DirectionalSpectrum as polynomials, for loops that ask it millions of times.
 //
 // Between two kinks every law is smooth, so that in a panel at most 9 % wide each system's S_k/k and the
-// parameter of its spreading are polynomials of degree 7 in k, through the Chebyshev nodes: k S_k D is right
-// to 1e-6 of its largest value, and to 1e-3 of itself down to a millionth of that. What depends on direction
-// stays a closed form in cos θ and sin θ. No trigonometry, no dispersion relation and no power of ω is left
-// for the loop.
+// parameter of its spreading are polynomials of degree 7 in k, through the Chebyshev nodes. S_k D is right to
+// 3e-6 of itself (1e-3 in a gale on a metre of fetch) or, where it is small, to 1e-6 of the largest k S_k,
+// over k. What depends on direction stays a closed form in cos θ and sin θ. No trigonometry, no dispersion
+// relation and no power of ω is left for the loop.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
-// Memory for vectorised loops: aligned to a cache line, zero-initialised, in huge pages where it is large.
-// (With small pages a transform along the columns of a large grid would miss the TLB at every step.)
+// Memory for vectorised loops: aligned to a cache line, zero-initialised unless asked otherwise, in huge pages
+// where it is large. (With small pages a transform along the columns of a large grid would miss the TLB at every
+// step.)
 #pragma once
 
 #include <sys/mman.h>
@@ -20,7 +21,25 @@ class Buffer {
     static constexpr std::size_t kSlack = 64 / sizeof(float);
 
     Buffer() = default;
-    explicit Buffer(std::size_t count) : size_(count) {  // throws std::bad_alloc
+    explicit Buffer(std::size_t count) : Buffer(count, 0) {}  // throws std::bad_alloc
+
+    // Without clearing what the caller overwrites before anybody reads it: zero is only the slack.
+    static Buffer uncleared(std::size_t count) { return Buffer(count, count); }
+
+    T* data() { return data_.get(); }
+    const T* data() const { return data_.get(); }
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    T& operator[](std::size_t i) { return data_.get()[i]; }
+    const T& operator[](std::size_t i) const { return data_.get()[i]; }
+
+  private:
+    struct Free {
+        void operator()(T* p) const { std::free(p); }
+    };
+
+    // Zero from `cleared_from` on.
+    Buffer(std::size_t count, std::size_t cleared_from) : size_(count) {
         constexpr std::size_t kLine = 64, kHugePage = std::size_t(2) << 20;
         const std::size_t bytes = (count + kSlack) * sizeof(T);
         const std::size_t alignment = bytes >= 2 * kHugePage ? kHugePage : kLine;
@@ -32,31 +51,9 @@ class Buffer {
         // plan doesn't count.
         if (alignment == kHugePage) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
 #endif
-        std::memset(data_.get(), 0, bytes);
-    }
-    T* data() {
-        return data_.get();
-    }
-    const T* data() const {
-        return data_.get();
-    }
-    std::size_t size() const {
-        return size_;
-    }
-    bool empty() const {
-        return size_ == 0;
-    }
-    T& operator[](std::size_t i) {
-        return data_.get()[i];
-    }
-    const T& operator[](std::size_t i) const {
-        return data_.get()[i];
+        std::memset(data_.get() + cleared_from, 0, bytes - cleared_from * sizeof(T));
     }
 
-  private:
-    struct Free {
-        void operator()(T* p) const { std::free(p); }
-    };
     std::unique_ptr<T, Free> data_;
     std::size_t size_ = 0;
 };

@@ -215,6 +215,24 @@ double MaximumEntropy::cumulative(double theta) const {
     return t.turns + t.rest / kTwoPi + antiderivative(std::polar(1.0, -t.rest)) - antiderivative(1.0);
 }
 
+// The roots of p² = φ1 p + φ2 are the poles in w; ln |p| is their distance in θ.
+double MaximumEntropy::scale() const {
+    const std::complex<double> root = std::sqrt(0.25 * phi1_ * phi1_ + phi2_);
+    const double largest = std::max(std::abs(0.5 * phi1_ + root), std::abs(0.5 * phi1_ - root));
+    return largest > 0.0 ? -std::log(largest) : 1.0;
+}
+
+double MaximumEntropy::numerator() const {
+    return variance_ / kTwoPi;
+}
+
+// |1 − φ1 w − φ2 w²|² = 1 + |φ1|² + |φ2|² − 2 Re (φ1 − φ1* φ2) w − 2 Re φ2 w².
+std::array<double, 5> MaximumEntropy::denominator() const {
+    const std::complex<double> once = phi1_ - std::conj(phi1_) * phi2_;
+    return {1.0 + std::norm(phi1_) + std::norm(phi2_), -2.0 * once.real(), -2.0 * once.imag(),
+            -2.0 * phi2_.real(), -2.0 * phi2_.imag()};
+}
+
 std::complex<double> MaximumEntropy::harmonic(int n) const {
     std::complex<double> before = std::conj(c1_), value = 1.0;  // c_{−1}, c_0
     for (int i = 0; i < n; ++i) {

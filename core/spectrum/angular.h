@@ -5,9 +5,14 @@
 //   density(θ)      D [1/rad], for any θ;
 //   cumulative(θ)   ∫₀^θ D, with cumulative(θ + 2π) = cumulative(θ) + 1, so that any arc is a difference;
 //   harmonic(n)     ∫ D e^{inθ} dθ, n ≥ 0.
+// And scale(), the angle [rad] over which D changes by a notable part of itself: how finely it must be
+// sampled.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <complex>
+#include <variant>
 
 namespace pelagic {
 
@@ -19,6 +24,9 @@ class CosinePower {
     double density(double theta) const;
     double cumulative(double theta) const;
     std::complex<double> harmonic(int n) const;
+    double scale() const { return std::sqrt(2.0 / (s_ + 0.1)); }  // standard deviation where s is large
+    double sharpness() const { return s_; }
+    double norm() const { return norm_; }
 
   private:
     double s_;
@@ -33,6 +41,9 @@ class SechSquared {
     double density(double theta) const;
     double cumulative(double theta) const;
     std::complex<double> harmonic(int n) const;
+    double scale() const { return 0.8 / beta_; }
+    double beta() const { return beta_; }
+    double norm() const { return norm_; }
 
   private:
     double beta_;
@@ -45,6 +56,7 @@ class CosineSquared {
     double density(double theta) const;
     double cumulative(double theta) const;
     std::complex<double> harmonic(int n) const;
+    double scale() const { return 1.0; }
 };
 
 // (1/2π) (1 + Δ cos 2θ) (1 + m(θ)), m = (3 cos θ − cos³ θ)/2, |Δ| ≤ 1.
@@ -59,6 +71,8 @@ class SecondHarmonic {
     double density(double theta) const;
     double cumulative(double theta) const;
     std::complex<double> harmonic(int n) const;
+    double scale() const { return 0.5; }
+    double delta() const { return delta_; }
 
   private:
     double delta_;
@@ -80,11 +94,18 @@ class MaximumEntropy {
     double density(double theta) const;
     double cumulative(double theta) const;
     std::complex<double> harmonic(int n) const;
+    double scale() const;  // the distance of the nearest pole of D from the real axis
+
+    // D = numerator / (d0 + d1 cos θ + d2 sin θ + d3 cos 2θ + d4 sin 2θ).
+    double numerator() const;
+    std::array<double, 5> denominator() const;
 
   private:
     std::complex<double> phi1_, phi2_;
     double variance_;  // σ²
     std::complex<double> c1_;
 };
+
+using AngularShape = std::variant<CosinePower, SechSquared, CosineSquared, SecondHarmonic, MaximumEntropy>;
 
 }  // namespace pelagic

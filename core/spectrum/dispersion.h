@@ -60,7 +60,6 @@ struct Dispersion {
         return kd < kDeep ? 1.0 / std::tanh(kd) : 1.0;
     }
 
-  private:
     static constexpr double kDeep =
         20.0;  // k d from which 1 − tanh(k d) = 2e-18 is below a double's rounding
 };

@@ -156,6 +156,10 @@ std::complex<double> WaveSystem::harmonic(const WavePoint& point, int n) const {
     return own * std::polar(1.0, n * direction_);
 }
 
+AngularShape WaveSystem::shape(const WavePoint& point) const {
+    return with_shape(spreading_, point, [](const auto& shape) { return AngularShape(shape); });
+}
+
 void WaveSystem::find_panels(const Dispersion& dispersion) {
     // Log-spaced, narrower than the width of the narrowest peak (a swell's 0.14 in k), from far below the
     // peak to where the viscous cutoff has left 1e-16.

@@ -47,6 +47,10 @@ class WaveSystem {
     // ∫ D e^{inθ} dθ, n ≥ 0.
     std::complex<double> harmonic(const WavePoint& point, int n) const;
 
+    // D's shape at this wavenumber, about direction() [rad].
+    AngularShape shape(const WavePoint& point) const;
+    double direction() const { return direction_; }
+
     double peak_wavenumber() const { return peak_wavenumber_; }  // of the frequency spectrum's peak [rad/m]
     double m0() const { return m0_; }                            // [m²]
 

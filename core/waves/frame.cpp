@@ -72,7 +72,7 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)), kerne
             }
             for (std::size_t f = 0; f < kFieldCount; ++f) {
                 if (!grid.fields[f]) continue;
-                made.planes[f] = Buffer<T>(grid_samples<T>(n));
+                made.planes[f] = Buffer<T>::uncleared(grid_samples<T>(n));  // set() writes all that is read
                 for (int first = 0; first < n; first += kBlockRows)
                     rows_.push_back({c, g, static_cast<Field>(f), first, std::min(kBlockRows, n - first)});
             }

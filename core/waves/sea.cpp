@@ -2,31 +2,79 @@
 
 #include <tbb/parallel_for.h>
 
-#include <cmath>
-#include <complex>
+#include <algorithm>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 #include "core/base/constants.h"
-#include "core/base/random.h"
 #include "core/plan/mode_lattice.h"
-#include "core/spectrum/cell_energy.h"
-#include "core/waves/loop.h"
+#include "core/spectrum/cell_energies.h"
+#include "core/waves/level_sums.h"
+#include "core/waves/mode_kernels.h"
 #include "core/waves/whitecaps.h"
 
 namespace pelagic {
 namespace {
 
-// The weights that a pair of levels gives a mode, and where their sum is kept.
-struct LevelPair {
-    double footprint_a, footprint_b;
-    SpectralMoments* sum;
+// Columns that a task builds: enough for its sums and arrays to be worth making.
+constexpr int kBlockColumns = 16;
+
+// Of one column at a time.
+struct ColumnScratch {
+    explicit ColumnScratch(int height)
+        : stride_(height + 1 + kDensitySlack),
+          values_(11 * stride_),
+          modes_(2 * (2 * height + 1 + kDensitySlack)) {}
+
+    // By my from 0 up.
+    FourWays energies() { return {row(0), row(1), row(2), row(3)}; }
+    ColumnSums sums() {
+        return {.even = row(4),
+                .odd = row(5),
+                .east = row(6),
+                .north = row(7),
+                .per_k = row(8),
+                .per_omega = row(9),
+                .chop2 = row(10)};
+    }
+    // By my from −H up: E(k) and E(−k).
+    double* forward() { return modes_.data(); }
+    double* backward() { return modes_.data() + modes_.size() / 2; }
+
+  private:
+    double* row(std::size_t i) { return values_.data() + i * stride_; }
+
+    std::size_t stride_;
+    std::vector<double> values_, modes_;
 };
 
 }  // namespace
 
+// Counts what is done, and tells it on.
 template <class T>
-Sea<T>::Sea(Plan plan) : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.exact_loop_s()) {
+class Sea<T>::Progress {
+  public:
+    Progress(const BuildWatch& watch, const Plan& plan) : watch_(watch) {
+        for (const CascadePlan& cascade : plan.cascades) all_ += lattice_modes(cascade.mode_radius);
+    }
+    void done(std::size_t modes) {
+        if (watch_.cancel && watch_.cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
+        if (!watch_.progress) return;
+        const std::lock_guard lock(mutex_);
+        done_ += modes;
+        watch_.progress(static_cast<double>(done_) / static_cast<double>(all_));
+    }
+
+  private:
+    const BuildWatch& watch_;
+    std::mutex mutex_;
+    std::size_t done_ = 0, all_ = 0;
+};
+
+template <class T>
+Sea<T>::Sea(Plan plan, const BuildWatch& watch)
+    : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.exact_loop_s()) {
     const Scene& scene = plan_.from->scene;
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
     const double choppiness = scene.waves.choppiness;
@@ -51,99 +99,114 @@ Sea<T>::Sea(Plan plan) : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.
             {whole, std::vector<SpectralMoments>(levels), std::vector<SpectralMoments>(levels - 1)});
     }
 
-    for (std::size_t c = 0; c < plan_.cascades.size(); ++c) {
-        const CascadePlan& planned = plan_.cascades[c];
-        Cascade<T> cascade;
-        cascade.size_m = planned.size_m;
-        cascade.radius = planned.grid_radius();
-        for (int mx = 0; mx < cascade.radius; ++mx) {
-            if (mx == 0) cascade.columns.push_back(0);
-            cascade.columns.push_back(cascade.columns.back() + column_length(cascade.radius, mx));
-        }
-        const std::size_t count = lattice_modes(cascade.radius);
-        for (Buffer<T>* values :
-             {&cascade.forward_re, &cascade.forward_im, &cascade.backward_re, &cascade.backward_im})
-            *values = Buffer<T>(count);
-        cascade.cycles_per_s = Buffer<double>(count);
-        if (choppiness > 0.0) cascade.chop = Buffer<T>(count);
+    const SpectrumTable table(spectrum);
+    Progress progress(watch, plan_);
+    for (int c = 0; c < static_cast<int>(plan_.cascades.size()); ++c)
+        cascades_.push_back(build(c, table, progress));
+}
 
-        std::vector<LevelPair> pairs;
-        for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
-            const Query& query = plan_.queries[q].query;
-            if (query.only_cascade && *query.only_cascade != static_cast<int>(c)) continue;
-            for (std::size_t i = 0; i < query.pixel_m.size(); ++i) {
-                pairs.push_back({query.pixel_m[i], query.pixel_m[i], &statistics_[q].resolved[i]});
-                if (i + 1 < query.pixel_m.size())
-                    pairs.push_back(
-                        {query.pixel_m[i], query.pixel_m[i + 1], &statistics_[q].resolved_next[i]});
-            }
-        }
-
-        // Columns side by side; their sums are added up in their order, whoever computed them.
-        const double step = kTwoPi / planned.size_m;
-        const int columns = planned.mode_radius;
-        std::vector<double> column_m0(columns, 0.0);
-        std::vector<std::vector<SpectralMoments>> column_sums(columns,
-                                                              std::vector<SpectralMoments>(pairs.size()));
-        tbb::parallel_for(0, columns, [&](int mx) {
-            // Beyond the grids' radius modes are only counted: what they hold of the hidden statistics.
-            const int generated = mx < cascade.radius ? half_height(cascade.radius, mx) : -1;
-            const int counted = half_height(planned.mode_radius, mx);
-            for (int my = -counted; my <= counted; ++my) {
-                if (mx == 0 && my == 0) continue;
-                const glm::dvec2 k(mx * step, my * step);
-                const double length = std::hypot(k.x, k.y);
-                const double omega = spectrum.dispersion().omega(length);
-                const double chop = choppiness * spectrum.dispersion().horizontal_ratio(length) / length;
-                const auto energy_at = [&](double sign) {
-                    const double x = sign * k.x, y = sign * k.y;
-                    return cell_energy(spectrum, {.kx0 = x - 0.5 * step,
-                                                  .kx1 = x + 0.5 * step,
-                                                  .ky0 = y - 0.5 * step,
-                                                  .ky1 = y + 0.5 * step,
-                                                  .k_lo = planned.k_lower,
-                                                  .k_hi = planned.k_upper});
-                };
-                const double energy = energy_at(+1.0), mirrored = energy_at(-1.0);
-                if (std::abs(my) <= generated) {
-                    // h0(k) = ½ (ξr + iξi) √E(k) (Tessendorf 2001, Eq. 25, with the ½ that makes Var(η) =
-                    // ΣE).
-                    const auto amplitude = [&](double e, int x, int y) {
-                        const auto xi =
-                            normal_pair({static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(x),
-                                         static_cast<std::uint32_t>(y), 0u},
-                                        scene.shot.seed);
-                        return 0.5 * std::sqrt(e) * std::complex<double>(xi[0], xi[1]);
-                    };
-                    const std::complex<double> h0 = energy > 0.0 ? amplitude(energy, mx, my) : 0.0;
-                    const std::complex<double> h0_mirrored =
-                        mirrored > 0.0 ? amplitude(mirrored, -mx, -my) : 0.0;
-                    const std::size_t at = cascade.middle(mx) + my;
-                    cascade.forward_re[at] = static_cast<T>(h0.real());
-                    cascade.forward_im[at] = static_cast<T>(h0.imag());
-                    cascade.backward_re[at] = static_cast<T>(h0_mirrored.real());
-                    cascade.backward_im[at] = static_cast<T>(-h0_mirrored.imag());
-                    cascade.cycles_per_s[at] = looped_cycles_per_s(omega, loop_s_);
-                    if (!cascade.chop.empty()) cascade.chop[at] = static_cast<T>(chop);
-                }
-                if (!counts_as_wave(mx, my)) continue;
-                column_m0[mx] += energy + mirrored;
-                for (std::size_t p = 0; p < pairs.size(); ++p) {
-                    const double weight = plan_.filter.weight(length, pairs[p].footprint_a) *
-                                          plan_.filter.weight(length, pairs[p].footprint_b);
-                    if (weight > 0.0)
-                        column_sums[mx][p] += moments_of({k, weight * (energy + mirrored), omega, chop});
-                }
-            }
-        });
-        double m0 = 0.0;
-        for (int mx = 0; mx < columns; ++mx) {
-            m0 += column_m0[mx];
-            for (std::size_t p = 0; p < pairs.size(); ++p) *pairs[p].sum += column_sums[mx][p];
-        }
-        expected_m0_.push_back(m0);
-        cascades_.push_back(std::move(cascade));
+template <class T>
+Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, Progress& progress) {
+    const Scene& scene = plan_.from->scene;
+    const Dispersion& dispersion = plan_.from->spectrum.dispersion();
+    const double choppiness = scene.waves.choppiness;
+    const CascadePlan& planned = plan_.cascades[c];
+    Cascade<T> cascade;
+    cascade.size_m = planned.size_m;
+    cascade.radius = planned.grid_radius();
+    for (int mx = 0; mx < cascade.radius; ++mx) {
+        if (mx == 0) cascade.columns.push_back(0);
+        cascade.columns.push_back(cascade.columns.back() + column_length(cascade.radius, mx));
     }
+    const std::size_t count = lattice_modes(cascade.radius);
+    for (Buffer<T>* values :
+         {&cascade.forward_re, &cascade.forward_im, &cascade.backward_re, &cascade.backward_im})
+        *values = Buffer<T>::uncleared(count);
+    cascade.cycles_per_s = Buffer<double>::uncleared(count);
+    if (choppiness > 0.0) cascade.chop = Buffer<T>::uncleared(count);
+
+    std::vector<FootprintPair> pairs;
+    for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
+        const Query& query = plan_.queries[q].query;
+        if (query.only_cascade && *query.only_cascade != c) continue;
+        for (std::size_t i = 0; i < query.pixel_m.size(); ++i) {
+            pairs.push_back({query.pixel_m[i], query.pixel_m[i], &statistics_[q].resolved[i]});
+            if (i + 1 < query.pixel_m.size())
+                pairs.push_back({query.pixel_m[i], query.pixel_m[i + 1], &statistics_[q].resolved_next[i]});
+        }
+    }
+    const LevelSums levels(planned.size_m, planned.mode_radius, plan_.filter, std::move(pairs));
+    const CellEnergies energies(table, planned.size_m, planned.k_lower, planned.k_upper);
+    const ModeKernels<T> kernels = mode_kernels<T>();
+    const double step = kTwoPi / planned.size_m;
+
+    // Blocks of columns side by side; their sums are added up in their order, whoever computed them.
+    const int blocks = (planned.mode_radius + kBlockColumns - 1) / kBlockColumns;
+    std::vector<LevelSums::Part> parts(blocks);
+    tbb::parallel_for(
+        tbb::blocked_range<int>(0, blocks, 1),
+        [&](const tbb::blocked_range<int>& range) {
+            for (int block = range.begin(); block < range.end(); ++block) {
+                const int first = block * kBlockColumns;
+                const int end = std::min(first + kBlockColumns, planned.mode_radius);
+                ColumnScratch scratch(half_height(planned.mode_radius, first));
+                LevelSums::Part& part = parts[block] = levels.part();
+                std::size_t modes = 0;
+                for (int mx = first; mx < end; ++mx) {
+                    // Beyond the grids' radius modes are only counted: what they hold of the hidden
+                    // statistics.
+                    const int counted = half_height(planned.mode_radius, mx);
+                    const FourWays energy = scratch.energies();
+                    energies.column(mx, counted, energy);
+                    kernels.column({.same = energy.same,
+                                    .opposite = energy.opposite,
+                                    .below = energy.below,
+                                    .above = energy.above,
+                                    .mx = mx,
+                                    .count = static_cast<std::size_t>(counted) + 1,
+                                    .step = step,
+                                    .dispersion = dispersion,
+                                    .choppiness = choppiness,
+                                    .out = scratch.sums()});
+                    levels.add(kernels.moments, scratch.sums(), mx, counted, part);
+                    modes += column_length(planned.mode_radius, mx);
+                    if (mx >= cascade.radius) continue;
+
+                    const int height = half_height(cascade.radius, mx);
+                    for (int my = 0; my <= height; ++my) {
+                        scratch.forward()[height - my] = energy.below[my];
+                        scratch.backward()[height - my] = energy.above[my];
+                    }
+                    std::copy_n(energy.same, height + 1, scratch.forward() + height);
+                    std::copy_n(energy.opposite, height + 1, scratch.backward() + height);
+                    const std::size_t at = cascade.columns[mx], length = cascade.columns[mx + 1] - at;
+                    kernels.amplitudes({.energy = scratch.forward(),
+                                        .opposite = scratch.backward(),
+                                        .mx = mx,
+                                        .first_my = -height,
+                                        .count = length,
+                                        .cascade = static_cast<std::uint32_t>(c),
+                                        .seed = static_cast<std::uint64_t>(scene.shot.seed),
+                                        .forward_re = cascade.forward_re.data() + at,
+                                        .forward_im = cascade.forward_im.data() + at,
+                                        .backward_re = cascade.backward_re.data() + at,
+                                        .backward_im = cascade.backward_im.data() + at});
+                    kernels.frequencies({.mx = mx,
+                                         .first_my = -height,
+                                         .count = length,
+                                         .step = step,
+                                         .dispersion = dispersion,
+                                         .loop_s = loop_s_,
+                                         .choppiness = choppiness,
+                                         .cycles_per_s = cascade.cycles_per_s.data() + at,
+                                         .chop = cascade.chop.empty() ? nullptr : cascade.chop.data() + at});
+                }
+                progress.done(modes);
+            }
+        },
+        tbb::simple_partitioner());
+    expected_m0_.push_back(levels.finish(parts).m0);
+    return cascade;
 }
 
 template <class T>

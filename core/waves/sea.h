@@ -2,6 +2,9 @@
 // frames.
 #pragma once
 
+#include <atomic>
+#include <exception>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -9,6 +12,7 @@
 #include "core/plan/extent.h"
 #include "core/plan/plan.h"
 #include "core/spectrum/spectral_moments.h"
+#include "core/spectrum/spectrum_table.h"
 #include "core/waves/trains.h"
 
 namespace pelagic {
@@ -45,11 +49,26 @@ struct QueryStatistics {
     std::vector<SpectralMoments> resolved, resolved_next;
 };
 
+// The largest seas take seconds to build: both are looked at after each part of it.
+struct BuildWatch {
+    // 0 … 1, rising, one call at a time, from whichever thread; may be empty.
+    std::function<void(double done)> progress{};
+    const std::atomic<bool>* cancel = nullptr;  // set from elsewhere
+};
+
+// A sea whose building was cancelled.
+class BuildCancelled : public std::exception {
+  public:
+    const char* what() const noexcept override { return "building the sea was cancelled"; }
+};
+
 template <class T>
 class Sea {
   public:
-    // Seconds for the largest; progress is not reported.
-    explicit Sea(Plan);
+    // On all threads of the calling arena; the same bits whatever their number. A mode's amplitude depends on
+    // the spectrum, the cascade's size and band, and the seed: not on resolutions, nor on what is asked of
+    // the sea. Throws BuildCancelled.
+    explicit Sea(Plan, const BuildWatch& watch = {});
 
     const Plan& plan() const { return plan_; }
     std::span<const Cascade<T>> cascades() const { return cascades_; }
@@ -69,6 +88,9 @@ class Sea {
     double expected_m0(int cascade) const { return expected_m0_.at(cascade); }
 
   private:
+    class Progress;
+    Cascade<T> build(int cascade, const SpectrumTable&, Progress&);
+
     Plan plan_;
     double loop_s_;
     SpectralMoments total_;

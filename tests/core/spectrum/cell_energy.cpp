@@ -1,4 +1,4 @@
-#include "core/spectrum/cell_energy.h"
+#include "tests/core/spectrum/cell_energy.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "core/base/constants.h"
 #include "core/spectrum/gauss.h"
 
-namespace pelagic {
+namespace pelagic::oracle {
 
 namespace {
 
@@ -144,4 +144,4 @@ double cell_energy(const DirectionalSpectrum& spectrum, const Cell& cell) {
     return std::max(0.0, far ? product_energy(spectrum, cell) : polar_energy(spectrum, cell, band));
 }
 
-}  // namespace pelagic
+}  // namespace pelagic::oracle

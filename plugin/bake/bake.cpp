@@ -160,7 +160,13 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     };
     try {
         stop_if_cancelled();
-        const std::unique_ptr<Sequence> sequence = make_sequence(plan);
+        const BuildWatch watch{.progress =
+                                   [&](double built) {
+                                       progress.built = built;
+                                       report_progress(BakeStage::Building);
+                                   },
+                               .cancel = options.cancel};
+        const std::unique_ptr<Sequence> sequence = make_sequence(plan, watch);
         report_progress(BakeStage::Frames);
         Record record;
         record.describe(plan, sequence->total(), sequence->whitecap_threshold());
@@ -220,6 +226,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         record.save(report.record);
         report.foreign = foreign_files(options.out, scene.shot, parts, static_files);
     } catch (const Cancelled&) {
+        report.cancelled = true;
+    } catch (const BuildCancelled&) {
         report.cancelled = true;
     }
     report.seconds = seconds_since(start);

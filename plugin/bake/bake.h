@@ -39,12 +39,14 @@ struct BakeProgress {
     int kept = 0;          // frames that were whole already
     int total = 0;         // frames asked for: done + kept + what is left
     double seconds = 0.0;  // since the first frame was begun
+    double built = 0.0;    // share of the sea, while it is built
 };
 
 struct BakeOptions {
     std::filesystem::path out;  // DIR, made where it is missing
     std::vector<int> frames;    // rising, within the shot's range; empty: the whole shot
-    std::function<void(const BakeProgress&)> progress;  // called from the baking thread; may be empty
+    // One call at a time, while the sea is built from any thread, else from the baking one; may be empty.
+    std::function<void(const BakeProgress&)> progress;
     // Set from elsewhere (a signal handler, another thread): the bake stops as soon as the file at hand is
     // whole, the frame at hand is computed and the maps at hand are encoded.
     const std::atomic<bool>* cancel = nullptr;

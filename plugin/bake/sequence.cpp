@@ -17,8 +17,8 @@ namespace {
 template <class T>
 class SequenceOf final : public Sequence {
   public:
-    explicit SequenceOf(const Plan& plan)
-        : sea_(std::make_shared<const Sea<T>>(plan)), frame_(sea_), parts_(make_parts(sea_->plan())) {}
+    SequenceOf(const Plan& plan, const BuildWatch& watch)
+        : sea_(std::make_shared<const Sea<T>>(plan, watch)), frame_(sea_), parts_(make_parts(sea_->plan())) {}
 
     void compute(int frame, FrameSlot& slot) override {
         slot.frame = frame;
@@ -101,9 +101,9 @@ class SequenceOf final : public Sequence {
 
 }  // namespace
 
-std::unique_ptr<Sequence> make_sequence(const Plan& plan) {
+std::unique_ptr<Sequence> make_sequence(const Plan& plan, const BuildWatch& watch) {
     return with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Sequence> {
-        return std::make_unique<SequenceOf<T>>(plan);
+        return std::make_unique<SequenceOf<T>>(plan, watch);
     });
 }
 

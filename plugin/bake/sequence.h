@@ -39,7 +39,8 @@ class Sequence {
 };
 
 // In the plan's precision. The plan must be one of a bake (plan_bake), and is copied.
-std::unique_ptr<Sequence> make_sequence(const Plan& plan);
+// Throws BuildCancelled.
+std::unique_ptr<Sequence> make_sequence(const Plan& plan, const BuildWatch& watch = {});
 
 // What the statistics of a frame's record were made of: they are those of the first output.
 std::string statistics_fingerprint(const std::vector<std::unique_ptr<OutputPart>>& parts, int frame);

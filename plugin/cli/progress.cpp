@@ -95,10 +95,7 @@ void Progress::show(const BakeProgress& progress) {
         case BakeStage::Planning:
             return;  // milliseconds
         case BakeStage::Building:
-            if (building_said_) return;
-            building_said_ = true;
-            if (terminal_) return write_over("building the sea …");
-            return print("building the sea\n");
+            return show_building(progress.built);
         case BakeStage::Frames:
             break;
     }
@@ -111,6 +108,16 @@ void Progress::show(const BakeProgress& progress) {
     last_ = now;
     if (terminal_) return write_over(progress_bar(progress, terminal_columns()));
     print(progress_line(progress) + '\n');
+}
+
+void Progress::show_building(double built) {
+    const Clock::time_point now = Clock::now();
+    if (building_said_ && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery)) return;
+    const std::string share = built > 0.0 ? ": " + std::to_string(std::lround(100.0 * built)) + " %" : "";
+    building_said_ = true;
+    last_ = now;
+    if (terminal_) return write_over("building the sea" + (share.empty() ? " …" : share));
+    print("building the sea" + share + '\n');
 }
 
 void Progress::show(const std::string& line) {

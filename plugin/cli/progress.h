@@ -22,6 +22,7 @@ class Progress {
   private:
     using Clock = std::chrono::steady_clock;
 
+    void show_building(double built);
     void write_over(const std::string& line);
 
     bool terminal_;

@@ -160,7 +160,13 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
     Sky sky = make_sky(job.scene);  // what is wrong with it leaves no folder behind
     files::ensure_folder(job.out);
     files::remove_stale_temporaries(job.out);
-    Renderer renderer(job.scene, job.options, std::move(sky), frames);
+    const BuildWatch building{.progress =
+                                  [&](double built) {
+                                      now.built = built;
+                                      progress.show(now);
+                                  },
+                              .cancel = &stop.cancelled()};
+    Renderer renderer(job.scene, job.options, std::move(sky), frames, building);
     const auto context_of = [&](int frame) {
         return PictureContext{.scene = job.scene,
                               .options = job.options,
@@ -229,6 +235,8 @@ int run(const Arguments& arguments) {
     Done done;
     try {
         done = threads.execute([&] { return render_all(job, stop, progress); });
+    } catch (const BuildCancelled&) {
+        done.cancelled = true;
     } catch (const std::bad_alloc&) {
         progress.clear();
         std::cerr << "pelagic: out of memory; ask for a smaller picture with --size (now "

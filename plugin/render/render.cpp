@@ -66,12 +66,12 @@ Scene of_samples(const Scene& scene, int samples) {
 template <class T, class Impl>
 class RendererOf final : public Impl {
   public:
-    RendererOf(const Plan& plan, const RenderOptions& options, Sky sky)
+    RendererOf(const Plan& plan, const RenderOptions& options, Sky sky, const BuildWatch& watch)
         : scene_(plan.from->scene),
           options_(options),
           sky_(std::move(sky)),
           water_(make_water(scene_)),
-          sea_(std::make_shared<const Sea<T>>(plan)),
+          sea_(std::make_shared<const Sea<T>>(plan, watch)),
           frame_(sea_),
           grid_options_(projected_grid_options(*plan.from)) {}
 
@@ -335,11 +335,12 @@ void check_render(const Scene& scene, const RenderOptions& options) {
                                     " a side are accepted; ask for a smaller picture or fewer samples");
 }
 
-Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames) {
+Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames,
+                   const BuildWatch& watch) {
     check_render(scene, options);
     const Plan plan = picture_plan(of_samples(scene, options.samples), frames);
     impl_ = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Impl> {
-        return std::make_unique<RendererOf<T, Impl>>(plan, options, std::move(sky));
+        return std::make_unique<RendererOf<T, Impl>>(plan, options, std::move(sky), watch);
     });
 }
 

@@ -25,6 +25,7 @@
 #include "core/lighting/water.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
+#include "core/waves/sea.h"
 
 namespace pelagic {
 
@@ -82,8 +83,10 @@ struct RenderWatch {
 class Renderer {
   public:
     // The scene must be valid; its own sky (make_sky()), or another one; the frames that will be rendered, at
-    // least one. Seconds for the largest seas. Throws as check_render().
-    Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames);
+    // least one. Seconds for the largest seas. Throws as check_render(), and
+    // BuildCancelled.
+    Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames,
+             const BuildWatch& watch = {});
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;

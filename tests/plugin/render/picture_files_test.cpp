@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/keys.h"
+
 namespace pelagic {
 namespace {
 
@@ -137,6 +139,25 @@ TEST(PictureFiles, ScreensShowTheSumWithTheExposure) {
     picture.layers[4] = {
         .sun = glm::vec3(0.25f), .sky = glm::vec3(0.25f), .sea = glm::vec3(0.5f), .foam = {}};
     EXPECT_EQ(png(0.0), foam);
+}
+
+// The keys that a picture depends on, by the table of keys; the camera is said as it is at the frame.
+TEST(PictureFiles, NameTheKeysThatTheyDependOn) {
+    const glm::ivec2 resolution(2, 2);
+    const Scene scene;
+    const RenderOptions options;
+    const Sky sky = some_sky(1.0f);
+    const std::string bytes = encode_exr({scene, options, sky, ""}, pattern(resolution), 1);
+    for (const Key& key : keys()) {
+        if (!key.has_value()) continue;
+        const bool is_given = !std::holds_alternative<std::monostate>(value_of(scene, key));
+        const bool is_said =
+            (key.feeds & feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Grid, Feed::Light, Feed::Water))
+                .any();
+        // OpenEXR ends names with a zero.
+        EXPECT_EQ(bytes.find("pelagic." + key.path + '\0') != std::string::npos, is_given && is_said)
+            << key.path;
+    }
 }
 
 TEST(PictureFiles, NamesHaveFourDigits) {

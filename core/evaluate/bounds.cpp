@@ -53,30 +53,63 @@ bool is_refined(const Grid& grid) {
     return grid.sampling == Sampling::Spline && grid.resolution <= kLargestResolution;
 }
 
+// A periodic row with what is read before its first and behind its last value.
+template <class T>
+void lay_out(const T* row, int n, int before, std::vector<T>& out) {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const int at = static_cast<int>(i) - before;
+        out[i] = row[at < 0 ? at + n : at % n];
+    }
+}
+
 // The same periodic spline's coefficients at half the spacing, 2n × 2n: knots inserted (Lane and Riesenfeld
 // 1980), whose mask is the binomial coefficients of P over 2^(P−1) along each axis.
 template <class T>
 std::vector<T> refined_spline(const T* samples, int n, int taps) {
-    const std::vector<T> mask =
-        taps == 6 ? std::vector<T>{1, 6, 15, 20, 15, 6, 1} : std::vector<T>{1, 4, 6, 4, 1};
-    const int middle = taps / 2;
-    const T scale = T(1) / static_cast<T>(1 << (taps - 1));
+    // By the coefficients one before the place to two behind it: those on a node, and those halfway to the
+    // next.
+    constexpr T kOnQuintic[] = {T(6) / 32, T(20) / 32, T(6) / 32, 0},
+                kHalfQuintic[] = {T(1) / 32, T(15) / 32, T(15) / 32, T(1) / 32},
+                kOnCubic[] = {T(1) / 8, T(6) / 8, T(1) / 8, 0}, kHalfCubic[] = {0, T(1) / 2, T(1) / 2, 0};
+    const T* on = taps == 6 ? kOnQuintic : kOnCubic;
+    const T* half = taps == 6 ? kHalfQuintic : kHalfCubic;
     const auto side = static_cast<std::size_t>(2 * n), stride = line_stride<T>(n);
-    // Coefficient k is Σ_j mask[k − 2j + P/2] c_j.
-    const auto each_tap = [&](int k, const auto& add) {
-        const int first = (k - middle + 1) >> 1, last = (k + middle) >> 1;
-        for (int j = first; j <= last; ++j) add(((j % n) + n) % n, scale * mask[k - 2 * j + middle]);
-    };
-    std::vector<T> wide(side * n), refined(side * side);  // along x first
-    for (int k = 0; k < 2 * n; ++k)
-        each_tap(k, [&](int j, T weight) {
-            for (int y = 0; y < n; ++y) wide[y * side + k] += weight * samples[y * stride + j];
-        });
-    for (int k = 0; k < 2 * n; ++k)
-        each_tap(k, [&](int j, T weight) {
-            for (std::size_t x = 0; x < side; ++x) refined[k * side + x] += weight * wide[j * side + x];
-        });
+    std::vector<T> wide(side * n), refined(side * side), row(n + 4);
+    for (int y = 0; y < n; ++y) {
+        lay_out(samples + y * stride, n, 1, row);
+        const T* c = row.data();
+        T* to = wide.data() + y * side;
+        for (int i = 0; i < n; ++i) {
+            to[2 * i] = on[0] * c[i] + on[1] * c[i + 1] + on[2] * c[i + 2];
+            to[2 * i + 1] = half[0] * c[i] + half[1] * c[i + 1] + half[2] * c[i + 2] + half[3] * c[i + 3];
+        }
+    }
+    for (int i = 0; i < n; ++i) {
+        const T* c[4];
+        for (int j = 0; j < 4; ++j) c[j] = wide.data() + side * ((i + j - 1 + n) % n);
+        T *first = refined.data() + side * (2 * i), *second = first + side;
+        for (std::size_t x = 0; x < side; ++x) {
+            first[x] = on[0] * c[0][x] + on[1] * c[1][x] + on[2] * c[2][x];
+            second[x] = half[0] * c[0][x] + half[1] * c[1][x] + half[2] * c[2][x] + half[3] * c[3][x];
+        }
+    }
     return refined;
+}
+
+// Each value becomes the extreme of the `window` values from it on; those at the end have fewer.
+template <class T, class Extreme>
+void extremes_ahead(std::vector<T>& values, std::vector<T>& scratch, int window, const Extreme& extreme) {
+    const int count = static_cast<int>(values.size());
+    scratch.resize(values.size());
+    for (int covered = 1; covered < window;) {
+        const int step = std::min(covered, window - covered);
+        const T* from = values.data();
+        T* to = scratch.data();
+        for (int i = 0; i + step < count; ++i) to[i] = extreme(from[i], from[i + step]);
+        std::copy(values.end() - step, values.end(), scratch.end() - step);
+        values.swap(scratch);
+        covered += step;
+    }
 }
 
 // Blocks first … last of an axis of a period: one piece, or two where they lie across its seam.
@@ -193,36 +226,32 @@ typename FrameBounds<T>::Pyramid FrameBounds<T>::pyramid_of(int cascade, int gri
         samples = refined.data();
         stride = n *= 2;
     }
-    const auto wrapped = [n](int i) { return ((i % n) + n) % n; };
-
-    // Along x first, then along y.
+    // Across the rows first, a row of blocks at a time, then along each.
     Level level;
     level.side = (n + kBlockCells - 1) / kBlockCells;
     const auto side = static_cast<std::size_t>(level.side);
-    std::vector<T> row_low(side * n), row_high(side * n);
-    for (int y = 0; y < n; ++y)
-        for (int block = 0; block < level.side; ++block) {
-            const T* row = samples + static_cast<std::size_t>(y) * stride;
-            T low = std::numeric_limits<T>::infinity(), high = -low;
-            for (int i = 0; i < window; ++i) {
-                const T value = row[wrapped(block * kBlockCells - before + i)];
-                low = std::min(low, value);
-                high = std::max(high, value);
-            }
-            row_low[y * side + block] = low;
-            row_high[y * side + block] = high;
-        }
-    level.low.assign(side * side, std::numeric_limits<T>::infinity());
-    level.high.assign(side * side, -std::numeric_limits<T>::infinity());
-    for (int block = 0; block < level.side; ++block)
+    level.low.resize(side * side);
+    level.high.resize(side * side);
+    std::vector<T> low(n), high(n), row(n + window + kBlockCells), scratch;
+    const auto lower = [](T a, T b) { return std::min(a, b); };
+    const auto higher = [](T a, T b) { return std::max(a, b); };
+    for (std::size_t block = 0; block < side; ++block) {
         for (int i = 0; i < window; ++i) {
-            const std::size_t row = wrapped(block * kBlockCells - before + i) * side;
-            for (std::size_t x = 0; x < side; ++x) {
-                T &low = level.low[block * side + x], &high = level.high[block * side + x];
-                low = std::min(low, row_low[row + x]);
-                high = std::max(high, row_high[row + x]);
+            const int y = static_cast<int>(block) * kBlockCells - before + i;
+            const T* from = samples + static_cast<std::size_t>((y % n + n) % n) * stride;
+            for (int x = 0; x < n; ++x) {
+                low[x] = i == 0 ? from[x] : std::min(low[x], from[x]);
+                high[x] = i == 0 ? from[x] : std::max(high[x], from[x]);
             }
         }
+        const auto along = [&](const std::vector<T>& values, const auto& extreme, T* to) {
+            lay_out(values.data(), n, before, row);
+            extremes_ahead(row, scratch, window, extreme);
+            for (std::size_t x = 0; x < side; ++x) to[x] = row[x * kBlockCells];
+        };
+        along(low, lower, &level.low[block * side]);
+        along(high, higher, &level.high[block * side]);
+    }
     pyramid.levels.push_back(std::move(level));
     while (pyramid.levels.back().side > 1) {
         const Level& fine = pyramid.levels.back();

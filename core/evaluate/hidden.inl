@@ -30,19 +30,3 @@ inline PixelMoments<T> possible_moments(PixelMoments<T> m) {
                            possible_covariance(m.xxxy, square_root(xxxx * xxyy)), xxyy,
                            possible_covariance(m.xyyy, square_root(yyyy * xxyy)), yyyy);
 }
-
-// The part of a trochoid train's strain variance that is hidden where it is shown with weight w.
-template <class T>
-inline T hidden_strain_part(T w) {
-    return (T(1) - w) * (T(1) + w);
-}
-
-// The part of its slope variance: 1 − w² (1 + √(1 − q²))/(1 + √(1 − w²q²)), steepness2 = q² = (kH)²
-// (Bruneton, Neyret, Holzschuch 2010, appendix A, as core/waves/trains.h has it).
-template <class T>
-inline T hidden_slope_part(T w, T steepness2) {
-    const T w2 = w * w;
-    const T whole = T(1) + square_root(T(1) - steepness2);
-    const T shown = T(1) + square_root(minus_product(T(1), w2, steepness2));
-    return maximum(T(1) - w2 * whole / shown, T(0));
-}

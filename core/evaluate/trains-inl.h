@@ -24,8 +24,8 @@ namespace HWY_NAMESPACE {
 namespace trains_detail {
 namespace hn = hwy::HWY_NAMESPACE;
 
-#include "core/evaluate/hidden.inl"
 #include "core/plan/filter.inl"
+#include "core/waves/trains.inl"
 
 // A vector of points, kept in double to form phases with.
 template <class Wide>
@@ -117,9 +117,8 @@ class Zone {
     template <class D, class V = hn::Vec<D>>
     HWY_INLINE V weight(D d, std::size_t i, V footprint_m) const {
         const V one = hn::Set(d, T(1));
-        const V samples = hn::Div(hn::Set(d, wavelength_[i]), footprint_m);
-        const V x = hn::Mul(hn::Sub(samples, hn::Set(d, n_min_)), hn::Set(d, per_range_));
-        const V smooth = smooth_rise(Pack<D>(x)).v;
+        const Pack<D> samples(hn::Div(hn::Set(d, wavelength_[i]), footprint_m));
+        const V smooth = footprint_weight(samples, Pack<D>(n_min_), Pack<D>(per_range_)).v;
         const V between = hn::IfThenElse(hn::Le(footprint_m, hn::Set(d, wavelength_[i] * whole_)), one,
                                          hn::Min(smooth, one));
         return hn::IfThenElseZero(passes(d, i, footprint_m), between);

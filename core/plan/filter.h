@@ -2,9 +2,8 @@
 // λ in a field that is sampled every L metres.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include "core/base/constants.h"
+#include "core/base/number.h"
 
 namespace pelagic {
 
@@ -16,11 +15,10 @@ struct FootprintFilter {
     double n_min = 2.0;
     double n_max = 4.0;
 
-    // w(Nmin, Nmax, λ/L) = 3x̄² − 2x̄³, x̄ = clamp((λ/L − Nmin)/(Nmax − Nmin), 0, 1); 1 for a footprint of 0.
+    // footprint_weight() of wave number k [rad/m]; 1 for a footprint of 0.
     double weight(double k, double footprint_m) const {
         if (footprint_m <= 0.0) return 1.0;
-        const double wavelength_m = kTwoPi / k;
-        return smooth_rise(std::clamp((wavelength_m / footprint_m - n_min) / (n_max - n_min), 0.0, 1.0));
+        return footprint_weight(kTwoPi / k / footprint_m, n_min, 1.0 / (n_max - n_min));
     }
     // Waves with larger k have weight 0 [rad/m]; infinite for a footprint of 0.
     double cutoff(double footprint_m) const { return kTwoPi / (n_min * footprint_m); }

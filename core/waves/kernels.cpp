@@ -8,6 +8,7 @@
 
 #include <cstring>
 
+#include "core/base/pack-inl.h"
 #include "core/base/sincos-inl.h"
 #include "core/waves/transform.h"
 
@@ -16,6 +17,8 @@ namespace pelagic {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace {  // local to this file
+
+#include "core/plan/filter.inl"
 
 // ωt in cycles, reduced in double before it is rounded to T: as exact after ten weeks as at 0 (at any time
 // where the CPU has a fused multiply-add). Also ω.
@@ -65,12 +68,8 @@ void Advance(const AdvanceArgs<T>& args) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V Weight(D d, V k2, double footprint_m, double n_min, double n_max) {
     using T = hn::TFromD<D>;
-    const V zero = hn::Zero(d), one = hn::Set(d, T(1));
     const V samples = hn::Div(hn::Set(d, static_cast<T>(kTwoPi / footprint_m)), hn::Sqrt(k2));
-    const V x = hn::Mul(hn::Sub(samples, hn::Set(d, static_cast<T>(n_min))),
-                        hn::Set(d, static_cast<T>(1.0 / (n_max - n_min))));
-    const V inside = hn::Min(hn::Max(x, zero), one);
-    return hn::Mul(hn::Mul(inside, inside), hn::NegMulAdd(hn::Set(d, T(2)), inside, hn::Set(d, T(3))));
+    return footprint_weight(Pack<D>(samples), Pack<D>(n_min), Pack<D>(1.0 / (n_max - n_min))).v;
 }
 
 template <class T>

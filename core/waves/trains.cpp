@@ -8,12 +8,15 @@
 #include <limits>
 
 #include "core/base/constants.h"
+#include "core/base/number.h"
 #include "core/base/random.h"
 #include "core/spectrum/gauss.h"
 #include "core/waves/loop.h"
 
 namespace pelagic {
 namespace {
+
+#include "core/waves/trains.inl"
 
 // The last word of the random counter. Cascades use 0; trains use "TRAN".
 constexpr std::uint32_t kTrainStream = 0x5452414Eu;
@@ -208,11 +211,9 @@ SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, d
     for (std::size_t i = pass.full; i < pass.any; ++i) {
         const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
         const double q = steepness(trains, i);
-        // 1 − w² without cancellation. The trochoid's slope variance falls faster with w than w² does.
-        const double energy = (1.0 - w) * (1.0 + w);
-        const double slopes = std::max(1.0 - w * w * trochoid_factor(w * q) / trochoid_factor(q), 0.0);
+        const double slopes = hidden_slope_part(w, std::min(q * q, 1.0));
         SpectralMoments part = trains.alone[i];
-        part *= energy;
+        part *= hidden_strain_part(w);
         part.xx = slopes * trains.alone[i].xx;
         part.xy = slopes * trains.alone[i].xy;
         part.yy = slopes * trains.alone[i].yy;

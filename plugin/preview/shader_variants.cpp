@@ -37,10 +37,10 @@ const std::vector<std::string_view>& lighting_files() {
 
 const std::vector<std::string_view>& query_files() {
     static const std::vector<std::string_view> files{
-        "core/lighting/special.glsl", "plugin/preview/prelude.glsl", "core/plan/filter.inl",
-        "core/waves/spline.inl",      "core/waves/whitecaps.inl",    "core/evaluate/surface.inl",
-        "core/evaluate/hidden.inl",   "plugin/preview/places.glsl",  "plugin/preview/cascades.glsl",
-        "plugin/preview/trains.glsl", "plugin/preview/query.glsl"};
+        "core/lighting/special.glsl",   "plugin/preview/prelude.glsl", "core/plan/filter.inl",
+        "core/waves/spline.inl",        "core/waves/whitecaps.inl",    "core/evaluate/surface.inl",
+        "core/waves/trains.inl",        "core/evaluate/hidden.inl",    "plugin/preview/places.glsl",
+        "plugin/preview/cascades.glsl", "plugin/preview/trains.glsl",  "plugin/preview/query.glsl"};
     return files;
 }
 

@@ -23,7 +23,7 @@ int trains_above(float footprint_m, float share) {
 }
 
 float train_weight(float wavelength_m, float footprint_m) {
-    return smooth_rise(clamp((wavelength_m / footprint_m - train_filter.x) * train_filter.y, 0.0, 1.0));
+    return footprint_weight(wavelength_m / footprint_m, train_filter.x, train_filter.y);
 }
 
 vec2 train_sine_cosine(int i, SplitMetres x) {

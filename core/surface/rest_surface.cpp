@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 
 #include "core/scene/names.h"
@@ -40,7 +41,7 @@ class Patch final : public RestSurface {
     }
     void points_at(int, RestPoints<float>& points) const override { lay_out(points); }
     void points_at(int, RestPoints<double>& points) const override { lay_out(points); }
-    Faces faces_at(int) const override { return grid_faces(quads_, quads_); }
+    void faces_at(int, Faces& faces) const override { set_grid_faces(quads_, quads_, faces); }
 
   private:
     template <class T>
@@ -104,9 +105,9 @@ class CameraGrid final : public RestSurface {
     }
     void points_at(int frame, RestPoints<float>& points) const override { lay_out(frame, points); }
     void points_at(int frame, RestPoints<double>& points) const override { lay_out(frame, points); }
-    Faces faces_at(int frame) const override {
+    void faces_at(int frame, Faces& faces) const override {
         const ProjectedGridSize size = projected_grid_needs(view_at(camera_, frame), options_).size;
-        return grid_faces(size.columns, size.rows);
+        set_grid_faces(size.columns, size.rows, faces);
     }
 
   private:
@@ -141,27 +142,32 @@ constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
 
 }  // namespace
 
-Faces grid_faces(int columns, int rows) {
-    constexpr std::int64_t kMostQuads = (std::int64_t{1} << 29) - 1;
-    const std::int64_t quads = std::int64_t{columns} * rows;
-    if (columns < 1 || rows < 1 || quads > kMostQuads)
+void set_grid_faces(int columns, int rows, Faces& faces) {
+    constexpr std::int64_t kMostQuads = std::numeric_limits<std::int32_t>::max() / 4;
+    if (columns < 1 || rows < 1 || std::int64_t{columns} * rows > kMostQuads)
         throw std::invalid_argument("a grid of " + std::to_string(columns) + " × " + std::to_string(rows) +
-                                    " quads: from 1 to 2^29 − 1 of them fit a mesh");
-    Faces faces;
-    faces.counts.assign(static_cast<std::size_t>(quads), 4);
-    faces.indices.reserve(static_cast<std::size_t>(4 * quads));
+                                    " quads: 1 … " + std::to_string(kMostQuads) + " quads are accepted");
+    const auto quads = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     const std::int32_t stride = columns + 1;
+    faces.counts.assign(quads, 4);
+    faces.indices.clear();
+    faces.indices.reserve(4 * quads);
     for (std::int32_t row = 0; row < rows; ++row)
         for (std::int32_t column = 0; column < columns; ++column) {
             const std::int32_t first = row * stride + column;
-            for (const std::int32_t index : {first, first + 1, first + 1 + stride, first + stride})
-                faces.indices.push_back(index);
+            faces.indices.insert(faces.indices.end(), {first, first + 1, first + 1 + stride, first + stride});
         }
-    faces.st.reserve(static_cast<std::size_t>(stride) * (rows + std::size_t{1}));
+    faces.st.clear();
+    faces.st.reserve(static_cast<std::size_t>(stride) * (static_cast<std::size_t>(rows) + 1));
     for (int row = 0; row <= rows; ++row)
         for (int column = 0; column <= columns; ++column)
-            faces.st.emplace_back(static_cast<float>(column) / static_cast<float>(columns),
-                                  static_cast<float>(row) / static_cast<float>(rows));
+            faces.st.emplace_back(static_cast<float>(static_cast<double>(column) / columns),
+                                  static_cast<float>(static_cast<double>(row) / rows));
+}
+
+Faces grid_faces(int columns, int rows) {
+    Faces faces;
+    set_grid_faces(columns, rows, faces);
     return faces;
 }
 

@@ -55,10 +55,12 @@ struct Faces {
     std::vector<glm::vec2> st;  // of each point, 0 … 1
 };
 
-// columns × rows quads over (columns + 1) × (rows + 1) points, columns fastest: counter-clockwise where
-// columns run to the right and rows upwards; st = (0, 0) at the first point, (1, 1) at the last. Throws
-// std::invalid_argument without quads and beyond 2^29 − 1 of them, whose indices don't fit 32 bits.
+// columns × rows quads over (columns + 1) × (rows + 1) points, columns fastest. The faces are counter-clockwise
+// where columns run to the right and rows upwards; st is (0, 0) at the first point and (1, 1) at the last. The
+// second form uses the memory of `faces` again. Throws std::invalid_argument without quads and for more than
+// 2^29 − 1 of them, whose indices would be more than an int can count.
 Faces grid_faces(int columns, int rows);
+void set_grid_faces(int columns, int rows, Faces& faces);
 
 class RestSurface {
   public:
@@ -78,7 +80,7 @@ class RestSurface {
     // The memory of `points` is used again.
     virtual void points_at(int frame, RestPoints<float>& points) const = 0;
     virtual void points_at(int frame, RestPoints<double>& points) const = 0;
-    virtual Faces faces_at(int frame) const = 0;
+    virtual void faces_at(int frame, Faces& faces) const = 0;
 };
 
 // The surface of a valid scene. Throws std::invalid_argument for a kind that isn't built.

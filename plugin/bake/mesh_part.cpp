@@ -87,7 +87,7 @@ class MeshPart final : public OutputPart {
         usd::Topology topology{.fps = shot.fps, .attributes = attributes_};
         Faces faces;
         if (plan_.surface->is_constant()) {
-            faces = plan_.surface->faces_at(shot.first_frame);
+            plan_.surface->faces_at(shot.first_frame, faces);
             topology.face_vertex_counts = faces.counts;
             topology.face_vertex_indices = faces.indices;
             topology.st = faces.st;
@@ -122,7 +122,7 @@ class MeshPart final : public OutputPart {
         const RestSurface& surface = *plan_.surface;
         if (!state.is_laid_out || !surface.is_constant()) surface.points_at(frame, state.points);
         state.is_laid_out = true;
-        if (!surface.is_constant()) slot.faces = surface.faces_at(frame);
+        if (!surface.is_constant()) surface.faces_at(frame, slot.faces);
         const RestPoints<T>& at = state.points;
         Points<T> points{.origin_m = at.origin_m, .count = at.rest_m.size(), .rest_m = {at.rest_m.data()}};
         if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};

@@ -50,10 +50,9 @@ void print_done(const BakeReport& report, const std::string& out) {
 // What was planned, so that people see what is large.
 std::string out_of_memory(const Scene& scene) {
     const Plan plan = plan_bake(scene);
-    const long vertices_a_side = long{scene.surface.resolution} + 1;
-    const long vertices = scene.output.mesh == MeshFormat::None ? 0 : vertices_a_side * vertices_a_side;
-    const long texels =
-        scene.output.maps.empty() ? 0 : long{scene.output.map_resolution} * scene.output.map_resolution;
+    long vertices = 0, texels = 0;
+    for (const PlannedOutput& output : plan.outputs)
+        (output.map ? texels : vertices) += static_cast<long>(plan.queries[output.query].query.points);
     return "pelagic: out of memory; planned: " + bytes_text(plan.sea_bytes()) + " for the sea, " +
            bytes_text(plan.frame_bytes()) + " for a frame of it, and the values at " +
            count_text(vertices, "vertex", "vertices") + " and " + count_text(texels, "texel", "texels") +

@@ -15,15 +15,12 @@
 namespace pelagic::cli {
 namespace {
 
-// "48 frames at 24 frames/s, 256 × 256 quads over 200 m, jonswap at 10 m/s: 12 transforms a frame, 34 MiB"
+// "48 frames at 24 frames/s, a patch of 256 × 256 quads over 200 m, jonswap at 10 m/s: 12 transforms a frame, 34 MiB"
 std::string summary(const Scene& scene, const Plan& plan) {
     const Shot& shot = scene.shot;
     std::string text = count_text(long{shot.last_frame} - shot.first_frame + 1, "frame", "frames") + " at " +
                        number_text(shot.fps) + " frames/s";
-    if (scene.output.mesh != MeshFormat::None) {
-        const std::string quads = std::to_string(scene.surface.resolution);
-        text += ", " + quads + " × " + quads + " quads over " + number_text(scene.surface.size_m) + " m";
-    }
+    if (scene.output.mesh != MeshFormat::None) text += ", " + plan.surface->describe();
     if (!scene.output.maps.empty())
         text += ", " + count_text(static_cast<long>(scene.output.maps.size()), "map", "maps");
     text += ", ";

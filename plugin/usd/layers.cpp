@@ -192,37 +192,4 @@ void check(const Topology& topology) {
                  topology.st.empty() ? std::numeric_limits<std::size_t>::max() : topology.st.size()});
 }
 
-void set_grid_faces(int columns, int rows, GridFaces& grid) {
-    constexpr std::int64_t kMaxQuads = std::numeric_limits<std::int32_t>::max() / 4;
-    if (columns < 1 || rows < 1 || static_cast<std::int64_t>(columns) * rows > kMaxQuads) {
-        throw std::invalid_argument("USD: a grid has 1 … " + std::to_string(kMaxQuads) + " quads, not " +
-                                    std::to_string(columns) + " × " + std::to_string(rows));
-    }
-    const std::size_t quads = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-    const std::int32_t row = columns + 1;
-    grid.counts.assign(quads, 4);
-    grid.indices.clear();
-    grid.indices.reserve(4 * quads);
-    for (std::int32_t j = 0; j < rows; ++j) {
-        for (std::int32_t i = 0; i < columns; ++i) {
-            const std::int32_t corner = j * row + i;
-            grid.indices.insert(grid.indices.end(), {corner, corner + 1, corner + 1 + row, corner + row});
-        }
-    }
-    grid.st.clear();
-    grid.st.reserve((static_cast<std::size_t>(columns) + 1) * (static_cast<std::size_t>(rows) + 1));
-    for (std::int32_t j = 0; j <= rows; ++j) {
-        for (std::int32_t i = 0; i <= columns; ++i) {
-            grid.st.emplace_back(static_cast<float>(static_cast<double>(i) / columns),
-                                 static_cast<float>(static_cast<double>(j) / rows));
-        }
-    }
-}
-
-GridFaces grid_faces(int columns, int rows) {
-    GridFaces grid;
-    set_grid_faces(columns, rows, grid);
-    return grid;
-}
-
 }  // namespace pelagic::usd

@@ -205,23 +205,4 @@ void check_rate(double fps);
 // arrays that aren't empty although the faces vary.
 void check(const Topology& topology);
 
-// The faces and st of a grid of columns × rows quads. It has (columns + 1) × (rows + 1) vertices, columns
-// fastest. The faces are counter-clockwise seen from +z where columns run to the right and rows upwards; st
-// is (0, 0) at the first vertex and (1, 1) at the last.
-struct GridFaces {
-    std::vector<std::int32_t> counts{};
-    std::vector<std::int32_t> indices{};
-    std::vector<glm::vec2> st{};
-
-    Faces view() const { return {.counts = counts, .indices = indices, .st = st}; }
-};
-// Throws std::invalid_argument without quads and for more than 2^29 − 1 of them, whose indices would be more
-// than an int can count.
-GridFaces grid_faces(int columns, int rows);
-inline GridFaces grid_faces(int quads_per_side) {
-    return grid_faces(quads_per_side, quads_per_side);
-}
-// The same into `grid`, whose memory is used again: for grids that change from frame to frame.
-void set_grid_faces(int columns, int rows, GridFaces& grid);
-
 }  // namespace pelagic::usd

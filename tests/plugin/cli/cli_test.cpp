@@ -205,7 +205,7 @@ TEST_F(Cli, ValidateLooksAtEveryFile) {
     EXPECT_EQ(ended.status, 1);
     EXPECT_TRUE(has(
         ended.out,
-        "small.toml: fine\n    12 frames at 24 frames/s, 8 × 8 quads over 40 m, 2 maps, jonswap at 10 m/s"))
+        "small.toml: fine\n    12 frames at 24 frames/s, a patch of 8 × 8 quads over 40 m, 2 maps, jonswap at 10 m/s"))
         << ended.out;
     EXPECT_TRUE(has(ended.out, "empty.toml: fine\n    48 frames")) << ended.out;
     EXPECT_FALSE(has(ended.out, "wrong.toml"));

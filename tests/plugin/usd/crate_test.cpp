@@ -1,6 +1,7 @@
 // The mesh's layers as crates. That other programs read them, and find in them what the text holds, is tested
 // by usd.openusd_reads_usdc and usd.three_reads_crates. Here is what those would not notice.
 #include "plugin/usd/crate.h"
+#include "core/surface/rest_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -93,7 +94,7 @@ TEST(UsdCrate, ArraysGoFromTheCallersMemoryToTheFileAlignedAndInOnePiece) {
     expect_array(frame.slope_variance.data(), 1001, 12);
     expect_array(frame.whitecap_coverage.data(), 1001, 4);
 
-    const GridFaces faces = grid_faces(3);
+    const pelagic::Faces faces = pelagic::grid_faces(3, 3);
     Written topology;
     write_topology_crate(
         {.face_vertex_counts = faces.counts, .face_vertex_indices = faces.indices, .st = faces.st},
@@ -105,7 +106,7 @@ TEST(UsdCrate, ArraysGoFromTheCallersMemoryToTheFileAlignedAndInOnePiece) {
     // Faces that vary are arrays of the frame.
     const Frame vertices(16);
     MeshSample sample = vertices.sample();
-    sample.faces = faces.view();
+    sample.faces = Faces{.counts = faces.counts, .indices = faces.indices, .st = faces.st};
     written = {};
     write_frame_crate(sample, written.sink());
     expect_array(faces.counts.data(), 9, 4);
@@ -123,7 +124,7 @@ TEST(UsdCrate, IsAsLongAsItsArraysAndAPage) {
         EXPECT_LT(bytes.size(), arrays + kMostBesidesArrays) << vertices;
         EXPECT_EQ(bytes.capacity(), bytes.size()) << "reserved once, to the byte";
     }
-    const GridFaces faces = grid_faces(100);
+    const pelagic::Faces faces = pelagic::grid_faces(100, 100);
     const std::string bytes = topology_crate({.scheme = SubdivisionScheme::CatmullClark,
                                               .face_vertex_counts = faces.counts,
                                               .face_vertex_indices = faces.indices,
@@ -203,7 +204,7 @@ TEST(UsdCrate, BothWaysOfWritingGiveTheSameBytesEveryTime) {
     Written written;
     write_frame_crate(frame.sample(), written.sink());
     EXPECT_EQ(frame_crate(same.sample()), written.bytes);
-    const GridFaces faces = grid_faces(3), again = grid_faces(3);
+    const pelagic::Faces faces = pelagic::grid_faces(3, 3), again = pelagic::grid_faces(3, 3);
     Written topology;
     write_topology_crate(
         {.face_vertex_counts = faces.counts, .face_vertex_indices = faces.indices, .st = faces.st},

@@ -129,47 +129,6 @@ TEST(UsdValues, ArraysAreAsLongAsPoints) {
     EXPECT_NE(said.find("velocities has 2 values for 3 points"), std::string::npos) << said;
 }
 
-TEST(UsdTopology, GridCoversItsSquareOnceAndLooksUp) {
-    // Powers of two, so that every st and every area below is exact.
-    for (const auto& [columns, rows] : {std::pair{8, 8}, {8, 4}, {2, 16}}) {
-        const GridFaces grid = grid_faces(columns, rows);
-        ASSERT_EQ(grid.counts.size(), std::size_t(columns * rows));
-        ASSERT_EQ(grid.st.size(), std::size_t((columns + 1) * (rows + 1)));
-        EXPECT_EQ(grid.st.front(), glm::vec2(0, 0));
-        EXPECT_EQ(grid.st[std::size_t(columns)], glm::vec2(1, 0));  // columns fastest
-        EXPECT_EQ(grid.st.back(), glm::vec2(1, 1));
-        for (std::size_t face = 0; face < grid.counts.size(); ++face) {
-            EXPECT_EQ(grid.counts[face], 4);
-            // The shoelace formula: the signed area is positive for a counter-clockwise face.
-            float area = 0.0f;
-            for (std::size_t i = 0; i < 4; ++i) {
-                const glm::vec2 a = grid.st[static_cast<std::size_t>(grid.indices[4 * face + i])];
-                const glm::vec2 b = grid.st[static_cast<std::size_t>(grid.indices[4 * face + (i + 1) % 4])];
-                area += 0.5f * (a.x * b.y - b.x * a.y);
-            }
-            EXPECT_EQ(area, 1.0f / static_cast<float>(columns * rows));
-            // The faces come in the order of their lowest corners.
-            const auto lowest = static_cast<std::size_t>(grid.indices[4 * face]), n = std::size_t(columns);
-            EXPECT_EQ(lowest, face / n * (n + 1) + face % n);
-        }
-        EXPECT_NO_THROW(
-            check({.face_vertex_counts = grid.counts, .face_vertex_indices = grid.indices, .st = grid.st}));
-    }
-    EXPECT_EQ(grid_faces(3).indices, grid_faces(3, 3).indices);
-    // Into memory that another grid has used.
-    GridFaces again = grid_faces(7, 5);
-    const std::int32_t* const memory = again.indices.data();
-    set_grid_faces(4, 6, again);
-    EXPECT_EQ(again.counts, grid_faces(4, 6).counts);
-    EXPECT_EQ(again.indices, grid_faces(4, 6).indices);
-    EXPECT_EQ(again.st, grid_faces(4, 6).st);
-    EXPECT_EQ(again.indices.data(), memory);
-    EXPECT_THROW(grid_faces(0), std::invalid_argument);
-    EXPECT_THROW(grid_faces(4, 0), std::invalid_argument);
-    EXPECT_THROW(grid_faces(1 << 15, 1 << 14), std::invalid_argument);  // 2^29
-    EXPECT_THROW(grid_faces(1000000000), std::invalid_argument);
-}
-
 TEST(UsdTopology, FacesThatDontFitAreRefused) {
     const std::vector<std::int32_t> counts{3}, two{2}, indices{0, 1, 2}, negative{0, 1, -1}, beyond{0, 1, 3},
         few{0, 1};

@@ -24,6 +24,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/surface/rest_surface.h"
 #include "plugin/usd/camera.h"
 #include "plugin/usd/crate.h"
 #include "plugin/usd/text.h"
@@ -127,7 +128,7 @@ std::string expected_frame(const Mesh& mesh, const std::vector<glm::vec2>& st) {
 }
 
 // Hydra cuts a face (a, b, c, d, …) into the triangles (a, b, c), (a, c, d), …
-std::string json_triangles(const usd::GridFaces& faces) {
+std::string json_triangles(const pelagic::Faces& faces) {
     std::vector<std::int32_t> triangles;
     std::size_t first = 0;
     for (const std::int32_t corners : faces.counts) {
@@ -140,7 +141,7 @@ std::string json_triangles(const usd::GridFaces& faces) {
 }
 
 // What the reader should find besides the numbers of the frames.
-std::string expected_rest(const usd::GridFaces& faces) {
+std::string expected_rest(const pelagic::Faces& faces) {
     return R"json("stage": {"startTimeCode": -2, "endTimeCode": 2, "timeCodesPerSecond": 23.976},
 "prims": {"/_3_days_out": "Xform", "/_3_days_out/Sea": "Mesh", "/_3_days_out/Camera": "Camera",
   "/_3_days_out/Sun": "DistantLight", "/_3_days_out/Sky": "DomeLight",
@@ -219,7 +220,7 @@ std::string without_extension(const std::string& file) {
 }
 
 void write_hard_layers(Layers& layers) {
-    const usd::GridFaces quad = usd::grid_faces(1);
+    const pelagic::Faces quad = pelagic::grid_faces(1, 1);
     const usd::Topology bare{.face_vertex_counts = quad.counts, .face_vertex_indices = quad.indices};
     layers.topology("hard/bare-quad", bare);
     layers.topology("hard/no-faces", {.fps = 1e-3});
@@ -249,9 +250,9 @@ void write_hard_layers(Layers& layers) {
 
 // The mesh at a frame of the second stage: a grid of another size each time. At frame 3 its first face is cut
 // into two triangles, so that the counts differ too; frames 4 and 5 have as many points, but other faces.
-usd::GridFaces moving_faces(int frame) {
-    if (frame == 4 || frame == 5) return frame == 4 ? usd::grid_faces(7, 3) : usd::grid_faces(3, 7);
-    usd::GridFaces faces = usd::grid_faces(2 + frame, 1 + frame % 3);
+pelagic::Faces moving_faces(int frame) {
+    if (frame == 4 || frame == 5) return frame == 4 ? pelagic::grid_faces(7, 3) : pelagic::grid_faces(3, 7);
+    pelagic::Faces faces = pelagic::grid_faces(2 + frame, 1 + frame % 3);
     if (frame != 3) return faces;
     faces.counts.insert(faces.counts.begin(), 3);
     faces.counts[1] = 3;
@@ -346,7 +347,7 @@ void write_moving_stage(const std::filesystem::path& dir, const std::string& ext
     std::map<double, std::string> expected;
     usd::AttributeSet attributes;
     for (int frame = 1; frame <= kLast; ++frame) {
-        const usd::GridFaces faces = moving_faces(frame);
+        const pelagic::Faces faces = moving_faces(frame);
         Numbers numbers(static_cast<std::uint64_t>(frame));
         std::vector<glm::vec3> points, normals;
         for (std::size_t i = 0; i < faces.st.size(); ++i) {
@@ -354,7 +355,10 @@ void write_moving_stage(const std::filesystem::path& dir, const std::string& ext
             normals.emplace_back(numbers.next(), numbers.next(), numbers.next());
         }
         const usd::MeshSample sample{
-            .frame = frame, .faces = faces.view(), .points = points, .normals = normals};
+            .frame = frame,
+            .faces = usd::Faces{.counts = faces.counts, .indices = faces.indices, .st = faces.st},
+            .points = points,
+            .normals = normals};
         attributes = sample.attributes();
         layers.frame(without_extension(usd::frame_file(kMoving, frame, extension)), sample);
         // Arrays of different lengths hold their value until the next frame.
@@ -417,7 +421,7 @@ void write_stage(const std::filesystem::path& dir, const std::string& extension)
     const std::string name = "3-days-out";
     std::filesystem::remove_all(dir);  // of an earlier run
     Layers layers(dir, extension == "usdc");
-    const usd::GridFaces faces = usd::grid_faces(kQuads);
+    const pelagic::Faces faces = pelagic::grid_faces(kQuads, kQuads);
     std::string frames;
     usd::AttributeSet attributes;
     for (const int frame : {-2, 0, 1, 2}) {  // −1 is missing

@@ -58,6 +58,7 @@ struct FrameJob {
     int frame = 0;
     std::vector<bool> wanted;  // by part
     FrameRecord kept;          // the files of the other parts
+    bool is_whole = false;     // nothing but its record, which knows files that the shot no longer has
 };
 
 std::optional<FrameJob> job_of(int frame, const Parts& parts, const FrameRecord* recorded,
@@ -75,7 +76,14 @@ std::optional<FrameJob> job_of(int frame, const Parts& parts, const FrameRecord*
         }
     }
     const bool same_files = recorded->files.size() == parts.size();
-    if (all_whole && same_files && recorded->fingerprint == statistics_fingerprint(parts, frame)) return {};
+    if (!all_whole || recorded->fingerprint != statistics_fingerprint(parts, frame)) return job;
+    if (same_files) return {};
+    FrameRecord whole = *recorded;
+    whole.files = std::move(job.kept.files);
+    whole.coverage.reset();
+    whole.mesh_significant_height_m.reset();
+    job.kept = std::move(whole);
+    job.is_whole = true;
     return job;
 }
 
@@ -133,14 +141,14 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     BakeReport report;
     report.total = progress.total;
     report.record = options.out / (scene.shot.name + ".json");
-    std::vector<FrameJob> jobs;
+    std::vector<FrameJob> jobs, records;  // frames to bake, and records to mend
     {
         const std::map<int, FrameRecord> recorded = recorded_frames(report.record);
         for (const int frame : frames) {
             const auto found = recorded.find(frame);
             if (auto job =
                     job_of(frame, parts, found == recorded.end() ? nullptr : &found->second, options.out))
-                jobs.push_back(std::move(*job));
+                (job->is_whole ? records : jobs).push_back(std::move(*job));
         }
         for (const auto& [frame, entry] : recorded)
             if (entry.fingerprint != statistics_fingerprint(parts, frame) &&
@@ -155,8 +163,10 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     const auto write_static = [&](const FileJob& file) {
         stop_if_cancelled();
         static_files.push_back(file.path);
-        if (!holds(options.out / file.path, file.content))
-            files::write_atomically(options.out / file.path, file.content);
+        const std::filesystem::path path = options.out / file.path;
+        const bool is_whole =
+            file.fingerprint.empty() ? holds(path, file.content) : files::carries(path, file.fingerprint);
+        if (!is_whole) files::write_atomically(path, file.content);
     };
     try {
         stop_if_cancelled();
@@ -171,6 +181,11 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         Record record;
         record.describe(plan, sequence->total(), sequence->whitecap_threshold());
         sequence->write_static(write_static);
+        for (const FrameJob& job : records) {
+            FrameRecord mended = job.kept;
+            complete(mended, job, parts);
+            record.set(job.frame, mended);
+        }
         if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");
         if (!scene.output.maps.empty()) report.maps = options.out / "maps";
         record.save(report.record);

@@ -43,6 +43,22 @@ struct Group {
     std::string example;
     int files = 0;
 };
+// By name without number, and by reason.
+using Groups = std::map<std::pair<std::string, std::string>, Group>;
+
+void add(Groups& groups, const std::string& path, const std::string& reason) {
+    Group& group = groups[{without_number(path), reason}];
+    if (group.files++ == 0) group.example = path;
+}
+
+std::vector<std::string> lines_of(const Groups& groups) {
+    std::vector<std::string> lines;
+    for (const auto& [key, group] : groups)
+        lines.push_back(group.files == 1
+                            ? group.example + ": " + key.second
+                            : key.first + ": " + std::to_string(group.files) + " files " + key.second);
+    return lines;
+}
 
 }  // namespace
 
@@ -52,7 +68,7 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
     std::vector<FilePattern> patterns;
     for (const auto& part : parts) patterns.push_back(part->pattern());
 
-    std::map<std::pair<std::string, std::string>, Group> groups;  // by name without number, and by reason
+    Groups groups;
     constexpr std::array kFolders{"", "mesh/", "maps/", "tiles/", "volumes/"};
     for (const char* below : kFolders) {
         std::error_code error;
@@ -76,16 +92,24 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
                     reason = "outside the shot's frames";
                 }
             if (is_ours) continue;
-            Group& group = groups[{without_number(path), reason}];
-            if (group.files++ == 0) group.example = path;
+            add(groups, path, reason);
         }
     }
-    std::vector<std::string> lines;
-    for (const auto& [key, group] : groups)
-        lines.push_back(group.files == 1
-                            ? group.example + ": " + key.second
-                            : key.first + ": " + std::to_string(group.files) + " files " + key.second);
-    return lines;
+    return lines_of(groups);
+}
+
+std::vector<std::string> foreign_pictures(const fs::path& folder, const Shot& shot) {
+    Groups groups;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+        const std::string name = entry.path().filename().string();
+        for (const char* extension : {".exr", ".png"}) {
+            const auto frame = frame_of(name, {shot.name + '.', extension});
+            if (frame && (*frame < shot.first_frame || *frame > shot.last_frame))
+                add(groups, name, "outside the shot's frames");
+        }
+    }
+    return lines_of(groups);
 }
 
 }  // namespace pelagic

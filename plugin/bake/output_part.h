@@ -28,7 +28,7 @@ using FileContent = std::function<void(const std::function<void(std::string_view
 // A file that is to be written: its path below DIR, with /, its bytes, and what they were made of.
 struct FileJob {
     std::string path;
-    std::string fingerprint;
+    std::string fingerprint;  // that the file carries; empty: none
     FileContent content;
 };
 // Takes a finished file. Files come in the order in which they are to be written.

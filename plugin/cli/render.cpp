@@ -18,6 +18,7 @@
 
 #include "core/scene/text.h"
 #include "plugin/bake/bake.h"
+#include "plugin/bake/foreign.h"
 #include "plugin/bake/pipeline.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
@@ -260,6 +261,8 @@ int run(const Arguments& arguments) {
               << count_text(done.frames, "frame", "frames") << " rendered in " << duration_text(done.seconds);
     if (done.kept > 0) std::cout << ", " << done.kept << " kept as they were";
     std::cout << std::endl;
+    for (const std::string& line : foreign_pictures(job.out, job.scene.shot))
+        std::cerr << "pelagic: in " << out << " lies " << line << "; nothing was deleted\n";
     return kDone;
 }
 

@@ -13,6 +13,7 @@
 #include "core/plan/products.h"
 #include "core/plan/quality.h"
 #include "core/scene/cascade_bands.h"
+#include "core/surface/rungs.h"
 
 namespace pelagic {
 namespace {
@@ -23,11 +24,6 @@ Knobs knobs_of(QualityLevel level) {
             .oversampling = row.oversampling,
             .third_moment = true,
             .double_precision = row.double_precision};
-}
-
-// The coarsest power of two [m] that is no coarser than the footprint: a rung of every view's ladder.
-double rung_below(double footprint_m) {
-    return std::exp2(std::floor(std::log2(footprint_m)));
 }
 
 // The smallest even number ≥ n without a prime factor above 7: FFTW has fast code for those.
@@ -206,22 +202,23 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
             ~products_gone(prepared.scene);
     query.points = options.points;
     const FootprintFilter filter;
-    const double finest_m = options.finest_pixel_m > 0.0 ? rung_below(options.finest_pixel_m) : 0.0;
+    const double finest_m = options.finest_pixel_m > 0.0 ? first_rung_m(options.finest_pixel_m) : 0.0;
     const auto cascades = resolve_cascades(prepared, finest_m);
     // Trains see each point's own footprints, whatever the ladder.
     query.cell_m = query.pixel_m = {0.0};
     if (cascades.empty()) return query;
     // Where the finest cascade's shortest wave is still whole: finer footprints change nothing.
     const CascadeSize& finest = cascades.back();
-    const double whole_m = rung_below(finest.size_m / (0.5 * finest.resolution) / filter.n_max);
+    const double whole_m = rung_below_m(finest.size_m / (0.5 * finest.resolution) / filter.n_max);
     const double none_m = cascades.front().size_m / filter.n_min;
     if (finest_m > 0.0) query.pixel_m.clear();
     for (double rung_m = std::max(finest_m, whole_m);; rung_m *= 2.0) {
         query.pixel_m.push_back(rung_m);
         if (rung_m >= none_m) break;
     }
+    const double finest_cell_m = std::max(options.finest_cell_m, options.finest_pixel_m);
     const auto coarser = std::upper_bound(query.pixel_m.begin() + 1, query.pixel_m.end(),
-                                          std::max(options.finest_cell_m, options.finest_pixel_m));
+                                          finest_cell_m > 0.0 ? first_rung_m(finest_cell_m) : 0.0);
     query.cell_m.assign(coarser - 1, query.pixel_m.end());
     return query;
 }

@@ -128,8 +128,8 @@ struct ViewQueryOptions {
 };
 
 // A query for points at all distances from a camera: a ladder of footprints, each the double of the one
-// before. Its rungs are powers of two in metres, whatever the scene, from the last that is no coarser than
-// the finest footprint (one of 0 before them, if nothing may be filtered) up to where no cascade has a wave
+// before. Its rungs are powers of two in metres, whatever the scene (core/surface/rungs.h), from the nearest
+// to the finest footprint (one of 0 before them, if nothing may be filtered) up to where no cascade has a wave
 // to show: a point's answer depends on the two rungs beside its own footprints, and never on how fine other
 // points are. The ladder of the cells is a part of that of the pixels, so that they share what they can.
 // Named "view".

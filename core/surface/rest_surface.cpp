@@ -12,6 +12,7 @@
 #include "core/scene/text.h"
 #include "core/surface/patch.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/rungs.h"
 
 namespace pelagic {
 namespace {
@@ -60,6 +61,7 @@ class CameraGrid final : public RestSurface {
   public:
     CameraGrid(const Scene& scene, const SeaReach& reach)
         : camera_(scene.camera),
+          has_ladder_(scene.waves.model == WaveModel::Fft || !scene.waves.cascades.empty()),
           first_frame_(scene.shot.first_frame),
           options_{.cell_px = scene.surface.cell_px,
                    .bounds = {.height_m = reach.height_m, .reach_m = reach.reach_m},
@@ -113,7 +115,9 @@ class CameraGrid final : public RestSurface {
   private:
     template <class T>
     void lay_out(int frame, RestPoints<T>& points) const {
-        const ProjectedGrid grid = projected_grid(view_at(camera_, frame), options_);
+        const View view = view_at(camera_, frame);
+        ProjectedGrid grid = projected_grid(view, options_);
+        if (has_ladder_) keep_to_rungs(grid, projected_grid_needs(view, options_));
         points.origin_m = grid.origin_m;
         points.rest_m.assign(grid.rest_m.begin(), grid.rest_m.end());
         points.cell_m.assign(grid.cell_m.begin(), grid.cell_m.end());
@@ -121,6 +125,7 @@ class CameraGrid final : public RestSurface {
     }
 
     Camera camera_;
+    bool has_ladder_;  // wave trains alone have none: they see each point's own footprints
     int first_frame_;
     ProjectedGridOptions options_;
 };

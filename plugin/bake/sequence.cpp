@@ -9,6 +9,7 @@
 #include "core/base/constants.h"
 #include "core/base/precision.h"
 #include "core/plan/hidden_slopes.h"
+#include "core/surface/rungs.h"
 #include "plugin/bake/stage.h"
 
 namespace pelagic {
@@ -76,7 +77,7 @@ class SequenceOf final : public Sequence {
         if (first.is_view) {
             const std::array alone{frame};
             const SurfaceNeeds needs = plan.surface->needs(alone);
-            at = {needs.finest_cell_m, needs.finest_pixel_m};
+            at = {first_rung_m(needs.finest_cell_m), first_rung_m(needs.finest_pixel_m)};
         }
         record.mss_residual = first.is_view
                                   ? hidden_mean_square_slope(plan.from->spectrum, plan.filter, at.pixel_m)

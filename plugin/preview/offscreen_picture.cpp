@@ -2,6 +2,7 @@
 
 #include "core/plan/plan.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/rungs.h"
 #include "core/surface/view.h"
 #include "plugin/preview/offscreen.h"
 
@@ -20,7 +21,10 @@ OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame,
     renderer.set_sky(sky, make_water(seen));
     renderer.upload(packed);
     const View view = view_at(seen.camera, frame);
-    const ProjectedGrid grid = projected_grid(view, projected_grid_options(*sea->plan().from));
+    const ProjectedGridOptions options = projected_grid_options(*sea->plan().from);
+    ProjectedGrid grid = projected_grid(view, options);
+    if (sea->plan().queries.front().query.pixel_m.size() > 1)
+        keep_to_rungs(grid, projected_grid_needs(view, options));
     renderer.draw(view, grid, {.lighting = render_options(seen).lighting, .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (sea->plan().knobs.double_precision)

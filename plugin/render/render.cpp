@@ -18,6 +18,7 @@
 #include "core/lighting/water.h"
 #include "core/plan/quality.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/rungs.h"
 #include "core/surface/view.h"
 #include "plugin/render/raster.h"
 
@@ -104,6 +105,8 @@ class RendererOf final : public Impl {
   private:
     void lay_out_grid() {
         grid_ = projected_grid(view_, grid_options_);
+        if (plan().queries[kQuery].query.pixel_m.size() > 1)
+            keep_to_rungs(grid_, projected_grid_needs(view_, grid_options_));
         const std::size_t count = grid_.rest_m.size();
         rest_.assign(grid_.rest_m.begin(), grid_.rest_m.end());
         cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());

@@ -90,8 +90,8 @@ TEST(Plan, AProjectedGridIsPlannedForTheCamerasOwnShot) {
     const ProjectedGridNeeds needs =
         projected_grid_needs(view_at(scene.camera, 1), projected_grid_options(*prepare(scene)));
     EXPECT_EQ(plan.queries[0].query.points, points_of(needs.size));
-    EXPECT_LE(plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
-    EXPECT_GT(2.0 * plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
+    EXPECT_LE(plan.queries[0].query.pixel_m.front(), 1.4143 * needs.finest_cell_m);
+    EXPECT_GE(1.4143 * plan.queries[0].query.pixel_m.front(), needs.finest_cell_m);
     EXPECT_FALSE(plan.queries[0].query.lattice);
     EXPECT_NE(explain(plan).find(std::to_string(needs.size.columns) + " × " +
                                  std::to_string(needs.size.rows) + " quads"),
@@ -292,7 +292,7 @@ TEST(Plan, ALaddersRungsArePowersOfTwoWhoeverAsks) {
         const Query query =
             view_query(*prepared, {.finest_cell_m = 6.0 * finest_m, .finest_pixel_m = finest_m});
         for (const double rung_m : query.pixel_m) EXPECT_EQ(std::exp2(std::round(std::log2(rung_m))), rung_m);
-        EXPECT_LE(query.cell_m.front(), 6.0 * finest_m);
+        EXPECT_LE(query.cell_m.front(), 1.4143 * 6.0 * finest_m);
     }
 }
 

@@ -46,17 +46,17 @@ TEST(ViewQuery, DoublesFromTheFinestUpToWhereNothingPasses) {
     for (const double finest_m : {0.0, 0.01, 0.7, 90.0}) {
         const Query query =
             view_query(*prepare(scene), {.finest_cell_m = 5.0 * finest_m, .finest_pixel_m = finest_m});
-        // The first rung is the power of two below the finest footprint, or below 80/64/4 m, whatever is coarser:
-        // finer than that nothing changes.
+        // The first rung is the power of two nearest to the finest footprint, or the one below 80/64/4 m, whatever
+        // is coarser: finer than that nothing changes.
         const double first_m =
-            std::max(finest_m > 0.0 ? std::exp2(std::floor(std::log2(finest_m))) : 0.0, 0.25);
+            std::max(finest_m > 0.0 ? std::exp2(std::round(std::log2(finest_m))) : 0.0, 0.25);
         const std::size_t first = finest_m > 0.0 ? 0 : 1;  // after the rung that filters nothing
         EXPECT_EQ(query.pixel_m.front(), finest_m > 0.0 ? first_m : 0.0);
         EXPECT_EQ(query.pixel_m[first], first_m);
         for (std::size_t i = first + 1; i < query.pixel_m.size(); ++i)
             EXPECT_EQ(query.pixel_m[i], 2.0 * query.pixel_m[i - 1]);
         // Footprints that cells ask for lie between their first rung and the next, or below the first of all.
-        EXPECT_LE(query.cell_m.front(), std::max({5.0 * finest_m, finest_m, 0.25}));
+        EXPECT_LE(query.cell_m.front(), std::max(1.5 * 5.0 * finest_m, 0.25));
         EXPECT_TRUE(std::equal(query.cell_m.rbegin(), query.cell_m.rend(), query.pixel_m.rbegin()));
         const Plan plan = make_plan(scene, {query});
         const std::vector<int>& levels = plan.queries[0].pixel_levels;

@@ -20,6 +20,7 @@
 #include "core/base/constants.h"
 #include "core/evaluate/evaluate.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/rungs.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/shot/ndbc.h"
 #include "plugin/shot/shot.h"
@@ -108,7 +109,8 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesAtEachFrame) {
         sequence->compute(f, slot);
         const Values& mesh = slot.outputs.front()->values;
         const ProjectedGridSize size = alone(f);
-        const ProjectedGrid grid = projected_grid(view_at(scene.camera, f), options);
+        ProjectedGrid grid = projected_grid(view_at(scene.camera, f), options);
+        keep_to_rungs(grid, projected_grid_needs(view_at(scene.camera, f), options));
         const std::size_t count = points_of(size);
         ASSERT_EQ(grid.rest_m.size(), count);
         for (const std::size_t got :

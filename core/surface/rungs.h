@@ -1,0 +1,34 @@
+// The rungs of a view's ladder of footprints: powers of two in metres, whatever the scene and whichever frames
+// are asked for. A point between two rungs reads both.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/surface/projected_grid.h"
+
+namespace pelagic {
+
+// The finest rung that a frame reads whose finest footprint is this [m], > 0: the nearest one. The one below
+// would cost four times the samples for what at most a factor of √2 in footprint hides.
+inline double first_rung_m(double finest_footprint_m) {
+    return std::exp2(std::round(std::log2(finest_footprint_m)));
+}
+
+// The coarsest rung that is no coarser.
+inline double rung_below_m(double footprint_m) {
+    return std::exp2(std::floor(std::log2(footprint_m)));
+}
+
+// Footprints finer than the grid's own first rungs count as those: a plan that has finer ones, for other frames,
+// then gives this frame the same bits. `own`: of this very pose.
+inline void keep_to_rungs(ProjectedGrid& grid, const ProjectedGridNeeds& own) {
+    const auto keep = [](std::vector<float>& footprints_m, double finest_m) {
+        const auto first_m = static_cast<float>(first_rung_m(finest_m));
+        for (float& footprint_m : footprints_m) footprint_m = std::max(footprint_m, first_m);
+    };
+    keep(grid.cell_m, own.finest_cell_m);
+    keep(grid.pixel_m, own.finest_pixel_m);
+}
+
+}  // namespace pelagic

@@ -19,7 +19,8 @@
 #include <tuple>
 #include <vector>
 
-#include "core/scene/text.h"
+#include "core/plan/fingerprint.h"
+#include "core/scene/canonical.h"
 #include "plugin/bake/bake.h"
 #include "plugin/exr/exr.h"
 #include "plugin/files/files.h"
@@ -181,6 +182,26 @@ class Closure : public ::testing::Test {
             << path << ": other bytes than " << known->second.second << " of the same fingerprint";
     }
 
+    // Equal fingerprints, equal plans and keys; and the other way round.
+    void compare_sources(const Scene& scene) {
+        std::vector<int> frames;
+        for (int frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame)
+            frames.push_back(frame);
+        const Plan plan = plan_bake(prepare(scene), frames);
+        for (const PlannedOutput& output : plan.outputs)
+            for (const int frame : frames) {
+                std::string source = plan.queries[output.query].query.name + '\n' +
+                                     canonical(scene, output.feeds) + plan_text(plan, output.query) +
+                                     std::to_string(frame);
+                if (const auto view = plan.surface->shaped_by(frame); view && output.has_surface)
+                    source += pose_text(*view);
+                const std::string fingerprint =
+                    frame_fingerprint(plan, output, output_fingerprint(plan, output), frame);
+                EXPECT_EQ(source_of_.try_emplace(fingerprint, source).first->second, source);
+                EXPECT_EQ(fingerprint_of_.try_emplace(source, fingerprint).first->second, fingerprint);
+            }
+    }
+
     void expect_closed(const BaseShot& base) {
         is_picture_ = base.is_picture;
         base_ = folder_ / "base";
@@ -193,6 +214,7 @@ class Closure : public ::testing::Test {
             compare_with_all_others(path, fingerprint,
                                     without_fingerprint(bytes, fingerprint, path.ends_with("png")));
         }
+        if (!is_picture_) compare_sources(base.scene);
         for (const Edit& edit : edits_of(base)) try_edit(edit);
         print_table(base.name);
         EXPECT_TRUE(made_for_nothing_.empty())
@@ -209,6 +231,7 @@ class Closure : public ::testing::Test {
         fs::remove_all(fresh);
         // Who replaces a file gives the name to a new one: the base keeps its own.
         fs::copy(base_, again, fs::copy_options::recursive | fs::copy_options::create_hard_links);
+        if (!is_picture_) compare_sources(edit.scene);
         const Made report = make(edit.scene, again);
         const Made made = make(edit.scene, fresh);
         const std::set<std::string> files = files_in(fresh), there = files_in(again);
@@ -286,6 +309,7 @@ class Closure : public ::testing::Test {
     std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>> bytes_by_fingerprint_;
     std::vector<std::pair<std::string, std::map<std::string, std::set<char>>>> rows_;
     std::set<std::string> made_for_nothing_;
+    std::map<std::string, std::string> source_of_, fingerprint_of_;
 };
 
 TEST_F(Closure, OfAPatch) {

@@ -33,11 +33,12 @@ std::string plan_text(const Plan& plan, int query_index) {
     const PlannedQuery& planned = plan.queries.at(query_index);
     const Query& query = planned.query;
     std::string text = "precision " + std::string(plan.knobs.double_precision ? "double" : "single") +
-                       " taps " + std::to_string(plan.knobs.spline_taps) + " oversampling " +
-                       number_text(plan.knobs.oversampling) + " third " +
-                       std::to_string(plan.knobs.third_moment) + " filter " + number_text(plan.filter.n_min) +
-                       ' ' + number_text(plan.filter.n_max) + "\nproducts " + query.products.to_string() +
-                       " dropped " + plan.dropped.to_string() + '\n';
+                       " filter " + number_text(plan.filter.n_min) + ' ' + number_text(plan.filter.n_max) +
+                       "\nproducts " + query.products.to_string() + " dropped " + plan.dropped.to_string() +
+                       '\n';
+    if (query.products[index(Product::Coverage)])
+        text += "third " + std::to_string(plan.knobs.third_moment) + '\n';
+    const std::string spline = " spline of " + std::to_string(plan.knobs.spline_taps) + '\n';
     if (plan.trains && !query.only_cascade)
         text += "trains " + std::to_string(plan.trains->count) + ' ' + number_text(plan.trains->longest_m) +
                 ' ' + number_text(plan.trains->shortest_m) + '\n';
@@ -45,24 +46,26 @@ std::string plan_text(const Plan& plan, int query_index) {
         text += "lattice " + number_text(query.lattice->first_m) + ' ' +
                 number_text(query.lattice->spacing_m) + " points " + std::to_string(query.points) + '\n';
     if (query.only_cascade) text += "cascade " + std::to_string(*query.only_cascade) + '\n';
-    text += query.is_view ? "view\n" : "footprints";
-    if (!query.is_view) {
+    if (query.is_view) {
+        text += "view, oversampling " + number_text(plan.knobs.oversampling) + spline;
+    } else {
+        text += "footprints";
         for (const auto* footprints_m : {&query.cell_m, &query.pixel_m})
             for (const double footprint_m : *footprints_m) text += ' ' + number_text(footprint_m);
         text += '\n';
     }
+    const std::vector<int> levels = summed_levels(plan, planned);
     for (const CascadePlan& cascade : plan.cascades) {
         // A finer last cascade has more modes, of which no rung of this query shows any.
         text += "tile " + number_text(cascade.size_m) + " from " + number_text(cascade.k_lower) + '\n';
         if (query.is_view) continue;
-        for (const auto* levels : {&planned.cell_levels, &planned.pixel_levels})
-            for (const int level : *levels) {
-                const int g = cascade.grid_of_level[level];
-                if (g < 0) continue;
-                const Grid& grid = cascade.grids[g];
-                text += " grid " + std::to_string(grid.resolution) + ' ' + std::to_string(grid.radius) +
-                        (grid.sampling == Sampling::Nodes ? " nodes\n" : " spline\n");
-            }
+        for (const int level : levels) {
+            const int g = cascade.grid_of_level[level];
+            if (g < 0) continue;
+            const Grid& grid = cascade.grids[g];
+            text += " grid " + std::to_string(grid.resolution) + ' ' + std::to_string(grid.radius) +
+                    (grid.sampling == Sampling::Nodes ? " nodes\n" : spline);
+        }
     }
     return text;
 }

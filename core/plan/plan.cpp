@@ -359,6 +359,17 @@ Plan plan_bake(const Scene& scene) {
     return plan_bake(prepare(scene), representative_frames(scene, kFrames));
 }
 
+std::vector<int> summed_levels(const Plan& plan, const PlannedQuery& planned) {
+    const FieldSet needed = fields_of(planned.query.products) & ~plan.dropped;
+    std::vector<int> levels;
+    const auto add = [&](const std::vector<int>& more, const FieldSet& of) {
+        if ((needed & of).any()) levels.insert(levels.end(), more.begin(), more.end());
+    };
+    add(planned.cell_levels, cell_fields());
+    add(planned.pixel_levels, ~cell_fields());
+    return levels;
+}
+
 bool CascadePlan::moves() const {
     return std::any_of(grids.begin(), grids.end(),
                        [](const Grid& grid) { return (grid.fields & velocity_fields()).any(); });

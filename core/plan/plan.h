@@ -158,6 +158,10 @@ Plan plan_bake(const Scene&);
 // for; none for a sea of trains alone.
 std::vector<CascadeSize> resolve_cascades(const PreparedScene&, double finest_footprint_m);
 
+// The levels, of Plan::levels, from which the query's values are summed: none where they only count what is
+// hidden.
+std::vector<int> summed_levels(const Plan&, const PlannedQuery&);
+
 // A page of text: each output, product, field, transform with its size, bytes held, and why.
 std::string explain(const Plan&);
 

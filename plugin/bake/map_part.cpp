@@ -102,13 +102,17 @@ class MapPart final : public OutputPart {
         return levels;
     }
 
-    // Only if the patch is a common period of every cascade that shows in it; trains have none.
+    // Only if the patch is a common period of every cascade that shows in this map, whatever other outputs
+    // show; trains have none.
     bool patch_is_periodic() const {
         if (plan_.trains) return false;
+        const std::vector<int> levels = summed_levels(plan_, plan_.queries[output_.query]);
         for (const CascadePlan& cascade : plan_.cascades) {
             const double periods = scene().surface.size_m / cascade.size_m;
             const bool whole = std::round(periods) >= 1.0 && std::abs(periods - std::round(periods)) < 1e-9;
-            if (!cascade.grids.empty() && !whole) return false;
+            const bool shows = std::any_of(levels.begin(), levels.end(),
+                                           [&](int level) { return cascade.grid_of_level[level] >= 0; });
+            if (shows && !whole) return false;
         }
         return true;
     }

@@ -140,17 +140,9 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
                                           .options = job.options,
                                           .sky_content = sky_content(job.scene),
                                           .exposure_stops = job.exposure_stops});
+    const std::vector<int> frames = unfinished_pictures(job.out, shot, fingerprint, job.frames);
     Done done;
-    std::vector<int> frames;
-    for (const int frame : job.frames) {
-        const auto whole = [&](const char* extension) {
-            return is_whole_picture(job.out / picture_file(shot, frame, extension), fingerprint.of(frame));
-        };
-        if (whole("png") && whole("exr"))
-            ++done.kept;
-        else
-            frames.push_back(frame);
-    }
+    done.kept = static_cast<int>(job.frames.size() - frames.size());
     now.kept = done.kept;
     if (frames.empty()) {
         done.seconds = seconds_since(start);

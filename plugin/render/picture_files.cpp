@@ -89,15 +89,13 @@ std::string picture_file(const Shot& shot, int frame, const char* extension) {
 }
 
 PictureFingerprint::PictureFingerprint(const PictureSource& source) : camera_(source.scene.camera) {
-    // Raised by hand when the same source gives other bits: tests/plugin/bake/golden_test.cpp notices.
-    constexpr int kRevision = 1;
     const LightingChoice& lighting = source.options.lighting;
     const auto digit = [](auto value) { return std::to_string(static_cast<int>(value)); };
     // What the plan says of a view is the same whichever frames it is for.
     const Plan plan = picture_plan(source.scene, std::array{source.scene.shot.first_frame});
     source_ = Fingerprint()
                   .add(source.drawn_by_gpu ? "drawn picture" : "picture")
-                  .add("revision " + std::to_string(kRevision))
+                  .add("revision " + std::to_string(kPictureRevision))
                   .add(canonical(source.scene, kFeedsBesideTheView))
                   .add(plan_text(plan, 0))
                   .add(source.sky_content)
@@ -118,6 +116,18 @@ std::string PictureFingerprint::of(int frame) const {
 
 bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of) {
     return files::carries(file, made_of);
+}
+
+std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const Shot& shot,
+                                     const PictureFingerprint& fingerprint, std::span<const int> frames) {
+    std::vector<int> unfinished;
+    for (const int frame : frames) {
+        const auto whole = [&](const char* extension) {
+            return is_whole_picture(folder / picture_file(shot, frame, extension), fingerprint.of(frame));
+        };
+        if (!whole("png") || !whole("exr")) unfinished.push_back(frame);
+    }
+    return unfinished;
 }
 
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/scene/scene.h"
 #include "plugin/render/render.h"
@@ -19,6 +21,10 @@ struct PictureContext {
     std::string made_of;  // PictureFingerprint::of(the frame)
     double exposure_stops = 0.0;
 };
+
+// Raised by hand when pictures of the same source get other bits; then none that is there counts as whole.
+// tests/plugin/bake/golden_test.cpp notices bits that change without it.
+inline constexpr int kPictureRevision = 1;
 
 // What the two files of a frame are made of: the keys that feed pictures, the camera's pose, the resolved
 // plan, the sky's picture, the samples, terms and lookups of the light, and the exposure. Pictures with the
@@ -42,6 +48,10 @@ class PictureFingerprint {
 
 // Whether the file is there and was made of this.
 bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of);
+
+// Those of the frames of which the folder hasn't both files as they would be made now, in their order.
+std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const Shot& shot,
+                                     const PictureFingerprint& fingerprint, std::span<const int> frames);
 
 // EXR: scan lines; R, G, B and the layers sun.R … foam.B, in the sky's units; halves where no value that the
 // light can give is beyond their range, floats for the others; what it was made of in the header. The layers

@@ -1,0 +1,258 @@
+// Small shots of every kind, and every key of theirs changed: for tests that go over the whole table.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/scene/keys.h"
+#include "core/scene/scene.h"
+#include "core/scene/validate.h"
+#include "plugin/shot/ndbc.h"
+#include "tests/core/scene/key_samples.h"
+
+namespace pelagic::test {
+
+struct BaseShot {
+    std::string name;
+    Scene scene;
+    bool is_picture = false;
+    std::vector<std::string> skies{};   // paths of pictures, of which light.sky is one
+    std::vector<std::string> tables{};  // of the shot file, whose keys are changed; empty: all
+};
+
+inline MeasuredSpectrum made_up_buoy(int hour) {
+    using namespace std::chrono;
+    return load_ndbc(
+        std::filesystem::path(PELAGIC_SOURCE_DIR) / "examples" / "data" / "made-up-99002w2024.txt",
+        sys_days{year{2024} / October / 3} + hours{hour});
+}
+
+inline Scene small_shot() {
+    Scene scene;
+    scene.shot.last_frame = 3;
+    scene.sea.swell = {{.height_m = 1.0, .period_s = 9.0, .direction_deg = 40.0}};
+    scene.waves.cascades = {{.size_m = 80.0, .resolution = 64}, {.size_m = 24.0, .resolution = 32}};
+    scene.surface = {.size_m = 80.0, .resolution = 8};
+    scene.camera.resolution = {64, 36};
+    scene.quality.level = QualityLevel::Preview;
+    scene.output.map_resolution = 8;
+    return scene;
+}
+
+inline BaseShot patch_shot() {
+    BaseShot base{.name = "patch", .scene = small_shot()};
+    base.scene.output.maps = {MapKind::Displacement, MapKind::Normal, MapKind::SlopeVariance,
+                              MapKind::Whitecaps};
+    base.scene.output.cascade_tiles = true;
+    return base;
+}
+
+inline BaseShot trains_shot() {
+    BaseShot base{.name = "trains over cascades, as text", .scene = small_shot()};
+    base.scene.waves.model = WaveModel::Trochoid;
+    base.scene.waves.trains = 12;
+    base.scene.waves.cascades = {{.size_m = 20.0, .resolution = 32}};
+    base.scene.output.mesh = MeshFormat::Usda;
+    base.scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
+    base.scene.output.cascade_tiles = true;
+    return base;
+}
+
+// The nearer the sea, the finer the grid's cells.
+inline void descend(Scene& scene) {
+    scene.shot.first_frame = 2;
+    scene.shot.last_frame = 5;
+    scene.camera.resolution = {160, 90};
+    scene.camera.keys = {{.frame = 1, .position_m = {0.0, -60.0, 40.0}, .look_at_m = {0.0, 20.0, 0.0}},
+                         {.frame = 10, .position_m = {0.0, -40.0, 2.0}, .look_at_m = {0.0, 20.0, 0.0}}};
+}
+
+inline BaseShot grid_shot() {
+    BaseShot base{.name = "projected grid of a camera that descends", .scene = small_shot()};
+    descend(base.scene);
+    base.scene.surface.kind = SurfaceKind::ProjectedGrid;
+    base.scene.output.maps = {MapKind::Displacement, MapKind::SlopeVariance};
+    base.scene.output.cascade_tiles = true;
+    return base;
+}
+
+// The cascades are as fine as the shot needs them: the next one may need finer ones.
+inline BaseShot automatic_shot() {
+    BaseShot base{.name = "projected grid over automatic cascades", .scene = small_shot()};
+    descend(base.scene);
+    base.scene.surface.kind = SurfaceKind::ProjectedGrid;
+    base.scene.waves.cascades.clear();
+    base.tables = {"shot", "surface", "camera"};
+    return base;
+}
+
+inline BaseShot buoy_shot() {
+    BaseShot base{.name = "a buoy's spectrum", .scene = small_shot()};
+    base.scene.shot.last_frame = 2;
+    base.scene.sea.spectrum = SpectrumKind::File;
+    base.scene.sea.measured = made_up_buoy(6);
+    base.scene.output.maps = {MapKind::Normal};
+    return base;
+}
+
+inline BaseShot daylight_shot() {
+    BaseShot base{.name = "pictures by daylight", .scene = small_shot(), .is_picture = true};
+    base.scene.shot.last_frame = 2;
+    base.scene.quality.level = QualityLevel::Draft;
+    base.scene.camera.resolution = {32, 18};
+    base.tables = {"shot", "surface", "camera", "light", "water", "effects"};
+    return base;
+}
+
+// `skies`: two paths of pictures of skies.
+inline BaseShot sky_shot(std::vector<std::string> skies) {
+    BaseShot base = daylight_shot();
+    base.name = "pictures under a picture of a sky";
+    descend(base.scene);
+    base.scene.shot.last_frame = 3;
+    base.scene.camera.resolution = {32, 18};
+    base.scene.light.sky = skies.front();
+    base.skies = std::move(skies);
+    base.tables.clear();
+    return base;
+}
+
+// ---- Edits
+
+struct Edit {
+    std::string key;   // its path
+    std::string what;  // the value as a shot file writes it
+    Scene scene;
+};
+
+// Other values of a list: an entry more, one less, and each key of the first entry and of the last changed.
+inline std::vector<KeyValue> other_entries(const Key& key, const std::vector<KeyEntry>& now) {
+    std::vector<KeyValue> others;
+    std::vector<KeyEntry> more = now;
+    more.push_back(good_entry(key));
+    others.emplace_back(more);
+    if (now.empty()) return others;
+    others.emplace_back(std::vector<KeyEntry>(now.begin(), now.end() - 1));
+    for (const std::size_t i : std::set{std::size_t{0}, now.size() - 1})
+        for (std::size_t k = 0; k < key.entry_keys.size(); ++k) {
+            std::vector<KeyEntry> changed = now;
+            KeyValue& value = changed[i].values[k].second;
+            value = another_value(key.entry_keys[k], value);
+            others.emplace_back(std::move(changed));
+        }
+    return others;
+}
+
+inline std::vector<KeyValue> other_words(const Key& key, const std::vector<std::string>& now) {
+    std::vector<KeyValue> others;
+    for (const KeyChoice& choice : key.choices) {
+        std::vector<std::string> words = now;
+        const auto here = std::find(words.begin(), words.end(), choice.word);
+        if (here == words.end())
+            words.push_back(choice.word);
+        else
+            words.erase(here);
+        others.emplace_back(std::move(words));
+    }
+    if (now.size() > 1) others.emplace_back(std::vector<std::string>(now.rbegin(), now.rend()));
+    return others;
+}
+
+// Values that mean something where a step from the one that is there doesn't.
+inline std::vector<KeyValue> chosen_values(const std::string& path, const BaseShot& base) {
+    const Scene& scene = base.scene;
+    const auto frames = [](std::int64_t first, std::int64_t last) {
+        return KeyValue(std::vector<std::int64_t>{first, last});
+    };
+    const std::int64_t first = scene.shot.first_frame, last = scene.shot.last_frame;
+    if (path == "shot.frames")
+        return {frames(first, last - 1), frames(first, last + 2), frames(first + 1, last),
+                frames(first - 1, last), frames(first + 1, last + 1)};
+    if (path == "shot.fps") return {25.0};
+    if (path == "shot.loop_s") return {2.0, 4.0};
+    if (path == "sea.wind_speed_mps") return {7.0, 0.0};
+    if (path == "sea.fetch_m") return {50e3};
+    if (path == "sea.depth_m") return {15.0, 400.0};
+    if (path == "waves.shortest_m") return {2.0};
+    if (path == "waves.longest_m") return {90.0};
+    if (path == "waves.cascades") {
+        const auto entry = [&](double size_m, std::int64_t resolution) {
+            KeyEntry made = good_entry(key_of(path));
+            made.values[0].second = size_m;
+            made.values[1].second = resolution;
+            return made;
+        };
+        return {std::vector{entry(60.0, 32)}, std::vector{entry(80.0, 64), entry(24.0, 48)},
+                std::vector{entry(80.0, 80), entry(24.0, 32)}, std::vector{entry(20.0, 64)}};
+    }
+    if (path == "camera.resolution") return {std::vector<std::int64_t>{96, 54}};
+    if (path == "camera.keys" && !scene.camera.keys.empty()) {
+        // Slower, and one key in the middle of the shot.
+        Scene slower = scene, between = scene;
+        slower.camera.keys.back().frame = 20;
+        CameraKey key = scene.camera.keys.front();
+        key.frame = static_cast<int>(last);
+        between.camera.keys.insert(between.camera.keys.begin() + 1, key);
+        return {value_of(slower, key_of(path)), value_of(between, key_of(path))};
+    }
+    if (path == "light.sky") return {base.skies.begin(), base.skies.end()};
+    return {};
+}
+
+// Each key of the table changed, alone: all edits that validate() accepts.
+inline std::vector<Edit> edits_of(const BaseShot& base) {
+    std::vector<Edit> edits;
+    for (const Key& key : keys()) {
+        if (!key.is_built || !key.has_value()) continue;
+        const std::string table = key.path.substr(0, key.path.find('.'));
+        if (!base.tables.empty() &&
+            std::find(base.tables.begin(), base.tables.end(), table) == base.tables.end())
+            continue;
+        const auto add = [&](Scene changed, const std::string& what) {
+            if (validate(changed).empty()) edits.push_back({key.path, what, std::move(changed)});
+        };
+        if (!key.set) {
+            if (!base.scene.sea.measured) continue;
+            Scene changed = base.scene;
+            if (key.type == KeyType::DataTime) {
+                changed.sea.measured = made_up_buoy(7);
+                add(changed, "another hour");
+                continue;
+            }
+            changed.sea.measured->file += ".moved";
+            add(changed, "moved");
+            changed.sea.measured->bins[changed.sea.measured->bins.size() / 3].density_m2_per_hz += 1.0;
+            add(changed, "other numbers");
+            continue;
+        }
+        const KeyValue now = value_of(base.scene, key);
+        std::vector<KeyValue> values = chosen_values(key.path, base);
+        if (const auto* entries = std::get_if<std::vector<KeyEntry>>(&now)) {
+            const auto others = other_entries(key, *entries);
+            values.insert(values.end(), others.begin(), others.end());
+        } else if (const auto* words = std::get_if<std::vector<std::string>>(&now)) {
+            const auto others = other_words(key, *words);
+            values.insert(values.end(), others.begin(), others.end());
+        } else if (key.type == KeyType::Word) {
+            for (const KeyChoice& choice : key.choices) values.emplace_back(choice.word);
+        } else if (values.empty() && !(base.is_picture && key.path == "light.sky")) {
+            values.push_back(another_value(key, now));
+        }
+        for (const KeyValue& value : values) {
+            Scene changed = base.scene;
+            if (value == now || set_value(changed, key, value)) continue;
+            const std::string text = value_text(key, value);
+            add(std::move(changed), text.empty() ? "none" : text);
+        }
+    }
+    return edits;
+}
+
+}  // namespace pelagic::test

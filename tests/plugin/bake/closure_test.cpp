@@ -1,0 +1,374 @@
+// Resume, over every key of the table: a folder holds a shot's files, one key is changed, and the shot is made
+// again into the same folder. All its files must then be those of a fresh folder, byte for byte, and those
+// that the key can't change must be the old ones, untouched. Prints which were.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
+
+#include "core/plan/fingerprint.h"
+#include "core/scene/canonical.h"
+#include "plugin/bake/bake.h"
+#include "plugin/exr/exr.h"
+#include "plugin/files/files.h"
+#include "plugin/render/picture_files.h"
+#include "tests/plugin/bake/closure_shots.h"
+
+namespace {
+
+using namespace pelagic;
+using namespace pelagic::test;
+namespace fs = std::filesystem;
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// A lat-long picture of a plain sky.
+void write_sky(const fs::path& file, float radiance) {
+    constexpr int kWidth = 16, kHeight = 8;
+    const std::vector<float> texels(kWidth * kHeight, radiance);
+    exr::Image image{.width = kWidth, .height = kHeight, .channels = {}};
+    for (const char* name : {"R", "G", "B"})
+        image.channels.push_back({.name = name, .data = texels.data(), .type = exr::PixelType::Float});
+    files::write_atomically(file, exr::encode_scanline({}, image));
+}
+
+// What a run leaves besides its files.
+struct Made {
+    std::map<std::string, std::string> fingerprints;  // of the files that carry one, by path
+    std::vector<std::string> foreign;
+};
+
+Made render_into(const Scene& scene, const fs::path& folder) {
+    const RenderOptions options = render_options(scene);
+    const PictureFingerprint fingerprint(
+        {.scene = scene, .options = options, .sky_content = sky_content(scene)});
+    std::vector<int> all;
+    for (int frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame) all.push_back(frame);
+    Made made;
+    for (const int frame : all)
+        for (const char* extension : {"png", "exr"})
+            made.fingerprints[picture_file(scene.shot, frame, extension)] = fingerprint.of(frame);
+    const std::vector<int> frames = unfinished_pictures(folder, scene.shot, fingerprint, all);
+    if (frames.empty()) return made;
+    files::ensure_folder(folder);
+    Renderer renderer(scene, options, make_sky(scene), frames);
+    Picture picture;
+    for (const int frame : frames) {
+        renderer.render(frame, picture);
+        const PictureContext context{
+            .scene = scene, .options = options, .sky = renderer.sky(), .made_of = fingerprint.of(frame)};
+        files::write_atomically(folder / picture_file(scene.shot, frame, "png"),
+                                encode_png(context, picture));
+        files::write_atomically(folder / picture_file(scene.shot, frame, "exr"),
+                                encode_exr(context, picture, frame));
+    }
+    return made;
+}
+
+Made bake_into(const Scene& scene, const fs::path& folder) {
+    const BakeReport report = bake(scene, {.out = folder, .frames = {}, .progress = {}, .cancel = nullptr});
+    Made made{.fingerprints = {}, .foreign = report.foreign};
+    const nlohmann::json record = nlohmann::json::parse(bytes_of(report.record));
+    for (const auto& [frame, entry] : record.at("frames").items())
+        for (const auto& [path, file] : entry.at("files").items())
+            made.fingerprints[path] = file.at("fingerprint").get<std::string>();
+    return made;
+}
+
+std::set<std::string> files_in(const fs::path& folder) {
+    std::set<std::string> paths;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file()) paths.insert(fs::relative(entry.path(), folder).string());
+    return paths;
+}
+
+// The bytes without what they were made of: its digits, and in a PNG the check sum over them.
+std::string without_fingerprint(std::string bytes, const std::string& fingerprint, bool is_png) {
+    for (std::size_t at = bytes.find(fingerprint); at != std::string::npos; at = bytes.find(fingerprint, at))
+        std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                    std::min(fingerprint.size() + (is_png ? 4 : 0), bytes.size() - at), '.');
+    return bytes;
+}
+
+// The output that a file is of, for the table: "mesh", "normal", "tile normal", "png", "camera", …
+std::string output_of(const std::string& path) {
+    std::vector<std::string> parts;
+    std::string part;
+    for (const char c : path + '.')
+        if (c == '.')
+            parts.push_back(std::move(part)), part.clear();
+        else
+            part += c;
+    const std::string& second = parts.at(1);
+    if (path.starts_with("maps/")) return second;
+    if (path.starts_with("tiles/")) return "tile " + second;
+    if (second == "usda") return "root";
+    if (second == "json") return "record";
+    const bool is_frame = second.find_first_not_of("-0123456789") == std::string::npos;
+    if (path.starts_with("mesh/")) return is_frame ? "mesh" : second;
+    return is_frame ? parts.back() : second;
+}
+
+// Keys whose change has the files of an output made again although the new ones are the same: what feeds an
+// output counts, and only who has built both seas knows that this time it made no difference.
+struct Excuse {
+    std::string_view key, output, why;
+};
+constexpr auto kExcuses = std::to_array<Excuse>({
+    {"sea.wind_direction_deg", "mesh", "a measured spectrum has directions of its own"},
+    {"sea.fetch_m", "mesh", "a measured spectrum has grown already"},
+    {"sea.spreading", "mesh", "a measured spectrum has directions of its own"},
+    {"sea.depth_m", "mesh", "400 m are as deep as can be for these waves"},
+    {"sea.spectrum", "mesh", "TMA is JONSWAP where the water is deep"},
+    {"sea.swell", "mesh", "a swell without height"},
+    {"waves.cascades", "mesh", "modes that are finer than the mesh"},
+    {"quality.level", "slope-variance", "double precision, rounded to single"},
+    {"output.attributes", "mesh", "a list in another order is another value"},
+});
+
+bool is_excused(const std::string& key, const std::string& output) {
+    return std::any_of(kExcuses.begin(), kExcuses.end(), [&](const Excuse& excuse) {
+        return excuse.key == key && output.ends_with(excuse.output);
+    });
+}
+
+// How many files a bake's list of foreign ones names.
+int named_files(const std::vector<std::string>& lines) {
+    int count = 0;
+    for (const std::string& line : lines) {
+        const std::size_t colon = line.rfind(": ");
+        int number = 1;
+        if (std::sscanf(line.c_str() + colon, ": %d files", &number) != 1) number = 1;
+        count += number;
+    }
+    return count;
+}
+
+class Closure : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("pelagic-closure-" + std::to_string(getpid()));
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    Made make(const Scene& scene, const fs::path& into) const {
+        return is_picture_ ? render_into(scene, into) : bake_into(scene, into);
+    }
+
+    // Files of one fingerprint must be the same: of the hundreds of shots that this test makes, too.
+    void compare_with_all_others(const std::string& path, const std::string& fingerprint,
+                                 const std::string& bytes) {
+        const auto [known, is_new] =
+            bytes_by_fingerprint_.try_emplace({output_of(path), fingerprint}, bytes, path);
+        EXPECT_TRUE(is_new || known->second.first == bytes)
+            << path << ": other bytes than " << known->second.second << " of the same fingerprint";
+    }
+
+    // Equal fingerprints, equal plans and keys; and the other way round.
+    void compare_sources(const Scene& scene) {
+        std::vector<int> frames;
+        for (int frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame)
+            frames.push_back(frame);
+        const Plan plan = plan_bake(prepare(scene), frames);
+        for (const PlannedOutput& output : plan.outputs)
+            for (const int frame : frames) {
+                std::string source = plan.queries[output.query].query.name + '\n' +
+                                     canonical(scene, output.feeds) + plan_text(plan, output.query) +
+                                     std::to_string(frame);
+                if (const auto view = plan.surface->shaped_by(frame); view && output.has_surface)
+                    source += pose_text(*view);
+                const std::string fingerprint =
+                    frame_fingerprint(plan, output, output_fingerprint(plan, output), frame);
+                EXPECT_EQ(source_of_.try_emplace(fingerprint, source).first->second, source);
+                EXPECT_EQ(fingerprint_of_.try_emplace(source, fingerprint).first->second, fingerprint);
+            }
+    }
+
+    void expect_closed(const BaseShot& base) {
+        is_picture_ = base.is_picture;
+        base_ = folder_ / "base";
+        base_made_ = make(base.scene, base_);
+        base_files_ = files_in(base_);
+        ASSERT_FALSE(base_made_.fingerprints.empty());
+        for (const auto& [path, fingerprint] : base_made_.fingerprints) {
+            const std::string bytes = bytes_of(base_ / path);
+            ASSERT_NE(bytes.find(fingerprint), std::string::npos) << path;
+            compare_with_all_others(path, fingerprint,
+                                    without_fingerprint(bytes, fingerprint, path.ends_with("png")));
+        }
+        if (!is_picture_) compare_sources(base.scene);
+        for (const Edit& edit : edits_of(base)) try_edit(edit);
+        print_table(base.name);
+        EXPECT_TRUE(made_for_nothing_.empty())
+            << "made again, and they are the same:\n"
+            << std::accumulate(
+                   made_for_nothing_.begin(), made_for_nothing_.end(), std::string(),
+                   [](const std::string& text, const std::string& line) { return text + line + '\n'; });
+    }
+
+    void try_edit(const Edit& edit) {
+        SCOPED_TRACE(edit.key + " = " + edit.what);
+        const fs::path again = folder_ / "again", fresh = folder_ / "fresh";
+        fs::remove_all(again);
+        fs::remove_all(fresh);
+        // Who replaces a file gives the name to a new one: the base keeps its own.
+        fs::copy(base_, again, fs::copy_options::recursive | fs::copy_options::create_hard_links);
+        if (!is_picture_) compare_sources(edit.scene);
+        const Made report = make(edit.scene, again);
+        const Made made = make(edit.scene, fresh);
+        const std::set<std::string> files = files_in(fresh), there = files_in(again);
+
+        std::map<std::string, std::set<char>> happened;  // by output
+        for (const std::string& path : files) {
+            const std::string output = output_of(path), bytes = bytes_of(fresh / path);
+            EXPECT_TRUE(bytes_of(again / path) == bytes) << path << " isn't that of a fresh folder";
+            const bool was_there = base_files_.contains(path);
+            const bool kept = was_there && fs::equivalent(base_ / path, again / path);
+            happened[output].insert(kept ? 'k' : was_there ? 'R' : 'n');
+            const auto carries = made.fingerprints.find(path);
+            if (carries == made.fingerprints.end()) continue;
+            const std::string content = without_fingerprint(bytes, carries->second, path.ends_with("png"));
+            compare_with_all_others(path, carries->second, content);
+            if (!was_there || kept) continue;
+            const std::string former = without_fingerprint(
+                bytes_of(base_ / path), base_made_.fingerprints.at(path), path.ends_with("png"));
+            if (former != content) continue;
+            // A picture's two files have one fingerprint, and the EXR's header says what light and sea it is of.
+            if (output == "png") continue;
+            happened[output].insert('!');
+            if (!is_excused(edit.key, output))
+                made_for_nothing_.insert(output + ": " + edit.key + " = " + edit.what);
+        }
+        for (const std::string& path : base_files_)
+            if (!files.contains(path)) happened[output_of(path)].insert('-');
+        if (!is_picture_) {
+            // Whatever else is there is named.
+            std::set<std::string> others;
+            std::set_difference(there.begin(), there.end(), files.begin(), files.end(),
+                                std::inserter(others, others.end()));
+            EXPECT_EQ(named_files(report.foreign), static_cast<int>(others.size()))
+                << ::testing::PrintToString(report.foreign) << "\n"
+                << ::testing::PrintToString(others);
+        }
+        rows_.emplace_back(edit.key + " = " + edit.what, std::move(happened));
+    }
+
+    void print_table(const std::string& name) const {
+        std::set<std::string> outputs;
+        for (const auto& [label, happened] : rows_)
+            for (const auto& [output, marks] : happened) outputs.insert(output);
+        std::printf(
+            "\n%s: after one key was changed, files were k kept, R made again (! though the same), "
+            "n made, - left behind and named\n",
+            name.c_str());
+        std::string line;
+        const auto end_row = [&](const std::string& label) {
+            std::printf("%s  %s\n", line.c_str(), label.c_str());
+            line.clear();
+        };
+        const auto add_cell = [&](std::string text, std::size_t width) {
+            text.resize(std::max(text.size(), width + 2), ' ');
+            line += text;
+        };
+        for (const std::string& output : outputs) add_cell(output, output.size());
+        end_row("");
+        for (const auto& [label, happened] : rows_) {
+            for (const std::string& output : outputs) {
+                const auto found = happened.find(output);
+                add_cell(found == happened.end() ? std::string()
+                                                 : std::string(found->second.begin(), found->second.end()),
+                         output.size());
+            }
+            end_row(label);
+        }
+    }
+
+    fs::path folder_, base_;
+    bool is_picture_ = false;
+    Made base_made_;
+    std::set<std::string> base_files_;
+    // By output and fingerprint: the bytes without it, and the path.
+    std::map<std::pair<std::string, std::string>, std::pair<std::string, std::string>> bytes_by_fingerprint_;
+    std::vector<std::pair<std::string, std::map<std::string, std::set<char>>>> rows_;
+    std::set<std::string> made_for_nothing_;
+    std::map<std::string, std::string> source_of_, fingerprint_of_;
+};
+
+TEST_F(Closure, OfAPatch) {
+    expect_closed(patch_shot());
+}
+TEST_F(Closure, OfTrainsOverCascades) {
+    expect_closed(trains_shot());
+}
+TEST_F(Closure, OfAProjectedGrid) {
+    expect_closed(grid_shot());
+}
+TEST_F(Closure, OfAProjectedGridOverAutomaticCascades) {
+    expect_closed(automatic_shot());
+}
+TEST_F(Closure, OfABuoysSpectrum) {
+    expect_closed(buoy_shot());
+}
+TEST_F(Closure, OfPicturesByDaylight) {
+    expect_closed(daylight_shot());
+}
+TEST_F(Closure, OfPicturesUnderAPictureOfASky) {
+    const std::string sky = (folder_ / "sky.exr").string(), other = (folder_ / "other.exr").string();
+    write_sky(sky, 1.0f);
+    write_sky(other, 1.5f);
+    expect_closed(sky_shot({sky, other}));
+}
+
+// The same path, and another picture there.
+TEST_F(Closure, APictureOfTheSkyCountsByItsContent) {
+    is_picture_ = true;
+    const std::string sky = (folder_ / "sky.exr").string();
+    write_sky(sky, 1.0f);
+    const Scene scene = sky_shot({sky}).scene;
+    const fs::path again = folder_ / "again", fresh = folder_ / "fresh";
+    make(scene, again);
+    const std::string file = picture_file(scene.shot, scene.shot.first_frame, "exr");
+    const std::string before = bytes_of(again / file);
+    write_sky(sky, 1.5f);
+    make(scene, again);
+    make(scene, fresh);
+    EXPECT_NE(bytes_of(again / file), before);
+    for (const std::string& path : files_in(fresh))
+        EXPECT_TRUE(bytes_of(again / path) == bytes_of(fresh / path)) << path;
+}
+
+// A key of which no base shot has another value would be left out in silence.
+TEST(ClosureEdits, ChangeEveryKeyThatHasAnotherValue) {
+    std::set<std::string> changed;
+    for (const BaseShot& base : {patch_shot(), trains_shot(), grid_shot(), automatic_shot(), buoy_shot(),
+                                 daylight_shot(), sky_shot({"one.exr", "two.exr"})})
+        for (const Edit& edit : edits_of(base)) changed.insert(edit.key);
+    for (const Key& key : keys()) {
+        const auto built = std::count_if(key.choices.begin(), key.choices.end(),
+                                         [](const KeyChoice& c) { return c.is_built; });
+        const bool has_one_value =
+            (key.type == KeyType::Word && built < 2) || (key.type == KeyType::Words && built == 0);
+        EXPECT_TRUE(changed.contains(key.path) || !key.is_built || !key.has_value() || has_one_value)
+            << key.path << ": no base shot changes it";
+    }
+}
+
+}  // namespace

@@ -56,7 +56,7 @@ void add_shot(Built& out) {
              .unit = "s",
              .range = limits::kLoop_s,
              .soft = SoftRange{0.0, 60.0},
-             .feeds = feeds(Feed::Waves, Feed::Clock)}));
+             .feeds = feeds(Feed::Waves)}));
 }
 
 void add_sea(Built& out) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "core/base/constants.h"
 #include "core/base/precision.h"
@@ -14,6 +16,14 @@
 
 namespace pelagic {
 namespace {
+
+// To twelve digits: a plan that is as fine as other frames need it adds modes that don't show in this one, and
+// they change where a sum rounds.
+double rounded(double sum) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.12g", sum);
+    return std::strtod(digits, nullptr);
+}
 
 template <class T>
 class SequenceOf final : public Sequence {
@@ -86,12 +96,12 @@ class SequenceOf final : public Sequence {
         if (plan.transforms_per_frame() == 0 && !plan.trains && !calm) return;  // no wave was computed
         const Realisation sum = frame_.realisation(0, at);
         WaveRecord waves;
-        waves.significant_height_m = 4.0 * std::sqrt(sum.m0);
+        waves.significant_height_m = rounded(4.0 * std::sqrt(sum.m0));
         if (sum.m0 > 0.0) {
-            waves.energy_period_s = kTwoPi * sum.m_minus1 / sum.m0;
-            waves.mean_direction_deg = std::atan2(sum.north, sum.east) * 180.0 / kPi;
+            waves.energy_period_s = rounded(kTwoPi * sum.m_minus1 / sum.m0);
+            waves.mean_direction_deg = rounded(std::atan2(sum.north, sum.east) * 180.0 / kPi);
         }
-        waves.mss = sum.mss;
+        waves.mss = rounded(sum.mss);
         record.waves = waves;
     }
 

@@ -1,6 +1,6 @@
 // The plan: what a scene's outputs need, as pure data, before a byte is allocated.
 //
-// A closure over small tables (tables.h): outputs → products → fields → inverse transforms. Nothing else in
+// A closure over tables (outputs.h, effects.h, products.h): outputs → products → fields → inverse transforms. Nothing else in
 // the code decides whether an effect is computed: Sea, Frame and evaluate() read the plan and do what stands
 // there. It knows no FFTW and allocates no buffers, so that explain() answers at once for an 8192² sea.
 #pragma once

@@ -104,7 +104,7 @@ void resolved_trains(SkyQuality quality) {
         options.samples = 1;
         options.lighting.sky_quality = quality;
         on_gpu.push_back(std::make_unique<Drawn>(scene, options.lighting));
-        on_cpu.push_back(std::make_unique<Renderer>(scene, options, make_sky(scene)));
+        on_cpu.push_back(std::make_unique<Renderer>(scene, options, make_sky(scene), std::array{1}));
         timed.push_back({"preview", [drawn = on_gpu.back().get()] { drawn->draw(); }});
         timed.push_back(
             {"CPU", [renderer = on_cpu.back().get(), &picture] { renderer->render(1, picture); }});

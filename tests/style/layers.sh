@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks that includes go down the layer table of README.md only.
+# Checks that each room includes only rooms above it in the layer table of README.md.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bad=0

@@ -142,6 +142,7 @@ TEST(TwoModels, AgreeOnEveryInstructionSet) {
             answers.push_back(sample(frame, 0, rest));
         }
         hwy::SetSupportedTargetsForTest(0);
+        double largest = 0.0;
         for (std::size_t s = 1; s < answers.size(); ++s) {
             double worst = 0.0;
             const auto compare = [&](double a, double b, double tolerance) {
@@ -157,8 +158,10 @@ TEST(TwoModels, AgreeOnEveryInstructionSet) {
                     compare(answers[s].vectors(Normal)[i][a], answers[0].vectors(Normal)[i][a], 1e-5);
                     compare(answers[s].numbers(Coverage)[i], answers[0].numbers(Coverage)[i], 1e-5);
                 }
-            EXPECT_TRUE(names[s] == names[0] || worst > 0.0) << names[s] << " is " << names[0];
+            largest = std::max(largest, worst);
         }
+        // AVX2 and AVX-512 may give the same bits; sets with and without fused products don't.
+        EXPECT_GT(largest, 0.0) << names.front() << " and " << names.back() << " ran the same code";
         EXPECT_NE(names.front(), names.back())
             << "only one instruction set on this machine: nothing was compared";
     }

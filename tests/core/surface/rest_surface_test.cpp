@@ -56,7 +56,7 @@ TEST(RestSurface, TheCamerasGridOfAFrameDependsOnItsPoseAlone) {
     const auto a = make_surface(scene, kReach), b = make_surface(other, kReach);
     EXPECT_FALSE(a->is_constant());
     std::size_t sizes = 0, last = 0;
-    for (const int frame : {5, 7, 9}) {
+    for (const int frame : {2, 12, 19}) {
         RestPoints<float> ours, theirs;
         a->points_at(frame, ours);
         b->points_at(frame, theirs);

@@ -116,15 +116,17 @@ void add_grids(Plan& plan, int cascade_index) {
             at.only_cascade && at.lattice
                 ? std::min<double>(cascade.resolution, std::round(cascade.size_m / at.lattice->spacing_m))
                 : cascade.resolution;
-        const double cutoff = std::min(plan.filter.cutoff(at.footprint_m), cascade.k_upper);
-        // A band is of cells and ends with their corners; a footprint weighs the modes themselves, and the
-        // one that ends it weighs nothing: a mesh on every second node of a tile shows half of its modes, not
-        // one more.
+        const double cutoff = std::min(
+            {plan.filter.cutoff(at.footprint_m), cascade.k_upper, kPi * resolution / cascade.size_m});
+        // The band holds every cell that reaches into it, so its last modes lie beyond its edge. A footprint's
+        // cutoff is a limit on the modes themselves, and the mode on it has weight 0: a mesh on every second
+        // node of a tile shows half of the tile's modes and no more.
         const double filter_modes =
             std::ceil(plan.filter.cutoff(at.footprint_m) * cascade.size_m / kTwoPi * kRounding);
         const int radius = static_cast<int>(
             std::min({0.5 * resolution, filter_modes, modes_within(cascade.size_m, cascade.k_upper) + 1.0}));
         if (cutoff <= cascade.k_lower || radius < 2) continue;
+        cascade.radius_of_level[level] = radius;
         // What is hidden is the spectrum less what these modes hold, whether they are also asked for fields
         // or not.
         if (hides(plan, level)) cascade.mode_radius = std::max(cascade.mode_radius, radius);
@@ -307,6 +309,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
         cascade.k_lower = plan.trains ? std::max(edges[i], kTwoPi / plan.trains->shortest_m) : edges[i];
         cascade.k_upper = i + 1 < sizes.size() ? edges[i + 1] : std::numeric_limits<double>::infinity();
         cascade.grid_of_level.assign(plan.levels.size(), -1);
+        cascade.radius_of_level.assign(plan.levels.size(), 0);
         plan.cascades.push_back(std::move(cascade));
         const double last = std::min(plan.cascades[i].k_upper, kPi * sizes[i].resolution / sizes[i].size_m);
         if (last > plan.cascades[i].k_lower && has_energy(spectrum, plan.cascades[i].k_lower, last))

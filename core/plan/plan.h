@@ -55,6 +55,8 @@ struct CascadePlan {
     // Index into grids, −1: nothing of this cascade passes. Levels that let all of its modes through whole
     // share one.
     std::vector<int> grid_of_level;
+    // Modes with mx² + my² < radius² pass a level at all; 0: none.
+    std::vector<int> radius_of_level;
     std::string why_empty;  // set when there are no grids
 
     bool moves() const;       // whether somebody asks for velocities

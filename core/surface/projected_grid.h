@@ -43,8 +43,7 @@ struct ProjectedGridOptions {
     double cell_px = 8.0;
     SurfaceBounds bounds;
     double significant_height_m = 0.0;  // Hs
-    // 0: as many as this pose needs (projected_grid_needs). A shot passes the largest of all its poses, so
-    // that its frames share one topology.
+    // 0: as many as this pose needs (projected_grid_needs). Others, for poses that are to share a topology.
     ProjectedGridSize size{};
 };
 

@@ -26,11 +26,17 @@ LevelSums::LevelSums(double size_m, int radius, const FootprintFilter& filter,
                                               : std::numeric_limits<double>::infinity();
         const double none =
             coarsest_m > 0.0 ? size_m / (filter.n_min * coarsest_m) : std::numeric_limits<double>::infinity();
+        const double shown = static_cast<double>(pair.radius) * pair.radius;
         const auto rings = static_cast<std::size_t>(
-            std::upper_bound(rings_.begin(), rings_.end(), whole * whole) - rings_.begin());
-        const Slot slot{pair.a_m, pair.b_m, rings, rings > 0 ? rings_[rings - 1] : 0.0, none * none};
+            std::upper_bound(rings_.begin(), rings_.end(), std::min(whole * whole, shown)) - rings_.begin());
+        const Slot slot{.a_m = pair.a_m,
+                        .b_m = pair.b_m,
+                        .radius = pair.radius,
+                        .whole_rings = rings,
+                        .from = rings > 0 ? rings_[rings - 1] : 0.0,
+                        .end = std::min(none * none, shown)};
         const auto same = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& other) {
-            return other.a_m == slot.a_m && other.b_m == slot.b_m;
+            return other.a_m == slot.a_m && other.b_m == slot.b_m && other.radius == slot.radius;
         });
         slot_of_pair_.push_back(same - slots_.begin());
         if (same == slots_.end()) slots_.push_back(slot);

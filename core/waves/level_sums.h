@@ -14,15 +14,17 @@
 
 namespace pelagic {
 
-// Two footprints [m] that a mode has to pass, and whose sum that is. 0 lets everything pass.
+// Two footprints [m] that a mode has to pass, and whose sum that is. 0 lets everything pass. Only modes with
+// mx² + my² < radius² are shown at all.
 struct FootprintPair {
     double a_m = 0.0, b_m = 0.0;
+    int radius = 0;
     SpectralMoments* sum = nullptr;
 };
 
 class LevelSums {
   public:
-    // Of modes (mx, my)·2π/size_m with mx² + my² < radius².
+    // Of modes (mx, my)·2π/size_m with mx² + my² < radius², the largest of the pairs' or more.
     LevelSums(double size_m, int radius, const FootprintFilter& filter, std::vector<FootprintPair> pairs);
 
     // The sums of some columns; zero at first.
@@ -39,6 +41,7 @@ class LevelSums {
   private:
     struct Slot {
         double a_m, b_m;
+        int radius;
         std::size_t whole_rings;  // let through whole by both
         double from, end;         // the rest: from ≤ mx² + my² < end
     };

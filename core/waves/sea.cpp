@@ -130,9 +130,13 @@ Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, Progress& progress) 
         const Query& query = plan_.queries[q].query;
         if (query.only_cascade && *query.only_cascade != c) continue;
         for (std::size_t i = 0; i < query.pixel_m.size(); ++i) {
-            pairs.push_back({query.pixel_m[i], query.pixel_m[i], &statistics_[q].resolved[i]});
+            const auto radius = [&](std::size_t rung) {
+                return planned.radius_of_level[plan_.queries[q].pixel_levels[rung]];
+            };
+            pairs.push_back({query.pixel_m[i], query.pixel_m[i], radius(i), &statistics_[q].resolved[i]});
             if (i + 1 < query.pixel_m.size())
-                pairs.push_back({query.pixel_m[i], query.pixel_m[i + 1], &statistics_[q].resolved_next[i]});
+                pairs.push_back({query.pixel_m[i], query.pixel_m[i + 1], std::min(radius(i), radius(i + 1)),
+                                 &statistics_[q].resolved_next[i]});
         }
     }
     const LevelSums levels(planned.size_m, planned.mode_radius, plan_.filter, std::move(pairs));

@@ -56,10 +56,21 @@ void prepare_folders(const std::filesystem::path& out, const Parts& parts) {
 // What is to be done of one frame.
 struct FrameJob {
     int frame = 0;
-    std::vector<bool> wanted;  // by part
+    std::vector<bool> wanted;  // by part: whose files are made
     FrameRecord kept;          // the files of the other parts
-    bool is_whole = false;     // nothing but its record, which knows files that the shot no longer has
+    // Every file is as it would be made, but the record lists files that the shot no longer has.
+    bool is_whole = false;
+
+    bool makes_files() const { return std::find(wanted.begin(), wanted.end(), true) != wanted.end(); }
 };
+
+// Whether one of the frame's files was made of something else than it would be now.
+bool is_stale(int frame, const FrameRecord& recorded, const Parts& parts) {
+    return std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
+        const auto found = recorded.files.find(part->file(frame));
+        return found == recorded.files.end() || found->second.fingerprint != part->fingerprint(frame);
+    });
+}
 
 std::optional<FrameJob> job_of(int frame, const Parts& parts, const FrameRecord* recorded,
                                const std::filesystem::path& folder) {
@@ -87,7 +98,8 @@ std::optional<FrameJob> job_of(int frame, const Parts& parts, const FrameRecord*
     return job;
 }
 
-// The frame's record with the files that were kept, and what the first outputs that know it say of the frame.
+// Adds the files that were kept to the frame's record, and the mean coverage and the mesh's height, each from the
+// first output that has it.
 void complete(FrameRecord& record, const FrameJob& job, const Parts& parts) {
     record.files.insert(job.kept.files.begin(), job.kept.files.end());
     for (const auto& part : parts) {
@@ -151,9 +163,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
                 (job->is_whole ? records : jobs).push_back(std::move(*job));
         }
         for (const auto& [frame, entry] : recorded)
-            if (entry.fingerprint != statistics_fingerprint(parts, frame) &&
-                frame >= scene.shot.first_frame && frame <= scene.shot.last_frame &&
-                !std::binary_search(frames.begin(), frames.end(), frame))
+            if (frame >= scene.shot.first_frame && frame <= scene.shot.last_frame &&
+                !std::binary_search(frames.begin(), frames.end(), frame) && is_stale(frame, entry, parts))
                 report.stale.push_back(frame);
     }
     progress.kept = report.kept = static_cast<int>(frames.size() - jobs.size());
@@ -163,10 +174,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     const auto write_static = [&](const FileJob& file) {
         stop_if_cancelled();
         static_files.push_back(file.path);
-        const std::filesystem::path path = options.out / file.path;
-        const bool is_whole =
-            file.fingerprint.empty() ? holds(path, file.content) : files::carries(path, file.fingerprint);
-        if (!is_whole) files::write_atomically(path, file.content);
+        if (!holds(options.out / file.path, file.content))
+            files::write_atomically(options.out / file.path, file.content);
     };
     try {
         stop_if_cancelled();
@@ -223,7 +232,9 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         };
         stages.written = [&](int item) {
             progress.frame = jobs[item].frame;
-            progress.done = ++report.done;
+            ++(jobs[item].makes_files() ? report.done : report.kept);
+            progress.done = report.done;
+            progress.kept = report.kept;
             progress.seconds = seconds_since(first_frame);
             report_progress(BakeStage::Frames);
         };

@@ -98,6 +98,15 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
     return lines_of(groups);
 }
 
+std::vector<int> frames_in(const fs::path& folder, const FilePattern& pattern) {
+    std::vector<int> frames;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+        if (const auto frame = frame_of(entry.path().filename().string(), pattern)) frames.push_back(*frame);
+    std::sort(frames.begin(), frames.end());
+    return frames;
+}
+
 std::vector<std::string> foreign_pictures(const fs::path& folder, const Shot& shot) {
     Groups groups;
     std::error_code error;

@@ -18,7 +18,10 @@ std::vector<std::string> foreign_files(const std::filesystem::path& folder, cons
                                        const std::vector<std::unique_ptr<OutputPart>>& parts,
                                        const std::vector<std::string>& static_files);
 
-// The same of pictures that `pelagic render` leaves: those of this shot, of frames outside its range.
+// The numbers of the files of this pattern in the folder, rising.
+std::vector<int> frames_in(const std::filesystem::path& folder, const FilePattern& pattern);
+
+// As foreign_files(), of pictures that `pelagic render` leaves: those of this shot, of frames outside its range.
 std::vector<std::string> foreign_pictures(const std::filesystem::path& folder, const Shot& shot);
 
 }  // namespace pelagic

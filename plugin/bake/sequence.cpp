@@ -69,7 +69,6 @@ class SequenceOf final : public Sequence {
         }
     }
 
-    const std::vector<std::unique_ptr<OutputPart>>& parts() const override { return parts_; }
     const SpectralMoments& total() const override { return sea_->total(); }
     double whitecap_threshold() const override { return sea_->whitecap_threshold(); }
     long executed_transforms() const override { return frame_.executed_transforms(); }

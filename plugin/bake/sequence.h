@@ -32,7 +32,6 @@ class Sequence {
     virtual void write(FrameSlot& slot, const FileSink& sink) const = 0;
     // The files that belong to no frame: the stage, topology, manifest. None without a mesh.
     virtual void write_static(const FileSink& sink) const = 0;
-    virtual const std::vector<std::unique_ptr<OutputPart>>& parts() const = 0;
     virtual const SpectralMoments& total() const = 0;
     virtual double whitecap_threshold() const = 0;
     virtual long executed_transforms() const = 0;

@@ -7,9 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include "core/plan/fingerprint.h"
 #include "core/plan/hidden_slopes.h"
-#include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/surface/view.h"
@@ -41,9 +39,8 @@ usd::CustomValue custom_value(const DescribedKey& key) {
     return std::visit([](const auto& value) { return usd::CustomValue(value); }, key.number_or_text());
 }
 
-usd::Camera camera_of(const Scene& scene, std::string_view fingerprint) {
+usd::Camera camera_of(const Scene& scene) {
     return {.fps = scene.shot.fps,
-            .fingerprint = fingerprint,
             .first_frame = scene.shot.first_frame,
             .last_frame = scene.shot.last_frame,
             .pose_at =
@@ -91,14 +88,8 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh) {
 
 void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink) {
     const std::string& name = plan.from->scene.shot.name;
-    // A sample for each frame of the shot: it is written once, not by every machine that bakes a part.
-    const std::string camera =
-        Fingerprint()
-            .add("camera, revision 1")
-            .add(canonical(plan.from->scene, feeds(Feed::Name, Feed::Range, Feed::Clock, Feed::View)))
-            .text();
-    sink({.path = usd::camera_file(name), .fingerprint = camera, .content = [&](const usd::Sink& take) {
-              usd::write_camera_crate(camera_of(plan.from->scene, camera), take);
+    sink({.path = usd::camera_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
+              usd::write_camera_crate(camera_of(plan.from->scene), take);
           }});
     sink({.path = usd::root_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
               take(usd::root_text(stage_of(plan, mesh)));

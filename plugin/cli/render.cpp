@@ -115,6 +115,7 @@ Job job_of(const Arguments& arguments) {
 struct Cancelled {};
 
 struct Done {
+    std::vector<int> stale;  // of the shot, not asked for, and made of something else
     int frames = 0, kept = 0;
     double seconds = 0.0;
     bool cancelled = false;
@@ -143,6 +144,11 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
     const std::vector<int> frames = unfinished_pictures(job.out, shot, fingerprint, job.frames);
     Done done;
     done.kept = static_cast<int>(job.frames.size() - frames.size());
+    for (const int frame : frames_in(job.out, {shot.name + '.', ".png"}))
+        if (frame >= shot.first_frame && frame <= shot.last_frame &&
+            !std::binary_search(job.frames.begin(), job.frames.end(), frame) &&
+            !is_whole_picture(job.out / picture_file(shot, frame, "png"), fingerprint.of(frame)))
+            done.stale.push_back(frame);
     now.kept = done.kept;
     if (frames.empty()) {
         done.seconds = seconds_since(start);
@@ -159,7 +165,14 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
                                       progress.show(now);
                                   },
                               .cancel = &stop.cancelled()};
-    Renderer renderer(job.scene, job.options, std::move(sky), frames, building);
+    std::optional<Renderer> made;
+    try {
+        made.emplace(job.scene, job.options, std::move(sky), frames, building);
+    } catch (const BuildCancelled&) {
+        done.cancelled = true;
+        return done;
+    }
+    Renderer& renderer = *made;
     const auto context_of = [&](int frame) {
         return PictureContext{.scene = job.scene,
                               .options = job.options,
@@ -228,8 +241,6 @@ int run(const Arguments& arguments) {
     Done done;
     try {
         done = threads.execute([&] { return render_all(job, stop, progress); });
-    } catch (const BuildCancelled&) {
-        done.cancelled = true;
     } catch (const std::bad_alloc&) {
         progress.clear();
         std::cerr << "pelagic: out of memory; ask for a smaller picture with --size (now "
@@ -253,6 +264,10 @@ int run(const Arguments& arguments) {
               << count_text(done.frames, "frame", "frames") << " rendered in " << duration_text(done.seconds);
     if (done.kept > 0) std::cout << ", " << done.kept << " kept as they were";
     std::cout << std::endl;
+    if (!done.stale.empty())
+        std::cerr << "pelagic: in " << out << " the frames " << frames_text(done.stale)
+                  << " are of another version of this shot, and were not asked for; render them again with "
+                     "--frames, or without it for the whole shot\n";
     for (const std::string& line : foreign_pictures(job.out, job.scene.shot))
         std::cerr << "pelagic: in " << out << " lies " << line << "; nothing was deleted\n";
     return kDone;

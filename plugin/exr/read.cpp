@@ -3,6 +3,7 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
@@ -99,6 +100,20 @@ RgbPixels read_rgb(const std::filesystem::path& path) {
         throw std::runtime_error("'" + path.string() +
                                  "' can't be read as an OpenEXR picture: " + error.what() +
                                  "; accepted is a whole file of half or float channels R, G, B or Y");
+    }
+}
+
+bool ends_whole(const std::filesystem::path& file) {
+    try {
+        Imf::InputFile input(file.c_str());
+        if (!input.isComplete()) return false;
+        // Lines are written from the top: the last one stands at the file's end.
+        const char* data = nullptr;
+        int bytes = 0;
+        input.rawPixelData(input.header().dataWindow().max.y, data, bytes);
+        return bytes > 0;
+    } catch (const std::exception&) {
+        return false;
     }
 }
 

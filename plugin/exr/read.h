@@ -22,4 +22,8 @@ struct RgbPixels {
 // side.
 RgbPixels read_rgb(const std::filesystem::path& path);
 
+// Whether the file is an image in scan lines whose last one is there: false for a file that was cut short, that is
+// missing, or that can't be read.
+bool ends_whole(const std::filesystem::path& file);
+
 }  // namespace pelagic::exr

@@ -15,6 +15,7 @@
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/exr/exr.h"
+#include "plugin/exr/read.h"
 #include "plugin/files/files.h"
 #include "plugin/png/png.h"
 
@@ -51,8 +52,15 @@ std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
+// The scene as it is described in files, wherever they are made: a sky picture by its name without its folder.
+Scene portable(Scene scene) {
+    if (scene.light.sky != Light{}.sky)
+        scene.light.sky = std::filesystem::path(scene.light.sky).filename().string();
+    return scene;
+}
+
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
-    const Scene& scene = context.scene;
+    const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
     std::vector<exr::Attribute> attributes{
         {"content", std::string("radiance; the layers add up to R, G, B")},
@@ -96,7 +104,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source) : camera_(so
     source_ = Fingerprint()
                   .add(source.drawn_by_gpu ? "drawn picture" : "picture")
                   .add("revision " + std::to_string(kPictureRevision))
-                  .add(canonical(source.scene, kFeedsBesideTheView))
+                  .add(canonical(portable(source.scene), kFeedsBesideTheView))
                   .add(plan_text(plan, 0))
                   .add(source.sky_content)
                   .add("samples " + std::to_string(source.options.samples) + " terms " + digit(lighting.sun) +
@@ -115,7 +123,9 @@ std::string PictureFingerprint::of(int frame) const {
 }
 
 bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of) {
-    return files::carries(file, made_of);
+    if (!files::carries(file, made_of)) return false;
+    // A PNG ends with an empty chunk called IEND and its checksum.
+    return file.extension() == ".exr" ? exr::ends_whole(file) : files::carries(file, "IEND\xae\x42\x60\x82");
 }
 
 std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const Shot& shot,

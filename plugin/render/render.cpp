@@ -105,8 +105,12 @@ class RendererOf final : public Impl {
   private:
     void lay_out_grid() {
         grid_ = projected_grid(view_, grid_options_);
-        if (plan().queries[kQuery].query.pixel_m.size() > 1)
-            keep_to_rungs(grid_, projected_grid_needs(view_, grid_options_));
+        first_pixel_m_ = T(0);
+        if (plan().queries[kQuery].query.pixel_m.size() > 1) {
+            const ProjectedGridNeeds own = projected_grid_needs(view_, grid_options_);
+            keep_to_rungs(grid_, own);
+            first_pixel_m_ = static_cast<T>(first_rung_m(own.finest_pixel_m));
+        }
         const std::size_t count = grid_.rest_m.size();
         rest_.assign(grid_.rest_m.begin(), grid_.rest_m.end());
         cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());
@@ -228,7 +232,8 @@ class RendererOf final : public Impl {
                 pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
-            batch_.pixel_m[i] = static_cast<T>(pixel_m);
+            // Rounding must not reach the rung below the frame's first.
+            batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
             const glm::dvec3 way = eye - position;
             const double distance = glm::length(way);
             // At the eye itself, which the near plane keeps from happening, up is as good as any.
@@ -273,6 +278,7 @@ class RendererOf final : public Impl {
     ProjectedGridOptions grid_options_;
     View view_;
     ProjectedGrid grid_;
+    T first_pixel_m_ = T(0);  // the finest rung that the frame reads
     ProjectedGridSize triangles_size_;
     std::vector<std::uint32_t> triangles_;  // vertex indices
     std::vector<glm::vec<2, T>> rest_;      // the grid's own, in T

@@ -81,6 +81,17 @@ TEST_F(Bakes, FramesOfAnotherVersionAreReportedAsStale) {
     EXPECT_EQ(report.stale, (std::vector<int>{2, 3}));
 }
 
+// A map of another size leaves the mesh as it is: the frames that weren't asked for are stale all the same.
+TEST_F(Bakes, FramesWithOneStaleOutputAreReported) {
+    Scene scene = small_scene();
+    scene.output.maps = {MapKind::Displacement};
+    scene.output.map_resolution = 8;
+    bake_and_read(scene);
+    scene.output.map_resolution = 16;
+    const BakeReport report = bake(scene, {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr});
+    EXPECT_EQ(report.stale, (std::vector<int>{2, 3}));
+}
+
 Scene camera_scene() {
     Scene scene;
     scene.shot.last_frame = 2;

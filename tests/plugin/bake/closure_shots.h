@@ -89,6 +89,8 @@ inline BaseShot automatic_shot() {
     descend(base.scene);
     base.scene.surface.kind = SurfaceKind::ProjectedGrid;
     base.scene.waves.cascades.clear();
+    // A near camera makes the last cascade finer than its tile.
+    base.scene.output.cascade_tiles = true;
     base.tables = {"shot", "surface", "camera"};
     return base;
 }

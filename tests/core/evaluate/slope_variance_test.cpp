@@ -110,7 +110,8 @@ TEST(SlopeVariance, OfTheTilesAddsUp) {
     scene.waves.cascades = {{400.0, 160}, {50.0, 64}};
     std::vector<Query> queries{unfiltered(products(Product::SlopeVariance))};
     for (int i = 0; i < 2; ++i)
-        queries.push_back(tile(products(Product::SlopeVariance), i, scene.waves.cascades[i].size_m, 16));
+        queries.push_back(tile(products(Product::SlopeVariance), i, scene.waves.cascades[i].size_m,
+                               scene.waves.cascades[i].resolution));
     const auto frame = frame_of<double>(scene, queries);
     const std::vector<glm::dvec2> origin{{0.0, 0.0}};
     const auto whole = sample(frame, 0, origin).vectors(SlopeVariance)[0];

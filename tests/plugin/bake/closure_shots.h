@@ -90,6 +90,7 @@ inline BaseShot automatic_shot() {
     base.scene.surface.kind = SurfaceKind::ProjectedGrid;
     base.scene.waves.cascades.clear();
     // A near camera makes the last cascade finer than its tile.
+    base.scene.output.maps = {MapKind::SlopeVariance, MapKind::Whitecaps};
     base.scene.output.cascade_tiles = true;
     base.tables = {"shot", "surface", "camera"};
     return base;

@@ -8,6 +8,11 @@
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <utility>
 
 #include <array>
 #include <cmath>
@@ -122,6 +127,47 @@ TEST(PictureFiles, LayersAreInPlaceAndAddUp) {
                 EXPECT_NEAR(value(""), sum, 2.0 * kHalf * sum);
             }
     }
+}
+
+// Whole is a picture with this fingerprint and all of its bytes: one that was cut short is made again.
+TEST(PictureFiles, AreWholeWithTheirFingerprintAndTheirEnd) {
+    const Picture picture = pattern({64, 48});
+    const Scene scene;
+    const RenderOptions options;
+    const Sky sky = some_sky(100.0f);
+    const PictureContext context{scene, options, sky, "0123456789abcdef"};
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("pelagic-pictures-" + std::to_string(getpid()));
+    std::filesystem::create_directory(folder);
+    for (const auto& [name, bytes] :
+         {std::pair{"a.exr", encode_exr(context, picture, 1)}, {"a.png", encode_png(context, picture)}}) {
+        const std::filesystem::path file = folder / name;
+        const auto write = [&](const std::string& content) {
+            std::ofstream(file, std::ios::binary).write(content.data(), std::ssize(content));
+        };
+        EXPECT_FALSE(is_whole_picture(file, "0123456789abcdef")) << name << " isn't there";
+        write(bytes);
+        EXPECT_TRUE(is_whole_picture(file, "0123456789abcdef")) << name;
+        EXPECT_FALSE(is_whole_picture(file, "fedcba9876543210")) << name;
+        for (const std::size_t cut : {std::size_t{1}, std::size_t{30}, bytes.size() / 2, bytes.size() - 9}) {
+            write(bytes.substr(0, bytes.size() - cut));
+            EXPECT_FALSE(is_whole_picture(file, "0123456789abcdef")) << name << " less " << cut;
+        }
+    }
+    std::filesystem::remove_all(folder);
+}
+
+// Files say which sky picture they show, wherever it lies.
+TEST(PictureFiles, AreOfASkyPictureWhateverItsFolder) {
+    Scene here, there;
+    here.light.sky = "skies/noon.exr";
+    there.light.sky = "/mnt/skies/noon.exr";
+    const RenderOptions options;
+    const auto of = [&](const Scene& scene, const char* content) {
+        return PictureFingerprint({.scene = scene, .options = options, .sky_content = content}).of(1);
+    };
+    EXPECT_EQ(of(here, "one"), of(there, "one"));
+    EXPECT_NE(of(here, "one"), of(here, "another"));
 }
 
 TEST(PictureFiles, ScreensShowTheSumWithTheExposure) {

@@ -96,8 +96,8 @@ void AddNodes(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, cons
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t i = 0; i < chunk.count; i += lanes) {
         const auto first = hn::LoadU(di, x.node.data() + i);
-        // Of the columns behind the last, which repeat the first, a run across the seam makes no use: it is
-        // rare.
+        // Points that cross the tile's seam are read one by one: that is rare, although the row's extra
+        // columns would allow a run.
         const auto at = hn::Add(hn::Mul(hn::LoadU(di, y.node.data() + i), stride), first);
         const auto begin = hn::GetLane(at);
         const bool run = hn::AllTrue(di, hn::Eq(at, hn::Add(hn::Set(di, begin), hn::Iota(di, 0))));

@@ -27,10 +27,9 @@ struct TrainsPlan {
 
 // The scene's own range, or the spectrum's where it says nothing:
 //   longest   all but 0.1 % of m0 is shorter;
-//   shortest  2 cm, the paper's, or shorter so that ten trains (half of them, where there are fewer than
-//   twenty) are
-//             below the finest pixel's Nyquist wavelength: the fewest whose slopes add up to a Gaussian
-//             (§3.2). With explicit cascades, which hold everything shorter: the longest wave of the largest
+//   shortest  2 cm, the paper's, or shorter so that ten trains (half of them, where there are
+//             fewer than twenty) are below the finest pixel's Nyquist wavelength: the fewest whose
+//             slopes add up to a Gaussian (§3.2). With explicit cascades, which hold everything shorter: the longest wave of the largest
 //             tile's grid.
 // A scene that gives one end keeps it, and the other stays a factor of ten away. A given range may leave
 // fewer than ten trains, or none, below the pixel: then what a pixel hides is mostly the integrated

@@ -2,8 +2,8 @@
 //
 //   S_k = (B_l + B_h)/k³                                                                       (Eq. 30)
 //   B_l = ½ α_p (c_p/c) L_PM J_p exp(−(Ω/√10)(√(k/k_p) − 1)),  α_p = 6e-3 √Ω                   (Eq. 31–34)
-//   B_h = ½ α_m (c_m/c) L_PM J_p exp(−¼ (k/k_m − 1)²)                                          (Eq. 40, 41,
-//   44) L_PM = exp(−1.25 (k_p/k)²),  J_p = γ^exp(−(√(k/k_p) − 1)²/(2δ²)),  δ = 0.08 (1 + 4 Ω⁻³)    (Eq. 2, 3)
+//   B_h = ½ α_m (c_m/c) L_PM J_p exp(−¼ (k/k_m − 1)²)                                          (Eq. 40, 41, 44)
+//   L_PM = exp(−1.25 (k_p/k)²),  J_p = γ^exp(−(√(k/k_p) − 1)²/(2δ²)),  δ = 0.08 (1 + 4 Ω⁻³)    (Eq. 2, 3)
 //   Ω = 0.84 tanh((X/2.2e4)^0.4)^−0.75,  X = g F/U²,  k_p = (g/U²) Ω²                          (Eq. 4, 37)
 //
 // L_PM belongs in B_h too (the paper's Eq. 40 leaves it to the reader): without it Hs at 10 m/s is 88 m, with

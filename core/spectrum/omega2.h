@@ -3,8 +3,8 @@
 // A progression has Δω ∝ ω, so h² ∝ ω⁻⁴ = S Δω means S ∝ ω⁻⁵. The paper leaves constant and range to the
 // artist; here
 //
-//   S(ω) = α g² ω⁻⁵ for ω ≥ ωc, 0 below;  α = 8.1e-3 (Phillips' constant, as in Pierson–Moskowitz), ωc = β^¼
-//   g/U19.5
+//   S(ω) = α g² ω⁻⁵ for ω ≥ ωc, 0 below
+//   α = 8.1e-3 (Phillips' constant, as in Pierson–Moskowitz), ωc = β^¼ g/U19.5
 //
 // with which ∫S dω = α g²/(4 ωc⁴) is Pierson–Moskowitz' at the same wind.
 #pragma once

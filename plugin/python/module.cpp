@@ -33,13 +33,14 @@ PYBIND11_MODULE(pelagic, module) {
         "Without the place for a scene that is not read from a file.";
 
     py::register_exception<pelagic::files::FileError>(module, "FileError", PyExc_OSError).doc() =
-        "A file or folder that can't be written: its path, the reason and the remedy.";
+        "A file or folder that can't be read or written: its path, why, and what would do.";
 
     pelagic::python::add_watch(module);
     pelagic::python::add_scene(module);
     pelagic::python::add_surfaces(module);
     pelagic::python::add_sea(module);
     pelagic::python::add_frame(module);
+    pelagic::python::add_baked(module);
     module.def(
         "explain", &explain_bake, py::arg("scene"),
         "What baking this scene computes, and why: each output, product, field, transform with its size, "

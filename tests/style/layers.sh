@@ -27,5 +27,5 @@ allow plugin/bake "core/[a-z]+ plugin/files plugin/exr plugin/usd"
 allow plugin/render "core/[a-z]+ plugin/files plugin/exr plugin/png"
 allow plugin/preview "core/[a-z]+ plugin/files plugin/exr plugin/png plugin/render"
 allow plugin/cli "core/[a-z]+ plugin/files plugin/shot plugin/bake plugin/render plugin/preview"
-allow plugin/python "core/[a-z]+ plugin/files plugin/shot plugin/bake plugin/render"
+allow plugin/python "core/[a-z]+ plugin/files plugin/shot plugin/usd plugin/bake plugin/render"
 exit $bad

@@ -25,7 +25,5 @@ allow plugin/usd ""
 allow plugin/shot "core/base core/scene"
 allow plugin/bake "core/[a-z]+ plugin/files plugin/exr plugin/usd"
 allow plugin/render "core/[a-z]+ plugin/files plugin/exr plugin/png"
-allow plugin/preview "core/[a-z]+ plugin/files plugin/exr plugin/png plugin/render"
-allow plugin/cli "core/[a-z]+ plugin/files plugin/shot plugin/bake plugin/render plugin/preview"
-allow plugin/python "core/[a-z]+ plugin/shot"
+allow plugin/python "core/[a-z]+ plugin/files plugin/shot plugin/usd plugin/render plugin/gpu"
 exit $bad

@@ -1,6 +1,7 @@
 // The Python module `pelagic`: thin, because the work is core's. Arrays are numpy's, exceptions Python's, and
 // long work lets other Python threads run.
 #include "core/plan/plan.h"
+#include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
 #include "plugin/shot/shot.h"
 
@@ -31,9 +32,15 @@ PYBIND11_MODULE(pelagic, module) {
         "WHAT IS.\n"
         "Without the place for a scene that is not read from a file.";
 
+    py::register_exception<pelagic::files::FileError>(module, "FileError", PyExc_OSError).doc() =
+        "A file or folder that can't be read or written: its path, why, and what would do.";
+
+    pelagic::python::add_watch(module);
     pelagic::python::add_scene(module);
+    pelagic::python::add_surfaces(module);
     pelagic::python::add_sea(module);
-    pelagic::python::add_patch(module);
+    pelagic::python::add_frame(module);
+    pelagic::python::add_baked(module);
     module.def(
         "explain", &explain_bake, py::arg("scene"),
         "What baking this scene computes, and why: each output, product, field, transform with its size, "

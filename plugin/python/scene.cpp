@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,7 +12,9 @@
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/shot_text.h"
 #include "core/scene/validate.h"
+#include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
 #include "plugin/shot/shot.h"
 
@@ -268,6 +271,15 @@ py::list described_keys() {
     return out;
 }
 
+// A shot file may be read from any folder.
+std::string text_of_shot(const Scene& scene) {
+    Scene placed = scene;
+    const auto absolute = [](std::string& path) { path = std::filesystem::absolute(path).string(); };
+    if (placed.light.sky != Light{}.sky) absolute(placed.light.sky);
+    if (placed.sea.measured) absolute(placed.sea.measured->file);
+    return shot_text(placed);
+}
+
 std::vector<std::string> problem_lines(const Scene& scene) {
     std::vector<std::string> lines;
     for (const Problem& problem : validate(scene)) lines.push_back(text_of(problem));
@@ -297,6 +309,26 @@ void add_scene(py::module_& module) {
             [](const std::filesystem::path& path) { return std::make_shared<Scene>(load_shot(path)); },
             py::arg("path"),
             "The scene that a shot file describes. ShotError with every problem of the file.")
+        .def_static(
+            "from_text",
+            [](const std::string& text, const std::filesystem::path& folder) {
+                return std::make_shared<Scene>(parse_shot(text, folder / "text"));
+            },
+            py::arg("text"), py::arg("folder") = ".",
+            "The scene that a shot file's text describes; paths in it are from this folder. ShotError with "
+            "every problem, in whose lines the text is called \"text\" in the folder.")
+        .def(
+            "shot_text", &text_of_shot,
+            "The shot file that describes the scene: the keys that aren't at their defaults. Paths in it are "
+            "absolute.")
+        .def(
+            "save",
+            [](const Scene& self, const std::filesystem::path& path) {
+                files::write_atomically(path, text_of_shot(self));
+            },
+            py::arg("path"),
+            "Writes shot_text() to a file, which is the old one until the new one is whole. FileError where "
+            "it can't be written.")
         .def("validate", &problem_lines,
              "Every problem of the scene, a line each: KEY = VALUE: PROBLEM; accepted: WHAT IS. Empty: it "
              "can be "

@@ -1,0 +1,92 @@
+// pelagic.read_mesh: the mesh files of a bake as arrays.
+#include <pybind11/numpy.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "plugin/files/files.h"
+#include "plugin/python/bindings.h"
+#include "plugin/shot/text_file.h"
+#include "plugin/usd/read_mesh.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+
+constexpr std::size_t kMostBytes = std::size_t{8} << 30;  // a frame of 8192² quads has 3.5 GB
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& problem) {
+    throw files::FileError(
+        path.string() + ": " + problem + "; accepted: a mesh file of a bake, mesh/NAME.####.usdc", path,
+        std::make_error_code(std::errc::io_error));
+}
+
+usd::MeshLayer read_layer(const std::filesystem::path& path) {
+    try {
+        return usd::read_mesh_layer(read_text_file(path, kMostBytes));
+    } catch (const TextFileError& error) {
+        refuse(path, error.what());
+    } catch (const usd::ReadError& error) {
+        refuse(path, error.what());
+    }
+}
+
+// USD's names and those of evaluate().
+constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+    {"points", "position"},
+    {"normals", "normal"},
+    {"velocities", "velocity"},
+    {"primvars:slopeVariance", "slope_variance"},
+    {"primvars:whitecapCoverage", "coverage"},
+    {"primvars:st", "st"},
+    {"faceVertexCounts", "face_counts"},
+    {"faceVertexIndices", "face_corners"}};
+
+// An array that owns the numbers where they are.
+template <class T>
+py::array as_array(std::vector<T> values, int components) {
+    const auto count = static_cast<py::ssize_t>(values.size()) / components;
+    std::vector<py::ssize_t> shape{count};
+    if (components > 1) shape.push_back(components);
+    auto owned = std::make_unique<std::vector<T>>(std::move(values));
+    const T* const numbers = owned->data();
+    const py::capsule owner(owned.release(), [](void* made) { delete static_cast<std::vector<T>*>(made); });
+    return py::array_t<T>(shape, numbers, owner);
+}
+
+py::dict read_mesh(const std::filesystem::path& path) {
+    usd::MeshLayer layer;
+    {
+        const py::gil_scoped_release others_may_run;
+        layer = read_layer(path);
+    }
+    py::dict arrays;
+    for (usd::MeshArray& array : layer.arrays) {
+        for (const auto& [name, key] : kNames)
+            if (name == array.name)
+                arrays[py::str(std::string(key))] =
+                    std::visit([&](auto& values) { return as_array(std::move(values), array.components); },
+                               array.values);
+    }
+    return arrays;
+}
+
+}  // namespace
+
+void add_baked(py::module_& module) {
+    module.def(
+        "read_mesh", &read_mesh, py::arg("path"),
+        "What a mesh file of a bake holds, DIR/mesh/NAME.####.usdc or .usda, NAME.topology.usdc: a "
+        "dict of those that are there, float32 but for the faces.\n\n"
+        "position: (n, 3) [m]. normal: (n, 3). velocity: (n, 3) [m/s]. slope_variance: (n, 3), xx, yy, "
+        "xy. coverage: (n,). st: (n, 2), 0 to 1.\n"
+        "face_counts: int32 (f,), corners of each face. face_corners: int32, their points.\n\n"
+        "A frame of a camera's grid has its own faces; of other surfaces they and st are in the "
+        "topology's file alone. FileError for a file that is missing, cut short, damaged or another "
+        "program's; what is returned fits together. Other threads run meanwhile.");
+}
+
+}  // namespace pelagic::python

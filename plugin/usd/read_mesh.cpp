@@ -1,0 +1,71 @@
+// See read_mesh.h.
+#include "plugin/usd/read_mesh.h"
+
+#include <set>
+
+namespace pelagic::usd {
+
+namespace {
+
+template <class T>
+std::span<const T> values_of(const MeshLayer& layer, std::string_view name) {
+    for (const MeshArray& array : layer.arrays)
+        if (array.name == name) return std::get<std::vector<T>>(array.values);
+    return {};
+}
+
+template <class Vector>
+std::span<const Vector> vectors_of(const MeshLayer& layer, std::string_view name) {
+    const auto numbers = values_of<float>(layer, name);
+    return {reinterpret_cast<const Vector*>(numbers.data()), numbers.size() / Vector::length()};
+}
+
+// By the writers' own rules.
+void check(const MeshLayer& layer) {
+    std::set<std::string_view> names;
+    for (const MeshArray& array : layer.arrays)
+        if (!names.insert(array.name).second) throw std::invalid_argument(array.name + " is there twice");
+    const Faces faces{.counts = values_of<std::int32_t>(layer, "faceVertexCounts"),
+                      .indices = values_of<std::int32_t>(layer, "faceVertexIndices"),
+                      .st = vectors_of<glm::vec2>(layer, "primvars:st")};
+    if (!layer.frame) {
+        check(Topology{
+            .face_vertex_counts = faces.counts, .face_vertex_indices = faces.indices, .st = faces.st});
+        return;
+    }
+    MeshSample sample{.points = vectors_of<glm::vec3>(layer, "points"),
+                      .normals = vectors_of<glm::vec3>(layer, "normals"),
+                      .velocities = vectors_of<glm::vec3>(layer, "velocities"),
+                      .slope_variance = vectors_of<glm::vec3>(layer, "primvars:slopeVariance"),
+                      .whitecap_coverage = values_of<float>(layer, "primvars:whitecapCoverage")};
+    if (!faces.counts.empty() || !faces.indices.empty() || !faces.st.empty()) sample.faces = faces;
+    varying_values(sample, {});
+}
+
+}  // namespace
+
+std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::string_view array_type) {
+    static const std::vector<VaryingAttribute> known = varying_attributes({true, true, true, true, true});
+    for (const VaryingAttribute& attribute : known)
+        if (attribute.name == name && name != "extent" && array_type == std::string(attribute.type) + "[]")
+            return attribute;
+    return std::nullopt;
+}
+
+bool is_integer(const VaryingAttribute& attribute) {
+    return attribute.type == "int";
+}
+
+MeshLayer read_mesh_layer(std::string_view bytes) {
+    const bool is_crate = bytes.starts_with(kCrateMagic);
+    if (!is_crate && !bytes.starts_with(kTextMagic)) throw ReadError("is not a layer of USD");
+    MeshLayer layer = is_crate ? read_crate(bytes) : read_text(bytes);
+    try {
+        check(layer);
+    } catch (const std::invalid_argument& error) {
+        throw ReadError(std::string("is damaged: ") + error.what());
+    }
+    return layer;
+}
+
+}  // namespace pelagic::usd

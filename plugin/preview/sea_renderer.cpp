@@ -14,14 +14,14 @@
 #include <span>
 #include <utility>
 
+#include "plugin/gpu/sea_layout.h"
+#include "plugin/gpu/shader_variants.h"
+#include "plugin/gpu/uniforms.h"
 #include "plugin/preview/gl_objects.h"
 #include "plugin/preview/gl_stage_timer.h"
 #include "plugin/preview/gl_textures.h"
-#include "plugin/preview/sea_layout.h"
 #include "plugin/preview/sea_textures.h"
 #include "plugin/preview/shader_program.h"
-#include "plugin/preview/shader_source.h"
-#include "plugin/preview/shader_variants.h"
 
 namespace pelagic {
 namespace {
@@ -77,8 +77,7 @@ struct SeaRenderer::Implementation {
 
     GlTexture sky_map;
     int sky_map_size = 0;
-    Sky light;  // without its map
-    WaterBody water;
+    std::vector<Uniform> light;
 
     GlVertexArray grid_array, no_array;
     GlBuffer grid_vertices, grid_indices;
@@ -193,12 +192,7 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
                 0.5f * static_cast<float>(view.resolution.y));
     glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
     bind_texture(kSkyMap, sky_map);
-    set_uniform(program.uniform("sun_direction"), light.sun_direction);
-    set_uniform(program.uniform("sun_radiance"), light.sun_radiance);
-    glUniform1f(program.uniform("sun_angular_radius"), light.sun_angular_radius);
-    set_uniform(program.uniform("sun_irradiance"), light.sun_irradiance);
-    set_uniform(program.uniform("sky_irradiance"), light.sky_irradiance);
-    set_uniform(program.uniform("water_reflectance"), water.reflectance);
+    set_uniforms(program, light);
 }
 
 void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
@@ -242,9 +236,7 @@ std::string SeaRenderer::device() const {
 
 void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
     Implementation& of = *implementation_;
-    of.light = sky;
-    of.light.map = SkyMap();
-    of.water = water;
+    of.light = light_uniforms(sky, water);
     of.sky_map_size = sky.map.size();
     bind_texture(kSkyMap, of.sky_map);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);

@@ -17,7 +17,8 @@
 #include "core/lighting/lighting.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
-#include "core/waves/frame.h"
+#include "plugin/gpu/draw_options.h"
+#include "plugin/gpu/packed_frame.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {
@@ -26,48 +27,6 @@ namespace pelagic {
 class PreviewError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
-};
-
-class SeaLayout;  // sea_layout.h
-
-// One frame's fields in the layout of the textures. Needs no OpenGL. Any thread may fill it, one at a time.
-// Filling it again allocates nothing.
-class PackedFrame {
-  public:
-    // `query`: index into the queries of the sea's plan. Throws std::invalid_argument for a query on a
-    // lattice or of a single cascade: a picture needs arbitrary points and the whole sea.
-    PackedFrame(std::shared_ptr<const Sea<float>> sea, int query);
-
-    // Throws std::invalid_argument unless `frame` is of the same sea and has a time.
-    void pack(const Frame<float>& frame);
-
-    const std::shared_ptr<const SeaLayout>& layout() const { return layout_; }
-    double time_s() const { return time_s_; }
-    double time_within_loop_s() const { return time_within_loop_s_; }
-    // By texture of the layout: rows of its width, channels interleaved.
-    const std::vector<std::vector<float>>& planes() const { return planes_; }
-
-  private:
-    std::shared_ptr<const SeaLayout> layout_;
-    std::vector<std::vector<float>> planes_;
-    double time_s_ = 0.0, time_within_loop_s_ = 0.0;
-};
-
-// What a picture shows instead of the light.
-enum class FalseColour {
-    None,
-    FilterLevel,     // the rung that the pixel's waves come from: hues, interpolated between rungs
-    HiddenVariance,  // σxx + σyy of the waves that the pixel hides
-    Coverage,        // of whitecaps
-};
-
-struct DrawOptions {
-    LightingChoice lighting;
-    FalseColour false_colour = FalseColour::None;
-    bool wireframe = false;  // the grid's edges on black
-    // Each term in a separate texture, for read_layers(). Otherwise only their sum is written, which is
-    // faster.
-    bool layers = false;
 };
 
 // Milliseconds of the latest frame whose timer queries have finished: a few frames old, because nothing waits

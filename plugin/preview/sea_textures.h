@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "plugin/gpu/sea_layout.h"
 #include "plugin/preview/gl_objects.h"
-#include "plugin/preview/sea_layout.h"
 #include "plugin/preview/sea_renderer.h"
 #include "plugin/preview/shader_program.h"
 

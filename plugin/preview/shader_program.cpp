@@ -52,4 +52,21 @@ ShaderProgram::ShaderProgram(const ShaderSource& vertex, const ShaderSource& fra
                        messages.c_str());
 }
 
+void set_uniforms(const ShaderProgram& program, const std::vector<Uniform>& uniforms) {
+    for (const Uniform& uniform : uniforms) {
+        const GLint at = program.uniform(uniform.name.c_str());
+        const glm::vec4& v = uniform.value;
+        if (uniform.is_integer)
+            glUniform1i(at, static_cast<GLint>(v.x));
+        else if (uniform.components == 1)
+            glUniform1f(at, v.x);
+        else if (uniform.components == 2)
+            glUniform2f(at, v.x, v.y);
+        else if (uniform.components == 3)
+            glUniform3f(at, v.x, v.y, v.z);
+        else
+            glUniform4f(at, v.x, v.y, v.z, v.w);
+    }
+}
+
 }  // namespace pelagic

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "plugin/gpu/shader_source.h"
+#include "plugin/gpu/uniforms.h"
 #include "plugin/preview/gl_objects.h"
-#include "plugin/preview/shader_source.h"
 
 namespace pelagic {
 
@@ -21,5 +23,8 @@ class ShaderProgram {
   private:
     GlProgram program_;
 };
+
+// Those that the program, which must be in use, has.
+void set_uniforms(const ShaderProgram& program, const std::vector<Uniform>& uniforms);
 
 }  // namespace pelagic

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/lighting/sky_map.h"
-#include "plugin/preview/shader_variants.h"
+#include "plugin/gpu/shader_variants.h"
 #include "tests/plugin/preview/gpu.h"
 
 namespace pelagic {

@@ -12,9 +12,9 @@
 #include <random>
 
 #include "core/evaluate/evaluate.h"
-#include "plugin/preview/sea_layout.h"
+#include "plugin/gpu/sea_layout.h"
+#include "plugin/gpu/shader_variants.h"
 #include "plugin/preview/sea_textures.h"
-#include "plugin/preview/shader_variants.h"
 #include "tests/plugin/preview/gpu.h"
 
 namespace pelagic {

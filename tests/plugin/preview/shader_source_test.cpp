@@ -1,5 +1,5 @@
 // The conversion of shared formulas to GLSL, and of a driver's messages.
-#include "plugin/preview/shader_source.h"
+#include "plugin/gpu/shader_source.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "plugin/preview/sea_layout.h"
+#include "plugin/gpu/sea_layout.h"
 
 #include <tbb/parallel_for.h>
 
@@ -10,7 +10,6 @@
 
 #include "core/plan/grid_layout.h"
 #include "core/plan/products.h"
-#include "plugin/preview/sea_renderer.h"
 
 namespace pelagic {
 
@@ -168,18 +167,6 @@ std::vector<glm::vec4> SeaLayout::train_texels() const {
             at(4 + m / 4, i)[static_cast<int>(m % 4)] = trains.hidden_alone[i][m];
     }
     return texels;
-}
-
-PackedFrame::PackedFrame(std::shared_ptr<const Sea<float>> sea, int query)
-    : layout_(std::make_shared<SeaLayout>(std::move(sea), query)) {}
-
-void PackedFrame::pack(const Frame<float>& frame) {
-    if (&frame.sea() != &layout_->sea())
-        throw std::invalid_argument("the frame is of another sea than the one that it is packed for");
-    if (!frame.is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
-    layout_->fill(frame, planes_);
-    time_s_ = frame.time_s();
-    time_within_loop_s_ = frame.time_within_loop_s();
 }
 
 }  // namespace pelagic

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "plugin/preview/sea_layout.h"
-#include "plugin/preview/sea_renderer.h"
-#include "plugin/preview/shader_source.h"
+#include "plugin/gpu/draw_options.h"
+#include "plugin/gpu/sea_layout.h"
+#include "plugin/gpu/shader_source.h"
 
 namespace pelagic {
 

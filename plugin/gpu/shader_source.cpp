@@ -1,4 +1,4 @@
-#include "plugin/preview/shader_source.h"
+#include "plugin/gpu/shader_source.h"
 
 #include <algorithm>
 #include <regex>

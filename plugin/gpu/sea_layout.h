@@ -2,7 +2,7 @@
 // Needs no OpenGL.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
@@ -65,6 +65,11 @@ class SeaLayout {
     // describes the rows.
     static constexpr int kTrainTexels = 8;
     std::vector<glm::vec4> train_texels() const;
+
+    // For points relative to an origin [m]: the uniform block of cascades.glsl, as large for each; and, where
+    // the sea has trains, their phases there [cycles], one float a train.
+    std::vector<std::byte> tables(glm::dvec2 origin_m) const;
+    std::vector<float> train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const;
 
   private:
     Ladder ladder_of(const std::vector<double>& footprints_m, const std::vector<int>& levels) const;

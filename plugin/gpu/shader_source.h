@@ -40,6 +40,8 @@ class ShaderSource {
         for (const std::string_view path : paths) add_file(path);
     }
     const std::string& text() const { return text_; }
+    // The same without its first line, for hosts that add their own.
+    std::string_view body() const { return std::string_view(text_).substr(text_.find('\n') + 1); }
 
     // A driver's messages with their places as path and line, and with the source line below each message.
     std::string explain(std::string_view messages) const;

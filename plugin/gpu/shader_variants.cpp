@@ -1,4 +1,4 @@
-#include "plugin/preview/shader_variants.h"
+#include "plugin/gpu/shader_variants.h"
 
 #include <algorithm>
 #include <utility>
@@ -19,6 +19,15 @@ std::vector<std::string_view> joined(std::initializer_list<std::vector<std::stri
     return all;
 }
 
+// Where the sky's map is, and where the light goes.
+const char* sky_file(const DrawOptions& options) {
+    return options.for_host ? "plugin/gpu/sky_atlas.glsl" : "plugin/gpu/sky_texture.glsl";
+}
+std::vector<std::string_view> output_files(const DrawOptions& options) {
+    if (options.for_host) return {"core/lighting/tone.glsl", "plugin/gpu/host_outputs.glsl"};
+    return {"plugin/gpu/sea_outputs.glsl"};
+}
+
 // The constants that the shaders of sea and sky share.
 std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
@@ -37,10 +46,10 @@ const std::vector<std::string_view>& lighting_files() {
 
 const std::vector<std::string_view>& query_files() {
     static const std::vector<std::string_view> files{
-        "core/lighting/special.glsl",   "plugin/preview/prelude.glsl", "core/plan/filter.inl",
-        "core/waves/spline.inl",        "core/waves/whitecaps.inl",    "core/evaluate/surface.inl",
-        "core/waves/trains.inl",        "core/evaluate/hidden.inl",    "plugin/preview/places.glsl",
-        "plugin/preview/cascades.glsl", "plugin/preview/trains.glsl",  "plugin/preview/query.glsl"};
+        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",  "core/plan/filter.inl",
+        "core/waves/spline.inl",      "core/waves/whitecaps.inl", "core/evaluate/surface.inl",
+        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "plugin/gpu/places.glsl",
+        "plugin/gpu/cascades.glsl",   "plugin/gpu/trains.glsl",   "plugin/gpu/query.glsl"};
     return files;
 }
 
@@ -87,29 +96,32 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     return {query_constants(layout, coverage) + lighting_constants(lighting, sky_map_size) +
                 picture_constants(options),
-            joined({query_files(), {"plugin/preview/sea_vertex.glsl"}}),
             joined({query_files(),
-                    {"plugin/preview/sky_texture.glsl"},
+                    {options.for_host ? "plugin/gpu/host_vertex.glsl" : "plugin/gpu/sea_vertex.glsl"}}),
+            joined({query_files(),
+                    {"plugin/gpu/light_uniforms.glsl", sky_file(options)},
                     lighting_files(),
-                    {"plugin/preview/rays.glsl", "plugin/preview/sea_outputs.glsl",
-                     "plugin/preview/false_colour.glsl", "plugin/preview/sea_fragment.glsl"}})};
+                    {"plugin/gpu/rays.glsl"},
+                    output_files(options),
+                    {"plugin/gpu/false_colour.glsl", "plugin/gpu/sea_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size) {
     LightingChoice lighting = options.lighting;
     lighting.sky = lighting.sky && sky_map_size > 0;
     return {lighting_constants(lighting, sky_map_size) + picture_constants(options),
-            {"plugin/preview/full_vertex.glsl"},
-            joined({{"core/lighting/special.glsl", "plugin/preview/sky_texture.glsl"},
+            {"plugin/gpu/full_vertex.glsl"},
+            joined({{"core/lighting/special.glsl", "plugin/gpu/light_uniforms.glsl", sky_file(options)},
                     lighting_files(),
-                    {"core/lighting/background.glsl", "plugin/preview/rays.glsl",
-                     "plugin/preview/sea_outputs.glsl", "plugin/preview/sky_fragment.glsl"}})};
+                    {"core/lighting/background.glsl", "plugin/gpu/rays.glsl"},
+                    output_files(options),
+                    {"plugin/gpu/sky_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_screen(bool layers, bool plain) {
     return {constant("kLayers", layers) + constant("kPlain", plain),
-            {"plugin/preview/full_vertex.glsl"},
-            {"core/lighting/tone.glsl", "plugin/preview/show_fragment.glsl"}};
+            {"plugin/gpu/full_vertex.glsl"},
+            {"core/lighting/tone.glsl", "plugin/gpu/show_fragment.glsl"}};
 }
 
 }  // namespace pelagic

@@ -8,8 +8,8 @@ foreach(file ${files})
   string(REPLACE "\n" ")pelagic\" \"\\n\"\n    R\"pelagic(" text "${text}")
   string(APPEND rows "    {\"${file}\", R\"pelagic(${text})pelagic\"},\n")
 endforeach()
-file(WRITE ${OUT} "// Made by plugin/preview/embed_shaders.cmake.
-#include \"plugin/preview/shader_source.h\"
+file(WRITE ${OUT} "// Made by plugin/gpu/embed_shaders.cmake.
+#include \"plugin/gpu/shader_source.h\"
 
 namespace pelagic {
 

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What this Blender can do. The only file that asks: everything else calls these functions."""
+
+import numpy as np
+
+
+def set_positions(mesh, positions):
+    """positions: float32 (n, 3), contiguous."""
+    attribute = mesh.attributes.get("position")  # since 3.5; before, vertices have a structure of their own
+    if attribute is not None and attribute.data_type == "FLOAT_VECTOR":
+        attribute.data.foreach_set("vector", positions.ravel())
+    else:
+        mesh.vertices.foreach_set("co", positions.ravel())
+
+
+def shade_smooth(mesh):
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))

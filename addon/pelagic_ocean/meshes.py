@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A surface as a Blender mesh, and a frame's buffers in it."""
+
+import zlib
+
+import numpy as np
+
+from . import compat
+
+SIGNATURE = "pelagic_surface"  # the mesh's own property: which surface its vertices are
+REST = "rest_position"
+
+# The mesh's attributes: name, type, the property for foreach_set, the module's product.
+ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
+              ("slope_variance", "FLOAT_VECTOR", "vector", "slope_variance"),
+              ("whitecap_coverage", "FLOAT", "value", "coverage"))
+
+
+def holds(mesh, surface):
+    return mesh.get(SIGNATURE) == surface.signature and len(mesh.vertices) == len(surface)
+
+
+def put_surface(mesh, surface):
+    """Makes the mesh's vertices and faces the surface's, at rest."""
+    mesh.clear_geometry()
+    mesh.vertices.add(len(surface))
+    mesh.loops.add(len(surface.corners))
+    mesh.polygons.add(len(surface.face_starts))
+    mesh.loops.foreach_set("vertex_index", surface.corners)
+    mesh.polygons.foreach_set("loop_start", surface.face_starts)
+    mesh.polygons.foreach_set("loop_total", np.diff(surface.face_starts, append=np.int32(len(surface.corners))))
+    compat.shade_smooth(mesh)
+    rest = np.pad(surface.rest, ((0, 0), (0, 1)))
+    compat.set_positions(mesh, rest)
+    mesh.update(calc_edges=True)
+    uv = mesh.uv_layers.new(name="UVMap")
+    uv.data.foreach_set("uv", (surface.rest[surface.corners] / np.float32(surface.uv_m) + np.float32(0.5)).ravel())
+    put_rest(mesh, rest)
+    mesh[SIGNATURE] = surface.signature
+
+
+def put_rest(mesh, rest):
+    """rest: float32 (n, 3)."""
+    attribute(mesh, REST, "FLOAT_VECTOR").data.foreach_set("vector", rest.ravel())
+
+
+def rest_of(mesh):
+    """float32 (n, 3) of put_rest(), or None."""
+    stored = mesh.attributes.get(REST)
+    if stored is None:
+        return None
+    rest = np.empty((len(mesh.vertices), 3), np.float32)
+    stored.data.foreach_get("vector", rest.ravel())
+    return rest
+
+
+def edges_of(mesh):
+    """int32 (m, 2)."""
+    edges = np.empty(2 * len(mesh.edges), np.int32)
+    mesh.edges.foreach_get("vertices", edges)
+    return edges.reshape(-1, 2)
+
+
+def capture(mesh):
+    """Makes the mesh's own vertices a surface: its rest is what rest_position says, or where they are now. Returns the
+    signature."""
+    rest = rest_of(mesh)
+    if rest is None:
+        rest = np.empty((len(mesh.vertices), 3), np.float32)
+        mesh.vertices.foreach_get("co", rest.ravel())
+        put_rest(mesh, rest)
+    mesh[SIGNATURE] = f"own {len(rest)} {zlib.crc32(rest):08x} {zlib.crc32(edges_of(mesh)):08x}"
+    return mesh[SIGNATURE]
+
+
+def forget_rest(mesh):
+    """Lets rest_position go: where the vertices are now counts from here on."""
+    if REST in mesh.attributes:
+        mesh.attributes.remove(mesh.attributes[REST])
+
+
+def restore(mesh):
+    """What capture() and put_frame() changed is as before."""
+    compat.set_positions(mesh, rest_of(mesh))
+    for name in (REST, *(row[0] for row in ATTRIBUTES)):
+        if name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
+    del mesh[SIGNATURE]
+    mesh.update()
+
+
+def attribute(mesh, name, kind):
+    """The point attribute, made where it is missing or of another kind."""
+    found = mesh.attributes.get(name)
+    if found is not None and (found.data_type, found.domain) != (kind, "POINT"):
+        mesh.attributes.remove(found)
+        found = None
+    return found or mesh.attributes.new(name, kind, "POINT")
+
+
+def put_frame(mesh, arrays):
+    """arrays: each product's, contiguous float32. Attributes whose products aren't there are taken away."""
+    for name, kind, numbers, product in ATTRIBUTES:
+        if product in arrays:
+            attribute(mesh, name, kind).data.foreach_set(numbers, arrays[product].ravel())
+        elif name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
+    compat.set_positions(mesh, arrays["position"])
+    mesh.update()

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The compiled module: `pelagic`, and `problem`, a sentence that says why it is None if it is."""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+NAME = "pelagic"
+LIB = Path(__file__).parent / "lib"
+THIS_PYTHON = f"{sys.version_info.major}.{sys.version_info.minor}"
+
+
+def _bundled():
+    """The module's file in lib/ for this Python; None where lib/ has none at all, ImportError if only others' are there."""
+    files = sorted(LIB.glob(NAME + ".*.so")) + sorted(LIB.glob(NAME + ".*.pyd"))
+    tag = f"cp{THIS_PYTHON.replace('.', '')}-" if sys.platform == "win32" else f"cpython-{THIS_PYTHON.replace('.', '')}-"
+    for file in files:
+        if tag in file.name:
+            return file
+    if files:
+        raise ImportError(f"it was built for another Python ({', '.join(file.name for file in files)}), "
+                          f"and this Blender's is {THIS_PYTHON}. Install the zip that was built for Python {THIS_PYTHON}")
+    return None
+
+
+def _load():
+    file = _bundled()
+    if NAME in sys.modules:  # enabled again: a compiled module can't be loaded twice
+        return sys.modules[NAME]
+    if file is None:
+        return importlib.import_module(NAME)
+    spec = importlib.util.spec_from_file_location(NAME, file)
+    made = importlib.util.module_from_spec(spec)
+    sys.modules[NAME] = made  # before it runs: it imports itself by its name
+    try:
+        spec.loader.exec_module(made)
+    except BaseException:
+        del sys.modules[NAME]
+        raise
+    return made
+
+
+try:
+    pelagic, problem = _load(), ""
+except ImportError as error:
+    pelagic, problem = None, f"Pelagic's compiled module can't be loaded: {error}."

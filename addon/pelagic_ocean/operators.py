@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an artist does with oceans: add one, take a mesh as one, change its lists."""
+
+import bpy
+from bpy.props import BoolProperty, IntProperty, StringProperty
+
+from . import meshes, ocean, play
+from .module import pelagic, problem
+from .properties import BY_PATH
+
+CLIP_END_M = 100e3  # beyond the horizon, for cameras and views that would cut the sea off
+
+
+class NeedsModule:
+    @classmethod
+    def poll(cls, context):
+        if pelagic is None:
+            cls.poll_message_set(problem)
+        return pelagic is not None and context.mode == "OBJECT"
+
+
+class NeedsOcean(NeedsModule):
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and ocean.is_ocean(context.object)
+
+
+def _show_now(context, obj):
+    """The sea is in the mesh when the operator returns."""
+    depsgraph = context.evaluated_depsgraph_get()
+    play.show(obj, context.scene, depsgraph)
+    return play.simulation_of(obj)
+
+
+def _see_far(context):
+    """Lets the camera and the views of the window see the horizon."""
+    if context.scene.camera and context.scene.camera.type == "CAMERA":
+        camera = context.scene.camera.data
+        camera.clip_end = max(camera.clip_end, CLIP_END_M)
+    for area in context.screen.areas if context.screen else ():
+        if area.type == "VIEW_3D":
+            space = area.spaces.active
+            space.clip_end = max(space.clip_end, CLIP_END_M)
+
+
+class PELAGIC_OT_add_ocean(NeedsModule, bpy.types.Operator):
+    """Add the open sea: its surface, water, sun and sky, moving with the timeline"""
+
+    bl_idname = "pelagic.add_ocean"
+    bl_label = "Pelagic Ocean"
+    bl_options = {"REGISTER", "UNDO"}
+
+    see_far: BoolProperty(name="See the horizon", default=True,
+                          description="Raise the clipping distance of the camera and of the views")
+
+    def execute(self, context):
+        obj = ocean.make("Ocean", context.collection)
+        for other in context.selected_objects:
+            other.select_set(False)
+        obj.select_set(True)
+        context.view_layer.objects.active = obj
+        if self.see_far:
+            _see_far(context)
+        context.scene.render.use_lock_interface = True  # frames change on the render's thread
+        simulation = _show_now(context, obj)
+        if simulation.problem:
+            self.report({"ERROR"}, simulation.problem)
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class PELAGIC_OT_use_mesh(NeedsModule, bpy.types.Operator):
+    """Make the active mesh a sea: its vertices are the surface at rest"""
+
+    bl_idname = "pelagic.use_mesh"
+    bl_label = "Use Mesh as Ocean"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return (super().poll(context) and context.object is not None and context.object.type == "MESH"
+                and not ocean.is_ocean(context.object))
+
+    def execute(self, context):
+        obj = context.object
+        if not obj.data.vertices:
+            self.report({"ERROR"}, f"{obj.name} has no vertices: a sea needs some, such as those of a grid")
+            return {"CANCELLED"}
+        if obj.data.library:
+            self.report({"ERROR"}, f"{obj.name}'s mesh is linked from another file: make it local first")
+            return {"CANCELLED"}
+        meshes.forget_rest(obj.data)
+        meshes.capture(obj.data)
+        obj.pelagic.own_mesh = True
+        ocean.mark(obj)
+        simulation = _show_now(context, obj)
+        if simulation.problem:
+            self.report({"WARNING"}, simulation.problem)
+        return {"FINISHED"}
+
+
+class PELAGIC_OT_release_mesh(NeedsOcean, bpy.types.Operator):
+    """Make the ocean an ordinary mesh again: its own vertices go back to rest, another's stay as they are"""
+
+    bl_idname = "pelagic.release_mesh"
+    bl_label = "Release Mesh"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context):
+        obj = context.object
+        if obj.pelagic.own_mesh:
+            meshes.restore(obj.data)
+        obj.pelagic.is_ocean = obj.pelagic.own_mesh = False
+        return {"FINISHED"}
+
+
+class ListOperator(NeedsOcean):
+    path: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    def rows(self, context):
+        field = BY_PATH[self.path]
+        return getattr(getattr(context.object.pelagic, field.table), field.name)
+
+
+class PELAGIC_OT_list_add(ListOperator, bpy.types.Operator):
+    """Add an entry"""
+
+    bl_idname = "pelagic.list_add"
+    bl_label = "Add"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    def execute(self, context):
+        self.rows(context).add()
+        context.object.update_tag()
+        return {"FINISHED"}
+
+
+class PELAGIC_OT_list_remove(ListOperator, bpy.types.Operator):
+    """Remove this entry"""
+
+    bl_idname = "pelagic.list_remove"
+    bl_label = "Remove"
+    bl_options = {"REGISTER", "UNDO", "INTERNAL"}
+
+    index: IntProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    def execute(self, context):
+        rows = self.rows(context)
+        if not 0 <= self.index < len(rows):
+            return {"CANCELLED"}
+        rows.remove(self.index)
+        context.object.update_tag()
+        return {"FINISHED"}
+
+
+CLASSES = (PELAGIC_OT_add_ocean, PELAGIC_OT_use_mesh, PELAGIC_OT_release_mesh, PELAGIC_OT_list_add, PELAGIC_OT_list_remove)
+
+
+def _menu(self, _context):
+    self.layout.operator(PELAGIC_OT_add_ocean.bl_idname, icon="MOD_OCEAN")
+
+
+def register():
+    for made in CLASSES:
+        bpy.utils.register_class(made)
+    bpy.types.VIEW3D_MT_mesh_add.append(_menu)
+
+
+def unregister():
+    bpy.types.VIEW3D_MT_mesh_add.remove(_menu)
+    for made in reversed(CLASSES):
+        bpy.utils.unregister_class(made)

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The panels: a table of them, their rows from the table of keys. The same ones in the object's properties and in the
+sidebar of the 3D view."""
+
+import bpy
+
+from . import ocean, play
+from .module import pelagic, problem
+from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
+from .properties import FIELDS
+
+# Title → tables of keys.
+PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
+          "Light": ("light", "water"), "Output": ("quality", "output")}
+
+# Keys that mean something only while another has a value.
+ONLY_WITH = {"sea.spectrum_file": ("sea", "spectrum", "file"), "sea.spectrum_time": ("sea", "spectrum", "file"),
+             "waves.trains": ("waves", "model", "trochoid"), "waves.shortest_m": ("waves", "model", "trochoid"),
+             "waves.longest_m": ("waves", "model", "trochoid"), "surface.size_m": ("surface", "kind", "patch"),
+             "surface.resolution": ("surface", "kind", "patch"),
+             "surface.cell_px": ("surface", "kind", "projected-grid")}
+
+
+def _draw_words(layout, text):
+    """A message in lines that fit."""
+    line = ""
+    for word in text.split():
+        if len(line) + len(word) > 40:
+            layout.label(text=line)
+            line = ""
+        line += (" " if line else "") + word
+    layout.label(text=line)
+
+
+def _draw_list(layout, group, field):
+    head = layout.row()
+    head.label(text=field.key["label"])
+    head.operator(PELAGIC_OT_list_add.bl_idname, text="", icon="ADD").path = field.path
+    for index, row in enumerate(getattr(group, field.name)):
+        box = layout.row()
+        column = box.column(align=True)
+        for inner in field.key["keys"]:
+            column.prop(row, inner["name"])
+        remove = box.operator(PELAGIC_OT_list_remove.bl_idname, text="", icon="X")
+        remove.path, remove.index = field.path, index
+
+
+def _draw_field(layout, group, field):
+    if field.key["type"] == "entries":
+        _draw_list(layout, group, field)
+    elif field.switch:
+        row = layout.row(heading=field.key["label"])
+        row.prop(group, field.switch, text="")
+        value = row.row()
+        value.active = getattr(group, field.switch)
+        value.prop(group, field.name, text="")
+    elif field.key["type"] == "words":
+        layout.column(heading=field.key["label"]).prop(group, field.name, expand=True)
+    else:
+        layout.prop(group, field.name)
+
+
+def _draw_tables(layout, settings, tables):
+    for field in FIELDS:
+        if field.table not in tables:
+            continue
+        other = ONLY_WITH.get(field.path)
+        if other is None or getattr(getattr(settings, other[0]), other[1]) == other[2]:
+            _draw_field(layout, getattr(settings, field.table), field)
+
+
+class Main:
+    bl_label = "Pelagic Ocean"
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.type == "MESH"
+
+    def draw(self, context):
+        layout = self.layout
+        if pelagic is None:
+            _draw_words(layout.box(), problem)
+        elif not ocean.is_ocean(context.object):
+            layout.operator(PELAGIC_OT_use_mesh.bl_idname, icon="MOD_OCEAN")
+        else:
+            simulation = play.simulation_of(context.object)
+            if simulation.problem:
+                _draw_words(layout.box(), simulation.problem)
+            elif simulation.is_building:
+                layout.label(text="Building the sea…", icon="SORTTIME")
+
+
+class Sub:
+    tables = ()
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context):
+        return pelagic is not None and ocean.is_ocean(context.object)
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        settings = context.object.pelagic
+        if self.bl_label == "Surface":
+            _draw_surface(layout, settings)
+            if settings.own_mesh:
+                return
+        _draw_tables(layout, settings, self.tables)
+
+
+def _draw_surface(layout, settings):
+    if settings.own_mesh:
+        layout.label(text="The object's own mesh")
+        layout.operator(PELAGIC_OT_release_mesh.bl_idname)
+        return
+    if settings.surface.kind == "patch":
+        layout.prop(settings, "horizon")
+    layout.prop(settings, "viewport_percentage")
+
+
+PLACES = {"object": {"bl_space_type": "PROPERTIES", "bl_region_type": "WINDOW", "bl_context": "object"},
+          "view": {"bl_space_type": "VIEW_3D", "bl_region_type": "UI", "bl_category": "Pelagic"}}
+
+
+def _classes():
+    for where, place in PLACES.items():
+        main = type(f"PELAGIC_PT_{where}", (Main, bpy.types.Panel), {**place, "__doc__": None})
+        yield main
+        for title, tables in PANELS.items():
+            options = set() if title == "Sea" else {"DEFAULT_CLOSED"}
+            yield type(f"PELAGIC_PT_{where}_{title.lower()}", (Sub, bpy.types.Panel),
+                       {**place, "bl_label": title, "bl_parent_id": main.__name__, "tables": tables,
+                        "bl_options": options, "__doc__": None})
+
+
+_registered = []
+
+
+def register():
+    for made in _classes():
+        bpy.utils.register_class(made)
+        _registered.append(made)
+
+
+def unregister():
+    while _registered:
+        bpy.utils.unregister_class(_registered.pop())

@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of an ocean, `Object.pelagic`: a group for each table of a shot file, made from pelagic.keys().
+
+Key sea.wind_speed_mps is obj.pelagic.sea.wind_speed_mps, in the key's own unit. Where a key may be absent or infinite,
+the property use_NAME beside it says whether it has a number. What Blender itself knows (frames, camera) has none.
+"""
+
+import math
+import zlib
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty,
+                       IntVectorProperty, PointerProperty, StringProperty)
+
+from .module import pelagic
+
+VERSION = 1  # of the settings in a file; ocean.migrate() brings older ones here
+
+FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps"}  # and the camera's: they come from the scene
+
+# A unit of the table → arguments of a property. Degrees stay degrees: Blender's angles would be radians in scripts.
+UNITS = {"m": {"subtype": "DISTANCE", "unit": "LENGTH"}, "m/s": {"unit": "VELOCITY"},
+         "s": {"subtype": "TIME_ABSOLUTE", "unit": "TIME"}, "pixels": {"subtype": "PIXEL"}}
+SIGNS = {"degrees": "°"}  # shorter in a label
+INTEGER_LIMIT = 2**31 - 1  # of Blender's
+
+
+def shortest(number):
+    """The decimal that Blender's float32 was set from, as a double: 0.1, not 0.10000000149."""
+    return float(str(np.float32(number)))
+
+
+# ---- Keys
+
+
+@dataclass(frozen=True)
+class Field:
+    """A key that has a property, with how its value goes in and out of it."""
+
+    path: str
+    name: str
+    table: str
+    key: dict
+    absent: object = 0  # what the key is without a number, None or inf; 0: it always has one
+
+    @property
+    def switch(self):
+        """The name of the property that says whether there is a number, or ""."""
+        return "" if self.absent == 0 else "use_" + self.name
+
+    def read(self, group):
+        """The value as the module takes it, of a group: plain numbers, strings, tuples."""
+        if self.switch and not getattr(group, self.switch):
+            return self.absent
+        return READERS[self.key["type"]](self, getattr(group, self.name))
+
+    def check(self, value):
+        """ValueError if a property of Blender's can't hold the value."""
+        if self.key["type"] == "integer" and value is not None and value > INTEGER_LIMIT:
+            raise ValueError(f"{self.path} = {value}: Blender's integers end at {INTEGER_LIMIT}")
+
+    def write(self, group, value):
+        if self.switch:
+            setattr(group, self.switch, value is not None and value != self.absent)
+            if value is None or value == self.absent:
+                return
+        if self.key["type"] == "entries":
+            rows = getattr(group, self.name)
+            rows.clear()
+            for entry in value:
+                row = rows.add()
+                for inner in entry_fields(self):
+                    inner.write(row, getattr(entry, inner.name))
+            return
+        if self.key["type"] == "words":
+            value = set(value)
+        setattr(group, self.name, "" if value is None else value)
+
+
+def _text(field, value):
+    return value if value or field.key["default"] is not None else None
+
+
+READERS = {
+    "truth": lambda field, value: value,
+    "integer": lambda field, value: value,
+    "number": lambda field, value: shortest(value),
+    "point": lambda field, value: tuple(shortest(number) for number in value),
+    "pair": lambda field, value: tuple(value),
+    "word": lambda field, value: value,
+    "words": lambda field, value: tuple(choice["word"] for choice in field.key["choices"] if choice["word"] in value),
+    "text": _text,
+    "data file": _text,
+    "data time": _text,
+    "entries": lambda field, rows: tuple(tuple(inner.read(row) for inner in entry_fields(field)) for row in rows),
+}
+
+
+def _field(key):
+    table = key["path"].split(".")[0]
+    absent = 0
+    if key["type"] in ("number", "integer"):
+        if key["default"] is None and not key["required"]:
+            absent = None
+        elif key["default"] is not None and math.isinf(key["default"]):
+            absent = math.inf
+    return Field(key["path"], key["name"], table, key, absent)
+
+
+def _has_property(key):
+    if key["choices"] and not any(choice["built"] for choice in key["choices"]):
+        return False
+    return key["built"] and key["path"] not in FROM_BLENDER and not key["path"].startswith("camera.")
+
+
+FIELDS = tuple(_field(key) for key in pelagic.keys() if _has_property(key)) if pelagic else ()
+TABLES = tuple(dict.fromkeys(field.table for field in FIELDS))
+BY_PATH = {field.path: field for field in FIELDS}
+_ENTRY_FIELDS = {field.path: tuple(_field(key) for key in field.key["keys"]) for field in FIELDS}
+
+
+def entry_fields(field):
+    """The fields of a list's entries."""
+    return _ENTRY_FIELDS[field.path]
+
+
+# ---- Properties out of them
+
+
+def _touched(group, _context):
+    """A setting was changed, by hand or by a script: its object is evaluated again, and play.py sees it then."""
+    group.id_data.update_tag()
+
+
+def _sentence(text):
+    return text[:1].upper() + text[1:]
+
+
+def _label(key):
+    unit = SIGNS.get(key["unit"], key["unit"])
+    return key["label"] + (f" ({unit})" if unit and key["unit"] not in UNITS else "")
+
+
+def _common(key):
+    text = _sentence(key["help"]) or key["label"]
+    if key["accepted"]:
+        text += f". Accepted: {key['accepted']}"
+    return {"name": _label(key), "description": text, "update": _touched}
+
+
+def _numeric(key, limit=math.inf):
+    low, high = key["range"]
+    soft_low, soft_high = key["soft_range"] or key["range"]
+    kind = int if key["type"] == "integer" else float
+    low, high, soft_low, soft_high = (kind(max(min(bound, limit), -limit)) for bound in (low, high, soft_low, soft_high))
+    start = key["default"]
+    if start is None or math.isinf(start):  # a number to begin with, once it is switched on
+        start = math.sqrt(soft_low * soft_high) if key["logarithmic"] else 0.5 * (soft_low + soft_high)
+        start = kind(float(f"{start:.1g}"))
+    return {"min": low, "max": high, "soft_min": soft_low, "soft_max": soft_high, "default": start}
+
+
+def _choices(key, flags):
+    """Items whose numbers, which are what a file keeps, don't change when the core gets another word."""
+    return [(choice["word"], _sentence(choice["word"].replace("-", " ")), "",
+             1 << place if flags else zlib.crc32(choice["word"].encode()) & 0x7FFFFFFF)
+            for place, choice in enumerate(key["choices"]) if choice["built"]]
+
+
+def _number(key):
+    return FloatProperty(**_common(key), **_numeric(key), precision=3, **UNITS.get(key["unit"], {}))
+
+
+def _integer(key):
+    subtype = {"subtype": "PIXEL"} if key["unit"] == "pixels" else {}
+    return IntProperty(**_common(key), **_numeric(key, INTEGER_LIMIT), **subtype)
+
+
+def _string(key):
+    is_path = "path" in key["accepted"]
+    return StringProperty(**_common(key), default=key["default"] or "", **({"subtype": "FILE_PATH"} if is_path else {}))
+
+
+MAKERS = {
+    "truth": lambda key: BoolProperty(**_common(key), default=key["default"]),
+    "integer": _integer,
+    "number": _number,
+    "point": lambda key: FloatVectorProperty(**_common(key), size=3, subtype="XYZ", default=key["default"] or (0, 0, 0)),
+    "pair": lambda key: IntVectorProperty(**_common(key), size=2, default=key["default"] or (0, 0)),
+    "word": lambda key: EnumProperty(**_common(key), items=_choices(key, False), default=key["default"]),
+    "words": lambda key: EnumProperty(**_common(key), items=_choices(key, True), default=set(key["default"]),
+                                      options={"ENUM_FLAG", "ANIMATABLE"}),
+    "text": _string,
+    "data file": _string,
+    "data time": _string,
+}
+
+
+def _group(name, annotations, doc):
+    return type("PELAGIC_PG_" + name, (bpy.types.PropertyGroup,), {"__annotations__": annotations, "__doc__": doc})
+
+
+def _annotations(fields, classes):
+    """Properties for these fields; classes gets the groups that they need."""
+    made = {}
+    for field in fields:
+        if field.switch:
+            what = "finite" if field.absent else "given"
+            made[field.switch] = BoolProperty(
+                name=field.key["label"], default=False, update=_touched,
+                description=f"Whether {field.key['label'].lower()} is {what}; otherwise it is "
+                            f"{'infinite' if field.absent else 'chosen'}")
+        if field.key["type"] == "entries":
+            entry = _group(field.path.replace(".", "_"), _annotations(entry_fields(field), classes), field.key["help"])
+            classes.append(entry)
+            made[field.name] = CollectionProperty(type=entry, name=field.key["label"],
+                                                  description=_sentence(field.key["help"]))
+        else:
+            made[field.name] = MAKERS[field.key["type"]](field.key)
+    return made
+
+
+def _ocean_annotations():
+    """What an ocean has in Blender alone. These don't need the module."""
+    return {
+        "is_ocean": BoolProperty(name="Ocean", options={"HIDDEN"}, update=_touched),
+        "version": IntProperty(name="Settings' version", options={"HIDDEN"}),
+        "own_mesh": BoolProperty(
+            name="Own mesh", options={"HIDDEN"}, update=_touched,
+            description="The object's own vertices are the sea at rest; their places are in the attribute rest_position"),
+        "horizon": BoolProperty(
+            name="To the horizon", default=True, update=_touched,
+            description="Rings of ever larger quads round the patch, out to 30 km. A bake leaves them out"),
+        "viewport_percentage": IntProperty(
+            name="Viewport", default=100, min=1, max=100, subtype="PERCENTAGE", update=_touched,
+            description="Vertices a side while you work, as a share of what a render has"),
+    }
+
+
+_classes = []
+
+
+def register():
+    annotations = _ocean_annotations()
+    for table in TABLES:
+        group = _group(table, _annotations([field for field in FIELDS if field.table == table], _classes), table)
+        _classes.append(group)
+        annotations[table] = PointerProperty(type=group)
+    _classes.append(_group("ocean", annotations, "The settings of an ocean"))
+    for made in _classes:
+        bpy.utils.register_class(made)
+    bpy.types.Object.pelagic = PointerProperty(type=_classes[-1], name="Pelagic Ocean")
+
+
+def unregister():
+    del bpy.types.Object.pelagic
+    while _classes:
+        bpy.utils.unregister_class(_classes.pop())

@@ -1,0 +1,28 @@
+// What a picture from the GPU shows.
+#pragma once
+
+#include "core/lighting/lighting.h"
+
+namespace pelagic {
+
+// What a picture shows instead of the light.
+enum class FalseColour {
+    None,
+    FilterLevel,     // the rung that the pixel's waves come from: hues, interpolated between rungs
+    HiddenVariance,  // σxx + σyy of the waves that the pixel hides
+    Coverage,        // of whitecaps
+};
+
+struct DrawOptions {
+    LightingChoice lighting;
+    FalseColour false_colour = FalseColour::None;
+    bool wireframe = false;  // the grid's edges on black
+    // Each term in a separate texture, for read_layers(). Otherwise only their sum is written, which is
+    // faster.
+    bool layers = false;
+    // Display values, for a host that has its own projection, textures without mip levels, and a function
+    // `vec4 host_colour(vec4)` before the fragment shaders, from sRGB to what it stores.
+    bool for_host = false;
+};
+
+}  // namespace pelagic

@@ -1,0 +1,83 @@
+// What depends on the grid's origin: the uniform block of cascades.glsl, and the trains' phases. See
+// sea_layout.h.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "plugin/gpu/sea_layout.h"
+
+namespace pelagic {
+namespace {
+
+// One entry of the uniform block of cascades.glsl.
+struct TileRow {
+    std::array<std::int32_t, 4> first{}, origin{};
+    std::array<float, 4> scale{};
+};
+
+// A tile's entry for the grid's origin. The phase is computed in double, as in evaluate().
+TileRow tile_row(const SeaLayout& layout, const SeaLayout::Tile& tile, glm::dvec2 origin_m) {
+    TileRow row;
+    if (tile.n == 0) return row;
+    // Supports nodes within 2^28 of the origin. A multiple of N this large makes their numbers positive.
+    constexpr int kFarthest = 1 << 28;
+    row.first = {tile.first.x, tile.first.y, tile.n, kFarthest / tile.n * tile.n};
+    const double size_m = layout.sea().plan().cascades[tile.cascade].size_m;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double tiles = origin_m[axis] / size_m;
+        const double nodes = (tiles - std::floor(tiles)) * tile.n, node = std::floor(nodes);
+        row.origin[axis] = static_cast<std::int32_t>(node);
+        row.scale[axis] = static_cast<float>(nodes - node);
+    }
+    const SplitNumber nodes_per_m = split_number(tile.n / size_m);
+    row.scale[2] = nodes_per_m.high;
+    row.scale[3] = nodes_per_m.low;
+    return row;
+}
+
+}  // namespace
+
+std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m) const {
+    const std::size_t rungs = cells_.footprints_m.size() + pixels_.footprints_m.size();
+    const std::size_t tiles = rungs * static_cast<std::size_t>(std::max(cascades(), 1));
+    std::vector<std::array<std::int32_t, 4>> first, origin;
+    std::vector<std::array<float, 4>> scale, rung, hidden;
+    for (const Ladder* ladder : {&cells_, &pixels_}) {
+        for (const Tile& tile : ladder->tiles) {
+            const TileRow row = tile_row(*this, tile, origin_m);
+            first.push_back(row.first);
+            origin.push_back(row.origin);
+            scale.push_back(row.scale);
+        }
+        for (const double footprint_m : ladder->footprints_m)
+            rung.push_back({static_cast<float>(footprint_m), 0.0f, 0.0f, 0.0f});
+    }
+    first.resize(tiles);
+    origin.resize(tiles);
+    scale.resize(tiles);
+    for (const HiddenRung& of : hidden_)
+        for (const HiddenMoments<float>& m : {of.alone, of.with_next}) {
+            hidden.push_back({m[0], m[1], m[2], m[3]});
+            hidden.push_back({m[4], m[5], m[6], m[7]});
+        }
+    std::vector<std::byte> block;
+    const auto append = [&](const auto& rows) {
+        const auto bytes = std::as_bytes(std::span(rows));
+        block.insert(block.end(), bytes.begin(), bytes.end());
+    };
+    append(first);
+    append(origin);
+    append(scale);
+    append(rung);
+    append(hidden);
+    return block;
+}
+
+std::vector<float> SeaLayout::train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const {
+    const std::vector<double> cycles = phases_at(sea_->trains(), origin_m, time_within_loop_s);
+    return {cycles.begin(), cycles.end()};
+}
+
+}  // namespace pelagic

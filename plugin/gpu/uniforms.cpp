@@ -1,0 +1,42 @@
+#include "plugin/gpu/uniforms.h"
+
+namespace pelagic {
+namespace {
+
+Uniform number(const char* name, double value) {
+    return {name, 1, glm::vec4(static_cast<float>(value), 0.0f, 0.0f, 0.0f)};
+}
+Uniform vector(const char* name, const glm::vec3& value) {
+    return {name, 3, glm::vec4(value, 0.0f)};
+}
+
+}  // namespace
+
+std::vector<Uniform> query_uniforms(const SeaLayout& layout) {
+    std::vector<Uniform> uniforms{
+        number("whitecap_threshold", layout.sea().whitecap_threshold()),
+        {"finest_m", 2,
+         glm::vec4(static_cast<float>(layout.cells().footprints_m.front()),
+                   static_cast<float>(layout.pixels().footprints_m.front()), 0.0f, 0.0f)}};
+    if (!layout.has_trains()) return uniforms;
+    const FootprintFilter& filter = layout.sea().plan().filter;
+    uniforms.push_back({.name = "train_count",
+                        .value = glm::vec4(static_cast<float>(layout.sea().trains().count())),
+                        .is_integer = true});
+    uniforms.push_back(
+        {"train_filter", 4,
+         glm::vec4(static_cast<float>(filter.n_min), static_cast<float>(1.0 / (filter.n_max - filter.n_min)),
+                   static_cast<float>(1.0 / filter.n_max), static_cast<float>(1.0 / filter.n_min))});
+    return uniforms;
+}
+
+std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water) {
+    return {vector("sun_direction", sky.sun_direction),
+            vector("sun_radiance", sky.sun_radiance),
+            number("sun_angular_radius", static_cast<double>(sky.sun_angular_radius)),
+            vector("sun_irradiance", sky.sun_irradiance),
+            vector("sky_irradiance", sky.sky_irradiance),
+            vector("water_reflectance", water.reflectance)};
+}
+
+}  // namespace pelagic

@@ -1,0 +1,26 @@
+// The uniforms of the shaders that aren't of a view, by name.
+#pragma once
+
+#include <glm/vec4.hpp>
+#include <string>
+#include <vector>
+
+#include "core/lighting/sky.h"
+#include "core/lighting/water.h"
+#include "plugin/gpu/sea_layout.h"
+
+namespace pelagic {
+
+struct Uniform {
+    std::string name;
+    int components = 1;  // of `value` that count
+    glm::vec4 value{0.0f};
+    bool is_integer = false;
+};
+
+// Of query.glsl and trains.glsl.
+std::vector<Uniform> query_uniforms(const SeaLayout& layout);
+// Of light_uniforms.glsl.
+std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water);
+
+}  // namespace pelagic

@@ -1,0 +1,89 @@
+"""For the tests in the real Blender: the add-on from the sources, numbers of meshes, and what was checked.
+
+    from harness import *       in the scripts of this folder
+    with checking("what"):      says that it was checked; a failed assert or an exception ends Blender with an error
+"""
+
+import os
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "addon"))
+
+
+def enable():
+    """The add-on, registered from the sources; the compiled module comes from PYTHONPATH."""
+    import pelagic_ocean
+    pelagic_ocean.register()
+    return pelagic_ocean
+
+
+def fresh_file():
+    """Blender's start-up file, its cube taken away."""
+    bpy.ops.wm.read_factory_settings()
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+
+
+def add_ocean(horizon=False, **settings):
+    """A small ocean without a horizon; settings are keys with their dots as __, such as sea__wind_speed_mps."""
+    bpy.ops.pelagic.add_ocean()
+    obj = bpy.context.object
+    obj.pelagic.horizon = horizon
+    obj.pelagic.surface.resolution = 32
+    change(obj, **settings)
+    return obj
+
+
+def change(obj, **settings):
+    for path, value in settings.items():
+        table, name = path.split("__")
+        setattr(getattr(obj.pelagic, table), name, value)
+    bpy.context.view_layer.update()
+
+
+def numbers(mesh, name="position"):
+    """float32 (n, 3) or (n,) of positions or of a point attribute."""
+    if name == "position":
+        out = np.empty((len(mesh.vertices), 3), np.float32)
+        mesh.vertices.foreach_get("co", out.ravel())
+        return out
+    attribute = mesh.attributes[name]
+    out = np.empty((len(mesh.vertices), 3) if attribute.data_type == "FLOAT_VECTOR" else len(mesh.vertices), np.float32)
+    attribute.data.foreach_get("vector" if attribute.data_type == "FLOAT_VECTOR" else "value", out.ravel())
+    return out
+
+
+def evaluated_mesh(obj):
+    return obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+
+
+def resident_mib():
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+@contextmanager
+def checking(what):
+    start = time.perf_counter()
+    try:
+        yield
+    except BaseException:
+        print(f"FAILED: {what}", flush=True)
+        raise
+    print(f"checked: {what} ({time.perf_counter() - start:.1f} s)", flush=True)
+
+
+def refused(call, words):
+    """Whether an operator ends with an error that says so."""
+    try:
+        call()
+    except RuntimeError as error:
+        assert words in str(error), f"{error!r} doesn't say {words!r}"
+        return True
+    return False

@@ -18,6 +18,7 @@ from bpy_extras.io_utils import ImportHelper
 from . import meshes, ocean
 from .module import pelagic
 from .operators import NeedsModule
+from .surfaces import Surface
 
 UV_M = 100.0  # of a camera's grid, whose texture coordinates are the places themselves
 
@@ -74,22 +75,14 @@ class Bake:
         else:
             uv_m = self.scene.surface.size_m
             rest = (told["st"] - np.float32(0.5)) * np.float32(uv_m)
-        return _Surface(told, rest, uv_m, f"baked {self.record} {len(rest)} {len(told['face_counts'])}")
+        starts = np.concatenate([[0], np.cumsum(told["face_counts"])[:-1]]).astype(np.int32)
+        signature = f"baked {self.record} {len(rest)} {len(starts)}"
+        return Surface(signature, rest, 1.0, told["face_corners"], starts, uv_m=uv_m)
 
     def _topology(self):
         for file in sorted(self.folder.glob(f"{self.name}.topology.usd?")):
             return _read(str(file), file.stat().st_mtime_ns)
         raise ValueError(f"{self.folder}: {self.name}.topology.usdc is missing")
-
-
-class _Surface:
-    def __init__(self, told, rest, uv_m, signature):
-        self.rest, self.uv_m, self.signature = rest, uv_m, signature
-        self.corners = told["face_corners"]
-        self.face_starts = np.concatenate([[0], np.cumsum(told["face_counts"])[:-1]]).astype(np.int32)
-
-    def __len__(self):
-        return len(self.rest)
 
 
 def _scene_of(settings):
@@ -147,6 +140,12 @@ def show(obj, frame):
 
 
 @persistent
+def _on_data(*_):
+    """Another file, undo, redo."""
+    _on_frame(bpy.context.scene)
+
+
+@persistent
 def _on_frame(bpy_scene, _depsgraph=None):
     shown = set()
     for obj in bpy_scene.objects:
@@ -193,7 +192,6 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
         if abs(ocean.frame_rate(context.scene) / bake.scene.shot.fps - 1.0) > 1e-6:
             self.report({"WARNING"}, f"The bake has {bake.scene.shot.fps:g} frames a second, this scene "
                                      f"{ocean.frame_rate(context.scene):g}")
-        material.ensure_material(obj, bake.scene)
         for other in context.selected_objects:
             other.select_set(False)
         obj.select_set(True)
@@ -221,7 +219,7 @@ class PELAGIC_PT_baked(bpy.types.Panel):
 
 
 CLASSES = (PELAGIC_PG_baked, PELAGIC_OT_play_bake, PELAGIC_PT_baked)
-HANDLERS = ("frame_change_post", "load_post", "undo_post", "redo_post")
+HANDLERS = {"frame_change_post": _on_frame, "load_post": _on_data, "undo_post": _on_data, "redo_post": _on_data}
 
 
 def _menu(self, _context):
@@ -232,15 +230,15 @@ def register():
     for made in CLASSES:
         bpy.utils.register_class(made)
     bpy.types.Object.pelagic_baked = PointerProperty(type=PELAGIC_PG_baked, name="Pelagic Bake")
-    for name in HANDLERS:
-        getattr(bpy.app.handlers, name).append(_on_frame)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).append(handler)
     bpy.types.TOPBAR_MT_file_import.append(_menu)
 
 
 def unregister():
     bpy.types.TOPBAR_MT_file_import.remove(_menu)
-    for name in HANDLERS:
-        getattr(bpy.app.handlers, name).remove(_on_frame)
+    for name, handler in HANDLERS.items():
+        getattr(bpy.app.handlers, name).remove(handler)
     del bpy.types.Object.pelagic_baked
     for made in reversed(CLASSES):
         bpy.utils.unregister_class(made)

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, PointerProperty
-from mathutils import Matrix, Vector
+from mathutils import Euler, Matrix, Vector
 
 from . import ocean
 from .query import Water, first_ocean
@@ -110,6 +110,10 @@ def _rotation(obj):
     return obj.rotation_euler.to_matrix()
 
 
+def _euler_order(obj):
+    return "XYZ" if obj.rotation_mode in ("QUATERNION", "AXIS_ANGLE") else obj.rotation_mode
+
+
 def _frame_of(obj):
     """What leads from the object's own transforms to the world: its parent, and constraints that add to them."""
     if obj.constraints or (obj.parent and obj.parent_type != "OBJECT"):
@@ -121,8 +125,8 @@ def _follow(obj, water, depsgraph):
     """Sets the object's delta transforms. Only where they change: each change is another evaluation."""
     evaluated = obj.evaluated_get(depsgraph)
     settings = evaluated.pelagic_float
-    own_rotation = settings.own_quaternion if obj.rotation_mode == "QUATERNION" else settings.own_rotation
-    own_rotation = own_rotation.to_matrix()
+    own_rotation = (settings.own_quaternion if obj.rotation_mode == "QUATERNION"
+                    else Euler(settings.own_rotation, _euler_order(obj))).to_matrix()
     place = evaluated.location + Vector(settings.own_location)
     calm = Matrix.LocRotScale(place, own_rotation @ _rotation(evaluated), evaluated.scale * evaluated.delta_scale)
     parent_to_sea = water.matrix.inverted_safe() @ _frame_of(evaluated)
@@ -184,12 +188,13 @@ def follow_updates(bpy_scene, depsgraph):
 
 
 @persistent
-def follow_undo(bpy_scene, _unused=None):
-    follow(bpy_scene, bpy.context.evaluated_depsgraph_get())
+def follow_data(*_):
+    """Another file, undo, redo."""
+    follow(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
 
 
-HANDLERS = {"frame_change_post": follow_frame, "depsgraph_update_post": follow_updates, "undo_post": follow_undo,
-            "redo_post": follow_undo, "load_post": follow_undo}
+HANDLERS = {"frame_change_post": follow_frame, "depsgraph_update_post": follow_updates, "undo_post": follow_data,
+            "redo_post": follow_data, "load_post": follow_data}
 
 
 # ---- Operators and panels

@@ -19,10 +19,11 @@ class Water:
     them to the world."""
 
     def __init__(self, obj, bpy_scene, depsgraph=None, frame=None):
-        """frame: also between two; default the scene's. LookupError while the ocean has no sea yet."""
-        simulation = play.simulation_of(obj)
-        if simulation is None or simulation.sea is None:
-            raise LookupError(f"{obj.name} has no sea yet")
+        """frame: also between two; default the scene's. Without a depsgraph, which nobody may ask for while one is
+        being evaluated: as it plays just now. LookupError while the ocean has no sea."""
+        simulation = play.brought_up(obj, bpy_scene, depsgraph) if depsgraph else play.simulation_of(obj)
+        if simulation.sea is None:
+            raise LookupError(f"{obj.name} has no sea: {simulation.problem or 'it is being built'}")
         frame = bpy_scene.frame_current_final if frame is None else frame
         self._frame = simulation.frame_at(simulation.scene.shot.time_s(frame))
         self.matrix = Matrix((obj.evaluated_get(depsgraph) if depsgraph else obj).matrix_world)

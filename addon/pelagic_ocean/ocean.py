@@ -65,11 +65,12 @@ def _with_settings(settings):
 
 
 def _measured(values):
-    """A scene with a buoy's hour in it."""
-    file = Path(_on_disk(values["sea.spectrum_file"] or "")).absolute()
-    text = (f'[sea]\nspectrum = "file"\nspectrum_file = "{file.name}"\n'
-            f'spectrum_time = {values["sea.spectrum_time"] or ""}\n')
-    return pelagic.Scene.from_text(text, file.parent)
+    """A scene with a buoy's hour in it. ShotError if the file or the hour isn't given, or isn't there."""
+    file, hour = _on_disk(values["sea.spectrum_file"] or ""), values["sea.spectrum_time"]
+    lines = ["[sea]", 'spectrum = "file"']
+    lines += [f"spectrum_file = '{Path(file).name}'"] if file else []
+    lines += [f"spectrum_time = {hour}"] if hour else []
+    return pelagic.Scene.from_text("\n".join(lines), Path(file).absolute().parent)
 
 
 def scene_of(obj, bpy_scene, depsgraph=None, settings=None):

@@ -9,6 +9,8 @@ import numpy as np
 from .module import pelagic
 
 HORIZON_M = 30e3  # ends less than a pixel below the true horizon for cameras up to about 15 m above the sea
+DEFAULT_CELL_M = 1.0  # of vertices without edges
+FINEST_CELL = 4096  # at most: the largest cell of a mesh over its smallest
 RING_GROWTH = 1.1  # each ring of quads round the patch is wider than the last by this factor
 
 
@@ -78,7 +80,8 @@ def own_mesh(rest, edges, signature):
     cell_m = np.zeros(len(rest), np.float32)
     for end in (0, 1):
         np.maximum.at(cell_m, edges[:, end], lengths)
-    # A vertex without edges resolves whatever there is.
-    cell_m = np.maximum(cell_m, 1e-3)
+    # A vertex without edges is as fine as most others. The rest bounds the ladder.
+    usual = np.median(cell_m[cell_m > 0]) if cell_m.any() else DEFAULT_CELL_M
+    cell_m = np.clip(np.where(cell_m > 0, cell_m, usual), max(cell_m.max(), usual) / FINEST_CELL, None).astype(np.float32)
     height_m = np.ascontiguousarray(rest[:, 2])
     return Surface(signature, np.ascontiguousarray(rest[:, :2]), cell_m, height_m=height_m if height_m.any() else None)

@@ -6,7 +6,10 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/strided.h"
 
@@ -32,5 +35,19 @@ struct RestPoints {
     pybind11::ssize_t count = 0;
 };
 RestPoints readable_points(const pybind11::handle& object, const std::string& name);
+
+// A new array that owns the vector's memory: of this shape, or else (n,) of numbers and (n, components) of
+// glm's vectors.
+template <class Number, class Element>
+pybind11::array_t<Number> array_of(std::vector<Element>&& values, std::vector<pybind11::ssize_t> shape = {}) {
+    constexpr auto kComponents = static_cast<pybind11::ssize_t>(sizeof(Element) / sizeof(Number));
+    if (shape.empty()) shape = {static_cast<pybind11::ssize_t>(values.size())};
+    if (kComponents > 1) shape.push_back(kComponents);
+    auto held = std::make_unique<std::vector<Element>>(std::move(values));
+    const auto* data = reinterpret_cast<const Number*>(held->data());
+    const pybind11::capsule owner(held.release(),
+                                  [](void* vector) { delete static_cast<std::vector<Element>*>(vector); });
+    return pybind11::array_t<Number>(std::move(shape), data, owner);
+}
 
 }  // namespace pelagic::python

@@ -8,8 +8,10 @@
 namespace pelagic::python {
 
 void add_scene(pybind11::module_& module);
+void add_watch(pybind11::module_& module);
+void add_surfaces(pybind11::module_& module);
 void add_sea(pybind11::module_& module);
-void add_patch(pybind11::module_& module);
+void add_frame(pybind11::module_& module);
 void add_baked(pybind11::module_& module);
 
 // ShotError with a line for each of validate()'s problems.

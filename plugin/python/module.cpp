@@ -35,9 +35,11 @@ PYBIND11_MODULE(pelagic, module) {
     py::register_exception<pelagic::files::FileError>(module, "FileError", PyExc_OSError).doc() =
         "A file or folder that can't be read or written: its path, why, and what would do.";
 
+    pelagic::python::add_watch(module);
     pelagic::python::add_scene(module);
+    pelagic::python::add_surfaces(module);
     pelagic::python::add_sea(module);
-    pelagic::python::add_patch(module);
+    pelagic::python::add_frame(module);
     pelagic::python::add_baked(module);
     module.def(
         "explain", &explain_bake, py::arg("scene"),

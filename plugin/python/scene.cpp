@@ -3,6 +3,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,7 +12,9 @@
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/shot_text.h"
 #include "core/scene/validate.h"
+#include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
 #include "plugin/shot/shot.h"
 
@@ -85,10 +89,19 @@ KeyValue from_python(const Key& key, const std::string& path, py::handle given);
 KeyEntry entry_from_python(const Key& list, const std::string& path, py::handle given) {
     KeyEntry entry;
     const bool is_dict = py::isinstance<py::dict>(given);
+    if (is_dict)
+        for (const auto& [name, value] : given.cast<py::dict>())
+            if (std::none_of(list.entry_keys.begin(), list.entry_keys.end(),
+                             [&](const Key& key) { return py::str(name).equal(py::str(key.name)); }))
+                refuse_type(list, path, given);
     for (const Key& key : list.entry_keys) {
         const py::str name(key.name);
         const bool has_key = is_dict ? given.contains(name) : py::hasattr(given, name);
-        if (!has_key || (is_dict && py::len(given) != list.entry_keys.size())) refuse_type(list, path, given);
+        if (!has_key) {
+            if (key.is_required) refuse_type(list, path, given);
+            entry.values.emplace_back(key.name, key.fallback);
+            continue;
+        }
         const py::object value = is_dict ? py::object(given[name]) : py::object(given.attr(name));
         entry.values.emplace_back(key.name, from_python(key, path + '.' + key.name, value));
     }
@@ -148,9 +161,10 @@ py::object property(const py::object& get, const py::object& set, const std::str
 void add_methods(const std::string& table, const py::object& base, py::dict& members) {
     if (table == "shot")
         members["time_s"] = py::cpp_function(
-            [](const TableOfScene& self, double frame) { return (frame - 1.0) / self.scene->shot.fps; },
+            [](const TableOfScene& self, double frame) { return self.scene->shot.time_s(frame); },
             py::arg("frame"), py::is_method(base),
-            "The time that a frame shows [s], also between frames: t = (frame - 1)/fps, whatever the range.");
+            "The sea's time that a frame shows [s], also between frames: "
+            "t = time_offset_s + time_scale (frame - 1)/fps, whatever the range.");
     if (table != "sea") return;
     members["is_measured"] = property(
         py::cpp_function([](const TableOfScene& self) { return self.scene->sea.measured.has_value(); }),
@@ -197,9 +211,15 @@ py::object add_table_class(py::module_& module, const py::object& base, const Ke
 // Named tuples: an attribute that is assigned would be lost with the copy that it belongs to.
 void add_entry_class(py::module_& module, const Key& key) {
     py::list names;
-    for (const Key& inner : key.entry_keys) names.append(inner.name);
-    const py::object made = py::module_::import("collections")
-                                .attr("namedtuple")(key.entry_name, names, py::arg("module") = "pelagic");
+    py::list defaults;  // of the last names: keys without one come first
+    for (const Key& inner : key.entry_keys) {
+        names.append(inner.name);
+        if (!inner.is_required) defaults.append(to_python(inner, inner.fallback));
+    }
+    const py::object made =
+        py::module_::import("collections")
+            .attr("namedtuple")(key.entry_name, names, py::arg("module") = "pelagic",
+                                py::arg("defaults") = defaults);
     made.attr("__doc__") = "An entry of " + key.path + ".";
     for (const Key& inner : key.entry_keys) made.attr(inner.name.c_str()).attr("__doc__") = doc_of(inner);
     module.attr(key.entry_name.c_str()) = made;
@@ -251,6 +271,15 @@ py::list described_keys() {
     return out;
 }
 
+// A shot file may be read from any folder.
+std::string text_of_shot(const Scene& scene) {
+    Scene placed = scene;
+    const auto absolute = [](std::string& path) { path = std::filesystem::absolute(path).string(); };
+    if (placed.light.sky != Light{}.sky) absolute(placed.light.sky);
+    if (placed.sea.measured) absolute(placed.sea.measured->file);
+    return shot_text(placed);
+}
+
 std::vector<std::string> problem_lines(const Scene& scene) {
     std::vector<std::string> lines;
     for (const Problem& problem : validate(scene)) lines.push_back(text_of(problem));
@@ -280,6 +309,26 @@ void add_scene(py::module_& module) {
             [](const std::filesystem::path& path) { return std::make_shared<Scene>(load_shot(path)); },
             py::arg("path"),
             "The scene that a shot file describes. ShotError with every problem of the file.")
+        .def_static(
+            "from_text",
+            [](const std::string& text, const std::filesystem::path& folder) {
+                return std::make_shared<Scene>(parse_shot(text, folder / "text"));
+            },
+            py::arg("text"), py::arg("folder") = ".",
+            "The scene that a shot file's text describes; paths in it are from this folder. ShotError with "
+            "every problem, in whose lines the text is called \"text\" in the folder.")
+        .def(
+            "shot_text", &text_of_shot,
+            "The shot file that describes the scene: the keys that aren't at their defaults. Paths in it are "
+            "absolute.")
+        .def(
+            "save",
+            [](const Scene& self, const std::filesystem::path& path) {
+                files::write_atomically(path, text_of_shot(self));
+            },
+            py::arg("path"),
+            "Writes shot_text() to a file, which is the old one until the new one is whole. FileError where "
+            "it can't be written.")
         .def("validate", &problem_lines,
              "Every problem of the scene, a line each: KEY = VALUE: PROBLEM; accepted: WHAT IS. Empty: it "
              "can be "

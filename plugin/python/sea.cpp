@@ -1,33 +1,21 @@
-// pelagic.Sea and pelagic.Frame: one query over one scene, in single precision, on numpy arrays.
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
+// pelagic.Sea: one query over one scene, in single precision.
+#include "plugin/python/sea.h"
 
 #include <pybind11/stl.h>
-#include <algorithm>
 
 #include <array>
 #include <cmath>
-#include <memory>
-#include <mutex>
 #include <optional>
-#include <shared_mutex>
-#include <stdexcept>
-#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "core/evaluate/evaluate.h"
 #include "core/plan/plan.h"
-#include "core/scene/limits.h"
 #include "core/scene/names.h"
-#include "core/waves/frame.h"
-#include "core/waves/sea.h"
-#include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/watch.h"
 
 namespace pelagic::python {
-namespace {
 
 namespace py = pybind11;
 
@@ -45,7 +33,14 @@ const ProductRow& product_of(const std::string& name) {
                           "; accepted: " + accepted);
 }
 
-// ---- Sea
+std::string product_names() {
+    std::string names;
+    for (const ProductRow& row : kProductTable)
+        names += (names.empty() ? "" : ", ") + std::string(row.identifier);
+    return names;
+}
+
+namespace {
 
 using Ladder = std::variant<double, std::vector<double>>;
 
@@ -53,6 +48,8 @@ struct SeaRequest {
     std::vector<std::string> products;
     std::optional<Ladder> cell_m, pixel_m;
     std::optional<std::array<double, 2>> lattice;
+    std::vector<View> views;
+    bool pixels = false;
 };
 
 std::vector<double> rungs(const std::optional<Ladder>& ladder, const Surface& surface) {
@@ -61,19 +58,8 @@ std::vector<double> rungs(const std::optional<Ladder>& ladder, const Surface& su
     return std::get<std::vector<double>>(*ladder);
 }
 
-using SharedSea = std::shared_ptr<const Sea<float>>;
-
-// What Python holds: a Sea is immutable, and frames keep it alive.
-struct PythonSea {
-    SharedSea sea;
-    const Plan& plan() const { return sea->plan(); }
-};
-
-PythonSea build_sea(const Scene& scene, const SeaRequest& request) {
-    require_valid(scene);
+Query plain_query(const Scene& scene, const SeaRequest& request) {
     Query query;
-    query.name = "python";
-    for (const std::string& name : request.products) query.products.set(index(product_of(name).product));
     query.cell_m = rungs(request.cell_m, scene.surface);
     query.pixel_m = rungs(request.pixel_m, scene.surface);
     if (request.lattice) {
@@ -82,164 +68,46 @@ PythonSea build_sea(const Scene& scene, const SeaRequest& request) {
             throw py::value_error("lattice: accepted: (first_m, spacing_m), finite, spacing_m > 0");
         query.lattice = Lattice{first_m, spacing_m};
     }
+    return query;
+}
+
+// The ladder of footprints that the views' projected grids need.
+Query query_of_views(const PreparedScene& prepared, const SeaRequest& request, ProductSet products) {
+    const ProjectedGridOptions options = projected_grid_options(prepared);
+    ProjectedGridNeeds needs = projected_grid_needs(request.views.front(), options);
+    for (const View& view : request.views) needs = together(needs, projected_grid_needs(view, options));
+    return view_query(prepared,
+                      {.products = products,
+                       .finest_cell_m = needs.finest_cell_m,
+                       .finest_pixel_m = request.pixels ? needs.finest_pixel_m : needs.finest_cell_m,
+                       .points = points_of(needs.size)});
+}
+
+PythonSea build_sea(const Scene& scene, const SeaRequest& request, Watch& watch) {
+    require_valid(scene);
+    ProductSet products;
+    for (const std::string& name : request.products) products.set(index(product_of(name).product));
+    if (!request.views.empty() && (request.cell_m || request.pixel_m || request.lattice))
+        throw py::value_error(
+            "views: have footprints of their own; accepted: without cell_m, pixel_m and lattice");
+    // What is wrong with the request is said before any work.
+    std::optional<Query> plain;
+    if (request.views.empty()) plain = plain_query(scene, request);
     const Scene kept = scene;  // other threads may change the caller's meanwhile
-    const py::gil_scoped_release others_may_run;
-    // Whatever the level, arrays are float32.
-    return {std::make_shared<const Sea<float>>(make_plan(kept, {query}, {.double_precision = false}))};
-}
-
-// ---- Frame
-
-// A point further out is a mistake: the finest waves need their phase, and indices their range.
-constexpr Range kRest_m = limits::kCameraCoordinate_m;
-
-struct Arguments {
-    py::object cell_m, pixel_m;
-    std::array<py::object, kProductCount> arrays;  // in the order of kProductTable
-    std::optional<std::vector<std::string>> outputs;
-};
-
-struct Footprints {
-    float number = 0.0f;
-    Strided<const float> view{};
-};
-
-// None, a number for all points, or an array of each point's own.
-void read_footprints(Footprints& footprints, const py::object& object, const Asked& asked) {
-    if (object.is_none()) return;
-    py::ssize_t numbers = 1;
-    if (!py::isinstance<py::array>(object) && PyNumber_Check(object.ptr()) != 0) {
-        footprints.number = static_cast<float>(py::float_(object));
-        footprints.view = {&footprints.number, 0};
-    } else {
-        footprints.view = readable_numbers(object, asked);
-        numbers = asked.count;
-    }
-    for (py::ssize_t i = 0; i < numbers; ++i)
-        if (!(footprints.view[static_cast<std::size_t>(i)] >= 0.0f))
-            throw py::value_error(asked.name + ": accepted: numbers from 0 up");
-}
-
-class PythonFrame {
-  public:
-    explicit PythonFrame(const PythonSea& sea) : sea_(sea.sea), frame_(sea.sea) {}
-
-    void set(double t_s) {
+    const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
+    try {
         const py::gil_scoped_release others_may_run;
-        const std::unique_lock writing(mutex_);
-        frame_.set(t_s);
-        is_set_ = true;
+        const auto prepared = prepare(kept);
+        Query query = plain ? *plain : query_of_views(*prepared, request, products);
+        query.name = "python";
+        query.products = products;
+        // Whatever the level, arrays are float32.
+        return {std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}),
+                                                   building)};
+    } catch (const BuildCancelled& cancelled) {
+        watch.rethrow();
+        throw Cancelled(cancelled.what());
     }
-
-    py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given) const {
-        const auto [rest_view, count] = readable_points(rest, "rest");
-        Points<float> points{.origin_m = {origin_m[0], origin_m[1]},
-                             .count = static_cast<std::size_t>(count),
-                             .rest_m = rest_view};
-        if (!std::isfinite(origin_m[0]) || !std::isfinite(origin_m[1]))
-            throw py::value_error("origin: accepted: (x, y), finite [m]");
-        Footprints cell, pixel;
-        read_footprints(cell, given.cell_m, {"cell_m", count});
-        read_footprints(pixel, given.pixel_m, {"pixel_m", count});
-        points.cell_m = cell.view;
-        points.pixel_m = pixel.view;
-
-        const auto arrays = with_fresh(given, count);
-        Results<float> results;
-        py::dict written;
-        for (const ProductRow& row : kProductTable) {
-            const py::object& array = arrays[index(row.product)];
-            if (array.is_none()) continue;
-            const Asked asked{row.identifier, count};
-            if (row.components == 1)
-                results.set(NumberProduct::checked(row.product), writable_numbers(array, asked));
-            else
-                results.set(VectorProduct::checked(row.product), writable_vectors(array, asked));
-            written[row.identifier] = array;
-        }
-        run(points, results);
-        return written;
-    }
-
-    PythonSea sea() const { return {sea_}; }
-    double time_s() const { return frame_.time_s(); }
-    long executed_transforms() const { return frame_.executed_transforms(); }
-
-  private:
-    // The caller's arrays, and new ones for the outputs that he names, or, if he does neither, for all
-    // products.
-    std::array<py::object, kProductCount> with_fresh(const Arguments& given, py::ssize_t count) const {
-        auto arrays = given.arrays;
-        ProductSet wanted;
-        bool none_given = true;
-        for (const py::object& array : arrays) none_given = none_given && array.is_none();
-        if (given.outputs)
-            for (const std::string& name : *given.outputs) wanted.set(index(product_of(name).product));
-        else if (none_given)
-            wanted = sea_->plan().queries.front().query.products;
-        const ProductSet& held = sea_->plan().queries.front().query.products;
-        for (const ProductRow& row : kProductTable) {
-            const bool asked = wanted[index(row.product)] || !arrays[index(row.product)].is_none();
-            if (asked && !held[index(row.product)])
-                throw py::value_error(std::string(row.identifier) +
-                                      ": the sea was built without it; accepted: what its products name");
-        }
-        for (const ProductRow& row : kProductTable) {
-            py::object& array = arrays[index(row.product)];
-            if (!wanted[index(row.product)] || !array.is_none()) continue;
-            array = row.components == 1
-                        ? py::array_t<float>(count)
-                        : py::array_t<float>({count, static_cast<py::ssize_t>(row.components)});
-        }
-        return arrays;
-    }
-
-    void run(const Points<float>& points, const Results<float>& results) const {
-        const py::gil_scoped_release others_may_run;
-        const std::size_t bad = first_off_the_sea(points);
-        if (bad < points.count)
-            throw std::invalid_argument("rest: point " + std::to_string(bad) +
-                                        " is no place on the sea; accepted: " + text_of(kRest_m) + " m");
-        const std::shared_lock reading(mutex_);
-        if (!is_set_) throw std::invalid_argument("the frame has no time yet: call set(t) first");
-        pelagic::evaluate(frame_, 0, points, results);
-    }
-
-    // The count, where all are on it. On all threads: of a million points it would be a tenth of their
-    // evaluation.
-    static std::size_t first_off_the_sea(const Points<float>& points) {
-        using Range = tbb::blocked_range<std::size_t>;
-        return tbb::parallel_reduce(
-            Range(0, points.count, 16384), points.count,
-            [&](const Range& range, std::size_t first) {
-                for (std::size_t i = range.begin(); i < std::min(range.end(), first); ++i) {
-                    const glm::vec2 rest = points.rest_m[i];
-                    if (!kRest_m.holds(rest.x) || !kRest_m.holds(rest.y)) return i;
-                }
-                return first;
-            },
-            [](std::size_t a, std::size_t b) { return std::min(a, b); });
-    }
-
-    SharedSea sea_;
-    Frame<float> frame_;
-    bool is_set_ = false;
-    mutable std::shared_mutex mutex_;
-};
-
-// The products' identifiers, and a line about each one's array.
-std::string product_names() {
-    std::string names;
-    for (const ProductRow& row : kProductTable)
-        names += (names.empty() ? "" : ", ") + std::string(row.identifier);
-    return names;
-}
-std::string product_lines() {
-    std::string lines;
-    for (const ProductRow& row : kProductTable)
-        lines += row.identifier + std::string(row.components == 1 ? ": (n,), " : ": (n, 3), ") +
-                 row.description + ".\n";
-    return lines;
 }
 
 const std::string kSeaDoc =
@@ -254,78 +122,37 @@ const std::string kSeaDoc =
     "number for all points, or a rising ladder between whose rungs each point's own footprint is blended; 0 "
     "filters nothing. Default: the spacing of the scene's patch.\n"
     "lattice: (first_m, spacing_m) where all points are known to lie at first + i·spacing in x and in y, "
-    "seen from the world's origin: sampling may then be free of error. Only with points that do.";
-
-const std::string kEvaluateDoc =
-    "The sea at points, into the caller's arrays: a dict of what was written.\n\n"
-    "rest: float32 (n, 2), the points at rest [m], relative to origin.\n"
-    "origin: (x, y) [m], in double precision: a sea a million metres away loses nothing.\n"
-    "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's ladder; default its "
-    "first.\n" +
-    product_lines() +
-    "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
-    "sea's products.\n\n"
-    "Arrays are float32. Points may lie any multiple of 4 bytes apart, the components of one are adjacent; "
-    "nothing between them is touched. Outputs must not overlap. Any thread may call; others run meanwhile.";
-
-// An output's array by its name, None where it isn't wanted.
-py::object none() {
-    return py::none();
-}
-
-// evaluate() with an argument for each product's array, under its identifier: a parameter for each number in
-// the pack.
-template <std::size_t>
-using ArrayArgument = const py::object&;
-template <std::size_t... kProducts>
-void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kProducts...>) {
-    frame.def(
-        "evaluate",
-        [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
-           const py::object& cell_m, const py::object& pixel_m, ArrayArgument<kProducts>... arrays,
-           const std::optional<std::vector<std::string>>& outputs) {
-            return self.evaluate(rest, origin, {cell_m, pixel_m, {arrays...}, outputs});
-        },
-        py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(), py::arg("cell_m") = none(),
-        py::arg("pixel_m") = none(), (py::arg(kProductTable[kProducts].identifier) = none())...,
-        py::arg("outputs") = none(), kEvaluateDoc.c_str());
-}
-
-void add_frame(py::module_& module) {
-    py::class_<PythonFrame> frame(
-        module, "Frame",
-        "The state of a sea at one time. Its buffers are made once and reused: who needs two "
-        "times at once makes two frames.");
-    add_evaluate(frame, std::make_index_sequence<kProductCount>());
-    frame.def(py::init<const PythonSea&>(), py::arg("sea"))
-        .def(
-            "set", &PythonFrame::set, py::arg("t"),
-            "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile.")
-        .def_property_readonly("sea", &PythonFrame::sea)
-        .def_property_readonly("time_s", &PythonFrame::time_s, "The time that was set [s].")
-        .def_property_readonly("executed_transforms", &PythonFrame::executed_transforms,
-                               "Transforms run since the frame was made: calls of set() times the sea's "
-                               "transforms_per_frame.");
-}
+    "seen from the world's origin: sampling may then be free of error. Only with points that do.\n"
+    "views: Views whose projected grids it is for, instead of these: footprints from the finest cell in them up "
+    "to the horizon's. Their rungs are the same for all views, so that a point's answer doesn't depend on "
+    "which other views there are. pixels: as fine as the views' pixels, for normals finer than the cells.\n"
+    "progress: called with the share that is done, 0 … 1, from any thread. cancel: a Cancel, or a callable "
+    "that is asked as often and is true when it is enough; Cancelled is then raised.";
 
 }  // namespace
 
 void add_sea(py::module_& module) {
-    py::class_<PythonSea>(module, "Sea", kSeaDoc.c_str())
-        .def(py::init([](const Scene& scene, std::vector<std::string> products, std::optional<Ladder> cell_m,
-                         std::optional<Ladder> pixel_m, std::optional<std::array<double, 2>> lattice) {
-                 return build_sea(scene,
-                                  {std::move(products), std::move(cell_m), std::move(pixel_m), lattice});
-             }),
-             py::arg("scene"),
-             py::arg("products") =
-                 py::make_tuple("position", "normal", "velocity", "slope_variance", "coverage"),
-             py::kw_only(), py::arg("cell_m") = none(), py::arg("pixel_m") = none(),
-             py::arg("lattice") = none())
-        .def_property_readonly(
-            "significant_height_m",
-            [](const PythonSea& self) { return self.sea->total().significant_height_m(); },
-            "4 times the root of the variance of the whole spectrum [m].")
+    py::class_<PythonSea> sea(module, "Sea", kSeaDoc.c_str());
+    sea.def(
+        py::init([](const Scene& scene, std::vector<std::string> products, std::optional<Ladder> cell_m,
+                    std::optional<Ladder> pixel_m, std::optional<std::array<double, 2>> lattice,
+                    std::vector<View> views, bool pixels, const py::object& progress,
+                    const py::object& cancel) {
+            Watch watch(progress, cancel);
+            return build_sea(scene,
+                             {std::move(products), std::move(cell_m), std::move(pixel_m), lattice,
+                              std::move(views), pixels},
+                             watch);
+        }),
+        py::arg("scene"),
+        py::arg("products") = py::make_tuple("position", "normal", "velocity", "slope_variance", "coverage"),
+        py::kw_only(), py::arg("cell_m") = py::none(), py::arg("pixel_m") = py::none(),
+        py::arg("lattice") = py::none(), py::arg("views") = py::tuple(), py::arg("pixels") = false,
+        py::arg("progress") = py::none(), py::arg("cancel") = py::none());
+    sea.def_property_readonly(
+           "significant_height_m",
+           [](const PythonSea& self) { return self.sea->total().significant_height_m(); },
+           "4 times the root of the variance of the whole spectrum [m].")
         .def_property_readonly(
             "mss", [](const PythonSea& self) { return self.sea->total().mss(); },
             "Mean square slope of the whole spectrum, capillary tail included.")
@@ -337,8 +164,7 @@ void add_sea(py::module_& module) {
             [](const PythonSea& self) {
                 py::list names;
                 for (const ProductRow& row : kProductTable)
-                    if (self.plan().queries.front().query.products[index(row.product)])
-                        names.append(row.identifier);
+                    if (self.query().products[index(row.product)]) names.append(row.identifier);
                 return py::tuple(names);
             },
             "What evaluate() may be asked for.")
@@ -351,7 +177,7 @@ void add_sea(py::module_& module) {
         .def_property_readonly(
             "frame_bytes", [](const PythonSea& self) { return self.plan().frame_bytes(); },
             "Memory that each of its frames holds [bytes].");
-    add_frame(module);
+    add_grids(module, sea);
 }
 
 }  // namespace pelagic::python

@@ -28,5 +28,5 @@ allow plugin/render "core/[a-z]+ plugin/files plugin/exr plugin/png"
 allow plugin/gpu "core/[a-z]+"
 allow plugin/preview "core/[a-z]+ plugin/files plugin/exr plugin/png plugin/render plugin/gpu"
 allow plugin/cli "core/[a-z]+ plugin/files plugin/shot plugin/bake plugin/render plugin/preview plugin/gpu"
-allow plugin/python "core/[a-z]+ plugin/files plugin/shot plugin/usd plugin/render plugin/gpu"
+allow plugin/python "core/[a-z]+ plugin/files plugin/shot plugin/usd plugin/bake plugin/render plugin/gpu"
 exit $bad

@@ -1,0 +1,231 @@
+// pelagic.Frame: a sea at one time, evaluated on numpy arrays.
+#include "core/waves/frame.h"
+
+#include <pybind11/stl.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/evaluate/evaluate.h"
+#include "core/scene/limits.h"
+#include "plugin/python/arrays.h"
+#include "plugin/python/bindings.h"
+#include "plugin/python/sea.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+
+// A point further out is a mistake: the finest waves need their phase, and indices their range.
+constexpr Range kRest_m = limits::kCameraCoordinate_m;
+
+struct Arguments {
+    py::object cell_m, pixel_m;
+    std::array<py::object, kProductCount> arrays;  // in the order of kProductTable
+    std::optional<std::vector<std::string>> outputs;
+};
+
+struct Footprints {
+    float number = 0.0f;
+    Strided<const float> view{};
+};
+
+// None, a number for all points, or an array of each point's own.
+void read_footprints(Footprints& footprints, const py::object& object, const Asked& asked) {
+    if (object.is_none()) return;
+    py::ssize_t numbers = 1;
+    if (!py::isinstance<py::array>(object) && PyNumber_Check(object.ptr()) != 0) {
+        footprints.number = static_cast<float>(py::float_(object));
+        footprints.view = {&footprints.number, 0};
+    } else {
+        footprints.view = readable_numbers(object, asked);
+        numbers = asked.count;
+    }
+    for (py::ssize_t i = 0; i < numbers; ++i)
+        if (!(footprints.view[static_cast<std::size_t>(i)] >= 0.0f))
+            throw py::value_error(asked.name + ": accepted: numbers from 0 up");
+}
+
+class PythonFrame {
+  public:
+    explicit PythonFrame(const PythonSea& sea) : sea_(sea.sea), frame_(sea.sea) {}
+
+    void set(double t_s) {
+        const py::gil_scoped_release others_may_run;
+        const std::unique_lock writing(mutex_);
+        frame_.set(t_s);
+        is_set_ = true;
+    }
+
+    py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given) const {
+        const auto [rest_view, count] = readable_points(rest, "rest");
+        Points<float> points{.origin_m = {origin_m[0], origin_m[1]},
+                             .count = static_cast<std::size_t>(count),
+                             .rest_m = rest_view};
+        if (!std::isfinite(origin_m[0]) || !std::isfinite(origin_m[1]))
+            throw py::value_error("origin: accepted: (x, y), finite [m]");
+        Footprints cell, pixel;
+        read_footprints(cell, given.cell_m, {"cell_m", count});
+        read_footprints(pixel, given.pixel_m, {"pixel_m", count});
+        points.cell_m = cell.view;
+        points.pixel_m = pixel.view;
+
+        const auto arrays = with_fresh(given, count);
+        Results<float> results;
+        py::dict written;
+        for (const ProductRow& row : kProductTable) {
+            const py::object& array = arrays[index(row.product)];
+            if (array.is_none()) continue;
+            const Asked asked{row.identifier, count};
+            if (row.components == 1)
+                results.set(NumberProduct::checked(row.product), writable_numbers(array, asked));
+            else
+                results.set(VectorProduct::checked(row.product), writable_vectors(array, asked));
+            written[row.identifier] = array;
+        }
+        run(points, results);
+        return written;
+    }
+
+    PythonSea sea() const { return {sea_}; }
+    double time_s() const { return frame_.time_s(); }
+    long executed_transforms() const { return frame_.executed_transforms(); }
+
+  private:
+    // The caller's arrays, and new ones for the outputs that he names, or, if he does neither, for all
+    // products.
+    std::array<py::object, kProductCount> with_fresh(const Arguments& given, py::ssize_t count) const {
+        auto arrays = given.arrays;
+        ProductSet wanted;
+        bool none_given = true;
+        for (const py::object& array : arrays) none_given = none_given && array.is_none();
+        if (given.outputs)
+            for (const std::string& name : *given.outputs) wanted.set(index(product_of(name).product));
+        else if (none_given)
+            wanted = sea_->plan().queries.front().query.products;
+        const ProductSet& held = sea_->plan().queries.front().query.products;
+        for (const ProductRow& row : kProductTable) {
+            const bool asked = wanted[index(row.product)] || !arrays[index(row.product)].is_none();
+            if (asked && !held[index(row.product)])
+                throw py::value_error(std::string(row.identifier) +
+                                      ": the sea was built without it; accepted: what its products name");
+        }
+        for (const ProductRow& row : kProductTable) {
+            py::object& array = arrays[index(row.product)];
+            if (!wanted[index(row.product)] || !array.is_none()) continue;
+            array = row.components == 1
+                        ? py::array_t<float>(count)
+                        : py::array_t<float>({count, static_cast<py::ssize_t>(row.components)});
+        }
+        return arrays;
+    }
+
+    void run(const Points<float>& points, const Results<float>& results) const {
+        const py::gil_scoped_release others_may_run;
+        const std::size_t bad = first_off_the_sea(points);
+        if (bad < points.count)
+            throw std::invalid_argument("rest: point " + std::to_string(bad) +
+                                        " is no place on the sea; accepted: " + text_of(kRest_m) + " m");
+        const std::shared_lock reading(mutex_);
+        if (!is_set_) throw std::invalid_argument("the frame has no time yet: call set(t) first");
+        pelagic::evaluate(frame_, 0, points, results);
+    }
+
+    // The count, where all are on it. On all threads: of a million points it would be a tenth of their
+    // evaluation.
+    static std::size_t first_off_the_sea(const Points<float>& points) {
+        using Range = tbb::blocked_range<std::size_t>;
+        return tbb::parallel_reduce(
+            Range(0, points.count, 16384), points.count,
+            [&](const Range& range, std::size_t first) {
+                for (std::size_t i = range.begin(); i < std::min(range.end(), first); ++i) {
+                    const glm::vec2 rest = points.rest_m[i];
+                    if (!kRest_m.holds(rest.x) || !kRest_m.holds(rest.y)) return i;
+                }
+                return first;
+            },
+            [](std::size_t a, std::size_t b) { return std::min(a, b); });
+    }
+
+    std::shared_ptr<const Sea<float>> sea_;
+    Frame<float> frame_;
+    bool is_set_ = false;
+    mutable std::shared_mutex mutex_;
+};
+
+// A line about each product's array.
+std::string product_lines() {
+    std::string lines;
+    for (const ProductRow& row : kProductTable)
+        lines += row.identifier + std::string(row.components == 1 ? ": (n,), " : ": (n, 3), ") +
+                 row.description + ".\n";
+    return lines;
+}
+
+const std::string kEvaluateDoc =
+    "The sea at points, into the caller's arrays: a dict of what was written.\n\n"
+    "rest: float32 (n, 2), the points at rest [m], relative to origin.\n"
+    "origin: (x, y) [m], in double precision: a sea a million metres away loses nothing.\n"
+    "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's ladder; default its "
+    "first.\n" +
+    product_lines() +
+    "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
+    "sea's products.\n\n"
+    "Arrays are float32. Points may lie any multiple of 4 bytes apart, the components of one are adjacent; "
+    "nothing between them is touched. Outputs must not overlap. Any thread may call; others run meanwhile.";
+
+// An output's array by its name, None where it isn't wanted.
+py::object none() {
+    return py::none();
+}
+
+// evaluate() with an argument for each product's array, under its identifier: a parameter for each number in
+// the pack.
+template <std::size_t>
+using ArrayArgument = const py::object&;
+template <std::size_t... kProducts>
+void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kProducts...>) {
+    frame.def(
+        "evaluate",
+        [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
+           const py::object& cell_m, const py::object& pixel_m, ArrayArgument<kProducts>... arrays,
+           const std::optional<std::vector<std::string>>& outputs) {
+            return self.evaluate(rest, origin, {cell_m, pixel_m, {arrays...}, outputs});
+        },
+        py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(), py::arg("cell_m") = none(),
+        py::arg("pixel_m") = none(), (py::arg(kProductTable[kProducts].identifier) = none())...,
+        py::arg("outputs") = none(), kEvaluateDoc.c_str());
+}
+
+}  // namespace
+
+void add_frame(py::module_& module) {
+    py::class_<PythonFrame> frame(
+        module, "Frame",
+        "The state of a sea at one time. Its buffers are made once and reused: who needs two "
+        "times at once makes two frames.");
+    add_evaluate(frame, std::make_index_sequence<kProductCount>());
+    frame.def(py::init<const PythonSea&>(), py::arg("sea"))
+        .def(
+            "set", &PythonFrame::set, py::arg("t"),
+            "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile.")
+        .def_property_readonly("sea", &PythonFrame::sea)
+        .def_property_readonly("time_s", &PythonFrame::time_s, "The time that was set [s].")
+        .def_property_readonly("executed_transforms", &PythonFrame::executed_transforms,
+                               "Transforms run since the frame was made: calls of set() times the sea's "
+                               "transforms_per_frame.");
+}
+
+}  // namespace pelagic::python

@@ -1,0 +1,222 @@
+// Rest surfaces: pelagic.patch, pelagic.View and its projected grid, and the quads of both.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "core/scene/limits.h"
+#include "core/surface/patch.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/rungs.h"
+#include "core/surface/view.h"
+#include "plugin/python/arrays.h"
+#include "plugin/python/bindings.h"
+#include "plugin/python/sea.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+using Triple = std::array<double, 3>;
+
+py::array grid_quads(int columns, int rows) {
+    Faces faces;
+    {
+        const py::gil_scoped_release others_may_run;
+        faces = grid_faces(columns, rows);
+    }
+    const auto quads = static_cast<py::ssize_t>(faces.counts.size());
+    return array_of<std::int32_t>(std::move(faces.indices), {quads, 4});
+}
+
+py::tuple patch(double size_m, int resolution) {
+    if (!limits::kSurfaceSize_m.holds(size_m))
+        throw py::value_error("size_m: is outside the range; accepted: " + text_of(limits::kSurfaceSize_m));
+    if (!limits::kSurfaceResolution.holds(resolution))
+        throw py::value_error("resolution: is outside the range; accepted: " +
+                              text_of(limits::kSurfaceResolution));
+    auto points = rest_points<float>(
+        {.per_side = resolution + 1, .spacing_m = size_m / resolution, .first_m = -0.5 * size_m});
+    return py::make_tuple(array_of<float>(std::move(points)), grid_quads(resolution, resolution));
+}
+
+// ---- View
+
+glm::dvec3 vector_of(const Triple& v) {
+    return {v[0], v[1], v[2]};
+}
+py::tuple tuple_of(glm::dvec3 v) {
+    return py::make_tuple(v.x, v.y, v.z);
+}
+
+// Axes as a host has them, rounded to single precision, say.
+constexpr double kAxisTolerance = 1e-3;
+
+View make_view(const Triple& position_m, const Triple& right, const Triple& up, const Triple& forward,
+               double tan_half_width, std::array<int, 2> resolution) {
+    for (const double metres : position_m)
+        if (!limits::kCameraCoordinate_m.holds(metres))
+            throw py::value_error(
+                "position_m: is outside the range; accepted: " + text_of(limits::kCameraCoordinate_m) + " m");
+    View view;
+    view.position_m = vector_of(position_m);
+    const glm::dvec3 x = vector_of(right), y = vector_of(up), z = vector_of(forward);
+    const auto is = [](double value, double wanted) { return std::abs(value - wanted) < kAxisTolerance; };
+    if (!is(glm::dot(x, x), 1.0) || !is(glm::dot(z, z), 1.0) || !is(glm::dot(x, z), 0.0) ||
+        !is(glm::length(glm::cross(x, z) - y), 0.0))
+        throw py::value_error(
+            "right, up, forward: accepted: unit vectors at right angles, with up = right × forward");
+    view.forward = glm::normalize(z);
+    view.right = glm::normalize(x - glm::dot(x, view.forward) * view.forward);
+    view.up = glm::cross(view.right, view.forward);
+    const auto tangent = [](double fov_deg) { return std::tan(fov_deg * (kPi / 360.0)); };
+    if (!(tan_half_width >= tangent(limits::kFov_deg.low) &&
+          tan_half_width <= tangent(limits::kFov_deg.high)))
+        throw py::value_error("tan_half_width: is outside the range; accepted: that of a field of view of " +
+                              text_of(limits::kFov_deg) + " degrees");
+    view.tan_half_width = tan_half_width;
+    for (const int pixels : resolution)
+        if (!limits::kImageResolution.holds(pixels))
+            throw py::value_error("resolution: is outside the range; accepted: " +
+                                  text_of(limits::kImageResolution));
+    view.resolution = {resolution[0], resolution[1]};
+    return view;
+}
+
+View view_of_scene(const Scene& scene, double frame) {
+    require_valid(scene);
+    if (!limits::kFrame.holds(frame))
+        throw py::value_error("frame: is outside the range; accepted: " + text_of(limits::kFrame));
+    return view_at(scene.camera, frame);
+}
+
+void add_view(py::module_& module) {
+    py::class_<View>(
+        module, "View",
+        "A camera: a pinhole whose pixels are square.\n\n"
+        "position_m: (x, y, z) [m]. right, up, forward: unit vectors of the picture in world axes, "
+        "up = right × forward. tan_half_width: the tangent of half the horizontal field of view. "
+        "resolution: (width, height) in pixels.")
+        .def(py::init(&make_view), py::kw_only(), py::arg("position_m"), py::arg("right"), py::arg("up"),
+             py::arg("forward"), py::arg("tan_half_width"), py::arg("resolution"))
+        .def_static("of_scene", &view_of_scene, py::arg("scene"), py::arg("frame"),
+                    "The camera of a scene at a frame, which may lie between frames.")
+        .def_property_readonly(
+            "position_m", [](const View& self) { return tuple_of(self.position_m); }, "(x, y, z) [m].")
+        .def_property_readonly(
+            "right", [](const View& self) { return tuple_of(self.right); }, "Unit, world axes.")
+        .def_property_readonly(
+            "up", [](const View& self) { return tuple_of(self.up); }, "Unit, world axes.")
+        .def_property_readonly(
+            "forward", [](const View& self) { return tuple_of(self.forward); }, "Unit, world axes.")
+        .def_readonly("tan_half_width", &View::tan_half_width,
+                      "Tangent of half the horizontal field of view.")
+        .def_property_readonly(
+            "resolution",
+            [](const View& self) { return py::make_tuple(self.resolution.x, self.resolution.y); },
+            "(width, height) in pixels.")
+        .def(
+            "__eq__", [](const View& self, const View& other) { return self == other; }, py::is_operator());
+}
+
+// ---- The projected grid
+
+constexpr int kMostCells = 8192;  // as many as a view asks for at most
+
+struct PythonGrid {
+    int columns = 0, rows = 0;
+    glm::dvec2 origin_m{0.0};
+    py::array rest_m, cell_m, pixel_m;
+};
+
+ProjectedGridSize checked_size(const std::optional<std::array<int, 2>>& size) {
+    if (!size) return {};
+    for (const int count : *size)
+        if (count < 1 || count > kMostCells)
+            throw py::value_error("size: accepted: (columns, rows), each 1 … " + std::to_string(kMostCells));
+    return {(*size)[0], (*size)[1]};
+}
+
+ProjectedGridOptions options_of(const PythonSea& sea) {
+    return projected_grid_options(*sea.plan().from);
+}
+
+PythonGrid grid_of(const PythonSea& sea, const View& view, const std::optional<std::array<int, 2>>& size) {
+    ProjectedGridOptions options = options_of(sea);
+    options.size = checked_size(size);
+    ProjectedGrid grid;
+    {
+        const py::gil_scoped_release others_may_run;
+        grid = projected_grid(view, options);
+        if (sea.query().cell_m.size() > 1) keep_to_rungs(grid, projected_grid_needs(view, options));
+    }
+    return {.columns = grid.columns,
+            .rows = grid.rows,
+            .origin_m = grid.origin_m,
+            .rest_m = array_of<float>(std::move(grid.rest_m)),
+            .cell_m = array_of<float>(std::move(grid.cell_m)),
+            .pixel_m = array_of<float>(std::move(grid.pixel_m))};
+}
+
+// Whether the sea's ladder begins no coarser than the view's own grid would have it.
+bool serves(const PythonSea& sea, const View& view) {
+    const Query& query = sea.query();
+    if (!query.is_view) return false;
+    if (query.cell_m.size() == 1 && query.cell_m.front() == 0.0) return true;  // trains: any footprint
+    const ProjectedGridNeeds needs = projected_grid_needs(view, options_of(sea));
+    return query.cell_m.front() <= first_rung_m(needs.finest_cell_m);
+}
+
+}  // namespace
+
+void add_grids(py::module_& module, py::class_<PythonSea>& sea) {
+    py::class_<PythonGrid>(module, "ProjectedGrid",
+                           "The points at rest that a view shows, to the horizon: cells of about "
+                           "surface.cell_px pixels, by row from the innermost outwards.\n\n"
+                           "As a bake writes them: frame.evaluate(grid.rest_m, grid.origin_m, "
+                           "cell_m=grid.cell_m, pixel_m=grid.cell_m), since a mesh's vertices are its only "
+                           "samples. With pixel_m=grid.pixel_m instead normals are as fine as pixels.")
+        .def_readonly("columns", &PythonGrid::columns, "Quads a row.")
+        .def_readonly("rows", &PythonGrid::rows, "Rows of quads.")
+        .def_property_readonly(
+            "origin_m",
+            [](const PythonGrid& self) { return py::make_tuple(self.origin_m.x, self.origin_m.y); },
+            "(x, y) below the camera [m], in double precision: the points are relative to it.")
+        .def_readonly("rest_m", &PythonGrid::rest_m,
+                      "float32 ((columns+1)·(rows+1), 2) [m], columns fastest.")
+        .def_readonly("cell_m", &PythonGrid::cell_m,
+                      "float32, of each point: the distance to its neighbours [m].")
+        .def_readonly("pixel_m", &PythonGrid::pixel_m,
+                      "float32, of each point: what a pixel covers there [m].")
+        .def_property_readonly(
+            "quads", [](const PythonGrid& self) { return grid_quads(self.columns, self.rows); },
+            "int32 (columns·rows, 4), made anew: grid_quads(columns, rows). They depend on the size alone.");
+    sea.def("projected_grid", &grid_of, py::arg("view"), py::arg("size") = py::none(),
+            "The projected grid of a view.\n\n"
+            "size: (columns, rows), for grids that are to share their quads; by default what the view needs, "
+            "which changes with its pose. More make smaller cells, fewer larger ones.")
+        .def("serves", &serves, py::arg("view"),
+             "Whether the sea shows all waves that the cells of this view's grid can hold. Where it doesn't, "
+             "the finest are left out and counted in slope_variance: build another, with views=[view].");
+}
+
+void add_surfaces(py::module_& module) {
+    module.def("patch", &patch, py::arg("size_m"), py::arg("resolution"),
+               "The square patch, as a bake writes it: (rest, quads).\n\n"
+               "size_m: side of the patch, centred on the origin [m]. resolution: quads a side, N.\n"
+               "rest: float32 ((N+1)², 2), points at rest [m], x fastest, y rising.\n"
+               "quads: int32 (N², 4), each quad's points, counter-clockwise from above.");
+    module.def("grid_quads", &grid_quads, py::arg("columns"), py::arg("rows"),
+               "int32 (columns·rows, 4): the quads over (columns+1)·(rows+1) points, columns fastest, each "
+               "quad's points counter-clockwise from above.");
+    add_view(module);
+}
+
+}  // namespace pelagic::python

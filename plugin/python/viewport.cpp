@@ -3,7 +3,9 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -18,6 +20,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/rungs.h"
 #include "plugin/gpu/packed_frame.h"
 #include "plugin/gpu/shader_variants.h"
 #include "plugin/gpu/sky_atlas.h"
@@ -69,12 +72,18 @@ struct GpuLight {
     SkyAtlas atlas;
 };
 
-template <class Made>
-std::shared_ptr<Made> make_beside_others(const Scene& scene) {
+double checked_footprint(double finest_m) {
+    if (!(finest_m >= 0.0 && finest_m < 1e6))
+        throw py::value_error("finest_m: accepted: a length [m] from 0 up");
+    return finest_m;
+}
+
+template <class Made, class... More>
+std::shared_ptr<Made> make_beside_others(const Scene& scene, More... more) {
     require_valid(scene);
     const Scene kept = scene;  // other threads may change the caller's meanwhile
     const py::gil_scoped_release others_may_run;
-    return std::make_shared<Made>(kept);
+    return std::make_shared<Made>(kept, more...);
 }
 
 // ---- Grid
@@ -95,18 +104,25 @@ py::array triangles_of(const GpuGrid& grid) {
 
 class GpuSea {
   public:
-    explicit GpuSea(const Scene& scene)
-        : made_from_(canonical(scene, kFeeds)),
+    GpuSea(const Scene& scene, double finest_m)
+        : finest_m_(finest_m),
+          made_from_(canonical(scene, kFeeds)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(scene)),
           sea_(std::make_shared<const Sea<float>>(
-              make_plan(prepared_, {view_query(*prepared_)}, {.double_precision = false}))),
+              make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}))),
           frame_(sea_),
           packed_(sea_, 0) {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
     }
 
     bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from_; }
+
+    double finest_m() const { return finest_m_; }
+    double finest_for(const View& view) const {
+        const double finest_m = projected_grid_needs(view, projected_grid_options(*prepared_)).finest_pixel_m;
+        return first_rung_m(std::max(finest_m, kLeast_m));
+    }
 
     void set(double t_s) {
         const py::gil_scoped_release others_may_run;
@@ -136,8 +152,8 @@ class GpuSea {
         py::dict made;
         for (std::size_t p = 0; p < sea.packed_.planes().size(); ++p) {
             const SeaLayout::Plane& plane = sea.packed_.layout()->planes()[p];
-            made[kNames[p]] = view_of(self, sea.packed_.planes()[p].data(),
-                                      {plane.size.y, plane.size.x, plane.channels});
+            made[kNames[p]] =
+                view_of(self, sea.packed_.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
         }
         if (!sea.train_table_.empty())
             made["train_table"] =
@@ -154,6 +170,7 @@ class GpuSea {
         py::object cycles = py::none();
         if (layout.has_trains()) {
             std::vector<float> values = layout.train_cycles(origin, packed_.time_within_loop_s());
+            values.resize(std::max<std::size_t>(values.size(), 1));  // a texture has a texel
             const auto count = static_cast<py::ssize_t>(values.size());
             cycles = array_of<float>(std::move(values), {1, count, 1});
         }
@@ -172,10 +189,11 @@ class GpuSea {
         {
             const py::gil_scoped_release others_may_run;
             grid = projected_grid(view, options);
+            if (packed_.layout()->pixels().footprints_m.size() > 1)
+                keep_to_rungs(grid, projected_grid_needs(view, options));
             vertices.resize(grid.rest_m.size());
             for (std::size_t i = 0; i < vertices.size(); ++i)
-                vertices[i] =
-                    glm::vec4(grid.rest_m[i].x, grid.rest_m[i].y, grid.cell_m[i], grid.pixel_m[i]);
+                vertices[i] = glm::vec4(grid.rest_m[i].x, grid.rest_m[i].y, grid.cell_m[i], grid.pixel_m[i]);
         }
         return {{.columns = grid.columns, .rows = grid.rows},
                 grid.origin_m,
@@ -190,14 +208,22 @@ class GpuSea {
     }
 
   private:
+    // A cell is several pixels wide.
+    static Query query_of(const PreparedScene& prepared, double finest_m) {
+        return view_query(prepared, {.products = {},
+                                     .finest_cell_m = 0.5 * prepared.scene.surface.cell_px * finest_m,
+                                     .finest_pixel_m = finest_m});
+    }
+
     static py::array view_of(const py::object& owner, const float* data, std::vector<py::ssize_t> shape) {
         py::array_t<float> view(std::move(shape), data, owner);
         view.attr("setflags")(py::arg("write") = false);
         return view;
     }
 
-    static constexpr FeedSet kFeeds =
-        feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Quality, Feed::Grid);
+    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Quality, Feed::Grid);
+    static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres
+    double finest_m_ = 0.0;
     std::string made_from_;
     LightingChoice lighting_;
     std::shared_ptr<const PreparedScene> prepared_;
@@ -257,36 +283,48 @@ void add_viewport(py::module_& module) {
         "A sea for pictures from any camera, with what a GPU needs to draw it by itself: the preview's "
         "shaders, and their textures and uniforms.\n\n"
         "Built once from a scene, which takes as long as a Sea; other threads run meanwhile. ShotError for an "
-        "invalid scene. Single precision.")
-        .def(py::init(&make_beside_others<GpuSea>), py::arg("scene"))
+        "invalid scene. Single precision. finest_m: no pixel's footprint is taken as finer [m], and what is "
+        "left out of it roughens the surface; each halving costs up to four times the memory and the time. 0: "
+        "nothing is left out.")
+        .def(py::init([](const Scene& scene, double finest_m) {
+                 return make_beside_others<GpuSea>(scene, checked_footprint(finest_m));
+             }),
+             py::arg("scene"), py::arg("finest_m") = 0.0)
+        .def_property_readonly("finest_m", &GpuSea::finest_m, "As it was built [m].")
+        .def("finest_for", &GpuSea::finest_for, py::arg("view"),
+             "The finest_m that shows all waves that the pixels of this view can hold: a power of two [m].")
         .def("serves", &GpuSea::serves, py::arg("scene"),
              "Whether that scene has the same waves, foam and quality, so that nothing needs to be built.")
         .def("set", &GpuSea::set, py::arg("t"),
              "Makes it the sea at any finite time t [s]: `textures` changes. Other threads run meanwhile.")
-        .def("shaders", &GpuSea::shaders, py::arg("light"),
-             "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
-             "Equal for seas with as many cascades and footprints.\n\n"
-             "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "
-             "values to what its framebuffer stores. Uniforms besides those of GpuSea and GpuLight: mat4 "
-             "clip_from_grid (the host's projection of points relative to the grid's origin), exposure, and the "
-             "pixels' rays: vec3 view_forward, view_right, view_up (the latter two times the tangent that a "
-             "pixel covers), vec2 view_centre [px] from the bottom left, view_pixel_tangent. The sky is one "
-             "triangle, three vertices without attributes; its uniform `farthest` is the depth, 1 at the far "
-             "plane.")
-        .def_property_readonly("uniforms", &GpuSea::uniforms,
-                               "Uniforms of the sea's shader by name: numbers (int where the shader's are) and "
-                               "tuples.")
+        .def(
+            "shaders", &GpuSea::shaders, py::arg("light"),
+            "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
+            "Equal for seas with as many cascades and footprints.\n\n"
+            "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "
+            "values to what its framebuffer stores. Uniforms besides those of GpuSea and GpuLight: mat4 "
+            "clip_from_grid (the host's projection of points relative to the grid's origin), exposure, and the "
+            "pixels' rays: vec3 view_forward, view_right, view_up (the latter two times the tangent that a "
+            "pixel covers), vec2 view_centre [px] from the bottom left, view_pixel_tangent. The sky is one "
+            "triangle, three vertices without attributes; its uniform `farthest` is the depth, 1 at the far "
+            "plane.")
+        .def_property_readonly(
+            "uniforms", &GpuSea::uniforms,
+            "Uniforms of the sea's shader by name: numbers (int where the shader's are) and "
+            "tuples.")
         .def_property_readonly(
             "textures", &GpuSea::textures,
             "Textures of the sea's shader by name: float32 (height, width, 1, 2 or 4), texels as they are. "
             "Read-only views of memory that the next set() overwrites; only train_table stays.")
-        .def("at_origin", &GpuSea::at_origin, py::arg("origin_m"),
-             "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which don't "
-             "depend on time, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
-             "None.")
-        .def("grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
-             "The projected grid of a view, a GpuGrid. cell_px: the cells' side on the screen; by default the "
-             "scene's surface.cell_px.")
+        .def(
+            "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
+            "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which don't "
+            "depend on time, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
+            "None.")
+        .def(
+            "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
+            "The projected grid of a view, a GpuGrid. cell_px: the cells' side on the screen; by default the "
+            "scene's surface.cell_px.")
         .def_property_readonly("bytes", &GpuSea::bytes, "Memory that it holds [bytes].");
 }
 

@@ -213,10 +213,9 @@ std::string value_text(const Key& key, const KeyValue& value) {
             if (list.empty() && !key.empty_word.empty()) return quoted_text(key.empty_word);
             return list_text(list, [&](const KeyEntry& entry) {
                 std::string out = "{ ";
-                for (std::size_t i = 0; i < entry.values.size(); ++i) {
-                    const auto& [name, inner] = entry.values[i];
-                    out += (i == 0 ? "" : ", ") + std::string(name) + " = " + value_text(key, inner);
-                }
+                for (const auto& [name, inner] : entry.values)
+                    if (const std::string text = value_text(key, inner); !text.empty())  // empty: left out
+                        out += (out.size() == 2 ? "" : ", ") + std::string(name) + " = " + text;
                 return out + " }";
             });
         }

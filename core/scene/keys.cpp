@@ -28,7 +28,8 @@ void add_shot(Built& out) {
     };
     const Row<Shot, 2> frames{key_of_member<std::array<int, 2>>(
                                   {.name = "frames",
-                                   .help = "both included; frame f shows t = (f - 1)/fps, whatever the range",
+                                   .help = "both included; frame f shows t = time_offset_s + time_scale (f - 1)/fps, "
+                                           "whatever the range",
                                    .range = limits::kFrame,
                                    .form = "[first, last], two integers of ",
                                    .feeds = feeds(Feed::Range)}),
@@ -56,7 +57,19 @@ void add_shot(Built& out) {
              .unit = "s",
              .range = limits::kLoop_s,
              .soft = SoftRange{0.0, 60.0},
-             .feeds = feeds(Feed::Waves)}));
+             .feeds = feeds(Feed::Waves)}),
+        row<&Shot::time_scale>(
+            {.name = "time_scale",
+             .help = "seconds of the sea in a second on the screen: 0.5 is slow motion, 0 stands still",
+             .range = limits::kTimeScale,
+             .soft = SoftRange{0.0, 4.0},
+             .feeds = feeds(Feed::Clock)}),
+        row<&Shot::time_offset_s>({.name = "time_offset_s",
+                                   .help = "the sea's time at frame 1",
+                                   .unit = "s",
+                                   .range = limits::kTimeOffset_s,
+                                   .soft = SoftRange{0.0, 600.0},
+                                   .feeds = feeds(Feed::Clock)}));
 }
 
 void add_sea(Built& out) {
@@ -253,7 +266,17 @@ void add_camera(Built& out) {
             required<&CameraKey::position_m>(
                 {.name = "position_m", .help = "as above", .unit = "m", .range = kEach_m}),
             required<&CameraKey::look_at_m>(
-                {.name = "look_at_m", .help = "as above", .unit = "m", .range = kEach_m})),
+                {.name = "look_at_m", .help = "as above", .unit = "m", .range = kEach_m}),
+            row<&CameraKey::fov_deg>({.name = "fov_deg",
+                                      .help = "horizontal angle of view; without it the camera's fov_deg",
+                                      .unit = "degrees",
+                                      .range = limits::kFov_deg}),
+            row<&CameraKey::roll_deg>(
+                {.name = "roll_deg",
+                 .help = "about the line of sight; above 0 the camera's right side goes down",
+                 .unit = "degrees",
+                 .range = limits::kAngle_deg,
+                 .soft = kTurn})),
         row<&Camera::fov_deg>({.name = "fov_deg",
                                .help = "horizontal angle of view",
                                .unit = "degrees",

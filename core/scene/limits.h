@@ -28,6 +28,8 @@ inline constexpr int kNameLength = 200;  // file systems stop at 255 bytes, and 
 inline constexpr Range kFrame{-1e8, 1e8};  // a time (frame − 1)/fps that a double still holds to 1e-5 s
 inline constexpr Range kFps{1e-3, 1e4};    // a frame a quarter of an hour … high-speed camera
 inline constexpr Range kLoop_s{0.0, 1e7};  // four months
+inline constexpr Range kTimeScale{0.0, 1e3};
+inline constexpr Range kTimeOffset_s{-1e7, 1e7};
 inline constexpr double kLoopTolerance_frames =
     1e-4;  // a loop written with seven digits: 4 µs at 24 frames a second
 

@@ -32,15 +32,20 @@ enum class VolumeKind { Spray, LevelSet };
 // [shot]
 struct Shot {
     std::string name = "sea";  // letters, digits, _ and -
-    int first_frame = 1;       // both included; frame f shows t = (f − 1)/fps
+    int first_frame = 1;       // both included; time_s() says what a frame shows
     int last_frame = 48;
     double fps = 24.0;       // > 0
     std::uint64_t seed = 1;  // 0 … 2^63 − 1
     double loop_s = 0.0;     // > 0: repeats exactly after this long, a whole number of frames; 0: no loop
+    double time_scale = 1.0;     // seconds of the sea in a second on the screen, ≥ 0: 1/2 is slow motion
+    double time_offset_s = 0.0;  // the sea's time at frame 1
 
-    double time_s(int frame) const { return (frame - 1) / fps; }
+    // The sea's time that a frame shows, also between two of them: t = offset + scale (f − 1)/fps.
+    double time_s(double frame) const { return time_offset_s + time_scale * ((frame - 1.0) / fps); }
     // loop_s as the whole number of frames that it is to within rounding; 0: no loop.
     double exact_loop_s() const { return std::round(loop_s * fps) / fps; }
+    // The sea's own period: what it goes through in a loop. 0: no loop, or a sea that stands still.
+    double sea_loop_s() const { return time_scale * exact_loop_s(); }
 };
 
 // A swell from a far storm: a second, narrow spectrum.
@@ -109,6 +114,8 @@ struct CameraKey {
     int frame = 1;
     glm::dvec3 position_m{0.0};
     glm::dvec3 look_at_m{0.0};
+    std::optional<double> fov_deg{};  // without: the camera's
+    double roll_deg = 0.0;            // about the line of sight; above 0 the camera's right side goes down
 };
 
 // [camera]

@@ -12,24 +12,35 @@ namespace {
 
 struct Pose {
     glm::dvec3 position_m{0.0}, look_at_m{0.0};
+    double fov_deg = 50.0, roll_deg = 0.0;
 };
+
+Pose pose_of(const Camera& camera, const CameraKey& key) {
+    return {key.position_m, key.look_at_m, key.fov_deg.value_or(camera.fov_deg), key.roll_deg};
+}
 
 Pose pose_at(const Camera& camera, double frame) {
     const auto& keys = camera.keys;
-    if (keys.empty()) return {camera.position_m, camera.look_at_m};
+    if (keys.empty()) return {camera.position_m, camera.look_at_m, camera.fov_deg, 0.0};
     const auto after = std::upper_bound(keys.begin(), keys.end(), frame,
                                         [](double f, const CameraKey& key) { return f < key.frame; });
-    if (after == keys.begin()) return {after->position_m, after->look_at_m};
-    const CameraKey& before = *(after - 1);
-    if (after == keys.end()) return {before.position_m, before.look_at_m};
+    if (after == keys.begin()) return pose_of(camera, *after);
+    const Pose from = pose_of(camera, *(after - 1));
+    if (after == keys.end()) return from;
+    const Pose to = pose_of(camera, *after);
     // In double: the difference of two ints may overflow an int.
-    const double t =
-        (frame - before.frame) / (static_cast<double>(after->frame) - static_cast<double>(before.frame));
-    return {before.position_m + t * (after->position_m - before.position_m),
-            before.look_at_m + t * (after->look_at_m - before.look_at_m)};
+    const double first = (after - 1)->frame, t = (frame - first) / (after->frame - first);
+    return {from.position_m + t * (to.position_m - from.position_m),
+            from.look_at_m + t * (to.look_at_m - from.look_at_m),
+            from.fov_deg + t * (to.fov_deg - from.fov_deg),
+            from.roll_deg + t * (to.roll_deg - from.roll_deg)};
 }
 
 }  // namespace
+
+double View::fov_deg() const {
+    return std::atan(tan_half_width) * (360.0 / kPi);
+}
 
 glm::dvec3 View::direction(glm::dvec2 pixel) const {
     const double tangent = pixel_tangent();
@@ -55,7 +66,7 @@ View view_at(const Camera& camera, double frame) {
     View view;
     view.position_m = pose.position_m;
     view.resolution = camera.resolution;
-    view.tan_half_width = std::tan(camera.fov_deg * (kPi / 360.0));
+    view.tan_half_width = std::tan(pose.fov_deg * (kPi / 360.0));
     const glm::dvec3 way_m = pose.look_at_m - pose.position_m;
     const double distance_m = glm::length(way_m);
     // Between two keys a camera may pass through its target. It then has a new camera's direction.
@@ -64,8 +75,11 @@ View view_at(const Camera& camera, double frame) {
     constexpr double kVertical = 1e-9;
     const bool vertical = std::hypot(view.forward.x, view.forward.y) < kVertical;
     const glm::dvec3 upright = vertical ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
-    view.right = glm::normalize(glm::cross(view.forward, upright));
-    view.up = glm::cross(view.right, view.forward);
+    const glm::dvec3 right = glm::normalize(glm::cross(view.forward, upright));
+    const glm::dvec3 up = glm::cross(right, view.forward);
+    const double roll = pose.roll_deg * (kPi / 180.0);
+    view.right = std::cos(roll) * right - std::sin(roll) * up;
+    view.up = std::sin(roll) * right + std::cos(roll) * up;
     return view;
 }
 

@@ -18,6 +18,7 @@ struct View {
 
     bool operator==(const View&) const = default;
 
+    double fov_deg() const;  // horizontal
     // The tangent that a pixel covers. Pixels are square.
     double pixel_tangent() const { return 2.0 * tan_half_width / resolution.x; }
     // The unit direction through a point of the picture in pixels: (0, 0) is the top left corner, the centre
@@ -29,8 +30,8 @@ struct View {
     glm::dmat4 clip_from(glm::dvec3 origin_m, double near_m) const;
 };
 
-// The shot's camera at a frame: camera.keys, interpolated linearly between them and constant outside, or its
-// single pose. Up is z; for a vertical direction, +y.
+// The shot's camera at a frame: camera.keys, interpolated linearly between them (angles too) and constant
+// outside, or its single pose. Up is z, for a vertical direction +y, and then the roll.
 View view_at(const Camera& camera, double frame);
 
 }  // namespace pelagic

@@ -74,7 +74,7 @@ class Sea<T>::Progress {
 
 template <class T>
 Sea<T>::Sea(Plan plan, const BuildWatch& watch)
-    : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.exact_loop_s()) {
+    : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
     const Scene& scene = plan_.from->scene;
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
     const double choppiness = scene.waves.choppiness;

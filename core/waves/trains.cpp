@@ -126,7 +126,7 @@ double fraction_of_product(double a, double b) {
 template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
     const auto& [scene, spectrum, extent] = prepared;
-    const double choppiness = scene.waves.choppiness, loop_s = scene.shot.exact_loop_s();
+    const double choppiness = scene.waves.choppiness, loop_s = scene.shot.sea_loop_s();
     const Dispersion& dispersion = spectrum.dispersion();
     Trains<T> trains;
     for (int i = 0; i < plan.count; ++i) {

@@ -30,6 +30,12 @@ void move_by(std::vector<glm::vec3>& positions, glm::dvec2 origin_m) {
     }
 }
 
+// A file's velocities are per second of the screen.
+void scale_by(std::vector<glm::vec3>& velocities, double time_scale) {
+    if (time_scale == 1.0) return;
+    for (glm::vec3& v : velocities) v *= static_cast<float>(time_scale);
+}
+
 struct MeshSlot final : OutputSlot {
     Faces faces;       // where they vary
     std::string text;  // of a mesh in text; a crate needs none, its arrays are the values
@@ -129,6 +135,7 @@ class MeshPart final : public OutputPart {
         if (!at.pixel_m.empty()) points.pixel_m = {at.pixel_m.data()};
         state.runner.run(sea, output_.query, points, slot.values);
         move_by(slot.values.vectors(Product::Position), at.origin_m);
+        scale_by(slot.values.vectors(Product::Velocity), scene().shot.time_scale);
     }
 
     usd::MeshSample sample(int frame, const std::string& made_of, const MeshSlot& slot) const {

@@ -46,9 +46,9 @@ usd::Camera camera_of(const Scene& scene) {
             .pose_at =
                 [&scene](int frame) {
                     const View view = view_at(scene.camera, frame);
-                    return usd::CameraPose{view.position_m, view.right, view.up, -view.forward};
+                    return usd::CameraPose{view.position_m, view.right, view.up, -view.forward,
+                                           view.fov_deg()};
                 },
-            .fov_deg = scene.camera.fov_deg,
             .resolution = scene.camera.resolution};
 }
 

@@ -368,20 +368,19 @@ void bar(Controls& controls, const Shot& shot) {
         controls.playing = !controls.playing;
     tooltip("Space");
     ImGui::SameLine();
-    const double frame_now = 1.0 + controls.time_s * shot.fps;
-    auto frame = static_cast<float>(frame_now);
+    auto frame = static_cast<float>(controls.frame);
     const float right = scaled(330.0f);
     ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - right, scaled(60.0f)));
     if (ImGui::SliderFloat("##frame", &frame, static_cast<float>(shot.first_frame),
                            static_cast<float>(std::max(shot.last_frame, shot.first_frame + 1)), "frame %.1f",
                            ImGuiSliderFlags_AlwaysClamp))
-        controls.time_s = (static_cast<double>(frame) - 1.0) / shot.fps;
+        controls.frame = static_cast<double>(frame);
     tooltip("Frame of the shot; fractions are shown too. The arrow keys step");
     ImGui::SameLine();
-    ImGui::TextDisabled("%.2f s", controls.time_s);
+    ImGui::TextDisabled("%.2f s", shot.time_s(controls.frame));
     ImGui::SameLine(ImGui::GetWindowWidth() - scaled(245.0f));
     ImGui::SetNextItemWidth(scaled(120.0f));
-    slider("##speed", controls.time_scale,
+    slider("##speed", controls.speed,
            {.low = 0.05,
             .high = 8.0,
             .format = "speed × %.2f",
@@ -448,7 +447,7 @@ Controls controls_for(const Scene& scene) {
     // A shot that moves its camera, or closes, is watched as it is; a sea is watched for as long as one
     // likes.
     controls.repeat = !scene.camera.keys.empty() || scene.shot.loop_s > 0.0;
-    controls.time_s = scene.shot.time_s(scene.shot.first_frame);
+    controls.frame = scene.shot.first_frame;
     return controls;
 }
 

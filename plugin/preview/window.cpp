@@ -219,10 +219,10 @@ class Preview {
           skies_(build_sky) {
         controls_.pixel_size = options.pixel_size;
         if (options.frame) {
-            controls_.time_s = scene.shot.time_s(*options.frame);
+            controls_.frame = *options.frame;
             controls_.playing = false;
         }
-        shown_time_s_ = controls_.time_s;
+        shown_frame_ = controls_.frame;
         readout_.device = renderer_.device();
         camera_.take(view_at(scene.camera, scene.shot.first_frame));
         // Synchronises with the screen, except for a screenshot.
@@ -275,7 +275,7 @@ class Preview {
     // Nothing moves and there is no input: pictures may be rare.
     bool is_idle() const {
         return !options_.screenshot && !controls_.playing && !is_flying_ && !readout_.building_sea &&
-               !readout_.building_sky && shown_time_s_ == controls_.time_s && !ImGui::IsAnyMouseDown();
+               !readout_.building_sky && shown_frame_ == controls_.frame && !ImGui::IsAnyMouseDown();
     }
 
     void begin_picture(double whole_ms) {
@@ -308,8 +308,7 @@ class Preview {
     void act_on(const Window::Press& press) {
         const auto step = [&](int frames) {
             controls_.playing = false;
-            const double frame = std::round(1.0 + controls_.time_s * shot_.shot.fps) + frames;
-            controls_.time_s = (frame - 1.0) / shot_.shot.fps;
+            controls_.frame = std::round(controls_.frame) + frames;
         };
         if (press.key == GLFW_KEY_RIGHT) return step(1);
         if (press.key == GLFW_KEY_LEFT) return step(-1);
@@ -356,13 +355,12 @@ class Preview {
     void play(double step_s) {
         // Playing starts with the first sea.
         if (!controls_.playing || frame_ == nullptr) return;
-        controls_.time_s += step_s * controls_.time_scale;
+        controls_.frame += step_s * controls_.speed * shot_.shot.fps;
         if (!controls_.repeat) return;
         // The last frame is shown as long as the others.
-        const double first_s = shot_.shot.time_s(shot_.shot.first_frame);
-        const double length_s = shot_.shot.time_s(shot_.shot.last_frame + 1) - first_s;
-        const double within_s = std::fmod(controls_.time_s - first_s, length_s);
-        controls_.time_s = first_s + (within_s < 0.0 ? within_s + length_s : within_s);
+        const double first = shot_.shot.first_frame, length = shot_.shot.last_frame + 1.0 - first;
+        const double within = std::fmod(controls_.frame - first, length);
+        controls_.frame = first + (within < 0.0 ? within + length : within);
     }
 
     // Moves the camera by mouse and keys. Until the first movement it follows the shot's.
@@ -403,7 +401,7 @@ class Preview {
     // the vertical field of view is kept, in a narrower one the horizontal: the shot's picture is always
     // inside.
     View lens_now() const {
-        View view = view_at(shot_.camera, 1.0 + shown_time_s_ * shot_.shot.fps);
+        View view = view_at(shot_.camera, shown_frame_);
         const glm::dvec2 shot_size(shot_.camera.resolution);
         view.resolution =
             glm::max((window_.size_px() + (controls_.pixel_size - 1)) / controls_.pixel_size, glm::ivec2(1));
@@ -426,7 +424,7 @@ class Preview {
         }
         if (const auto sky = skies_.take()) show_sky(*sky);
         sea_.ask(controls_.scene);
-        sea_.show(controls_.time_s);
+        sea_.show(shot_.shot.time_s(controls_.frame));
         frame_ = sea_.newest();
         const LiveStatus status = sea_.status();
         readout_.building_sea = status.building;
@@ -444,7 +442,12 @@ class Preview {
     }
 
     void upload() {
-        shown_time_s_ = frame_->packed->time_s();
+        // The camera goes with the sea that is shown, which may be an earlier frame's.
+        const Shot& shot = shot_.shot;
+        const double sea_s = frame_->packed->time_s();
+        shown_frame_ = sea_s == shot.time_s(controls_.frame) || shot.time_scale == 0.0
+                           ? controls_.frame
+                           : 1.0 + (sea_s - shot.time_offset_s) / shot.time_scale * shot.fps;
         try {
             renderer_.upload(*frame_->packed);
             upload_error_.clear();
@@ -498,7 +501,7 @@ class Preview {
     Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;
     long uploaded_ = 0;  // the frame's number
-    double shown_time_s_ = 0.0;
+    double shown_frame_ = 1.0;
     int pictures_ = 0;
     bool is_flying_ = false, save_picture_ = false;
     std::string upload_error_, save_error_;

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -88,10 +89,19 @@ KeyValue from_python(const Key& key, const std::string& path, py::handle given);
 KeyEntry entry_from_python(const Key& list, const std::string& path, py::handle given) {
     KeyEntry entry;
     const bool is_dict = py::isinstance<py::dict>(given);
+    if (is_dict)
+        for (const auto& [name, value] : given.cast<py::dict>())
+            if (std::none_of(list.entry_keys.begin(), list.entry_keys.end(),
+                             [&](const Key& key) { return py::str(name).equal(py::str(key.name)); }))
+                refuse_type(list, path, given);
     for (const Key& key : list.entry_keys) {
         const py::str name(key.name);
         const bool has_key = is_dict ? given.contains(name) : py::hasattr(given, name);
-        if (!has_key || (is_dict && py::len(given) != list.entry_keys.size())) refuse_type(list, path, given);
+        if (!has_key) {
+            if (key.is_required) refuse_type(list, path, given);
+            entry.values.emplace_back(key.name, key.fallback);
+            continue;
+        }
         const py::object value = is_dict ? py::object(given[name]) : py::object(given.attr(name));
         entry.values.emplace_back(key.name, from_python(key, path + '.' + key.name, value));
     }
@@ -151,9 +161,10 @@ py::object property(const py::object& get, const py::object& set, const std::str
 void add_methods(const std::string& table, const py::object& base, py::dict& members) {
     if (table == "shot")
         members["time_s"] = py::cpp_function(
-            [](const TableOfScene& self, double frame) { return (frame - 1.0) / self.scene->shot.fps; },
+            [](const TableOfScene& self, double frame) { return self.scene->shot.time_s(frame); },
             py::arg("frame"), py::is_method(base),
-            "The time that a frame shows [s], also between frames: t = (frame - 1)/fps, whatever the range.");
+            "The sea's time that a frame shows [s], also between frames: "
+            "t = time_offset_s + time_scale (frame - 1)/fps, whatever the range.");
     if (table != "sea") return;
     members["is_measured"] = property(
         py::cpp_function([](const TableOfScene& self) { return self.scene->sea.measured.has_value(); }),
@@ -200,9 +211,15 @@ py::object add_table_class(py::module_& module, const py::object& base, const Ke
 // Named tuples: an attribute that is assigned would be lost with the copy that it belongs to.
 void add_entry_class(py::module_& module, const Key& key) {
     py::list names;
-    for (const Key& inner : key.entry_keys) names.append(inner.name);
-    const py::object made = py::module_::import("collections")
-                                .attr("namedtuple")(key.entry_name, names, py::arg("module") = "pelagic");
+    py::list defaults;  // of the last names: keys without one come first
+    for (const Key& inner : key.entry_keys) {
+        names.append(inner.name);
+        if (!inner.is_required) defaults.append(to_python(inner, inner.fallback));
+    }
+    const py::object made =
+        py::module_::import("collections")
+            .attr("namedtuple")(key.entry_name, names, py::arg("module") = "pelagic",
+                                py::arg("defaults") = defaults);
     made.attr("__doc__") = "An entry of " + key.path + ".";
     for (const Key& inner : key.entry_keys) made.attr(inner.name.c_str()).attr("__doc__") = doc_of(inner);
     module.attr(key.entry_name.c_str()) = made;

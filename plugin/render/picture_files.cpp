@@ -71,7 +71,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"frame", frame},
         {"cameraPosition_m", packed(glm::vec3(view.position_m))},
         {"cameraForward", packed(glm::vec3(view.forward))},
-        {"horizontalFieldOfView_deg", scene.camera.fov_deg},
+        {"horizontalFieldOfView_deg", view.fov_deg()},
         {"sunDirection", packed(context.sky.sun_direction)},
         {"exposure", static_cast<double>(exposure_for(context.sky, context.exposure_stops))},
         {"samplesPerPixel", context.options.samples * context.options.samples},

@@ -33,17 +33,17 @@ double distance_of_angles(const glm::dvec3& a, const glm::dvec3& b) {
 
 }  // namespace
 
-FilmBack film_back(const Camera& camera) {
-    if (!(camera.fov_deg > 0.0 && camera.fov_deg < 180.0)) {
+FilmBack film_back(double fov_deg, glm::ivec2 resolution) {
+    if (!(fov_deg > 0.0 && fov_deg < 180.0)) {
         throw std::invalid_argument("USD: the camera's field of view must be between 0 and 180 degrees");
     }
-    if (camera.resolution.x < 1 || camera.resolution.y < 1) {
+    if (resolution.x < 1 || resolution.y < 1) {
         throw std::invalid_argument("USD: the camera's resolution must be positive");
     }
     constexpr double kFilmWidth = 0.36;  // 36 mm in tenths of a metre
-    const double half_fov_rad = camera.fov_deg * (std::numbers::pi / 360.0);
+    const double half_fov_rad = fov_deg * (std::numbers::pi / 360.0);
     return {.horizontal_aperture = kFilmWidth,
-            .vertical_aperture = kFilmWidth * camera.resolution.y / camera.resolution.x,
+            .vertical_aperture = kFilmWidth * resolution.y / resolution.x,
             .focal_length = 0.5 * kFilmWidth / std::tan(half_fov_rad)};
 }
 
@@ -51,6 +51,11 @@ void check(const CameraPose& pose, int frame) {
     if (!is_finite(pose.position_m)) {
         throw std::invalid_argument("USD: the camera's position must be finite, at frame " +
                                     std::to_string(frame));
+    }
+    if (!(pose.fov_deg > 0.0 && pose.fov_deg < 180.0)) {
+        throw std::invalid_argument(
+            "USD: the camera's field of view must be between 0 and 180 degrees, at frame " +
+            std::to_string(frame));
     }
     // Far above what rounding does to unit vectors (1e-16), and far below what a picture shows.
     constexpr double kTolerance = 1e-9;

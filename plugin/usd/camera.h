@@ -1,6 +1,6 @@
 // A shot's camera as a layer of its own, a crate beside the root: one prim, def Camera "Camera", with plain
-// time samples, which every importer reads. Its size grows with the frames of the shot, 72 bytes for each;
-// the memory to write it does not.
+// time samples, which every importer reads. Its size grows with the frames of the shot, 72 bytes for each, 80
+// where the lens zooms; the memory to write it does not.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,14 @@
 
 namespace pelagic::usd {
 
-// Where a camera is, and its axes in the world: unit vectors, orthogonal, right × up = backward. The camera
-// looks along −backward.
+// Where a camera is, its axes in the world (unit vectors, orthogonal, right × up = backward), and its lens.
+// The camera looks along −backward.
 struct CameraPose {
     glm::dvec3 position_m{0.0};
     glm::dvec3 right{1.0, 0.0, 0.0};
     glm::dvec3 up{0.0, 0.0, 1.0};
     glm::dvec3 backward{0.0, -1.0, 0.0};
+    double fov_deg = 50.0;  // horizontal, between 0 and 180
     bool operator==(const CameraPose&) const = default;
 };
 
@@ -30,7 +31,6 @@ struct Camera {
     int last_frame = 1;
     // The pose at a frame of the shot. It is called more than once for a frame, and must give the same.
     std::function<CameraPose(int frame)> pose_at{};
-    double fov_deg = 50.0;               // horizontal, between 0 and 180
     glm::ivec2 resolution{1280, 720};    // pixels; their ratio is the film's
     glm::dvec2 clipping_m{0.1, 1000e3};  // near and far; far is beyond the horizon of any aircraft
 };
@@ -43,10 +43,10 @@ struct FilmBack {
     double focal_length;
 };
 // Throws std::invalid_argument unless 0 < fov_deg < 180 and the resolution is positive.
-FilmBack film_back(const Camera& camera);
+FilmBack film_back(double fov_deg, glm::ivec2 resolution);
 
-// Throws std::invalid_argument, naming the frame, unless the pose is finite and its axes are orthonormal and
-// right-handed.
+// Throws std::invalid_argument, naming the frame, unless the pose is finite, its axes are orthonormal and
+// right-handed, and 0 < fov_deg < 180.
 void check(const CameraPose& pose, int frame);
 
 // The pose's rotation as USD's rotateXYZ [deg], about x, then y, then z: x is the pitch (0 looks straight
@@ -56,7 +56,8 @@ void check(const CameraPose& pose, int frame);
 glm::dvec3 rotate_xyz_deg(const CameraPose& pose, const glm::dvec3& before_deg);
 
 // Translation and rotation have a sample for each frame, from the last frame before the first change of pose
-// to the frame of the last change; a camera that stands still has plain values. The bytes go to the sink in
+// to the frame of the last change, and so has the focal length where it changes; what stands still has plain
+// values. The bytes go to the sink in
 // small pieces while the poses are asked for.
 // Throws std::invalid_argument, naming what is wrong, before it calls the sink.
 void write_camera_crate(const Camera& camera, const Sink& sink);

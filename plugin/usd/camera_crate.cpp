@@ -13,6 +13,7 @@ namespace {
 struct MovingFrames {
     std::int64_t first = 0;
     std::int64_t last = 0;
+    bool zooms = false;  // the field of view changes, too
     std::uint64_t count() const { return first < last ? static_cast<std::uint64_t>(last - first) + 1 : 0; }
 };
 
@@ -26,6 +27,7 @@ MovingFrames moving_frames(const Camera& camera) {
         if (frame > camera.first_frame && pose != before) {
             if (moving.count() == 0) moving.first = frame - 1;
             moving.last = frame;
+            moving.zooms = moving.zooms || pose.fov_deg != before.fov_deg;
         }
         before = pose;
     }
@@ -70,8 +72,11 @@ void check(const Camera& camera) {
 // The crate refers to `camera` until it is written.
 Crate camera_layer(const Camera& camera) {
     check(camera);
-    const FilmBack film = film_back(camera);
     const MovingFrames moving = moving_frames(camera);
+    const auto film_at = [&camera](std::int64_t frame) {
+        return film_back(camera.pose_at(static_cast<int>(frame)).fov_deg, camera.resolution);
+    };
+    const FilmBack film = film_at(camera.first_frame);
 
     Crate crate;
     Crate::Fields layer;
@@ -83,7 +88,10 @@ Crate camera_layer(const Camera& camera) {
                                {"endTimeCode", crate.real(camera.last_frame)}});
     crate.add_layer(kCameraName, camera.fps, layer);
 
-    Crate::Fields translate, rotate;
+    const auto real32 = [&](double number) {
+        return Crate::Fields{{"default", crate.real32(static_cast<float>(number))}};
+    };
+    Crate::Fields translate, rotate, focal_length = real32(film.focal_length);
     if (moving.count() > 0) {
         const CrateValue times = crate.times(static_cast<double>(moving.first), moving.count());
         const std::uint64_t samples =
@@ -94,24 +102,25 @@ Crate camera_layer(const Camera& camera) {
                     writer.put(sampler.at(frame));
                 writer.flush();
             });
-        const auto samples_from = [&](std::uint64_t first) {
-            return crate.time_samples({.times = times,
-                                       .count = moving.count(),
-                                       .type = ValueType::Vec3d,
-                                       .first = first,
-                                       .stride = sizeof(Sample)});
+        const auto samples_of = [&](std::function<CrateValue(std::uint64_t)> sample) {
+            return Crate::Fields{{"timeSamples", crate.time_samples(times, moving.count(), std::move(sample))}};
         };
-        translate = {{"timeSamples", samples_from(samples)}};
-        rotate = {{"timeSamples", samples_from(samples + sizeof(glm::dvec3))}};
+        const auto stored_from = [](std::uint64_t first) {
+            return Crate::Stored{.type = ValueType::Vec3d, .first = first, .stride = sizeof(Sample)};
+        };
+        translate = samples_of(stored_from(samples));
+        rotate = samples_of(stored_from(samples + sizeof(glm::dvec3)));
+        if (moving.zooms)
+            focal_length = samples_of([film_at, moving](std::uint64_t index) {
+                const FilmBack then = film_at(moving.first + static_cast<std::int64_t>(index));
+                return Crate::real32(static_cast<float>(then.focal_length));
+            });
     } else {
         const Sample still = Sampler(camera).at(camera.first_frame);
         translate = {{"default", crate.stored(ValueType::Vec3d, still.translate)}};
         rotate = {{"default", crate.stored(ValueType::Vec3d, still.rotate_xyz_deg)}};
     }
 
-    const auto real32 = [&](double number) {
-        return Crate::Fields{{"default", crate.real32(static_cast<float>(number))}};
-    };
     constexpr std::string_view kTranslate = "xformOp:translate", kRotate = "xformOp:rotateXYZ";
     // The first operation is the last to act on a point.
     constexpr std::string_view kOrder[] = {kTranslate, kRotate};
@@ -119,7 +128,7 @@ Crate camera_layer(const Camera& camera) {
     const CrateValue order = crate.token_array(kOrder);
     const std::vector<Crate::Attribute> attributes{
         {.name = "clippingRange", .type = "float2", .more = {{"default", clipping}}},
-        {.name = "focalLength", .type = "float", .more = real32(film.focal_length)},
+        {.name = "focalLength", .type = "float", .more = focal_length},
         {.name = "horizontalAperture", .type = "float", .more = real32(film.horizontal_aperture)},
         {.name = "projection", .type = "token", .more = {{"default", crate.token("perspective")}}},
         {.name = "verticalAperture", .type = "float", .more = real32(film.vertical_aperture)},

@@ -103,7 +103,7 @@ CrateValue Crate::boolean(bool value) const {
     return inlined(ValueType::Bool, value ? 1 : 0);
 }
 
-CrateValue Crate::real32(float number) const {
+CrateValue Crate::real32(float number) {
     return inlined(ValueType::Float, std::bit_cast<std::uint32_t>(number));
 }
 
@@ -183,16 +183,16 @@ CrateValue Crate::times(double first, std::uint64_t count) {
     return value;
 }
 
-CrateValue Crate::time_samples(const Samples& samples) {
+CrateValue Crate::time_samples(CrateValue times, std::uint64_t count,
+                               std::function<CrateValue(std::uint64_t index)> sample) {
     align();
     const CrateValue value = at(ValueType::TimeSamples, size());
-    append_indirect(samples.times);
+    append_indirect(times);
     append(piece(), std::int64_t{sizeof(std::int64_t)});
-    append(piece(), samples.count);
-    produced(samples.count * sizeof(CrateValue), [samples](const Sink& sink) {
+    append(piece(), count);
+    produced(count * sizeof(CrateValue), [count, sample = std::move(sample)](const Sink& sink) {
         PieceWriter writer(sink);
-        for (std::uint64_t i = 0; i < samples.count; ++i)
-            writer.put(at(samples.type, samples.first + i * samples.stride));
+        for (std::uint64_t i = 0; i < count; ++i) writer.put(sample(i));
         writer.flush();
     });
     return value;

@@ -103,7 +103,7 @@ class Crate {
     CrateValue string(std::string_view text);
     CrateValue real(double number);
     CrateValue boolean(bool value) const;
-    CrateValue real32(float number) const;
+    static CrateValue real32(float number);
     CrateValue specifier(Specifier value) const;
     CrateValue tokens(std::span<const std::string_view> texts);       // a list among the metadata
     CrateValue token_array(std::span<const std::string_view> texts);  // an attribute's value, token[]
@@ -134,15 +134,17 @@ class Crate {
     CrateValue time_samples(double time, CrateValue sample);
     // `count` times, each 1 later than the one before. Attributes may share them.
     CrateValue times(double first, std::uint64_t count);
-    // A sample at each of these times. The values are in the file at `first`, `first + stride`, and so on.
-    struct Samples {
-        CrateValue times;
-        std::uint64_t count;
+    // Where the samples of an attribute are in the file: at `first`, `first + stride`, and so on.
+    struct Stored {
         ValueType type;
         std::uint64_t first;
         std::uint64_t stride;
+        CrateValue operator()(std::uint64_t index) const { return at(type, first + index * stride); }
     };
-    CrateValue time_samples(const Samples& samples);
+    // A sample at each of these `count` times. write() asks for them one after another: a Stored, or
+    // values that need no place of their own, such as real32().
+    CrateValue time_samples(CrateValue times, std::uint64_t count,
+                            std::function<CrateValue(std::uint64_t index)> sample);
 
     // The layer's own fields: those of space and time, `more`, and its only prim.
     void add_layer(std::string_view prim, double fps, Fields more);

@@ -34,6 +34,26 @@ TEST(View, FollowsKeysLinearlyAndStandsStillOutside) {
     expect_near(view_at(camera, 12.5).forward, {0.0, 1.0, 0.0}, 1e-15);
 }
 
+TEST(View, KeysMayZoomAndRoll) {
+    Camera camera;
+    camera.fov_deg = 40.0;
+    camera.keys = {{.frame = 10, .position_m = {0.0, 0.0, 2.0}, .look_at_m = {0.0, 10.0, 2.0}},
+                   {.frame = 20,
+                    .position_m = {0.0, 0.0, 2.0},
+                    .look_at_m = {0.0, 10.0, 2.0},
+                    .fov_deg = 60.0,
+                    .roll_deg = 180.0}};
+    EXPECT_NEAR(view_at(camera, 1.0).fov_deg(), 40.0, 1e-13) << "a key without an angle has the camera's";
+    EXPECT_NEAR(view_at(camera, 15.0).fov_deg(), 50.0, 1e-13);
+    EXPECT_NEAR(view_at(camera, 30.0).fov_deg(), 60.0, 1e-13);
+    expect_near(view_at(camera, 10.0).right, {1.0, 0.0, 0.0}, 0.0);
+    // A quarter turn: the right side points down, and the picture's top is where the right side was.
+    expect_near(view_at(camera, 15.0).right, {0.0, 0.0, -1.0}, 1e-15);
+    expect_near(view_at(camera, 15.0).up, {1.0, 0.0, 0.0}, 1e-15);
+    expect_near(view_at(camera, 15.0).forward, {0.0, 1.0, 0.0}, 0.0);
+    expect_near(view_at(camera, 20.0).up, {0.0, 0.0, -1.0}, 1e-15);
+}
+
 TEST(View, StandsUprightAndLooksAlongZWithNorthUp) {
     for (const glm::dvec3 target : {glm::dvec3(3.0, 4.0, -2.0), {-5.0, 1.0, 9.0}, {0.0, -1.0, 0.0}}) {
         const View view = view_at(camera_with({0.0, 0.0, 0.0}, target), 1.0);

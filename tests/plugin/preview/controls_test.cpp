@@ -34,7 +34,7 @@ TEST(Controls, BeginAsTheShotHasIt) {
     scene.shot.first_frame = 25;
     scene.effects.whitecaps = false;
     const Controls still = controls_for(scene);
-    EXPECT_EQ(still.time_s, 1.0);  // frame 25 at 24 frames a second
+    EXPECT_EQ(still.frame, 25.0);
     EXPECT_FALSE(still.draw.lighting.whitecaps);
     EXPECT_FALSE(still.repeat) << "a sea to be watched";
     scene.camera.keys = {{}, {.frame = 40}};

@@ -130,7 +130,7 @@ TEST(UsdCamera, CamerasThatNoStageCanHaveAreRefused) {
     EXPECT_THROW(camera_crate({}), std::invalid_argument);
     EXPECT_THROW(camera_crate({.fps = 0.0, .pose_at = pose}), std::invalid_argument);
     EXPECT_THROW(camera_crate({.first_frame = 2, .last_frame = 1, .pose_at = pose}), std::invalid_argument);
-    EXPECT_THROW(camera_crate({.pose_at = pose, .fov_deg = 180.0}), std::invalid_argument);
+    EXPECT_THROW(camera_crate({.pose_at = [](int) { return CameraPose{.fov_deg = 180.0}; }}), std::invalid_argument);
     EXPECT_THROW(camera_crate({.pose_at = pose, .clipping_m = {0.0, 1.0}}), std::invalid_argument);
     EXPECT_THROW(camera_crate({.pose_at = pose, .clipping_m = {2.0, 1.0}}), std::invalid_argument);
 }
@@ -185,14 +185,14 @@ TEST(UsdCamera, TwoMillionFramesGoThroughASmallBuffer) {
 
 TEST(UsdCamera, FilmSeesTheFieldOfViewAndHasThePicturesShape) {
     for (const double fov_deg : {1.0, 50.0, 90.0, 179.0}) {
-        const FilmBack film = film_back({.fov_deg = fov_deg, .resolution = {1920, 800}});
+        const FilmBack film = film_back(fov_deg, {1920, 800});
         const double seen_rad = 2.0 * std::atan(0.5 * film.horizontal_aperture / film.focal_length);
         EXPECT_NEAR(seen_rad, fov_deg * std::numbers::pi / 180.0, 1e-14);  // roundings of angles below π
         EXPECT_DOUBLE_EQ(film.vertical_aperture / film.horizontal_aperture, 800.0 / 1920.0);
     }
-    EXPECT_THROW(film_back({.fov_deg = 180.0}), std::invalid_argument);
-    EXPECT_THROW(film_back({.fov_deg = std::numeric_limits<double>::quiet_NaN()}), std::invalid_argument);
-    EXPECT_THROW(film_back({.resolution = {0, 1}}), std::invalid_argument);
+    EXPECT_THROW(film_back(180.0, {1280, 720}), std::invalid_argument);
+    EXPECT_THROW(film_back(std::numeric_limits<double>::quiet_NaN(), {1280, 720}), std::invalid_argument);
+    EXPECT_THROW(film_back(50.0, {0, 1}), std::invalid_argument);
 }
 
 }  // namespace

@@ -313,17 +313,21 @@ void write_camera(const std::filesystem::path& dir, const std::string& name, con
                   const std::vector<int>& sampled) {
     const std::string file = usd::camera_file(name);
     save(dir / file, usd::camera_crate(camera));
-    const usd::FilmBack film = usd::film_back(camera);
+    const usd::FilmBack film = usd::film_back(camera.pose_at(sampled.front()).fov_deg, camera.resolution);
     const auto single = [](double value) {
         const auto rounded = static_cast<float>(value);
         return json_array(std::span<const float>(&rounded, 1));
     };
     std::string frames;
+    std::vector<float> focal_lengths;
+    for (const int frame : sampled)
+        focal_lengths.push_back(static_cast<float>(
+            usd::film_back(camera.pose_at(frame).fov_deg, camera.resolution).focal_length));
     for (const int frame : sampled)
         frames += (frames.empty() ? "\"" : ", \"") + std::to_string(frame) +
                   "\": " + json_matrix(camera.pose_at(frame));
     save(dir / (without_extension(file) + ".json"),
-         "{\"focalLength\": " + single(film.focal_length) + ",\n\"horizontalAperture\": " +
+         "{\"focalLength\": " + json_array(std::span<const float>(focal_lengths)) + ",\n\"horizontalAperture\": " +
              single(film.horizontal_aperture) + ",\n\"verticalAperture\": " + single(film.vertical_aperture) +
              ",\n\"first\": " + std::to_string(camera.first_frame) +
              ",\n\"last\": " + std::to_string(camera.last_frame) + ",\n\"matrices\": {" + frames + "}}\n");
@@ -375,8 +379,12 @@ void write_moving_stage(const std::filesystem::path& dir, const std::string& ext
     const usd::Camera camera{.fingerprint = "1234abcd",
                              .first_frame = 1,
                              .last_frame = kLast,
-                             .pose_at = [](int frame) { return pose_of(moving_camera(frame)); },
-                             .fov_deg = 65.0};
+                             // It zooms while it moves.
+                             .pose_at = [](int frame) {
+                                 usd::CameraPose pose = pose_of(moving_camera(frame));
+                                 pose.fov_deg = 65.0 + 2.0 * std::clamp(frame, 2, 7);
+                                 return pose;
+                             }};
     write_camera(dir, kMoving, camera, {2, 3, 4, 5, 6, 7});
     usd::Stage stage{.name = kMoving, .first_frame = 1, .last_frame = kLast, .attributes = attributes};
     stage.frame_extension = stage.topology_extension = extension;

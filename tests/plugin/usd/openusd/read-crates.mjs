@@ -185,7 +185,7 @@ function differencesOfCamera(USDCParser, file, count) {
     const prim = specsByPath['/Camera'].fields;
     same('prim', ['def', 'Camera'], [specifiers[prim.specifier], prim.typeName]);
     const valueOf = (name) => specsByPath[`/Camera.${name}`].fields.default;
-    for (const name of ['focalLength', 'horizontalAperture', 'verticalAperture']) {
+    for (const name of ['horizontalAperture', 'verticalAperture']) {
         same(name, expected[name][0], valueOf(name));
     }
     same('projection', 'perspective', valueOf('projection'));
@@ -199,7 +199,11 @@ function differencesOfCamera(USDCParser, file, count) {
     const [translate, rotate] = ['xformOp:translate', 'xformOp:rotateXYZ'].map(samplesOf);
     const matrices = Object.entries(expected.matrices).map(([frame, wanted]) => [Number(frame), wanted])
         .sort(([a], [b]) => a - b);
-    for (const { times } of [translate, rotate]) same('times', matrices.map(([frame]) => frame), times);
+    const focalLength = samplesOf('focalLength');
+    same('focalLength', expected.focalLength, focalLength.values);
+    for (const { times } of [translate, rotate, focalLength]) {
+        same('times', matrices.map(([frame]) => frame), times);
+    }
     matrices.forEach(([, wanted], i) => {
         const got = matrixOf(rotate.values[i], translate.values[i]);
         // Roundings of angles of less than a turn.

@@ -30,3 +30,11 @@ def curves(owner):
             if bag:
                 return bag.fcurves
     return []
+
+
+def set_uv(layer, uv):
+    """uv: float32 (corners, 2), contiguous."""
+    if hasattr(layer, "uv"):  # since 3.5
+        layer.uv.foreach_set("vector", uv.ravel())
+    else:
+        layer.data.foreach_set("uv", uv.ravel())

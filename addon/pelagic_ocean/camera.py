@@ -11,14 +11,12 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from mathutils import Vector
 
-from . import compat
+from . import compat, ocean
 from .module import pelagic
 from .operators import CLIP_END_M
-from .properties import shortest
+from .properties import shortest, shortest_for
 
-LOOK_AHEAD_M = 100.0  # where the camera looks, unless it tracks something
 FILM_MM = 36.0
 ROLL_DIGITS = 4  # of degrees: 1e-4 is a fiftieth of a pixel at the edge of an 8K picture
 SAME_DIRECTION = 1e-3  # radians
@@ -37,15 +35,6 @@ class Pose:
         return (*self.position_m, *self.look_at_m, self.fov_deg, self.roll_deg)
 
 
-def shortest_for(value, encode, wanted):
-    """The shortest decimal near value that encode() makes single precision's `wanted` of; value itself if none does."""
-    for digits in range(1, 17):
-        short = float(f"{value:.{digits}g}")
-        if np.float32(encode(short)) == np.float32(wanted):
-            return short
-    return value
-
-
 # ---- Out of Blender
 
 
@@ -62,7 +51,9 @@ def half_film_mm(data, render):
 def fov_deg(data, render):
     half = half_film_mm(data, render)
     angle = math.degrees(2.0 * math.atan(half / data.lens))
-    return min(max(shortest_for(angle, lambda deg: half / math.tan(math.radians(deg) / 2.0), data.lens), 1.0), 179.0)
+    angle = shortest_for(angle, lambda deg: half / math.tan(math.radians(deg) / 2.0), data.lens)
+    low, high = ocean.FOV_DEG
+    return min(max(angle, low), high)
 
 
 def _target(camera):
@@ -74,32 +65,20 @@ def _target(camera):
     return None
 
 
-def _upright(forward):
-    """Right and up of a camera without roll, as a shot's."""
-    vertical = math.hypot(forward.x, forward.y) < 1e-6
-    right = forward.cross(Vector((0, 1, 0)) if vertical else Vector((0, 0, 1))).normalized()
-    return right, right.cross(forward)
-
-
-def pose_of(camera, obj, bpy_scene, depsgraph=None):
-    """A camera's pose as the ocean object sees it."""
-    target = _target(camera)
+def pose_of(obj, bpy_scene, depsgraph=None):
+    """The pose of the scene's camera as the ocean object sees it."""
+    camera, target = bpy_scene.camera, _target(bpy_scene.camera)
+    pinhole = ocean.pinhole_of(obj, bpy_scene, depsgraph)
+    look_at = pinhole.position_m + ocean.LOOK_AHEAD_M * pinhole.forward
     if depsgraph:
         camera, obj = camera.evaluated_get(depsgraph), obj.evaluated_get(depsgraph)
-        target = target and target.evaluated_get(depsgraph)
-    to_sea = obj.matrix_world.inverted_safe()
-    matrix = to_sea @ camera.matrix_world
-    place, axes = matrix.translation, matrix.to_3x3().normalized()
-    forward = -axes.col[2]
-    look_at = target and to_sea @ target.matrix_world.translation
-    if target and (look_at - place).length > 0.0 and (look_at - place).angle(forward) < SAME_DIRECTION:
-        forward = (look_at - place).normalized()
-    else:
-        look_at = place + LOOK_AHEAD_M * forward
-    right, up = _upright(forward)
-    roll = math.degrees(math.atan2(-axes.col[0].dot(up), axes.col[0].dot(right)))
-    return Pose(tuple(map(shortest, place)), tuple(map(shortest, look_at)), fov_deg(camera.data, bpy_scene.render),
-                round(roll, ROLL_DIGITS) + 0.0)
+    if target:
+        place = (target.evaluated_get(depsgraph) if depsgraph else target).matrix_world.translation
+        place = obj.matrix_world.inverted_safe() @ place
+        if (place - pinhole.position_m).angle(pinhole.forward, math.pi) < SAME_DIRECTION:
+            look_at = place
+    return Pose(tuple(map(shortest, pinhole.position_m)), tuple(map(shortest, look_at)),
+                fov_deg(camera.data, bpy_scene.render), round(pinhole.roll_deg(), ROLL_DIGITS) + 0.0)
 
 
 def set_pose(scene, pose):
@@ -169,7 +148,7 @@ def animated_poses(context, obj):
     with _oceans_at_rest():
         for frame in range(bpy_scene.frame_start, bpy_scene.frame_end + 1):
             bpy_scene.frame_set(frame)
-            poses[frame] = pose_of(bpy_scene.camera, obj, bpy_scene, context.evaluated_depsgraph_get())
+            poses[frame] = pose_of(obj, bpy_scene, context.evaluated_depsgraph_get())
     bpy_scene.frame_set(now[0], subframe=now[1])
     return poses
 

@@ -34,16 +34,13 @@ def shot_of(context, obj):
         remarks.append(f"{obj.name} is moved or turned: the shot's camera is as seen from it, the sun stays")
     if obj.animation_data and obj.animation_data.action:
         remarks.append(f"{obj.name} is animated: the shot has its settings at frame {bpy_scene.frame_current}")
-    if bpy_scene.camera is None or bpy_scene.camera.type != "CAMERA":
-        remarks.append("the scene has no camera: the shot has the default one")
+    if ocean.pinhole_of(obj, bpy_scene) is None:
+        remarks.append("the scene has no perspective camera: the shot has the default one")
     else:
-        data = bpy_scene.camera.data
-        if data.type != "PERSP":
-            remarks.append(f"{data.name} is {data.type.lower()}: a shot's cameras are perspective")
-        if data.shift_x or data.shift_y:
-            remarks.append(f"{data.name} has a lens shift, which a shot can't say")
+        if bpy_scene.camera.data.shift_x or bpy_scene.camera.data.shift_y:
+            remarks.append(f"{bpy_scene.camera.name} has a lens shift, which a shot can't say")
         if bpy_scene.render.pixel_aspect_x != bpy_scene.render.pixel_aspect_y:
-            remarks.append("pixels that aren't square can't be said in a shot")
+            remarks.append("a shot can't say that pixels aren't square")
         camera.set_poses(scene, camera.animated_poses(context, obj))
     problems = scene.validate()
     if problems:

@@ -6,6 +6,7 @@ Blender need not read USD for it: pelagic.read_mesh does. The mesh is put togeth
 
 import json
 import re
+import zlib
 from functools import lru_cache
 from pathlib import Path
 
@@ -20,7 +21,8 @@ from .module import pelagic
 from .operators import NeedsModule
 from .surfaces import Surface
 
-UV_M = 100.0  # of a camera's grid, whose texture coordinates are the places themselves
+UV_M = 100.0  # of a camera's grid: the length that is 1 in its UV map
+ACCEPTED = "accepted: a bake's folder, or NAME.json or NAME.usda in it"
 
 
 class Bake:
@@ -32,13 +34,15 @@ class Bake:
         if path.is_dir():
             records = sorted(path.glob("*.json"))
             if len(records) != 1:
-                raise ValueError(f"{path}: {len(records) or 'no'} bakes in this folder; accepted: the file NAME.json of one")
+                raise ValueError(f"{path}: {len(records) or 'no'} bakes in this folder; {ACCEPTED}")
             path = records[0]
         self.record = path.with_suffix(".json")
         self.name, self.folder = self.record.stem, self.record.parent / "mesh"
         try:
             told = json.loads(self.record.read_text(encoding="utf-8"))
             self.scene = _scene_of(told["settings"])
+        except FileNotFoundError:
+            raise ValueError(f"{self.record}: is not there; {ACCEPTED}") from None
         except (KeyError, TypeError, AttributeError, ValueError) as error:
             raise ValueError(f"{self.record}: is not the record of a bake ({error})") from None
         self.first, self.last = self.scene.shot.frames
@@ -70,14 +74,13 @@ class Bake:
         if len(told["st"]) != len(arrays["position"]):
             raise ValueError(f"{self.folder}: a frame has {len(arrays['position'])} points, and its faces are of "
                              f"{len(told['st'])}")
-        if told is arrays:  # a camera's grid: its faces are those of the frame, where they were at rest nobody knows
-            rest, uv_m = arrays["position"][:, :2].copy(), UV_M
-        else:
-            uv_m = self.scene.surface.size_m
-            rest = (told["st"] - np.float32(0.5)) * np.float32(uv_m)
+        corners = told["face_corners"]
         starts = np.concatenate([[0], np.cumsum(told["face_counts"])[:-1]]).astype(np.int32)
-        signature = f"baked {self.record} {len(rest)} {len(starts)}"
-        return Surface(signature, rest, 1.0, told["face_corners"], starts, uv_m=uv_m)
+        signature = f"baked {len(told['st'])} {zlib.crc32(corners):08x} {zlib.crc32(starts):08x}"
+        if told is arrays:  # a camera's grid: a frame has its own faces, and where its points rest nobody knows
+            return Surface(signature, arrays["position"][:, :2], 1.0, lambda: (corners, starts), uv_m=UV_M, moves=True)
+        size_m = np.float32(self.scene.surface.size_m)
+        return Surface(signature, (told["st"] - np.float32(0.5)) * size_m, 1.0, lambda: (corners, starts), uv_m=size_m)
 
     def _topology(self):
         for file in sorted(self.folder.glob(f"{self.name}.topology.usd?")):
@@ -114,7 +117,7 @@ def bake_of(obj):
     try:
         return _bake(str(record), record.stat().st_mtime_ns, folder.stat().st_mtime_ns)
     except FileNotFoundError as error:
-        raise ValueError(f"{error.filename}: is not there; accepted: the folder of a bake") from None
+        raise ValueError(f"{error.filename}: is not there; {ACCEPTED}") from None
 
 
 problems = {}  # object's name → why it doesn't show the frame
@@ -132,8 +135,10 @@ def show(obj, frame):
         file = bake.files[nearest]
         arrays = _read(str(file), file.stat().st_mtime_ns)
         surface = bake.surface(arrays)
-        if "face_corners" in arrays or not meshes.holds(obj.data, surface):
+        if not meshes.holds(obj.data, surface):
             meshes.put_surface(obj.data, surface)
+        elif surface.moves:
+            meshes.move_rest(obj.data, surface)
         meshes.put_frame(obj.data, arrays)
     except (OSError, ValueError) as error:
         problems[obj.name_full] = str(error)

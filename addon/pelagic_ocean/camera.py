@@ -81,19 +81,6 @@ def pose_of(obj, bpy_scene, depsgraph=None):
                 fov_deg(camera.data, bpy_scene.render), round(pinhole.roll_deg(), ROLL_DIGITS) + 0.0)
 
 
-def set_pose(scene, pose):
-    """A camera that stands still."""
-    scene.camera.position_m, scene.camera.look_at_m = pose.position_m, pose.look_at_m
-    scene.camera.fov_deg = pose.fov_deg
-    scene.camera.keys = ()
-    if pose.roll_deg:
-        scene.camera.keys = (_key(scene.shot.frames[0], pose, None),)
-
-
-def _key(frame, pose, fov):
-    return pelagic.CameraKey(frame, pose.position_m, pose.look_at_m, fov, pose.roll_deg)
-
-
 def needed_keys(poses):
     """The frames of {frame: Pose} that have to be keys: the others lie on the straight lines between them."""
     frames = np.array(sorted(poses))
@@ -115,17 +102,19 @@ def needed_keys(poses):
 
 
 def set_poses(scene, poses):
-    """A camera of {frame: Pose}: a key where its way bends."""
+    """A camera of {frame: Pose}: still, or a key where its way bends or it rolls."""
     kept = needed_keys(poses)
-    if len(kept) == 1:
-        set_pose(scene, poses[kept[0]])
+    first = poses[kept[0]]
+    zooms = any(poses[frame].fov_deg != first.fov_deg for frame in kept)
+    default = pelagic.Scene().camera
+    scene.camera.fov_deg = default.fov_deg if zooms else first.fov_deg
+    if len(kept) == 1 and not first.roll_deg:
+        scene.camera.position_m, scene.camera.look_at_m, scene.camera.keys = first.position_m, first.look_at_m, ()
         return
-    defaults = pelagic.Scene().camera
-    scene.camera.position_m, scene.camera.look_at_m = defaults.position_m, defaults.look_at_m
-    angles = {poses[frame].fov_deg for frame in kept}
-    scene.camera.fov_deg = angles.pop() if len(angles) == 1 else defaults.fov_deg
-    zooms = bool(angles)
-    scene.camera.keys = tuple(_key(frame, poses[frame], poses[frame].fov_deg if zooms else None) for frame in kept)
+    scene.camera.position_m, scene.camera.look_at_m = default.position_m, default.look_at_m
+    scene.camera.keys = tuple(
+        pelagic.CameraKey(frame, pose.position_m, pose.look_at_m, pose.fov_deg if zooms else None, pose.roll_deg)
+        for frame, pose in ((frame, poses[frame]) for frame in kept))
 
 
 @contextmanager
@@ -133,7 +122,8 @@ def _oceans_at_rest():
     """Frames change without the seas': only what carries the camera matters."""
     handlers = bpy.app.handlers.frame_change_post
     before = list(handlers)
-    handlers[:] = [each for each in before if each.__module__ not in {f"{__package__}.{name}" for name in ("play", "viewport", "baked")}]
+    costly = {f"{__package__}.{name}" for name in ("play", "viewport", "baked")}
+    handlers[:] = [each for each in before if each.__module__ not in costly]
     try:
         yield
     finally:

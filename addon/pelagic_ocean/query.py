@@ -6,8 +6,6 @@ from mathutils import Matrix
 
 from . import ocean, play
 
-INVERSIONS = 12  # each brings a place some 3 times nearer, in a steep sea
-
 
 def first_ocean(bpy_scene):
     """The scene's first ocean by name, None if it has none."""
@@ -35,11 +33,7 @@ class Water:
 
     def heights(self, places):
         """How high the surface is at places (n, 2): (n,)."""
-        rest = np.array(places, float)
-        for _ in range(INVERSIONS):
-            there = self.carried(rest)
-            rest += places - there[:, :2]
-        return there[:, 2]
+        return self._frame.heights(np.asarray(places, float), outputs=())["height_m"].astype(float)
 
     def world_heights(self, points):
         """The z in the world of the surface at points (n, 2) of the world: (n,). The ocean may be turned about z."""

@@ -144,7 +144,7 @@ TEST(Loop, RepeatsToTheBitOnAClockThatIsScaledAndOffset) {
         scene.shot.loop_s = 5.0;
         scene.shot.time_scale = scale;
         scene.shot.time_offset_s = 3.7;
-        scene.waves.cascades = {{1000.0, 96}, {100.0, 64}};
+        scene.waves.cascades = {{1000.0, 168}, {100.0, 64}};
         auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});
         const auto points = random_points<float>(500.0, 200);
         for (const int f : {1, 2, 7, 100}) {

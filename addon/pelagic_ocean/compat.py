@@ -15,3 +15,11 @@ def set_positions(mesh, positions):
 
 def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
+
+
+def set_uv(layer, uv):
+    """uv: float32 (corners, 2), contiguous."""
+    if hasattr(layer, "uv"):  # since 3.5
+        layer.uv.foreach_set("vector", uv.ravel())
+    else:
+        layer.data.foreach_set("uv", uv.ravel())

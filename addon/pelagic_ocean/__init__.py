@@ -17,7 +17,8 @@ bl_info = {
 
 import importlib
 
-PARTS = ("properties", "play", "operators", "panels", "viewport")
+PARTS = ("properties", "play", "operators", "panels", "floating", "sampling", "exchange", "baked", "native",
+         "viewport")
 
 _registered = []
 

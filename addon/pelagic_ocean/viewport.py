@@ -16,7 +16,9 @@ from .gpu_sea import Camera, Drawing
 from .module import pelagic
 
 SHADINGS = {"SOLID", "MATERIAL"}  # views that draw the preview; the others need the mesh
-FINEST_M = 1 / 32  # waves that only finer pixels could show roughen the surface: a frame of them is cheap to upload
+# How fine a view's pixels count as: waves that only finer ones could show roughen the surface, so that a frame is cheap
+# to make and to upload. How coarse: there, hardly anything is left to save.
+FINEST_M, COARSEST_M = 1 / 32, 2.0
 STILL_S = 0.25  # a view that hasn't moved for so long gets the fine grid
 POLL_S = 0.02
 
@@ -66,7 +68,8 @@ class Preview:
         drawing = self.drawing
         sea, light = drawing.sea, drawing.light
         if self._job is None and self._settings != self._refused:
-            finest_m = FINEST_M if sea is None else max(drawing.finest_m() or sea.finest_m, FINEST_M)
+            finest_m = FINEST_M if sea is None else min(max(drawing.finest_m() or sea.finest_m, FINEST_M),
+                                                                 COARSEST_M)
             # A coarser one would save work, but not so much that every step of a zoom is worth a new sea.
             keeps_sea = sea is not None and sea.serves(scene) and sea.finest_m <= finest_m <= 4 * sea.finest_m
             keeps_light = light is not None and light.serves(scene)

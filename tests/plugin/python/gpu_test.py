@@ -9,7 +9,7 @@ import pelagic
 
 def small_scene(**waves):
     scene = pelagic.Scene()
-    scene.waves.cascades = [(100.0, 64), (13.0, 32)]
+    scene.waves.cascades = [{"size_m": 100.0, "resolution": 128}, {"size_m": 13.0, "resolution": 32}]
     for name, value in waves.items():
         setattr(scene.waves, name, value)
     return scene
@@ -38,7 +38,7 @@ class Seas(unittest.TestCase):
         for name, texels in textures.items():
             np.testing.assert_array_equal(sea.textures[name], texels)
         # The largest tile is that of the whole largest cascade, and its height has the sea's variance, nearly.
-        height_m = textures["cell_fields"][:64, :64, 0]
+        height_m = textures["cell_fields"][:128, :128, 0]
         self.assertGreater(4 * height_m.std(), 0.3 * pelagic.Sea(small_scene()).significant_height_m)
         with self.assertRaises(ValueError):
             sea.textures["cell_fields"][0, 0, 0] = 1.0

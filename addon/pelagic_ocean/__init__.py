@@ -17,7 +17,7 @@ bl_info = {
 
 import importlib
 
-PARTS = ("properties", "play", "operators", "panels")
+PARTS = ("properties", "play", "operators", "presets", "panels")
 
 _registered = []
 

@@ -20,6 +20,21 @@ def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
 
 
+def curves(owner):
+    """The curves that animate an object or its data: a collection with remove(), or an empty list."""
+    animation = owner.animation_data
+    if animation is None or animation.action is None:
+        return []
+    if not hasattr(animation, "action_slot"):  # actions have slots since 4.4
+        return animation.action.fcurves
+    for layer in animation.action.layers:
+        for strip in layer.strips:
+            bag = strip.channelbag(animation.action_slot)
+            if bag:
+                return bag.fcurves
+    return []
+
+
 def set_uv(layer, uv):
     """uv: float32 (corners, 2), contiguous."""
     if hasattr(layer, "uv"):  # since 3.5

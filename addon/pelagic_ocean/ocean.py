@@ -10,7 +10,7 @@ import bpy
 from mathutils import Vector
 
 from .module import pelagic
-from .properties import BY_PATH, FIELDS, TABLES, VERSION, counts
+from .properties import BY_PATH, FIELDS, TABLES, VERSION, counts, shortest_for
 
 NO_MODULE = "Pelagic's compiled module isn't there"
 
@@ -40,7 +40,8 @@ def clean_name(name):
 
 
 def frame_rate(bpy_scene):
-    return bpy_scene.render.fps / bpy_scene.render.fps_base
+    render = bpy_scene.render
+    return shortest_for(render.fps / render.fps_base, lambda fps: render.fps / fps, render.fps_base)
 
 
 def _on_disk(path):

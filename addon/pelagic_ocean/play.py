@@ -211,6 +211,16 @@ def simulation_of(obj):
     return _simulation(first)
 
 
+def brought_up(obj, bpy_scene, depsgraph):
+    """The Simulation of an ocean, brought to its settings though nothing may show it; it has no sea while that is being
+    built."""
+    mesh = obj.original.data
+    first = next(other for other in oceans() if other.data == mesh)
+    simulation = _simulation(first)
+    simulation.follow(first, bpy_scene, depsgraph, bpy.app.background or bool(_rendering))
+    return simulation
+
+
 def _show(obj, bpy_scene, depsgraph, again):
     """Brings the mesh of an ocean to the present. again: though it is there already."""
     simulation = _simulation(obj)

@@ -37,6 +37,15 @@ def shortest(number):
     return float(str(np.float32(number)))
 
 
+def shortest_for(value, encode, stored):
+    """The shortest decimal near value that encode() turns into this float32; value itself if none does."""
+    for digits in range(1, 17):
+        short = float(f"{value:.{digits}g}")
+        if np.float32(encode(short)) == np.float32(stored):
+            return short
+    return value
+
+
 # ---- Keys
 
 

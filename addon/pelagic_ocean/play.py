@@ -204,18 +204,21 @@ def _simulation(obj):
     return _simulations.setdefault(obj.name_full, Simulation())
 
 
+def _driver_of(obj):
+    """Of linked duplicates, the ocean that drives their mesh."""
+    mesh = obj.original.data
+    return next(other for other in oceans() if other.data == mesh)
+
+
 def simulation_of(obj):
     """The Simulation of an ocean, original or evaluated; of linked duplicates, the one that drives their mesh."""
-    mesh = obj.original.data
-    first = next(other for other in oceans() if other.data == mesh)
-    return _simulation(first)
+    return _simulation(_driver_of(obj))
 
 
 def brought_up(obj, bpy_scene, depsgraph):
     """The Simulation of an ocean, brought to its settings though nothing may show it; it has no sea while that is being
     built."""
-    mesh = obj.original.data
-    first = next(other for other in oceans() if other.data == mesh)
+    first = _driver_of(obj)
     simulation = _simulation(first)
     simulation.follow(first, bpy_scene, depsgraph, bpy.app.background or bool(_rendering))
     return simulation

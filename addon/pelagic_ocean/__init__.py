@@ -17,7 +17,7 @@ bl_info = {
 
 import importlib
 
-PARTS = ("properties", "play", "operators", "panels", "floating", "sampling", "exchange", "baked", "native",
+PARTS = ("properties", "play", "operators", "presets", "panels", "floating", "sampling", "exchange", "baked", "native",
          "viewport")
 
 _registered = []

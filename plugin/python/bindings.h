@@ -13,10 +13,14 @@ void add_surfaces(pybind11::module_& module);
 void add_sea(pybind11::module_& module);
 void add_frame(pybind11::module_& module);
 void add_light(pybind11::module_& module);
+void add_picture(pybind11::module_& module);
+void add_bake(pybind11::module_& module);
 void add_baked(pybind11::module_& module);
 void add_viewport(pybind11::module_& module);
 
 // ShotError with a line for each of validate()'s problems.
 void require_valid(const Scene& scene);
+// As an assignment in Python does; "output.maps", say, which must be there.
+void set_key(Scene& scene, const char* path, const pybind11::handle& value);
 
 }  // namespace pelagic::python

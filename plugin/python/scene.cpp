@@ -293,6 +293,13 @@ void require_valid(const Scene& scene) {
     if (!report.empty()) throw ShotError(report);
 }
 
+void set_key(Scene& scene, const char* path, const py::handle& value) {
+    const std::span<const Key> all = keys();
+    const auto key = std::find_if(all.begin(), all.end(), [&](const Key& each) { return each.path == path; });
+    if (key == all.end()) throw std::logic_error("no key is called " + std::string(path));
+    set_from_python(scene, *key, value);
+}
+
 void add_scene(py::module_& module) {
     for (const Key& key : keys())
         if (!key.entry_keys.empty()) add_entry_class(module, key);

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What this Blender can do. The only file that asks: everything else calls these functions."""
 
+from pathlib import Path
+
+import bpy
 import numpy as np
 
 
@@ -38,3 +41,11 @@ def set_uv(layer, uv):
         layer.uv.foreach_set("vector", uv.ravel())
     else:
         layer.data.foreach_set("uv", uv.ravel())
+
+
+def user_folder(package, name, create):
+    """A Path to a folder of the user's own, which stays when the add-on is updated: an extension's, since 4.2, or the
+    one for scripts' presets."""
+    if package.startswith("bl_ext."):
+        return Path(bpy.utils.extension_path_user(package, path=name, create=create))
+    return Path(bpy.utils.user_resource("SCRIPTS", path=f"{name}/pelagic", create=create))

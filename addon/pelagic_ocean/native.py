@@ -12,7 +12,7 @@ import numpy as np
 
 from . import compat, ocean
 from .module import pelagic
-from .operators import NeedsModule, _show_now
+from .operators import NeedsModule, show_now
 
 SPECTRA = {"PHILLIPS": "phillips", "PIERSON_MOSKOWITZ": "pierson-moskowitz", "JONSWAP": "jonswap",
            "TEXEL_MARSEN_ARSLOE": "tma"}
@@ -144,7 +144,7 @@ class PELAGIC_OT_replace_ocean_modifier(NeedsModule, bpy.types.Operator):
         if obj.data.users > 1:
             obj.data = obj.data.copy()
         ocean.mark(obj)
-        simulation = _show_now(context, obj)
+        simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)
         wind = scene.sea.wind_speed_mps

@@ -7,6 +7,7 @@ import bpy
 from . import ocean, play
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
+from .presets import PELAGIC_MT_presets
 from .properties import FIELDS, counts
 
 # Title → tables of keys.
@@ -53,9 +54,11 @@ def _draw_field(layout, group, field):
 
 
 def _draw_tables(layout, settings, tables):
-    for field in FIELDS:
-        if field.table in tables and counts(field, settings):
-            _draw_field(layout, getattr(settings, field.table), field)
+    for table in tables:
+        column = layout.column()
+        for field in FIELDS:
+            if field.table == table and counts(field, settings):
+                _draw_field(column, getattr(settings, table), field)
 
 
 class Main:
@@ -91,6 +94,8 @@ class Sub:
         layout = self.layout
         layout.use_property_split = True
         settings = context.object.pelagic
+        if self.bl_label == "Sea":
+            layout.menu(PELAGIC_MT_presets.bl_idname)
         if self.bl_label == "Surface":
             _draw_surface(layout, settings)
             if settings.own_mesh:

@@ -64,6 +64,10 @@ class Field:
         """The name of the property that says whether there is a number, or ""."""
         return "" if self.absent == 0 else "use_" + self.name
 
+    @property
+    def is_path(self):
+        return "path" in self.key["accepted"]
+
     def read(self, group):
         """The value as the module takes it, of a group: plain numbers, strings, tuples."""
         if self.switch and not getattr(group, self.switch):
@@ -199,8 +203,8 @@ def _integer(key):
 
 
 def _string(key):
-    is_path = "path" in key["accepted"]
-    return StringProperty(**_common(key), default=key["default"] or "", **({"subtype": "FILE_PATH"} if is_path else {}))
+    subtype = {"subtype": "FILE_PATH"} if _field(key).is_path else {}
+    return StringProperty(**_common(key), default=key["default"] or "", **subtype)
 
 
 MAKERS = {

@@ -16,6 +16,7 @@ from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, PointerP
 from mathutils import Euler, Matrix, Vector
 
 from . import ocean
+from .module import pelagic
 from .query import Water, first_ocean
 
 LEAST_FOOTPRINT_M = 0.05  # narrower, and single precision shows in the tilt
@@ -260,13 +261,16 @@ def register():
     for made in CLASSES:
         bpy.utils.register_class(made)
     bpy.types.Object.pelagic_float = PointerProperty(type=PELAGIC_PG_float, name="Floating")
-    for name, handler in HANDLERS.items():
-        getattr(bpy.app.handlers, name).append(handler)
+    if pelagic is not None:
+        for name, handler in HANDLERS.items():
+            getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
     for name, handler in HANDLERS.items():
-        getattr(bpy.app.handlers, name).remove(handler)
+        handlers = getattr(bpy.app.handlers, name)
+        if handler in handlers:
+            handlers.remove(handler)
     del bpy.types.Object.pelagic_float
     for made in reversed(CLASSES):
         bpy.utils.unregister_class(made)

@@ -227,7 +227,8 @@ void add_scene(py::module_& module) {
             py::arg("memo"))
         .def("__str__", [](const Scene& self) { return canonical(self); });
     py::class_<TableOfScene> base(module, "Table", "A table of a scene: its keys are the attributes.");
-    base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }));
+    base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }),
+             py::arg("scene"));
     for (const KeyTable& table : key_tables()) {
         const py::object made = add_table_class(module, base, table);
         scene.def_property(

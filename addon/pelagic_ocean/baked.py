@@ -235,15 +235,18 @@ def register():
     for made in CLASSES:
         bpy.utils.register_class(made)
     bpy.types.Object.pelagic_baked = PointerProperty(type=PELAGIC_PG_baked, name="Pelagic Bake")
-    for name, handler in HANDLERS.items():
-        getattr(bpy.app.handlers, name).append(handler)
+    if pelagic is not None:
+        for name, handler in HANDLERS.items():
+            getattr(bpy.app.handlers, name).append(handler)
     bpy.types.TOPBAR_MT_file_import.append(_menu)
 
 
 def unregister():
     bpy.types.TOPBAR_MT_file_import.remove(_menu)
     for name, handler in HANDLERS.items():
-        getattr(bpy.app.handlers, name).remove(handler)
+        handlers = getattr(bpy.app.handlers, name)
+        if handler in handlers:
+            handlers.remove(handler)
     del bpy.types.Object.pelagic_baked
     for made in reversed(CLASSES):
         bpy.utils.unregister_class(made)

@@ -10,7 +10,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from . import camera, ocean
 from .module import pelagic
-from .operators import NeedsModule, _show_now
+from .operators import NeedsModule, show_now
 from .query import first_ocean
 
 OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; accepted: a patch or the camera's grid "
@@ -129,7 +129,7 @@ class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
             other.select_set(False)
         obj.select_set(True)
         context.view_layer.objects.active = obj
-        simulation = _show_now(context, obj)
+        simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)
         if obj.name != scene.shot.name:

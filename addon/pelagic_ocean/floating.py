@@ -16,11 +16,13 @@ from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, PointerP
 from mathutils import Euler, Matrix, Vector
 
 from . import ocean
+from .module import pelagic
+from .panels import PLACES
 from .query import Water, first_ocean
 
 LEAST_FOOTPRINT_M = 0.05  # narrower, and single precision shows in the tilt
 SAMPLES = 9  # a side of the footprint
-ALONG = np.linspace(-0.5, 0.5, SAMPLES)
+GRID = np.stack(np.meshgrid(*2 * [np.linspace(-0.5, 0.5, SAMPLES)]), -1).reshape(-1, 2)
 
 
 def _is_ocean(_settings, obj):
@@ -79,16 +81,15 @@ def ride(water, rest, size, settings):
     heading = np.array(rest.col[0].xy)
     length = np.linalg.norm(heading)
     heading = heading / length if length > 1e-9 else np.array((1.0, 0.0))  # else it stands on its end
-    widths = np.maximum(np.array(size) * settings.damping, LEAST_FOOTPRINT_M)
-    offsets = np.stack(np.meshgrid(ALONG * widths[0], ALONG * widths[1]), -1).reshape(-1, 2)
-    offsets = offsets @ np.array((heading, (-heading[1], heading[0])))
-    places = offsets + rest.translation.xy
+    axes = np.array((heading, (-heading[1], heading[0])))
+    offsets = GRID * np.maximum(np.array(size) * settings.damping, LEAST_FOOTPRINT_M)
+    places = offsets @ axes + rest.translation.xy
     shift = np.zeros(2)
     if settings.drift > 0.0:
         shift = settings.drift * (water.carried(places)[:, :2] - places).mean(0)
-    # The plane that fits best: the points lie evenly round the middle.
+    # The plane that fits best, by least squares: the offsets are symmetric and their products sum to nothing.
     heights = water.heights(places + shift)
-    slopes = np.linalg.lstsq(offsets, heights - heights.mean(), rcond=None)[0] * settings.tilt
+    slopes = settings.tilt * (heights @ offsets / (offsets**2).sum(0)) @ axes
     tilt = Vector((0, 0, 1)).rotation_difference(Vector((-slopes[0], -slopes[1], 1.0))).to_matrix().to_4x4()
     place = rest.translation
     return (Matrix.Translation((place.x + shift[0], place.y + shift[1], place.z + heights.mean())) @ tilt
@@ -162,8 +163,10 @@ def _on_board(obj):
 def follow(bpy_scene, depsgraph):
     """Puts the scene's floating objects on the water of the depsgraph's frame."""
     waters = {}
-    for obj in floats(bpy_scene):
-        sea = obj.pelagic_float.ocean or first_ocean(bpy_scene)
+    objects = floats(bpy_scene)
+    first = first_ocean(bpy_scene) if objects else None
+    for obj in objects:
+        sea = obj.pelagic_float.ocean or first
         if sea is None:
             continue
         if sea not in waters:
@@ -226,11 +229,8 @@ def _can_float(obj):
     return obj is not None and not ocean.is_ocean(obj) and obj.type not in {"LIGHT", "LIGHT_PROBE"}
 
 
-class PELAGIC_PT_float(bpy.types.Panel):
+class FloatPanel:
     bl_label = "Floating"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "object"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
@@ -253,20 +253,25 @@ class PELAGIC_PT_float(bpy.types.Panel):
             layout.prop(settings, "width")
 
 
-CLASSES = (PELAGIC_PG_float, PELAGIC_OT_float, PELAGIC_PT_float)
+CLASSES = (PELAGIC_PG_float, PELAGIC_OT_float,
+           *(type(f"PELAGIC_PT_{where}_float", (FloatPanel, bpy.types.Panel), dict(place))
+             for where, place in PLACES.items()))
 
 
 def register():
     for made in CLASSES:
         bpy.utils.register_class(made)
     bpy.types.Object.pelagic_float = PointerProperty(type=PELAGIC_PG_float, name="Floating")
-    for name, handler in HANDLERS.items():
-        getattr(bpy.app.handlers, name).append(handler)
+    if pelagic is not None:
+        for name, handler in HANDLERS.items():
+            getattr(bpy.app.handlers, name).append(handler)
 
 
 def unregister():
     for name, handler in HANDLERS.items():
-        getattr(bpy.app.handlers, name).remove(handler)
+        handlers = getattr(bpy.app.handlers, name)
+        if handler in handlers:
+            handlers.remove(handler)
     del bpy.types.Object.pelagic_float
     for made in reversed(CLASSES):
         bpy.utils.unregister_class(made)

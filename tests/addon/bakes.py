@@ -129,3 +129,45 @@ with checking("what is no bake is refused in words, and a damaged frame leaves t
     shutil.rmtree(there)
     bpy.context.scene.frame_set(2)
     assert "is not there" in baked.problems[from_disk.name_full]
+
+with checking("baked in Blender as exported and baked on the command line, byte by byte"):
+    fresh_file()
+    sea = add_ocean(sea__wind_speed_mps=11.3, surface__size_m=77.7, light__sun_elevation_deg=12.1)
+    sea.name = "our sea"
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 5
+    scene.render.fps, scene.render.fps_base = 30, 1.001
+    scene.camera.data.keyframe_insert("lens", frame=1)
+    scene.camera.data.lens = 80
+    scene.camera.data.keyframe_insert("lens", frame=5)
+    for kind in ("patch", "projected-grid"):
+        change(sea, surface__kind=kind, output__maps={"displacement"}, output__map_resolution=32)
+        sea.pelagic.surface.cell_px = 20
+        sea.pelagic_bake.folder = str(folder / kind)
+        assert bpy.ops.pelagic.bake() == {"FINISHED"}
+        shot = folder / f"{kind}.toml"
+        bpy.ops.pelagic.export_shot(filepath=str(shot))
+        subprocess.run([program, "bake", str(shot), "--out", str(folder / "line" / kind)], check=True, capture_output=True)
+        ours, theirs = folder / kind / "our_sea", folder / "line" / kind
+        names = sorted(str(file.relative_to(ours)) for file in ours.rglob("*") if file.is_file())
+        assert names == sorted(str(file.relative_to(theirs)) for file in theirs.rglob("*") if file.is_file())
+        assert sum(name.endswith(".exr") for name in names) == 5 and len(names) > 12
+        for name in names:
+            assert (ours / name).read_bytes() == (theirs / name).read_bytes(), name
+
+with checking("a second bake keeps what is there"):
+    before = {file: file.stat().st_mtime_ns for file in ours.rglob("*.usdc")}
+    assert bpy.ops.pelagic.bake() == {"FINISHED"}
+    assert before == {file: file.stat().st_mtime_ns for file in ours.rglob("*.usdc")}
+
+with checking("a folder that can't be written, // of a file that isn't saved, the own mesh: words"):
+    sea.pelagic_bake.folder = "/proc/bakes"
+    assert refused(bpy.ops.pelagic.bake, "/proc/bakes")
+    sea.pelagic_bake.folder = "//bakes"
+    assert refused(bpy.ops.pelagic.bake, "isn't saved yet")
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "place.blend"))
+    assert bpy.ops.pelagic.bake() == {"FINISHED"}
+    assert (folder / "bakes" / "our_sea" / "our_sea.json").exists()
+    bpy.ops.mesh.primitive_grid_add(size=20)
+    bpy.ops.pelagic.use_mesh()
+    assert refused(bpy.ops.pelagic.bake, "own mesh")

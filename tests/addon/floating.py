@@ -2,6 +2,7 @@
 
 import math
 import sys
+import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -181,6 +182,42 @@ with checking("a setting of the sea moves what floats"):
     bpy.context.view_layer.update()
     assert state(raft) == before
 
+with checking("in renders of an animation, too: the picture shows it where it is at each frame"):
+    folder = Path(tempfile.mkdtemp())
+    lamp = buoy((0, 0, 0), (1, 1, 1), tilt=0.0, drift=0.0)
+    shine = bpy.data.materials.new("Shine")
+    shine.use_nodes = True
+    shine.node_tree.nodes.clear()
+    emission = shine.node_tree.nodes.new("ShaderNodeEmission")
+    output = shine.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    shine.node_tree.links.new(emission.outputs[0], output.inputs[0])
+    lamp.data.materials.append(shine)
+    hidden = [obj for obj in scene.objects if obj != lamp and not obj.hide_render]
+    for obj in hidden:
+        obj.hide_render = True
+    bpy.ops.object.camera_add(location=(0, -50, 0), rotation=(math.pi / 2, 0, 0))
+    scene.camera = bpy.context.object
+    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 8.0
+    render = scene.render
+    render.engine, render.resolution_x, render.resolution_y, render.resolution_percentage = "CYCLES", 64, 64, 100
+    scene.cycles.samples, scene.cycles.use_denoising, scene.world.color = 4, False, (0, 0, 0)
+    scene.world.use_nodes = False
+    render.filepath = str(folder / "lamp.")
+    scene.frame_start, scene.frame_end, scene.frame_step = 20, 60, 20
+    bpy.ops.render.render(animation=True)
+    rows = {}
+    for frame in (20, 40, 60):
+        picture = bpy.data.images.load(str(folder / f"lamp.{frame:04}.png"))
+        pixels = np.array(picture.pixels).reshape(64, 64, 4)[..., 0] > 0.3  # the rest is a background, almost black
+        rows[frame] = (np.average(np.arange(64) + 0.5, weights=pixels.sum(1)) / 64 - 0.5) * 8
+        scene.frame_set(frame)
+        assert abs(rows[frame] - lamp.matrix_world.translation.z) < 0.06, (frame, rows, lamp.matrix_world.translation.z)
+    assert np.ptp(list(rows.values())) > 0.3, rows
+    scene.frame_step = 1
+    for obj in hidden:
+        obj.hide_render = False
+    bpy.data.objects.remove(lamp)
+
 with checking("off, it is as it was"):
     other.pelagic_float.enabled = False
     assert tuple(other.delta_location) == (-1, 0, 0) and tuple(other.delta_rotation_quaternion) == (1, 0, 0, 0)
@@ -195,8 +232,7 @@ with checking("off, it is as it was"):
     assert state(raft) == shown
 
 with checking("saved and loaded it floats on, in the same places"):
-    import tempfile
-    path = str(Path(tempfile.mkdtemp()) / "float.blend")
+    path = str(folder / "float.blend")
     name = raft.name
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)

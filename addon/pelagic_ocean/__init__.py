@@ -18,7 +18,7 @@ bl_info = {
 import importlib
 
 PARTS = ("properties", "play", "operators", "presets", "panels", "floating", "sampling", "exchange", "baking",
-         "baked", "native", "viewport")
+         "baked", "native", "menu", "viewport")
 
 _registered = []
 

@@ -17,6 +17,7 @@ from mathutils import Euler, Matrix, Vector
 
 from . import ocean
 from .module import pelagic
+from .panels import PLACES
 from .query import Water, first_ocean
 
 LEAST_FOOTPRINT_M = 0.05  # narrower, and single precision shows in the tilt
@@ -227,11 +228,8 @@ def _can_float(obj):
     return obj is not None and not ocean.is_ocean(obj) and obj.type not in {"LIGHT", "LIGHT_PROBE"}
 
 
-class PELAGIC_PT_float(bpy.types.Panel):
+class FloatPanel:
     bl_label = "Floating"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "object"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
@@ -254,7 +252,9 @@ class PELAGIC_PT_float(bpy.types.Panel):
             layout.prop(settings, "width")
 
 
-CLASSES = (PELAGIC_PG_float, PELAGIC_OT_float, PELAGIC_PT_float)
+CLASSES = (PELAGIC_PG_float, PELAGIC_OT_float,
+           *(type(f"PELAGIC_PT_{where}_float", (FloatPanel, bpy.types.Panel), dict(place))
+             for where, place in PLACES.items()))
 
 
 def register():

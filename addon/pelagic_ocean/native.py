@@ -153,14 +153,22 @@ class PELAGIC_OT_replace_ocean_modifier(NeedsModule, bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (PELAGIC_OT_replace_ocean_modifier,)
+def _draw(self, context):
+    """The end of the main panels."""
+    if find(context.object):
+        self.layout.operator(PELAGIC_OT_replace_ocean_modifier.bl_idname, icon="MODIFIER")
+
+
+PANELS = ("PELAGIC_PT_object", "PELAGIC_PT_view")
 
 
 def register():
-    for made in CLASSES:
-        bpy.utils.register_class(made)
+    bpy.utils.register_class(PELAGIC_OT_replace_ocean_modifier)
+    for name in PANELS:
+        getattr(bpy.types, name).append(_draw)
 
 
 def unregister():
-    for made in reversed(CLASSES):
-        bpy.utils.unregister_class(made)
+    for name in PANELS:
+        getattr(bpy.types, name).remove(_draw)
+    bpy.utils.unregister_class(PELAGIC_OT_replace_ocean_modifier)

@@ -11,10 +11,6 @@ from .operators import NeedsOcean
 TABLES = ("sea", "waves", "effects", "light", "water")  # what a preset of the user's keeps
 
 
-def core_presets():
-    return pelagic.presets() if hasattr(pelagic, "presets") else []
-
-
 def folder(create=False):
     return compat.user_folder(__package__, "presets", create)
 
@@ -41,7 +37,7 @@ class PELAGIC_OT_preset_apply(NeedsOcean, bpy.types.Operator):
 
     @classmethod
     def description(cls, _context, properties):
-        return next((preset["help"] for preset in core_presets() if preset["name"] == properties.name),
+        return next((preset["help"] for preset in pelagic.presets() if preset["name"] == properties.name),
                     "Make this the ocean's sea")
 
     def execute(self, context):
@@ -51,7 +47,7 @@ class PELAGIC_OT_preset_apply(NeedsOcean, bpy.types.Operator):
             if self.name in own_presets():
                 _with_tables_of(pelagic.Scene.from_file(own_presets()[self.name]), scene)
             else:
-                pelagic.apply_preset(scene, self.name)
+                scene.apply_preset(self.name)
             ocean.set_from(obj, scene)
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))
@@ -76,7 +72,7 @@ class PELAGIC_OT_preset_save(NeedsOcean, bpy.types.Operator):
         if not name:
             self.report({"ERROR"}, "A preset needs a name")
             return {"CANCELLED"}
-        if any(name == preset["name"] for preset in core_presets()):
+        if any(name == preset["name"] for preset in pelagic.presets()):
             self.report({"ERROR"}, f"{name} is one of the presets that are always there: take another name")
             return {"CANCELLED"}
         try:
@@ -121,7 +117,7 @@ class PELAGIC_MT_presets(bpy.types.Menu):
         layout = self.layout
         for title, group in (("Wind", "beaufort"), ("Seas", "sea")):
             layout.label(text=title)
-            for preset in core_presets():
+            for preset in pelagic.presets():
                 if preset["group"] == group:
                     layout.operator(PELAGIC_OT_preset_apply.bl_idname, text=preset["label"]).name = preset["name"]
             layout.separator()

@@ -41,12 +41,6 @@ class PELAGIC_OT_sample_heights(NeedsModule, bpy.types.Operator):
         ("ATTRIBUTE", "Attribute", f"{ATTRIBUTE} of the active mesh's vertices at this frame, in the world's z"),
         ("TEXT", "Text", "A table in the text editor: frame, object, x, y and the water's z over the scene's frames")])
 
-    def invoke(self, context, _event):
-        return context.window_manager.invoke_props_dialog(self)
-
-    def draw(self, _context):
-        self.layout.prop(self, "into", expand=True)
-
     def execute(self, context):
         sea = ocean_of(context)
         objects = [obj for obj in context.selected_objects if obj != sea]

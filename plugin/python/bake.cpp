@@ -23,6 +23,7 @@
 #include "plugin/bake/output_part.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/values.h"
 #include "plugin/python/watch.h"
 
 namespace pelagic::python {
@@ -140,7 +141,7 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     Scene asked = scene;
     asked.output.mesh = MeshFormat::None;
     asked.output.cascade_tiles = tiles;
-    set_key(asked, "output.maps", py::cast(maps));
+    set_from_python(asked, key_at("output.maps"), py::cast(maps));
     require_valid(asked);
     Watch watch(progress, cancel);
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};

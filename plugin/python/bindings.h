@@ -3,11 +3,14 @@
 
 #include <pybind11/pybind11.h>
 
+#include <memory>
+
 #include "core/scene/scene.h"
 
 namespace pelagic::python {
 
 void add_scene(pybind11::module_& module);
+void add_presets(pybind11::module_& module, pybind11::class_<Scene, std::shared_ptr<Scene>>& scene);
 void add_watch(pybind11::module_& module);
 void add_surfaces(pybind11::module_& module);
 void add_sea(pybind11::module_& module);
@@ -20,7 +23,5 @@ void add_viewport(pybind11::module_& module);
 
 // ShotError with a line for each of validate()'s problems.
 void require_valid(const Scene& scene);
-// As an assignment in Python does; "output.maps", say, which must be there.
-void set_key(Scene& scene, const char* path, const pybind11::handle& value);
 
 }  // namespace pelagic::python

@@ -3,17 +3,17 @@ back whatever happens. Needs a display (xvfb-run will do) and PELAGIC_PROGRAM, t
 
 import os
 import subprocess
+import sys
 import tempfile
-import traceback
+from pathlib import Path
 
-import bpy
+sys.path.insert(0, str(Path(__file__).parent))
 from bpy_extras.object_utils import world_to_camera_view
-from harness import *
+from harness import *  # noqa: F403
 from mathutils import Euler, Vector
 
-bpy.context.preferences.view.show_splash = False
 package = enable()
-from pelagic_ocean import compat, ocean, viewport  # noqa: E402
+from pelagic_ocean import compat, ocean, viewport
 
 FOLDER = Path(tempfile.mkdtemp())
 CUBE_M = 6.0
@@ -124,7 +124,7 @@ def change_of(a, b):
 # ---- The test
 
 
-def main():
+def steps():
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     window, area = view3d()
     with in_view():
@@ -233,7 +233,7 @@ def main():
         settle()
         with in_view():
             bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
-        yield 0.5
+        yield lambda: all(area.width > 1 for area in bpy.context.window_manager.windows[0].screen.areas)
         settle()
         assert len(viewport._preview.drawing._grids) >= 2
 
@@ -310,20 +310,4 @@ def refuse_shaders(vertex, fragment):
     raise RuntimeError("no shaders today")
 
 
-steps = main()
-
-
-def run():
-    """Between steps Blender's own loop runs: new areas get their places there."""
-    try:
-        return next(steps)
-    except StopIteration:
-        pass
-    except BaseException:
-        traceback.print_exc()
-        os._exit(1)  # Blender would go on without the timer
-    print("all checked", flush=True)
-    os._exit(0)
-
-
-bpy.app.timers.register(run, first_interval=1.0)
+in_window(steps)

@@ -136,6 +136,22 @@ class Scene(unittest.TestCase):
         self.assertEqual(pelagic.Scene().shot.time_s(25), 1.0)
         self.assertEqual(pelagic.Scene().shot.time_s(1.5), 0.5 / 24)
 
+    def test_presets_set_the_keys_that_they_list(self):
+        presets = pelagic.presets()
+        self.assertEqual([p["name"] for p in presets if p["group"] == "beaufort"],
+                         [f"beaufort-{force}" for force in range(13)])
+        self.assertGreater(len(presets), 13)
+        for preset in presets:
+            scene = pelagic.Scene()
+            scene.shot.seed = 77
+            scene.apply_preset(preset["name"])
+            for path, value in preset["values"].items():
+                table, name = path.split(".")
+                self.assertEqual(getattr(getattr(scene, table), name), value, path)
+            self.assertEqual((scene.validate(), scene.shot.seed), ([], 77), preset["name"])
+        with self.assertRaisesRegex(ValueError, 'nearest is "beaufort-8"'):
+            pelagic.Scene().apply_preset("beaufor-8")
+
     def test_explain_says_what_the_sea_does(self):
         self.assertIn("transforms", pelagic.explain(small_scene()))
 
@@ -297,6 +313,27 @@ class Threads(unittest.TestCase):
             for t in times:
                 for name in ALL:
                     np.testing.assert_array_equal(answers[t][name], alone[t][name])
+
+    def test_seas_and_frames_are_made_in_several_threads_at_once(self):
+        rest, _ = pelagic.patch(SIZE_M, RESOLUTION)
+        answers = {}
+
+        def build(size_m):
+            scene = small_scene()
+            scene.waves.cascades = [pelagic.CascadeSize(size_m=size_m, resolution=int(size_m))]
+            frame = pelagic.Frame(pelagic.Sea(scene))
+            frame.set(1.0)
+            answers.setdefault(size_m, []).append(frame.evaluate(rest)["position"])
+
+        sizes = [48.0, 60.0, 72.0, 80.0, 96.0, 108.0]
+        threads = [threading.Thread(target=build, args=(size_m,)) for size_m in sizes]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for size_m in sizes:
+            build(size_m)
+            np.testing.assert_array_equal(*answers[size_m])
 
     def test_other_threads_run_while_a_frame_is_computed(self):
         # A second thread looks at the clock all the time. While set() held the interpreter it could not, and its

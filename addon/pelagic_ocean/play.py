@@ -164,6 +164,8 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
     """What identifies the surface; a function that reads what it needs of Blender and returns another, for a thread, that
     makes it; and the view, if it depends on one. ValueError if it can't be made."""
     mesh, setting = obj.data, obj.pelagic
+    if mesh.library:
+        raise ValueError("The mesh is linked from another file, where Blender lets nobody write: append it, or make it local")
     if setting.own_mesh:
         signature = mesh.get(meshes.SIGNATURE, "")
         if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))]:
@@ -188,7 +190,9 @@ def _is_seen(obj, depsgraph):
     """Whether anything in this depsgraph shows it; during renders that is another question than in a window."""
     if not obj.evaluated_get(depsgraph).is_evaluated or obj.mode == "EDIT":
         return False
-    return depsgraph.mode == "RENDER" or obj.visible_get(view_layer=depsgraph.view_layer)
+    layer = depsgraph.view_layer
+    # What isn't in the view layer itself, and evaluated all the same, is there as an instance.
+    return depsgraph.mode == "RENDER" or obj.visible_get(view_layer=layer) or obj.name not in layer.objects
 
 
 def _driven(objects, depsgraph):

@@ -80,6 +80,29 @@ with checking("appended into another file, it plays there"):
     go_to(10)
     assert np.array_equal(numbers(obj.data), expected[names[0]])
 
+with checking("linked from another file it can't move, and says so"):
+    fresh_file()
+    with bpy.data.libraries.load(path, link=True) as (source, target):
+        target.objects = [names[0]]
+    obj = target.objects[0]
+    bpy.context.collection.objects.link(obj)
+    go_to(3)
+    assert "make it local" in play.simulation_of(obj).problem
+
+with checking("in a collection that is there only as an instance, it plays"):
+    fresh_file()
+    obj = add_ocean()
+    collection = bpy.data.collections.new("Seas")
+    collection.objects.link(obj)
+    bpy.context.collection.objects.unlink(obj)
+    instance = bpy.data.objects.new("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    bpy.context.collection.objects.link(instance)
+    go_to(3)
+    before = numbers(obj.data)
+    go_to(9)
+    assert not np.array_equal(numbers(obj.data), before)
+
 with checking("undo and redo, 20 times each"):
     fresh_file()
     bpy.ops.ed.undo_push(message="start")

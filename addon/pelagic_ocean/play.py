@@ -10,6 +10,7 @@ while the old one plays on; without a window, and during renders, whoever asks w
 """
 
 import re
+import threading
 import weakref
 
 import bpy
@@ -152,6 +153,7 @@ class Simulation:
 
 _simulations = {}  # by the names of their objects
 _rendering = set()  # names of scenes
+_turn = threading.RLock()  # a render has a thread of its own
 
 
 # ---- Which oceans, and what of them
@@ -166,6 +168,8 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
     """What identifies the surface; a function that reads what it needs of Blender and returns another, for a thread, that
     makes it; and the view, if it depends on one. ValueError if it can't be made."""
     mesh, setting = obj.data, obj.pelagic
+    if mesh.library:
+        raise ValueError("The mesh is linked from another file, where Blender lets nobody write: append it, or make it local")
     if setting.own_mesh:
         signature = mesh.get(meshes.SIGNATURE, "")
         if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))]:
@@ -190,7 +194,9 @@ def _is_seen(obj, depsgraph):
     """Whether anything in this depsgraph shows it; during renders that is another question than in a window."""
     if not obj.evaluated_get(depsgraph).is_evaluated or obj.mode == "EDIT":
         return False
-    return depsgraph.mode == "RENDER" or obj.visible_get(view_layer=depsgraph.view_layer)
+    layer = depsgraph.view_layer
+    # What isn't in the view layer itself, and evaluated all the same, is there as an instance.
+    return depsgraph.mode == "RENDER" or obj.visible_get(view_layer=layer) or obj.name not in layer.objects
 
 
 def _driven(objects, depsgraph):
@@ -234,16 +240,18 @@ def _show(obj, bpy_scene, depsgraph, again):
         return
     frame = bpy_scene.frame_current_final
     moment = simulation.moment_at(frame, view, _share(obj, bpy_scene) if view else 1.0)
-    shown = (obj.data.name_full, id(simulation.sea), moment)
+    shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again:
         return
     surface, arrays = simulation.buffers(moment)
     if not meshes.holds(obj.data, surface):
         if surface.faces is None:
             return
-        meshes.put_surface(obj.data, surface)
+        meshes.put_surface(obj.data, surface, obj.pelagic.uv_map)
     elif surface.moves and not _is_of_the_same_view(shown, simulation.shown):
         meshes.move_rest(obj.data, surface)
+    if surface.faces is not None:  # a mesh of the user's own keeps its maps
+        meshes.keep_uv(obj.data, surface, obj.pelagic.uv_map)
     meshes.put_frame(obj.data, arrays)
     simulation.shown = shown
 
@@ -271,13 +279,14 @@ def _forget_deleted():
 
 @persistent
 def _on_frame(bpy_scene, depsgraph):
-    _forget_deleted()
-    driven = _driven(bpy.data.objects, depsgraph)
-    for obj in driven:
-        _show(obj, bpy_scene, depsgraph, True)
-    if not _rendering:
-        for obj in driven:  # after all of them: oceans with the same settings share a sea and its buffers
-            _simulation(obj).look_ahead(bpy_scene.frame_current_final)
+    with _turn:
+        _forget_deleted()
+        driven = _driven(bpy.data.objects, depsgraph)
+        for obj in driven:
+            _show(obj, bpy_scene, depsgraph, True)
+        if not _rendering:
+            for obj in driven:  # after all of them: oceans with the same settings share a sea and its buffers
+                _simulation(obj).look_ahead(bpy_scene.frame_current_final)
 
 
 @persistent

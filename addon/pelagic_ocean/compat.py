@@ -15,3 +15,15 @@ def set_positions(mesh, positions):
 
 def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
+
+
+def new_group_socket(group, name, kind, is_output=False, default=None):
+    """A socket of a node group; kind: "Float", "Color", "Vector"."""
+    idname = "NodeSocket" + kind
+    if hasattr(group, "interface"):  # since 4.0
+        socket = group.interface.new_socket(name, in_out="OUTPUT" if is_output else "INPUT", socket_type=idname)
+    else:
+        socket = (group.outputs if is_output else group.inputs).new(idname, name)
+    if default is not None:
+        socket.default_value = default
+    return socket

@@ -1,0 +1,360 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ocean's material, one tree for Cycles and EEVEE.
+
+What a mesh is too coarse to show it carries as slope variances S, and the material draws it facet by facet: each sample
+of a pixel takes a slope from the distribution of those that the eye sees (core/lighting/slopes.glsl), and with it the
+Fresnel term of that facet and the part of it that no wave blocks (sun.glsl, sky.glsl). So a pixel's mean has the
+effective Fresnel term, and the sun its own one, which differ at grazing angles by factors.
+
+The facet isn't a mirror, whose image of the sun would be noise, but a small Beckmann lobe: SPREAD of the variance is the
+lobe's roughness, the rest is drawn. Beckmann's α is √2 σ, and Blender's roughness √α. (The same by Blender's anisotropic
+lobe alone would be: α₁ and α₂ from the principal variances, roughness (α₁ α₂)^¼, anisotropy 1 − √(α₁/α₂) for α₁ < α₂,
+tangent along α₁. It has one Fresnel term for the whole lobe, EEVEE ignores the anisotropy, and Cycles 3.4 draws its
+samples with α₁ for both axes.)
+"""
+
+import math
+
+import bpy
+
+from . import compat
+from .module import pelagic
+from .nodes import Tree, Value
+
+MARK = "pelagic_water"  # on a material of the add-on: the version of its trees
+VERSION = 1
+WATER_INDEX = 1.34
+SPREAD = 0.2
+LEAST_VARIANCE = 1e-7  # a glassy sea's: σ is a sixth of the sun's own spread in slope
+
+
+# ---- The hidden waves, facet by facet
+
+
+def facets_group():
+    group = bpy.data.node_groups.new("Pelagic Facets", "ShaderNodeTree")
+    for name, default in (("Ripples", 0.8), ("Ripple Length", 0.7), ("Detail Distance", 150.0), ("Wind Angle", 0.0),
+                          ("Time", 0.0)):
+        compat.new_group_socket(group, name, "Float", default=default)
+    for name, kind in (("Normal", "Vector"), ("Roughness", "Float"), ("Fresnel", "Float"), ("Reflection", "Float"),
+                       ("Foam Ratio", "Float")):
+        compat.new_group_socket(group, name, kind, is_output=True)
+    tree = Tree(group)
+    inputs = tree.node("NodeGroupInput").outputs
+    asked = {socket.name: Value(tree, socket) for socket in inputs if socket.name}
+
+    geometry = tree.node("ShaderNodeNewGeometry").outputs
+    to_eye = _transformed(tree, Value(tree, geometry["Incoming"]), "VECTOR", "WORLD", "OBJECT").normalized()
+    up = to_eye.parts()[2]
+    normal = _facing(_transformed(tree, Value(tree, geometry["Normal"]), "NORMAL", "WORLD", "OBJECT"), to_eye, up)
+    axes, variance = _slope_frame(tree, normal)
+    x_axis, y_axis = axes
+    v_x, v_y, cosine = to_eye.dot(x_axis), to_eye.dot(y_axis), to_eye.dot(normal).at_least(1e-4)
+
+    # S = L Lᵀ, with L = (a 0; b c): slopes are L times two independent normal numbers.
+    v_xx, v_yy, v_xy = variance
+    a = v_xx.at_least(LEAST_VARIANCE).sqrt()
+    b = v_xy / a
+    c = (v_yy - b * b).at_least(0.01 * LEAST_VARIANCE).sqrt()
+
+    def spread(x, y):
+        """Lᵀ (x, y) as a vector: its length is σ along the direction, times sin θ."""
+        return tree.vector((a * x).plus_product(b, y), c * y)
+
+    towards = spread(v_x, v_y)
+    sigma = towards.length().at_least(1e-6)
+    w_x, w_y, _ = (towards / 1.0)._scaled(1.0 / sigma).parts()
+    k = (cosine / sigma).at_most(1e3)
+
+    # The eye sees slopes −x along and y across the line of sight: y is normal, and x has the density (k + x)₊ φ(x).
+    # (k + x) is drawn as the square of a normal number, with the mean and the variance of that density.
+    mills = 0.797885 * (-(k * (0.79875 + k * (0.17595 + k * 0.04591)))).at_least(-80.0).exp()  # φ(k)/Φ(k), to 1.2e-4
+    mean = 1.0 / (k + mills)
+    wide = 1.0 + mills * mean - mean * mean
+    middle = k + mean
+    part = 0.5 * wide / (middle + (middle * middle - 0.5 * wide).sqrt())
+    root, step = (middle - part).sqrt(), part.sqrt()
+    z_x, z_y, _ = _normal_numbers(tree, asked).parts()
+    along = -(z_x * w_x).plus_product(z_y, w_y)
+    x = mean - part + step * along * (2.0 * root + step * along)
+    y = (z_y * w_x) - z_x * w_y
+
+    def slope(x, y):
+        """The slope in the frame: L (−x ŵ + y ŵ⊥)."""
+        first, second = -(x * w_x).plus_product(y, w_y), (y * w_x) - x * w_y
+        return a * first, (b * first).plus_product(c, second)
+
+    s_x, s_y = slope(x, y)
+    f_z = (1.0 + s_x * s_x).plus_product(s_y, s_y)
+    f_z = 1.0 / f_z.sqrt()
+    facet_cosine = ((cosine + sigma * x) * f_z).at_most(1.0)
+    fresnel = _fresnel(facet_cosine)
+    # The part that no wave blocks on the way of the mirrored light l: (1 + Λv)/(1 + Λv + Λl).
+    l_x, l_y = -2.0 * facet_cosine * f_z * s_x - v_x, -2.0 * facet_cosine * f_z * s_y - v_y
+    l_z = 2.0 * facet_cosine * f_z - cosine
+    seen = 1.0 + _smith_lambda(k)
+    open_part = l_z.above(0.0) * seen / (seen + _smith_lambda(l_z / spread(l_x, l_y).length().at_least(1e-6)))
+
+    # The lobe stands a little nearer to the mean, by as much as its own roughness spreads.
+    near = math.sqrt(1 - SPREAD)
+    t_x, t_y = slope(mean * (1 - near) + near * x, near * y)
+    facet = (normal + x_axis * -t_x + y_axis * -t_y).normalized()
+
+    foam_variance = 0.1  # of the foam's own roughness: foam.glsl
+    foam_sigma = (sigma * sigma).plus_product(foam_variance, 1.0 - cosine * cosine).sqrt()
+    foam_ratio = (1.0 + _smith_lambda(cosine / foam_sigma)) / seen
+
+    tree.node("NodeGroupOutput", {
+        "Normal": _transformed(tree, facet, "NORMAL", "OBJECT", "WORLD").normalized(),
+        "Roughness": (SPREAD * (v_xx + v_yy)).at_least(2 * SPREAD * LEAST_VARIANCE).sqrt().sqrt(),
+        "Fresnel": fresnel, "Reflection": fresnel * open_part, "Foam Ratio": foam_ratio})
+    tree.arrange()
+    return group
+
+
+def _transformed(tree, vector, kind, before, after):
+    return tree.add("ShaderNodeVectorTransform", {0: vector}, vector_type=kind, convert_from=before, convert_to=after)
+
+
+def _facing(normal, to_eye, up):
+    """facing_normal() of slopes.glsl: bent so that the eye sees it and it mirrors the eye's ray upwards."""
+    seen = normal - to_eye._scaled(2.0 * normal.dot(to_eye).at_most(0.0))
+    seen_up = seen.parts()[2]
+    below = (up - 2.0 * seen.dot(to_eye) * seen_up).at_least(0.0) * up.above(0.0)
+    root = (seen_up * seen_up).plus_product(up, below).sqrt()
+    return (seen + to_eye._scaled(below / (seen_up + root).at_least(1e-6))).normalized()
+
+
+def _slope_frame(tree, normal):
+    """slope_frame() of slopes.glsl: the axes beside the normal, and (xx, yy, xy) of the variance in them."""
+    n_x, n_y, n_z = normal.parts()
+    height = n_z.at_least(0.0)
+    q = 1.0 / (1.0 + height)
+    xx, xy, yy = 1.0 - n_x * n_x * q, -(n_x * n_y * q), 1.0 - n_y * n_y * q
+    s_x, s_y, s_xy = tree.attribute("slope_variance")._scaled(height * height).parts()
+
+    def between(first, second):
+        (a, b), (c, d) = first, second
+        return s_x * a * c + s_y * b * d + s_xy * (a * d + b * c)
+
+    axes = tree.vector(xx, xy, -n_x), tree.vector(xy, yy, -n_y)
+    return axes, (between((xx, xy), (xx, xy)), between((xy, yy), (xy, yy)), between((xx, xy), (xy, yy)))
+
+
+def _fresnel(cosine):
+    """fresnel_exact() of fresnel.glsl."""
+    g = (cosine * cosine + (WATER_INDEX**2 - 1)).sqrt()
+    across = (g - cosine) / (g + cosine)
+    along = (cosine * (g + cosine) - 1.0) / (cosine * (g - cosine) + 1.0)
+    return 0.5 * across * across * (1.0 + along * along)
+
+
+def _smith_lambda(k):
+    """smith_lambda() of slopes.glsl at a = k/√2, by the rational function of Walter et al. 2007; 0.003 off in 1/(1 + Λ)."""
+    a = (k * math.sqrt(0.5)).at_least(1e-4).at_most(1.6)
+    return ((1.0 - a * (1.259 - 0.396 * a)) / (a * (3.535 + 2.181 * a))).at_least(0.0)
+
+
+def _normal_numbers(tree, asked):
+    """A vector of two independent normal numbers, other ones in each sample. Near the eye they hang together from place
+    to place as ripples do, which changes nothing in their distribution."""
+    place = tree.add("ShaderNodeNewGeometry", output="Position")
+    dice = tree.add("ShaderNodeTexWhiteNoise", {"Vector": place}, output="Color", noise_dimensions="3D")
+    first, second, _ = dice.parts()
+    radius = (-2.0 * tree.math("LOGARITHM", first.at_least(1e-7), math.e)).sqrt()
+    angle = 2.0 * math.pi * second
+    random = tree.vector(radius * tree.math("COSINE", angle), radius * tree.math("SINE", angle))
+
+    rest = tree.add("ShaderNodeVectorRotate", {"Vector": tree.attribute("rest_position"), "Angle": -asked["Wind Angle"]})
+    # Half as frequent across the wind, as crests are.
+    stretched = rest * (1.0, 0.5, 1.0)
+    noise = tree.add("ShaderNodeTexNoise", {"Vector": stretched, "W": asked["Time"],
+                                            "Scale": 1.0 / asked["Ripple Length"].at_least(1e-3), **NOISE},
+                     output="Color", noise_dimensions="4D")
+    ripples = (noise - NOISE_MEAN) / NOISE_DEVIATION
+    away = tree.add("ShaderNodeCameraData", output="View Distance") / asked["Detail Distance"]
+    share = asked["Ripples"].clamped() / (1.0 + away * away)
+    return random._scaled((1.0 - share).sqrt()) + ripples._scaled(share.sqrt())
+
+
+# Blender's noise, its mean and deviation measured over 512² points. Between its 0.1 % and 99.9 % quantiles it
+# is as good as normally distributed.
+NOISE = {"Detail": 6.0, "Roughness": 0.65}
+NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0602
+
+
+# ---- Foam
+
+
+def foam_group():
+    """Where the foam is: the places where a pattern has its largest values, so many that they are the coverage. The
+    pattern stands at rest positions, so foam moves with the water."""
+    group = bpy.data.node_groups.new("Pelagic Foam", "ShaderNodeTree")
+    for name, default in (("Coverage", 0.0), ("Ratio", 1.0), ("Size", 1.0), ("Detail Distance", 400.0),
+                          ("Wind Angle", 0.0)):
+        compat.new_group_socket(group, name, "Float", default=default)
+    for name in ("Foam", "Density"):
+        compat.new_group_socket(group, name, "Float", is_output=True)
+    tree = Tree(group)
+    inputs = tree.node("NodeGroupInput").outputs
+    asked = {socket.name: Value(tree, socket) for socket in inputs if socket.name}
+
+    coverage = asked["Coverage"].at_least(1e-6).at_most(1 - 1e-6)
+    rank = _foam_rank(tree, asked)
+    # Foam covers rank > 1 − coverage, with an edge as soft as there is room for: its mean stays.
+    room = 0.5 * coverage * (1.0 - coverage)
+    beyond = rank - (1.0 - coverage)
+    mask = tree.map_range(beyond, -room, room)
+    # Dense in its middle, bubbles over water at its edge: DENSE on average over the covered places.
+    density = (beyond / coverage).clamped()
+    density = tree.math("POWER", density, 1.0 / DENSE - 1.0)
+
+    away = tree.add("ShaderNodeCameraData", output="View Distance") / asked["Detail Distance"]
+    detail = 1.0 / (1.0 + away * away)
+    mask, density = tree.mix(detail, coverage, mask), tree.mix(detail, DENSE, density)
+    # visible_coverage() of foam.glsl; nothing where there is none.
+    mask = asked["Coverage"].above(0.0) * mask * asked["Ratio"] / (mask * (asked["Ratio"] - 1.0) + 1.0)
+    tree.node("NodeGroupOutput", {"Foam": mask, "Density": density})
+    tree.arrange()
+    return group
+
+
+DENSE = 0.4  # the mean over the foam's lifetime: foam.glsl
+
+
+def _foam_rank(tree, asked):
+    """The share of the sea where the pattern is lower, 0 … 1, equally distributed."""
+    rest = tree.add("ShaderNodeVectorRotate", {"Vector": tree.attribute("rest_position"), "Angle": -asked["Wind Angle"]})
+    place = rest._scaled(1.0 / asked["Size"].at_least(1e-3))
+    pattern = foam_pattern(tree, place)
+    z = (pattern - PATTERN_MEAN) / PATTERN_DEVIATION
+    # The logit of the normal distribution of z, within 1.4e-4 in probability: 1.5976 z + 0.070566 z³.
+    return 1.0 / (1.0 + (-(z * (1.5976 + 0.070566 * z * z))).at_least(-60.0).at_most(60.0).exp())
+
+
+def foam_pattern(tree, place):
+    """place: [m], x along the wind. Streaks along the wind, in them a net as of bursting bubbles, and fine grain."""
+    def noise(scale, detail, vector=place, output="Fac"):
+        return tree.add("ShaderNodeTexNoise", {"Vector": vector, "Scale": scale, "Detail": detail, "Roughness": 0.6},
+                        output=output)
+
+    streaks = noise(0.35, 4.0, place * (0.3, 1.0, 1.0))
+    bent = place + (noise(0.8, 3.0, output="Color") - 0.5) * 1.6
+    net = tree.add("ShaderNodeTexVoronoi", {"Vector": bent, "Scale": 0.7}, feature="DISTANCE_TO_EDGE")
+    grain = noise(5.0, 5.0)
+    return 2.2 * streaks - 0.45 * net.sqrt() + 1.3 * grain
+
+
+# Measured over a square of 400 m.
+PATTERN_MEAN, PATTERN_DEVIATION = 1.5, 0.2
+
+
+# ---- The material
+
+
+def ensure_material(obj, scene):
+    """Gives an object without a material the ocean's, or brings the one that it has from here up to the scene's water,
+    light and wind. Somebody else's material stays as it is. Returns the material, or None where it is somebody else's.
+
+    What depends on the scene is written only when that changes, so that an artist's own colours stay.
+    """
+    material = next((m for m in obj.data.materials if m), None)
+    if material is not None and MARK not in material:
+        return None
+    if material is None:
+        material = new_material()
+        if obj.data.materials:
+            obj.data.materials[0] = material
+        else:
+            obj.data.materials.append(material)
+    nodes = material.node_tree.nodes
+    _set(material, nodes, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
+    _set(material, nodes, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
+    return material
+
+
+def _set(material, nodes, name, value):
+    """Writes a node's value where the value that was last written isn't the same."""
+    key = MARK + " " + name
+    plain = list(value) if isinstance(value, tuple) else value
+    before = material.get(key)
+    if before is not None and (list(before) if isinstance(value, tuple) else before) == plain:
+        return
+    if name in nodes:
+        nodes[name].outputs[0].default_value = value
+    material[key] = plain
+
+
+def new_material():
+    material = bpy.data.materials.new("Pelagic Water")
+    material[MARK] = VERSION
+    material.use_nodes = True
+    tree = Tree(material.node_tree)
+
+    def labelled(kind, name, value):
+        node = tree.node(kind)
+        node.name = node.label = name
+        node.outputs[0].default_value = value
+        return Value(tree, node.outputs[0])
+
+    water = labelled("ShaderNodeRGB", "Water Color", (0.0, 0.03, 0.05, 1.0))
+    dense = labelled("ShaderNodeRGB", "Foam Color", (0.55, 0.55, 0.55, 1.0))
+    wind = labelled("ShaderNodeValue", "Wind Angle", 0.0)
+    time = labelled("ShaderNodeValue", "Time", 0.0)
+    # Ripples change over about a second.
+    time.socket.driver_add("default_value").driver.expression = "frame / 24"
+
+    facets = tree.node("ShaderNodeGroup", node_tree=_shared_group("Pelagic Facets", facets_group))
+    foam = tree.node("ShaderNodeGroup", node_tree=_shared_group("Pelagic Foam", foam_group))
+    for node in (facets, foam):
+        node.width = 200
+        tree.tree.links.new(wind.socket, node.inputs["Wind Angle"])
+    tree.tree.links.new(time.socket, facets.inputs["Time"])
+    tree.tree.links.new(facets.outputs["Foam Ratio"], foam.inputs["Ratio"])
+    tree.tree.links.new(tree.attribute("whitecap_coverage", "Fac").socket, foam.inputs["Coverage"])
+    part = {name: Value(tree, facets.outputs[name]) for name in ("Normal", "Roughness", "Fresnel", "Reflection")}
+
+    # Light from the water has been through the level surface, whatever its facets do: the normal is up.
+    upwards = _transformed(tree, tree.vector(0.0, 0.0, 1.0), "NORMAL", "OBJECT", "WORLD")
+    mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],
+                                                    "Anisotropy": 0.0, "Normal": part["Normal"]},
+                      distribution="BECKMANN")
+    body = tree.add("ShaderNodeBsdfDiffuse", {"Color": water._scaled(1.0 - part["Fresnel"]), "Normal": upwards})
+    white = tree.mix(Value(tree, foam.outputs["Density"]), water, dense)
+    surface = tree.add("ShaderNodeMixShader", {
+        0: Value(tree, foam.outputs["Foam"]),
+        1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}),
+        2: tree.add("ShaderNodeBsdfDiffuse", {"Color": white})})
+    tree.node("ShaderNodeOutputMaterial", {"Surface": surface})
+    tree.arrange()
+    return material
+
+
+def _shared_group(name, make):
+    for group in bpy.data.node_groups:
+        if group.get(MARK) == f"{name} {VERSION}":
+            return group
+    group = make()
+    group[MARK] = f"{name} {VERSION}"
+    return group
+
+
+def upwelling_albedo(scene):
+    """(r, g, b): the diffuse reflectance of the sea for light that comes from below its surface, without the factor
+    (1 − Fresnel) on the way out: water_radiance() of water.glsl over the irradiance of the scene's own light, / π."""
+    sky, reflectance = pelagic.Sky(scene), pelagic.WaterBody(scene).reflectance
+    diffuse, underside = 0.06751, 0.48
+    into_water = 1.0 - fresnel(sky.sun_direction[2])
+    albedo = []
+    for sun, dome, r in zip(sky.sun_irradiance, sky.sky_irradiance, reflectance):
+        down = (sun * into_water + dome * (1.0 - diffuse)) / max(sun + dome, 1e-12)
+        albedo.append(down * r / (1.0 - underside * r) / WATER_INDEX**2)
+    return albedo
+
+
+def fresnel(cosine):
+    """The unpolarised reflectance of water."""
+    cosine = min(max(cosine, 0.0), 1.0)
+    g = math.sqrt(WATER_INDEX**2 - 1 + cosine * cosine)
+    along = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1)
+    return 0.5 * ((g - cosine) / (g + cosine))**2 * (1 + along * along)

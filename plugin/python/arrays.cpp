@@ -66,6 +66,13 @@ Strided<Element> written_view(const py::handle& object, const Asked& asked, py::
     return {static_cast<Element*>(array.mutable_data()), array.strides(0)};
 }
 
+template <class Vector>
+Readable<Vector> readable(const py::handle& object, const Asked& asked) {
+    const py::array array =
+        checked(object, {.name = asked.name, .count = asked.count, .components = Vector::length()});
+    return {{static_cast<const Vector*>(array.data()), array.strides(0)}, array.shape(0)};
+}
+
 }  // namespace
 
 Strided<glm::vec3> writable_vectors(const py::handle& object, const Asked& asked) {
@@ -81,9 +88,12 @@ Strided<const float> readable_numbers(const py::handle& object, const Asked& ask
     return {static_cast<const float*>(array.data()), array.strides(0)};
 }
 
-RestPoints readable_points(const py::handle& object, const std::string& name) {
-    const py::array array = checked(object, {.name = name, .count = {}, .components = 2});
-    return {{static_cast<const glm::vec2*>(array.data()), array.strides(0)}, array.shape(0)};
+Readable<glm::vec2> readable_points(const py::handle& object, const Asked& asked) {
+    return readable<glm::vec2>(object, asked);
+}
+
+Readable<glm::vec3> readable_vectors(const py::handle& object, const Asked& asked) {
+    return readable<glm::vec3>(object, asked);
 }
 
 }  // namespace pelagic::python

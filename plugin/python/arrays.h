@@ -7,6 +7,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,10 +16,10 @@
 
 namespace pelagic::python {
 
-// What an array is for, for messages: `name` as the caller wrote it, `count` the number of points.
+// What an array is for: `name`, as the caller wrote it, for messages, and the number of points; none: any.
 struct Asked {
     std::string name;
-    pybind11::ssize_t count = 0;
+    std::optional<pybind11::ssize_t> count{};
 };
 
 // Views of float32 arrays; points may lie any multiple of 4 bytes apart, also backwards. The components of
@@ -29,12 +30,14 @@ Strided<glm::vec3> writable_vectors(const pybind11::handle& object, const Asked&
 Strided<float> writable_numbers(const pybind11::handle& object, const Asked& asked);
 Strided<const float> readable_numbers(const pybind11::handle& object, const Asked& asked);
 
-// The same for (n, 2), whose n is what counts.
-struct RestPoints {
-    Strided<const glm::vec2> view;
+// The same for (n, 2) and (n, 3) of any n, or of as many as are asked for.
+template <class Vector>
+struct Readable {
+    Strided<const Vector> view;
     pybind11::ssize_t count = 0;
 };
-RestPoints readable_points(const pybind11::handle& object, const std::string& name);
+Readable<glm::vec2> readable_points(const pybind11::handle& object, const Asked& asked);
+Readable<glm::vec3> readable_vectors(const pybind11::handle& object, const Asked& asked);
 
 // A new array that owns the vector's memory: of this shape, or else (n,) of numbers and (n, components) of
 // glm's vectors.

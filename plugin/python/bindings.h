@@ -12,6 +12,7 @@ void add_watch(pybind11::module_& module);
 void add_surfaces(pybind11::module_& module);
 void add_sea(pybind11::module_& module);
 void add_frame(pybind11::module_& module);
+void add_light(pybind11::module_& module);
 void add_baked(pybind11::module_& module);
 
 // ShotError with a line for each of validate()'s problems.

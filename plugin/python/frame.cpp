@@ -51,7 +51,7 @@ void read_footprints(Footprints& footprints, const py::object& object, const Ask
         footprints.view = {&footprints.number, 0};
     } else {
         footprints.view = readable_numbers(object, asked);
-        numbers = asked.count;
+        numbers = *asked.count;
     }
     for (py::ssize_t i = 0; i < numbers; ++i)
         if (!(footprints.view[static_cast<std::size_t>(i)] >= 0.0f))
@@ -70,7 +70,7 @@ class PythonFrame {
     }
 
     py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given) const {
-        const auto [rest_view, count] = readable_points(rest, "rest");
+        const auto [rest_view, count] = readable_points(rest, {"rest"});
         Points<float> points{.origin_m = {origin_m[0], origin_m[1]},
                              .count = static_cast<std::size_t>(count),
                              .rest_m = rest_view};

@@ -40,6 +40,7 @@ PYBIND11_MODULE(pelagic, module) {
     pelagic::python::add_surfaces(module);
     pelagic::python::add_sea(module);
     pelagic::python::add_frame(module);
+    pelagic::python::add_light(module);
     pelagic::python::add_baked(module);
     module.def(
         "explain", &explain_bake, py::arg("scene"),

@@ -1,0 +1,50 @@
+// A sky as a picture: the inverse of picture_sky.cpp, without the sun.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+
+#include "core/base/constants.h"
+#include "core/lighting/background.h"
+#include "core/lighting/sky.h"
+
+namespace pelagic {
+
+LatLong lat_long(const Sky& sky, int width) {
+    if (width < kLeastLatLong || width > kLargestLatLong || width % 2 != 0)
+        throw std::invalid_argument("a sky picture of " + std::to_string(width) +
+                                    " columns: even numbers from " + std::to_string(kLeastLatLong) + " to " +
+                                    std::to_string(kLargestLatLong) + " are accepted");
+    if (sky.map.size() == 0) throw std::invalid_argument("a sky picture of a sky without a map");
+    LatLong picture{.width = width, .height = width / 2, .radiance = {}};
+    picture.radiance.resize(static_cast<std::size_t>(picture.width) * picture.height);
+    const double pixel = kTwoPi / width;  // [rad], in both directions
+    // Samples at most a texel of the map apart, where those are narrowest: at the horizon.
+    const double texel = 2.0 * static_cast<double>(kSkyMapExtent) / sky.map.size();
+    const int n = static_cast<int>(std::ceil(pixel / texel));
+    tbb::parallel_for(0, picture.height, [&](int row) {
+        for (int column = 0; column < width; ++column) {
+            glm::vec3 sum(0.0f);
+            double weights = 0.0;
+            for (int j = 0; j < n; ++j) {
+                const double elevation = 0.5 * kPi - pixel * (row + (j + 0.5) / n);
+                for (int i = 0; i < n; ++i) {
+                    const double azimuth = kPi - pixel * (column + (i + 0.5) / n);
+                    const glm::vec3 direction(std::cos(elevation) * std::cos(azimuth),
+                                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+                    const double weight = std::cos(elevation);  // of equal steps in angle
+                    sum += static_cast<float>(weight) * background(sky, direction, 1.0f).sky;
+                    weights += weight;
+                }
+            }
+            picture.radiance[static_cast<std::size_t>(row) * width + column] =
+                sum / static_cast<float>(weights);
+        }
+    });
+    return picture;
+}
+
+}  // namespace pelagic

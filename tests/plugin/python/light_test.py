@@ -1,0 +1,137 @@
+"""Sky, water and the sea's light on arrays."""
+
+import math
+import tempfile
+import unittest
+
+import numpy as np
+import pelagic
+
+
+def scene_with_sun(elevation_deg=25.0, azimuth_deg=40.0):
+    scene = pelagic.Scene()
+    scene.light.sun_elevation_deg, scene.light.sun_azimuth_deg = elevation_deg, azimuth_deg
+    return scene
+
+
+def vectors(count, value):
+    return np.tile(np.float32(value), (count, 1))
+
+
+class Sky(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sky = pelagic.Sky(scene_with_sun())
+
+    def test_the_sun_is_where_the_scene_has_it(self):
+        elevation, azimuth = math.radians(25.0), math.radians(40.0)
+        np.testing.assert_allclose(self.sky.sun_direction, (math.cos(elevation) * math.cos(azimuth),
+                                                            math.cos(elevation) * math.sin(azimuth),
+                                                            math.sin(elevation)), atol=1e-4)
+        solid_angle = math.pi * self.sky.sun_angular_radius**2
+        np.testing.assert_allclose(self.sky.sun_irradiance,
+                                   np.float32(self.sky.sun_radiance) * solid_angle * self.sky.sun_direction[2], rtol=1e-3)
+        self.assertTrue(all(value > 1.0 for value in self.sky.sky_irradiance))
+        self.assertEqual(pelagic.Sky(scene_with_sun(-20.0)).sun_radiance, (0.0, 0.0, 0.0))
+
+    def test_the_image_is_the_radiance_in_each_pixels_direction(self):
+        width = 1024
+        image = self.sky.image(width)
+        self.assertEqual((image.shape, image.dtype), ((width // 2, width, 3), np.float32))
+        rows, columns = np.meshgrid(np.arange(0, 250, 5), np.arange(0, width, 7), indexing="ij")
+        elevation = math.pi / 2 - (rows.ravel() + 0.5) * math.pi / (width // 2)
+        azimuth = math.pi - (columns.ravel() + 0.5) * 2 * math.pi / width
+        directions = np.stack([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth),
+                               np.sin(elevation)], axis=1).astype(np.float32)
+        np.testing.assert_allclose(self.sky.radiance(directions), image[rows.ravel(), columns.ravel()], rtol=0.03)
+        for wrong in (7, 9, 0):
+            with self.assertRaisesRegex(ValueError, "accepted"):
+                self.sky.image(wrong)
+
+    def test_radiance_is_written_into_the_callers_array(self):
+        directions = vectors(1000, (0.0, 0.6, 0.8))
+        wide = np.full((1000, 5), 9.0, np.float32)
+        self.assertIs(type(self.sky.radiance(directions, out=wide[:, 1:4])), np.ndarray)
+        np.testing.assert_array_equal(wide[:, 1:4], self.sky.radiance(directions))
+        np.testing.assert_array_equal(wide[:, [0, 4]], 9.0)
+        with self.assertRaisesRegex(ValueError, "out: its shape"):
+            self.sky.radiance(directions, out=np.zeros((3, 3), np.float32))
+
+    def test_a_picture_that_cannot_be_read_is_named(self):
+        with tempfile.NamedTemporaryFile(suffix=".exr") as file:
+            scene = pelagic.Scene()
+            scene.light.sky = file.name
+            with self.assertRaisesRegex(ValueError, file.name):
+                pelagic.Sky(scene)
+
+
+class Shade(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        scene = scene_with_sun()
+        cls.sky, cls.water = pelagic.Sky(scene), pelagic.WaterBody(scene)
+        cls.up = vectors(300, (0.0, 0.0, 1.0))
+        cls.to_eye = vectors(300, (-0.6, 0.0, 0.8))
+        cls.rough = vectors(300, (0.02, 0.02, 0.0))
+
+    def lit(self, **changes):
+        arguments = dict(to_eye=self.to_eye, normal=self.up, slope_variance=self.rough)
+        return pelagic.shade(self.sky, self.water, **dict(arguments, **changes))
+
+    def test_a_mirror_reflects_the_sky_by_fresnel(self):
+        lit = self.lit(slope_variance=vectors(300, (1e-7, 1e-7, 0.0)))
+        # Unpolarised light on water of index 1.34 at 36.87° (Fresnel's equations).
+        cos_in = 0.8
+        cos_out = math.sqrt(1 - (0.6 / 1.34)**2)
+        s, p = (cos_in - 1.34 * cos_out) / (cos_in + 1.34 * cos_out), (cos_out - 1.34 * cos_in) / (cos_out + 1.34 * cos_in)
+        mirrored = self.sky.radiance(vectors(1, (0.6, 0.0, 0.8)))
+        # The fit of the Fresnel term is good to some per cent; the map's texel is a degree wide.
+        np.testing.assert_allclose(lit["sky"][:1], 0.5 * (s * s + p * p) * mirrored, rtol=0.08)
+        np.testing.assert_array_equal(lit["foam"], 0.0)
+
+    def test_water_has_the_colour_of_what_is_in_it(self):
+        turbid = scene_with_sun()
+        turbid.water.type = "turbid"
+        murky = pelagic.WaterBody(turbid)
+        clear, muddy = self.lit()["sea"][0], pelagic.shade(self.sky, murky, self.to_eye, self.up, self.rough)["sea"][0]
+        np.testing.assert_allclose(clear * np.float32(murky.reflectance), muddy * np.float32(self.water.reflectance), rtol=0.05)
+        self.assertGreater(muddy[0], 3.0 * clear[0])
+
+    def test_foam_takes_its_share(self):
+        none, half, full = (self.lit(coverage=np.full(300, share, np.float32)) for share in (0.0, 0.5, 1.0))
+        for name, array in self.lit().items():
+            np.testing.assert_array_equal(none[name], array, name)
+        self.assertTrue((half["foam"] > 0.0).all() and (half["foam"] < full["foam"]).all())
+        self.assertTrue((half["sky"] < none["sky"]).all())
+
+    def test_layers_are_written_into_the_callers_arrays(self):
+        wide = np.full((300, 7), 9.0, np.float32)
+        foam = np.zeros((300, 3), np.float32)
+        written = self.lit(sea_layer=wide[:, 2:5], foam_layer=foam, coverage=np.full(300, 0.3, np.float32))
+        self.assertEqual(sorted(written), ["foam", "sea", "sky", "sun"])
+        self.assertIs(written["foam"], foam)
+        np.testing.assert_array_equal(wide[:, 2:5], self.lit(coverage=np.full(300, 0.3, np.float32))["sea"])
+        np.testing.assert_array_equal(wide[:, [0, 1, 5, 6]], 9.0)
+
+    def test_glitter_comes_from_the_suns_side(self):
+        x, y, z = self.sky.sun_direction
+        towards, away = self.lit(to_eye=vectors(300, (-x, -y, z))), self.lit(to_eye=vectors(300, (x, y, z)))
+        self.assertGreater(towards["sun"][0, 1], 100.0 * away["sun"][0, 1])
+
+    def test_better_skies_differ_a_little(self):
+        by_word = {word: self.lit(sky_quality=word)["sky"][0] for word in ("one", "nine", "integral")}
+        np.testing.assert_allclose(by_word["nine"], by_word["integral"], rtol=0.05)
+        self.assertFalse((by_word["nine"] == by_word["integral"]).all())
+        self.assertFalse((self.lit(fresnel="paper")["sky"][0] == by_word["nine"]).all())
+
+    def test_what_does_not_fit_is_refused(self):
+        for said, wrong in (("normal", dict(normal=self.up.astype(np.float64))),
+                            ("to_eye", dict(to_eye=self.to_eye[:7])),
+                            ("coverage", dict(coverage=np.zeros((300, 1), np.float32))),
+                            ("sky_quality", dict(sky_quality="ten")), ("fresnel", dict(fresnel="schlick"))):
+            with self.assertRaisesRegex((TypeError, ValueError), said + ".*accepted"):
+                self.lit(**wrong)
+
+
+if __name__ == "__main__":
+    unittest.main()

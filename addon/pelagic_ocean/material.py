@@ -66,28 +66,34 @@ def facets_group():
     w_x, w_y, _ = (towards / 1.0)._scaled(1.0 / sigma).parts()
     k = (cosine / sigma).at_most(1e3)
 
-    # The eye sees slopes −x along and y across the line of sight: y is normal, and x has the density (k + x)₊ φ(x).
-    # (k + x) is drawn as the square of a normal number, with the mean and the variance of that density.
+    # The eye sees slopes −x along and y across the line of sight: y is normal, and x has the density (k + x)₊ φ(x). Drawn
+    # are the places of lobes, which have the rest = 1 − SPREAD of the variance, weighted by how much the eye sees of a
+    # whole lobe (moments by Stein's lemma). k + x is the square of a normal number: its mean and variance are right.
     mills = 0.797885 * (-(k * (0.79875 + k * (0.17595 + k * 0.04591)))).at_least(-80.0).exp()  # φ(k)/Φ(k), to 1.2e-4
     mean = 1.0 / (k + mills)
-    wide = 1.0 + mills * mean - mean * mean
-    middle = k + mean
+    curved = mean * (mills - mean)
+    rest = 1 - SPREAD
+    wide = rest * (1.0 + rest * curved)
+    middle = k + rest * mean
     part = 0.5 * wide / (middle + (middle * middle - 0.5 * wide).sqrt())
     root, step = (middle - part).sqrt(), part.sqrt()
     z_x, z_y, _ = _normal_numbers(tree, asked).parts()
     along = -(z_x * w_x).plus_product(z_y, w_y)
-    x = mean - part + step * along * (2.0 * root + step * along)
-    y = (z_y * w_x) - z_x * w_y
+    x = rest * mean - part + step * along * (2.0 * root + step * along)
+    y = ((z_y * w_x) - z_x * w_y) * math.sqrt(rest)
+    # A facet in the lobe's stead, from the distribution of all facets that the eye sees.
+    x_facet = mean + (x - rest * mean) * ((1.0 + curved) / wide).sqrt()
+    y_facet = y / math.sqrt(rest)
 
     def slope(x, y):
         """The slope in the frame: L (−x ŵ + y ŵ⊥)."""
         first, second = -(x * w_x).plus_product(y, w_y), (y * w_x) - x * w_y
         return a * first, (b * first).plus_product(c, second)
 
-    s_x, s_y = slope(x, y)
+    s_x, s_y = slope(x_facet, y_facet)
     f_z = (1.0 + s_x * s_x).plus_product(s_y, s_y)
     f_z = 1.0 / f_z.sqrt()
-    facet_cosine = ((cosine + sigma * x) * f_z).at_most(1.0)
+    facet_cosine = ((cosine + sigma * x_facet) * f_z).at_most(1.0)
     fresnel = _fresnel(facet_cosine)
     # The part that no wave blocks on the way of the mirrored light l: (1 + Λv)/(1 + Λv + Λl).
     l_x, l_y = -2.0 * facet_cosine * f_z * s_x - v_x, -2.0 * facet_cosine * f_z * s_y - v_y
@@ -95,9 +101,7 @@ def facets_group():
     seen = 1.0 + _smith_lambda(k)
     open_part = l_z.above(0.0) * seen / (seen + _smith_lambda(l_z / spread(l_x, l_y).length().at_least(1e-6)))
 
-    # The lobe stands a little nearer to the mean, by as much as its own roughness spreads.
-    near = math.sqrt(1 - SPREAD)
-    t_x, t_y = slope(mean * (1 - near) + near * x, near * y)
+    t_x, t_y = slope(x, y)
     facet = (normal + x_axis * -t_x + y_axis * -t_y).normalized()
 
     foam_variance = 0.1  # of the foam's own roughness: foam.glsl

@@ -232,8 +232,8 @@ def _foam_rank(tree, asked):
     place = rest._scaled(1.0 / asked["Size"].at_least(1e-3))
     pattern = foam_pattern(tree, place)
     z = (pattern - PATTERN_MEAN) / PATTERN_DEVIATION
-    # The logit of the normal distribution of z, within 1.4e-4 in probability: 1.5976 z + 0.070566 z³.
-    return 1.0 / (1.0 + (-(z * (1.5976 + 0.070566 * z * z))).at_least(-60.0).at_most(60.0).exp())
+    # The logit of the pattern's distribution, nearly a normal one.
+    return 1.0 / (1.0 + (-(z * (1.5438 + 0.0912 * z * z))).at_least(-60.0).at_most(60.0).exp())
 
 
 def foam_pattern(tree, place):
@@ -242,15 +242,14 @@ def foam_pattern(tree, place):
         return tree.add("ShaderNodeTexNoise", {"Vector": vector, "Scale": scale, "Detail": detail, "Roughness": 0.6},
                         output=output)
 
-    streaks = noise(0.35, 4.0, place * (0.3, 1.0, 1.0))
-    bent = place + (noise(0.8, 3.0, output="Color") - 0.5) * 1.6
-    net = tree.add("ShaderNodeTexVoronoi", {"Vector": bent, "Scale": 0.7}, feature="DISTANCE_TO_EDGE")
-    grain = noise(5.0, 5.0)
-    return 2.2 * streaks - 0.45 * net.sqrt() + 1.3 * grain
+    streaks = noise(0.3, 3.0, place * (0.35, 1.0, 1.0))
+    bent = place * (0.6, 1.0, 1.0) + (noise(1.2, 4.0, output="Color") - 0.5) * 1.2
+    net = tree.add("ShaderNodeTexVoronoi", {"Vector": bent, "Scale": 1.1}, feature="DISTANCE_TO_EDGE")
+    return 2.0 * streaks - 1.0 * net.sqrt() + 0.7 * noise(6.0, 4.0)
 
 
-# Measured over a square of 400 m.
-PATTERN_MEAN, PATTERN_DEVIATION = 1.5, 0.2
+# Measured over a square of 400 m, with the logit in _foam_rank().
+PATTERN_MEAN, PATTERN_DEVIATION = 1.0319, 0.2058
 
 
 # ---- The material

@@ -27,3 +27,11 @@ def new_group_socket(group, name, kind, is_output=False, default=None):
     if default is not None:
         socket.default_value = default
     return socket
+
+
+def set_uv(layer, uv):
+    """uv: float32 (corners, 2), contiguous."""
+    if hasattr(layer, "uv"):  # since 3.5
+        layer.uv.foreach_set("vector", uv.ravel())
+    else:
+        layer.data.foreach_set("uv", uv.ravel())

@@ -9,6 +9,7 @@ from . import compat
 
 SIGNATURE = "pelagic_surface"  # the mesh's own property: which surface its vertices are
 REST = "rest_position"
+UV_MAP = "UVMap"
 
 # The mesh's attributes: name, type, the property for foreach_set, the module's product.
 ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
@@ -22,21 +23,29 @@ def holds(mesh, surface):
 
 def put_surface(mesh, surface):
     """Makes the mesh's vertices and faces the surface's, at rest."""
+    corners, starts = surface.faces()
     mesh.clear_geometry()
     mesh.vertices.add(len(surface))
-    mesh.loops.add(len(surface.corners))
-    mesh.polygons.add(len(surface.face_starts))
-    mesh.loops.foreach_set("vertex_index", surface.corners)
-    mesh.polygons.foreach_set("loop_start", surface.face_starts)
-    mesh.polygons.foreach_set("loop_total", np.diff(surface.face_starts, append=np.int32(len(surface.corners))))
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(len(starts))
+    mesh.loops.foreach_set("vertex_index", corners)
+    mesh.polygons.foreach_set("loop_start", starts)
+    mesh.polygons.foreach_set("loop_total", np.diff(starts, append=np.int32(len(corners))))
     compat.shade_smooth(mesh)
-    rest = np.pad(surface.rest, ((0, 0), (0, 1)))
+    rest = surface.rest_3d()
     compat.set_positions(mesh, rest)
     mesh.update(calc_edges=True)
-    uv = mesh.uv_layers.new(name="UVMap")
-    uv.data.foreach_set("uv", (surface.rest[surface.corners] / np.float32(surface.uv_m) + np.float32(0.5)).ravel())
-    put_rest(mesh, rest)
+    mesh.uv_layers.new(name=UV_MAP)
+    move_rest(mesh, surface, rest)
     mesh[SIGNATURE] = surface.signature
+
+
+def move_rest(mesh, surface, rest=None):
+    """Where the points are at rest, as attribute and as UV map. rest: of the surface, if known."""
+    put_rest(mesh, surface.rest_3d() if rest is None else rest)
+    corners = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", corners)
+    compat.set_uv(mesh.uv_layers[UV_MAP], surface.uv(corners))
 
 
 def put_rest(mesh, rest):

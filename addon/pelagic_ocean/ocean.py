@@ -3,13 +3,14 @@
 
 import math
 import re
+from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
 from mathutils import Vector
 
 from .module import pelagic
-from .properties import BY_PATH, FIELDS, VERSION
+from .properties import BY_PATH, FIELDS, TABLES, VERSION, counts
 
 NO_MODULE = "Pelagic's compiled module isn't there"
 
@@ -28,9 +29,9 @@ def oceans():
 
 def settings_of(obj):
     """The values of all keys that an ocean has properties for, in the order of FIELDS. They can be compared."""
-    groups = {}
-    return tuple(field.read(groups.get(field.table) or groups.setdefault(field.table, getattr(obj.pelagic, field.table)))
-                 for field in FIELDS)
+    settings = obj.pelagic
+    groups = {table: getattr(settings, table) for table in TABLES}
+    return tuple(field.read(groups[field.table]) if counts(field, settings) else field.key["default"] for field in FIELDS)
 
 
 def clean_name(name):
@@ -65,11 +66,12 @@ def _with_settings(settings):
 
 
 def _measured(values):
-    """A scene with a buoy's hour in it."""
-    file = Path(_on_disk(values["sea.spectrum_file"] or "")).absolute()
-    text = (f'[sea]\nspectrum = "file"\nspectrum_file = "{file.name}"\n'
-            f'spectrum_time = {values["sea.spectrum_time"] or ""}\n')
-    return pelagic.Scene.from_text(text, file.parent)
+    """A scene with a buoy's hour in it. ShotError if the file or the hour isn't given, or isn't there."""
+    file, hour = _on_disk(values["sea.spectrum_file"] or ""), values["sea.spectrum_time"]
+    lines = ["[sea]", 'spectrum = "file"']
+    lines += [f"spectrum_file = '{Path(file).name}'"] if file else []
+    lines += [f"spectrum_time = {hour}"] if hour else []
+    return pelagic.Scene.from_text("\n".join(lines), Path(file).absolute().parent)
 
 
 def scene_of(obj, bpy_scene, depsgraph=None, settings=None):
@@ -78,36 +80,72 @@ def scene_of(obj, bpy_scene, depsgraph=None, settings=None):
     settings_of(), if known. pelagic.ShotError for what the core refuses."""
     if pelagic is None:
         raise RuntimeError(NO_MODULE)
-    if depsgraph is not None:
-        obj = obj.evaluated_get(depsgraph)
-    scene = _with_settings(settings or settings_of(obj))
+    scene = _with_settings(settings or settings_of(obj.evaluated_get(depsgraph) if depsgraph else obj))
     scene.shot.name = clean_name(obj.name)
     scene.shot.frames = (bpy_scene.frame_start, bpy_scene.frame_end)
     scene.shot.fps = frame_rate(bpy_scene)
-    camera = bpy_scene.camera
-    if camera is not None and camera.type == "CAMERA":
-        set_camera(scene, camera.evaluated_get(depsgraph) if depsgraph else camera, obj, bpy_scene)
+    pinhole = pinhole_of(obj, bpy_scene, depsgraph)
+    if pinhole is not None:
+        pinhole.put_in(scene)
     return scene
 
 
 LOOK_AHEAD_M = 100.0  # where along its axis a camera's look_at_m is
+FOV_DEG = (1.0, 179.0)
 
 
-def set_camera(scene, camera, obj, bpy_scene):
-    """The Blender camera's pose and angle of view in the scene, as seen by the ocean."""
+@dataclass(frozen=True)
+class Pinhole:
+    """A Blender camera as the core's: metres and axes in the ocean's own coordinates."""
+
+    position_m: Vector
+    right: Vector
+    up: Vector
+    forward: Vector
+    tan_half_width: float
+    resolution: tuple
+
+    def view(self):
+        return pelagic.View(position_m=tuple(self.position_m), right=tuple(self.right), up=tuple(self.up),
+                            forward=tuple(self.forward), tan_half_width=self.tan_half_width, resolution=self.resolution)
+
+    def put_in(self, scene):
+        """Makes it the scene's camera. A camera that is rolled is one key, because only keys can be."""
+        table, frame = scene.camera, scene.shot.frames[0]
+        table.position_m = tuple(self.position_m)
+        table.look_at_m = tuple(self.position_m + LOOK_AHEAD_M * self.forward)
+        table.fov_deg = math.degrees(2 * math.atan(self.tan_half_width))
+        table.resolution = self.resolution
+        roll_deg = self.roll_deg()
+        if abs(roll_deg) > 1e-3:
+            table.keys = [pelagic.CameraKey(frame, table.position_m, table.look_at_m, table.fov_deg, roll_deg)]
+
+    def roll_deg(self):
+        """About the line of sight; above 0 the right side goes down."""
+        level = self.forward.cross(Vector((0, 0, 1)))
+        if level.length < 1e-6:  # straight up or down: +y is up
+            level = self.forward.cross(Vector((0, 1, 0)))
+        level.normalize()
+        return math.degrees(math.atan2(-self.right.dot(level.cross(self.forward)), self.right.dot(level)))
+
+
+def pinhole_of(obj, bpy_scene, depsgraph=None):
+    """The scene's camera as an ocean sees it, or None. With a depsgraph as evaluated there."""
+    camera = bpy_scene.camera
+    if camera is None or camera.type != "CAMERA" or camera.data.type != "PERSP":
+        return None
+    if depsgraph is not None:
+        camera, obj = camera.evaluated_get(depsgraph), obj.evaluated_get(depsgraph)
     pose = obj.matrix_world.inverted_safe() @ camera.matrix_world
-    ahead = (pose.to_3x3() @ Vector((0, 0, -1))).normalized()
-    scene.camera.position_m = tuple(pose.translation)
-    scene.camera.look_at_m = tuple(pose.translation + LOOK_AHEAD_M * ahead)
-    if camera.data.type == "PERSP":
-        corners = camera.data.view_frame(scene=bpy_scene)
-        width = max(corner.x for corner in corners) - min(corner.x for corner in corners)
-        angle = math.degrees(2 * math.atan2(0.5 * width, -corners[0].z))
-        low, high = 1.0, 179.0
-        scene.camera.fov_deg = min(max(angle, low), high)
+    forward = -pose.col[2].xyz.normalized()
+    right = (pose.col[0].xyz - pose.col[0].xyz.dot(forward) * forward).normalized()
+    corners = camera.data.view_frame(scene=bpy_scene)
+    tangent = (max(corner.x for corner in corners) - min(corner.x for corner in corners)) / (-2 * corners[0].z)
+    low, high = (math.tan(math.radians(angle / 2)) for angle in FOV_DEG)
     render = bpy_scene.render
-    scale = render.resolution_percentage / 100
-    scene.camera.resolution = (max(1, int(render.resolution_x * scale)), max(1, int(render.resolution_y * scale)))
+    resolution = tuple(max(1, int(side * render.resolution_percentage / 100))
+                       for side in (render.resolution_x, render.resolution_y))
+    return Pinhole(pose.translation, right, right.cross(forward), forward, min(max(tangent, low), high), resolution)
 
 
 def set_from(obj, scene):

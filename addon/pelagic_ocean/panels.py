@@ -7,19 +7,11 @@ import bpy
 from . import ocean, play
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
-from .properties import FIELDS
+from .properties import FIELDS, counts
 
 # Title → tables of keys.
 PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
           "Light": ("light", "water"), "Output": ("quality", "output")}
-
-# Keys that mean something only while another has a value.
-ONLY_WITH = {"sea.spectrum_file": ("sea", "spectrum", "file"), "sea.spectrum_time": ("sea", "spectrum", "file"),
-             "waves.trains": ("waves", "model", "trochoid"), "waves.shortest_m": ("waves", "model", "trochoid"),
-             "waves.longest_m": ("waves", "model", "trochoid"), "surface.size_m": ("surface", "kind", "patch"),
-             "surface.resolution": ("surface", "kind", "patch"),
-             "surface.cell_px": ("surface", "kind", "projected-grid")}
-
 
 def _draw_words(layout, text):
     """A message in lines that fit."""
@@ -62,10 +54,7 @@ def _draw_field(layout, group, field):
 
 def _draw_tables(layout, settings, tables):
     for field in FIELDS:
-        if field.table not in tables:
-            continue
-        other = ONLY_WITH.get(field.path)
-        if other is None or getattr(getattr(settings, other[0]), other[1]) == other[2]:
+        if field.table in tables and counts(field, settings):
             _draw_field(layout, getattr(settings, field.table), field)
 
 

@@ -9,8 +9,10 @@ renaming and duplicates need no care, and oceans with the same settings share a 
 while the old one plays on; without a window, and during renders, whoever asks waits for it.
 """
 
+import re
 import threading
 import weakref
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
@@ -18,12 +20,13 @@ from bpy.app.handlers import persistent
 
 from . import meshes, surfaces
 from .module import pelagic
-from .ocean import frame_rate, is_ocean, migrate, oceans, scene_of, settings_of
+from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of
 from .properties import FIELDS
 
-# What a change of feeds means to the sea: another one has to be built. The rest only looks different.
+# A change of a key that feeds these is another sea. The rest only looks different; the clock matters to loops.
 SEA_FEEDS = {"waves", "foam", "quality", "surface", "grid"}
 SEA_FIELDS = tuple(place for place, field in enumerate(FIELDS) if SEA_FEEDS & set(field.key["feeds"]))
+CLOCK_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "clock" in field.key["feeds"])
 PLACE = {field.path: place for place, field in enumerate(FIELDS)}
 
 POLL_S = 0.02  # how often a window looks whether a sea is ready
@@ -32,33 +35,56 @@ POLL_S = 0.02  # how often a window looks whether a sea is ready
 class BuiltSea:
     """A sea on a surface, one frame of it, and that frame's buffers."""
 
-    def __init__(self, scene, surface):
-        self.surface = surface
+    def __init__(self, scene, surface, view):
+        """surface: None for the projected grid, whose points are those of a pelagic.View."""
         products = ["position", "velocity", "slope_variance"] + ["coverage"] * scene.effects.whitecaps
-        self.sea = pelagic.Sea(scene, products, cell_m=surface.ladder_m, pixel_m=surface.ladder_m)
-        self._frame = pelagic.Frame(self.sea)
-        self._asked_frame = None
+        if surface is None:
+            self.sea = pelagic.Sea(scene, products, views=[view])
+        else:
+            ladder_m = surface.ladder_m()
+            self.sea = pelagic.Sea(scene, products, cell_m=ladder_m, pixel_m=ladder_m)
+        self._products = products
+        self._fixed, self._uv_m = surface, scene.surface.size_m
+        self._frame, self._asked_frame = pelagic.Frame(self.sea), None
         self._lock = threading.RLock()
-        self._time_s = None
-        points = len(surface)
-        self._arrays = {product: np.empty(points if product == "coverage" else (points, 3), np.float32)
-                        for product in products}
+        self._now = None  # what the buffers hold
+        self._surface, self._arrays = None, None
 
-    def buffers(self, time_s):
-        """Each product's array at a time [s], until the next call."""
+    @property
+    def needs_view(self):
+        return self._fixed is None
+
+    def serves(self, view):
+        return self._fixed is not None or (view is not None and self.sea.serves(view))
+
+    def buffers(self, moment):
+        """The surface, and each product's array, at a Moment; until the next call."""
         with self._lock:
-            if time_s != self._time_s:
-                surface = self.surface
-                self._frame.set(time_s)
-                self._frame.evaluate(surface.rest, cell_m=surface.cell_m, pixel_m=surface.cell_m, **self._arrays)
-                if surface.height_m is not None:
-                    self._arrays["position"][:, 2] += surface.height_m
-                self._time_s = time_s
-            return self._arrays
+            if moment != self._now:
+                self._evaluate(moment)
+                self._now = moment
+            return self._surface, self._arrays
+
+    def _evaluate(self, moment):
+        surface = self._fixed or surfaces.projected_grid(self.sea, moment.view, moment.share, self._uv_m)
+        if self._surface is None or len(surface) != len(self._surface):
+            self._arrays = {product: np.empty(len(surface) if product == "coverage" else (len(surface), 3), np.float32)
+                            for product in self._products}
+        self._surface = surface
+        self._frame.set(moment.time_s)
+        self._frame.evaluate(surface.rest, surface.origin_m, cell_m=surface.cell_m, pixel_m=surface.cell_m,
+                             **self._arrays)
+        position, velocity = self._arrays["position"], self._arrays["velocity"]
+        if surface.origin_m != (0.0, 0.0):
+            position[:, :2] += np.array(surface.origin_m, np.float32)
+        if surface.height_m is not None:
+            position[:, 2] += surface.height_m
+        if moment.time_scale != 1.0:
+            velocity *= np.float32(moment.time_scale)  # metres in a second of the screen
 
     def frame_at(self, time_s):
         with self._lock:
-            if time_s == self._time_s:
+            if self._now is not None and time_s == self._now.time_s:
                 return self._frame
             if self._asked_frame is None:
                 self._asked_frame = pelagic.Frame(self.sea)
@@ -66,6 +92,17 @@ class BuiltSea:
             elif self._asked_frame.time_s != time_s:
                 self._asked_frame.set(time_s)
             return self._asked_frame
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What a sea is shown at: its time [s], how much of that passes in a second of the screen, and for the projected grid
+    whose view, and what share of the columns and rows that it needs."""
+
+    time_s: float
+    time_scale: float = 1.0
+    view: object = None
+    share: float = 1.0
 
 
 class Job(threading.Thread):
@@ -105,8 +142,9 @@ class Simulation:
         return self._built and self._built.sea
 
     @property
-    def surface(self):
-        return self._built and self._built.surface
+    def needs_view(self):
+        """Whether the surface that plays is what a camera sees."""
+        return self._built.needs_view
 
     @property
     def is_building(self):
@@ -116,30 +154,35 @@ class Simulation:
         """A pelagic.Frame at a time [s], for queries; the next call may set it to another. Any order, any thread."""
         return self._built.frame_at(time_s)
 
-    def buffers(self, time_s):
-        return self._built.buffers(time_s)
+    def buffers(self, moment):
+        return self._built.buffers(moment)
 
     def follow(self, obj, bpy_scene, depsgraph, wait):
-        """Brings the sea to the object's settings, or begins to. obj: the original."""
+        """Brings the sea to the object's settings, or begins to. obj: the original. Returns the view that it is seen by,
+        None where that doesn't matter."""
         settings = settings_of(obj.evaluated_get(depsgraph))
-        surface_key, make_surface = _surface_of(obj, settings, bpy_scene)
         asked = (settings, frame_rate(bpy_scene))
-        key = (tuple(settings[place] for place in SEA_FIELDS), surface_key)
-        if asked != self._asked:
-            try:
+        try:
+            surface_key, prepare, view = _surface_of(obj, settings, bpy_scene, depsgraph)
+            if asked != self._asked:
                 self.scene = scene_of(obj, bpy_scene, depsgraph, settings)
-            except (ValueError, OSError) as error:
-                self._refuse(key, str(error))
-            self._asked = asked
-        if key != self._key:
-            self._seek(key, self.scene, make_surface, wait)
+                self._asked = asked
+        except (ValueError, OSError) as error:
+            self._refuse(None, str(error))
+            return None
+        loop = asked[1:] + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] else ()
+        key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key)
+        if key != self._key or (view is not None and self._built and not self._built.serves(view)):
+            self._seek(key, prepare, view, wait)
+        return view
 
-    def _seek(self, key, scene, make_surface, wait):
+    def _seek(self, key, prepare, view, wait):
         known = _built.get(key)
-        if known is not None:
+        if known is not None and known.serves(view):
             self._adopt(key, known)
         elif wait or self._job is None:
-            self._job = Job(key, lambda: BuiltSea(scene, make_surface()))
+            scene, make_surface = self.scene, prepare()
+            self._job = Job(key, lambda: BuiltSea(scene, make_surface(), view))
             if wait:
                 self._job.join()
                 self.poll()
@@ -163,8 +206,8 @@ class Simulation:
         self._key, self._built, self.problem = key, built, ""
 
     def _refuse(self, key, problem):
-        """The old sea plays on."""
-        self._key, self.problem = key, problem
+        """The old sea plays on. A place in a file that nobody wrote is left out of the words."""
+        self._key, self.problem = key, re.sub(r"^\S*:\d+:\d+: ", "", problem, flags=re.MULTILINE)
 
 
 _simulations = {}  # by the names of their objects
@@ -174,20 +217,33 @@ _rendering = set()  # names of scenes
 # ---- Which oceans, and what of them
 
 
-def _surface_of(obj, settings, bpy_scene):
-    """What identifies the surface, and a function that makes it, without Blender, in a thread."""
+def _share(obj, bpy_scene):
+    """Of the vertices a side: all of them in a render."""
+    return 1.0 if bpy_scene.name in _rendering else obj.pelagic.viewport_percentage / 100
+
+
+def _surface_of(obj, settings, bpy_scene, depsgraph):
+    """What identifies the surface; a function that reads what it needs of Blender and returns another, for a thread, that
+    makes it; and the view, if it depends on one. ValueError if it can't be made."""
     mesh, setting = obj.data, obj.pelagic
     if setting.own_mesh:
         signature = mesh.get(meshes.SIGNATURE, "")
         if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))]:
             signature = meshes.capture(mesh)
-        rest, edges = meshes.rest_of(mesh), meshes.edges_of(mesh)
-        return signature, lambda: surfaces.own_mesh(rest, edges, signature)
-    resolution = settings[PLACE["surface.resolution"]]
-    if bpy_scene.name not in _rendering:
-        resolution = max(1, round(resolution * setting.viewport_percentage / 100))
-    size_m, horizon = settings[PLACE["surface.size_m"]], setting.horizon
-    return ("patch", size_m, resolution, horizon), lambda: surfaces.patch(size_m, resolution, horizon)
+
+        def read_mesh():
+            rest, edges = meshes.rest_of(mesh), meshes.edges_of(mesh)
+            return lambda: surfaces.own_mesh(rest, edges, signature)
+
+        return signature, read_mesh, None
+    if settings[PLACE["surface.kind"]] == "projected-grid":
+        pinhole = pinhole_of(obj, bpy_scene, depsgraph)
+        if pinhole is None:
+            raise ValueError("The projected grid is what the scene's camera sees: the scene needs one, with perspective")
+        return "grid", lambda: lambda: None, pinhole.view()
+    resolution = max(1, round(settings[PLACE["surface.resolution"]] * _share(obj, bpy_scene)))
+    patch = (settings[PLACE["surface.size_m"]], resolution, setting.horizon)
+    return patch, lambda: lambda: surfaces.patch(*patch), None
 
 
 def _is_seen(obj, depsgraph):
@@ -220,19 +276,22 @@ def simulation_of(obj):
 def _show(obj, bpy_scene, depsgraph, again):
     """Brings the mesh of an ocean to the present. again: though it is there already."""
     simulation = _simulation(obj)
-    simulation.follow(obj, bpy_scene, depsgraph, bpy.app.background or bool(_rendering))
-    surface = simulation.surface
-    if surface is None:
+    view = simulation.follow(obj, bpy_scene, depsgraph, bpy.app.background or bool(_rendering))
+    if simulation.sea is None or (view is None and simulation.needs_view):
         return
-    time_s = simulation.scene.shot.time_s(bpy_scene.frame_current_final)
-    shown = (obj.data.name_full, surface.signature, id(simulation.sea), time_s)
+    shot = simulation.scene.shot
+    moment = Moment(shot.time_s(bpy_scene.frame_current_final), shot.time_scale, view, view and _share(obj, bpy_scene))
+    shown = (obj.data.name_full, id(simulation.sea), moment)
     if shown == simulation.shown and not again:
         return
+    surface, arrays = simulation.buffers(moment)
     if not meshes.holds(obj.data, surface):
-        if surface.corners is None:
+        if surface.faces is None:
             return
         meshes.put_surface(obj.data, surface)
-    meshes.put_frame(obj.data, simulation.buffers(time_s))
+    elif surface.moves:
+        meshes.move_rest(obj.data, surface)
+    meshes.put_frame(obj.data, arrays)
     simulation.shown = shown
 
 

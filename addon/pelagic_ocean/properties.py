@@ -20,6 +20,11 @@ VERSION = 1  # of the settings in a file; ocean.migrate() brings older ones here
 
 FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps"}  # and the camera's: they come from the scene
 
+# Keys that the core refuses unless another key has a value: they are shown, and count, only then.
+ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", "file"), "sea.spectrum_time": ("sea.spectrum", "file"),
+             "waves.trains": ("waves.model", "trochoid"), "waves.shortest_m": ("waves.model", "trochoid"),
+             "waves.longest_m": ("waves.model", "trochoid")}
+
 # A unit of the table → arguments of a property. Degrees stay degrees: Blender's angles would be radians in scripts.
 UNITS = {"m": {"subtype": "DISTANCE", "unit": "LENGTH"}, "m/s": {"unit": "VELOCITY"},
          "s": {"subtype": "TIME_ABSOLUTE", "unit": "TIME"}, "pixels": {"subtype": "PIXEL"}}
@@ -119,6 +124,12 @@ FIELDS = tuple(_field(key) for key in pelagic.keys() if _has_property(key)) if p
 TABLES = tuple(dict.fromkeys(field.table for field in FIELDS))
 BY_PATH = {field.path: field for field in FIELDS}
 _ENTRY_FIELDS = {field.path: tuple(_field(key) for key in field.key["keys"]) for field in FIELDS}
+
+
+def counts(field, settings):
+    """Whether a key counts with the other settings of an ocean, obj.pelagic."""
+    other, value = ONLY_WITH.get(field.path, (None, None))
+    return other is None or getattr(getattr(settings, BY_PATH[other].table), BY_PATH[other].name) == value
 
 
 def entry_fields(field):

@@ -2,53 +2,84 @@
 """Where a sea is looked at: points at rest, what they can resolve, and the faces between them."""
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from .module import pelagic
 
 HORIZON_M = 30e3  # ends less than a pixel below the true horizon for cameras up to about 15 m above the sea
+DEFAULT_CELL_M = 1.0  # of vertices without edges
+FINEST_CELL = 4096  # at most: the largest cell of a mesh over its smallest
 RING_GROWTH = 1.1  # each ring of quads round the patch is wider than the last by this factor
 
 
 @dataclass(eq=False)
 class Surface:
-    """Points at rest and their faces.
+    """Points at rest.
 
-    rest: float32 (n, 2) [m]. cell_m: float32 (n,), the distance to the neighbours, or a number for all. corners: int32,
-    the faces' vertices one after another; face_starts: int32, where each begins; None for a mesh that has its faces.
-    height_m: float32 (n,), what is added to z, or None. uv_m: the length that is 1 in the UV map.
+    signature: which faces they have, in words. rest: float32 (n, 2) [m], relative to origin_m. cell_m: float32 (n,), the
+    distance to the neighbours, or a number for all. faces: a function that gives (corners, starts), int32: the faces'
+    vertices one after another, and where each face begins; None for a mesh that has its own. height_m: float32 (n,),
+    what is added to z, or None. uv_m: the length that is 1 in the UV map. moves: whether the next frame has other points.
     """
 
     signature: str
     rest: np.ndarray
     cell_m: object
-    corners: np.ndarray = None
-    face_starts: np.ndarray = None
+    faces: object = None
+    origin_m: tuple = (0.0, 0.0)
     height_m: np.ndarray = None
     uv_m: float = 1.0
-    ladder_m: list = field(init=False)
-
-    def __post_init__(self):
-        low, high = float(np.min(self.cell_m)), float(np.max(self.cell_m))
-        rungs = math.ceil(math.log2(high / low) - 1e-6) + 1
-        self.ladder_m = [low * 2**rung for rung in range(rungs)]
+    moves: bool = False
 
     def __len__(self):
         return len(self.rest)
 
+    def ladder_m(self):
+        """Footprints, powers of two apart, for all cells."""
+        low, high = float(np.min(self.cell_m)), float(np.max(self.cell_m))
+        return [low * 2**rung for rung in range(math.ceil(math.log2(high / low) - 1e-6) + 1)]
+
+    def rest_3d(self):
+        """float32 (n, 3): the points' places in the object's coordinates."""
+        rest = np.zeros((len(self), 3), np.float32)
+        np.add(self.rest, self.origin_m, out=rest[:, :2], casting="same_kind")
+        if self.height_m is not None:
+            rest[:, 2] = self.height_m
+        return rest
+
+    def uv(self, corners):
+        """float32 (corners, 2) of the faces' corners: rest over size, 0.5 at the origin."""
+        uv = self.rest_3d()[:, :2] / np.float32(self.uv_m) + np.float32(0.5)
+        return uv[corners]
+
+
+def _quads(corners):
+    return corners.ravel(), np.arange(0, corners.size, 4, dtype=np.int32)
+
 
 def patch(size_m, resolution, horizon):
     """The square patch, its points first as in a bake, and round it, where wanted, rings out to the horizon."""
-    signature = f"patch {size_m!r} {resolution} {horizon}"
-    rest, quads = pelagic.patch(size_m, resolution)
-    spacing_m = size_m / resolution
-    cell_m = spacing_m
-    if horizon and size_m < HORIZON_M:
-        rest, quads, cell_m = _with_rings(rest, quads, size_m, resolution)
-    starts = np.arange(0, quads.size, 4, dtype=np.int32)
-    return Surface(signature, rest, cell_m, quads.ravel(), starts, uv_m=size_m)
+    def points():
+        rest, quads = pelagic.patch(size_m, resolution)
+        if horizon and size_m < HORIZON_M:
+            return _with_rings(rest, quads, size_m, resolution)
+        return rest, quads, size_m / resolution
+
+    rest, _, cell_m = points()
+    return Surface(f"patch {size_m!r} {resolution} {horizon}", rest, cell_m, lambda: _quads(points()[1]), uv_m=size_m)
+
+
+def projected_grid(sea, view, share, uv_m):
+    """What a view shows of a sea, to the horizon. share: of the columns and rows that the view needs."""
+    grid = sea.projected_grid(view)
+    if share < 1.0:
+        fewer = tuple(max(1, round(count * share)) for count in (grid.columns, grid.rows))
+        grid = sea.projected_grid(view, fewer)
+    columns, rows = grid.columns, grid.rows
+    return Surface(f"grid {columns} {rows}", grid.rest_m, grid.cell_m, lambda: _quads(pelagic.grid_quads(columns, rows)),
+                   grid.origin_m, uv_m=uv_m, moves=True)
 
 
 def _with_rings(rest, quads, size_m, resolution):
@@ -78,7 +109,8 @@ def own_mesh(rest, edges, signature):
     cell_m = np.zeros(len(rest), np.float32)
     for end in (0, 1):
         np.maximum.at(cell_m, edges[:, end], lengths)
-    # A vertex without edges resolves whatever there is.
-    cell_m = np.maximum(cell_m, 1e-3)
+    # A vertex without edges is as fine as most others. The rest bounds the ladder.
+    usual = np.median(cell_m[cell_m > 0]) if cell_m.any() else DEFAULT_CELL_M
+    cell_m = np.clip(np.where(cell_m > 0, cell_m, usual), max(cell_m.max(), usual) / FINEST_CELL, None).astype(np.float32)
     height_m = np.ascontiguousarray(rest[:, 2])
     return Surface(signature, np.ascontiguousarray(rest[:, :2]), cell_m, height_m=height_m if height_m.any() else None)

@@ -26,14 +26,15 @@ void add_shot(Built& out) {
         shot.last_frame = frames[1];
         return true;
     };
-    const Row<Shot, 2> frames{key_of_member<std::array<int, 2>>(
-                                  {.name = "frames",
-                                   .help = "both included; frame f shows t = time_offset_s + time_scale (f - 1)/fps, "
-                                           "whatever the range",
-                                   .range = limits::kFrame,
-                                   .form = "[first, last], two integers of ",
-                                   .feeds = feeds(Feed::Range)}),
-                              frames_of, set_frames};
+    const Row<Shot, 2> frames{
+        key_of_member<std::array<int, 2>>(
+            {.name = "frames",
+             .help = "both included; frame f shows t = time_offset_s + time_scale (f - 1)/fps, "
+                     "whatever the range",
+             .range = limits::kFrame,
+             .form = "[first, last], two integers of ",
+             .feeds = feeds(Feed::Range)}),
+        frames_of, set_frames};
     add_table<&Scene::shot>(
         out.tables, out.keys, {"shot", "what is made", {}, {}},
         row<&Shot::name>({.name = "name",

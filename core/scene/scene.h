@@ -34,9 +34,9 @@ struct Shot {
     std::string name = "sea";  // letters, digits, _ and -
     int first_frame = 1;       // both included; time_s() says what a frame shows
     int last_frame = 48;
-    double fps = 24.0;       // > 0
-    std::uint64_t seed = 1;  // 0 … 2^63 − 1
-    double loop_s = 0.0;     // > 0: repeats exactly after this long, a whole number of frames; 0: no loop
+    double fps = 24.0;           // > 0
+    std::uint64_t seed = 1;      // 0 … 2^63 − 1
+    double loop_s = 0.0;         // > 0: repeats exactly after this long, a whole number of frames; 0: no loop
     double time_scale = 1.0;     // seconds of the sea in a second on the screen, ≥ 0: 1/2 is slow motion
     double time_offset_s = 0.0;  // the sea's time at frame 1
 

@@ -40,16 +40,16 @@ usd::CustomValue custom_value(const DescribedKey& key) {
 }
 
 usd::Camera camera_of(const Scene& scene) {
-    return {.fps = scene.shot.fps,
-            .first_frame = scene.shot.first_frame,
-            .last_frame = scene.shot.last_frame,
-            .pose_at =
-                [&scene](int frame) {
-                    const View view = view_at(scene.camera, frame);
-                    return usd::CameraPose{view.position_m, view.right, view.up, -view.forward,
-                                           view.fov_deg()};
-                },
-            .resolution = scene.camera.resolution};
+    return {
+        .fps = scene.shot.fps,
+        .first_frame = scene.shot.first_frame,
+        .last_frame = scene.shot.last_frame,
+        .pose_at =
+            [&scene](int frame) {
+                const View view = view_at(scene.camera, frame);
+                return usd::CameraPose{view.position_m, view.right, view.up, -view.forward, view.fov_deg()};
+            },
+        .resolution = scene.camera.resolution};
 }
 
 usd::Stage stage_of(const Plan& plan, const OutputPart& mesh) {

@@ -20,8 +20,8 @@ struct Controls {
     int pixel_size = 1;           // 1, 2, 4: a drawn pixel covers this many of the window's, squared
     bool playing = true;
     bool repeat = false;  // the shot's range; otherwise time goes on
-    double speed = 1.0;  // of playing
-    double frame = 1.0;  // of the shot, with fractions
+    double speed = 1.0;   // of playing
+    double frame = 1.0;   // of the shot, with fractions
     bool show_panel = true, show_help = false;
 };
 

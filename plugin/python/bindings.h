@@ -14,6 +14,7 @@ void add_sea(pybind11::module_& module);
 void add_frame(pybind11::module_& module);
 void add_light(pybind11::module_& module);
 void add_baked(pybind11::module_& module);
+void add_viewport(pybind11::module_& module);
 
 // ShotError with a line for each of validate()'s problems.
 void require_valid(const Scene& scene);

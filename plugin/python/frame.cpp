@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/evaluate/evaluate.h"
+#include "core/evaluate/places.h"
 #include "core/scene/limits.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
@@ -58,9 +58,26 @@ void read_footprints(Footprints& footprints, const py::object& object, const Ask
             throw py::value_error(asked.name + ": accepted: numbers from 0 up");
 }
 
+// Of an array that lives as long as they do.
+Points<float> points_of(const py::object& array, std::array<double, 2> origin_m, const char* name) {
+    const auto [points, count] = readable_points(array, {name});
+    if (!std::isfinite(origin_m[0]) || !std::isfinite(origin_m[1]))
+        throw py::value_error("origin: accepted: (x, y), finite [m]");
+    return {
+        .origin_m = {origin_m[0], origin_m[1]}, .count = static_cast<std::size_t>(count), .rest_m = points};
+}
+
+void write_to(Results<float>& results, const ProductRow& row, const py::object& array, py::ssize_t count) {
+    const Asked asked{row.identifier, count};
+    if (row.components == 1)
+        results.set(NumberProduct::checked(row.product), writable_numbers(array, asked));
+    else
+        results.set(VectorProduct::checked(row.product), writable_vectors(array, asked));
+}
+
 class PythonFrame {
   public:
-    explicit PythonFrame(const PythonSea& sea) : sea_(sea.sea), frame_(sea.sea) {}
+    explicit PythonFrame(const PythonSea& sea) : sea_(sea), frame_(sea.sea) {}
 
     void set(double t_s) {
         const py::gil_scoped_release others_may_run;
@@ -70,12 +87,8 @@ class PythonFrame {
     }
 
     py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given) const {
-        const auto [rest_view, count] = readable_points(rest, {"rest"});
-        Points<float> points{.origin_m = {origin_m[0], origin_m[1]},
-                             .count = static_cast<std::size_t>(count),
-                             .rest_m = rest_view};
-        if (!std::isfinite(origin_m[0]) || !std::isfinite(origin_m[1]))
-            throw py::value_error("origin: accepted: (x, y), finite [m]");
+        Points<float> points = points_of(rest, origin_m, "rest");
+        const auto count = static_cast<py::ssize_t>(points.count);
         Footprints cell, pixel;
         read_footprints(cell, given.cell_m, {"cell_m", count});
         read_footprints(pixel, given.pixel_m, {"pixel_m", count});
@@ -88,18 +101,64 @@ class PythonFrame {
         for (const ProductRow& row : kProductTable) {
             const py::object& array = arrays[index(row.product)];
             if (array.is_none()) continue;
-            const Asked asked{row.identifier, count};
-            if (row.components == 1)
-                results.set(NumberProduct::checked(row.product), writable_numbers(array, asked));
-            else
-                results.set(VectorProduct::checked(row.product), writable_vectors(array, asked));
+            write_to(results, row, array, count);
             written[row.identifier] = array;
         }
         run(points, results);
         return written;
     }
 
-    PythonSea sea() const { return {sea_}; }
+    py::dict heights(const py::object& xy, std::array<double, 2> origin_m, const py::object& footprint_m,
+                     const std::optional<std::vector<std::string>>& outputs) const {
+        require_product(row_of(Product::Position));
+        const auto places = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(xy);
+        if (!places || places.ndim() != 2 || places.shape(1) != 2)
+            throw py::value_error("xy: accepted: numbers of shape (n, 2)");
+        const py::ssize_t count = places.shape(0);
+        Points<float> points = points_of(places, origin_m, "xy");
+        Footprints footprints;
+        read_footprints(footprints, footprint_m, {"footprint_m", count});
+        points.cell_m = points.pixel_m = footprints.view;
+
+        ProductSet wanted;
+        if (outputs)
+            for (const std::string& name : *outputs) wanted.set(index(product_of(name).product));
+        else
+            wanted = sea_.products & products(Product::Normal, Product::Velocity);
+        Results<float> results;
+        py::dict written;
+        for (const ProductRow& row : kProductTable) {
+            if (!wanted[index(row.product)]) continue;
+            require_product(row);
+            const py::array array = fresh(row, count);
+            write_to(results, row, array, count);
+            written[row.identifier] = array;
+        }
+        std::vector<glm::vec2> rest_m(points.count);
+        std::vector<float> residual_m(points.count), height_m(points.count);
+        {
+            const py::gil_scoped_release others_may_run;
+            require_on_the_sea(points, "xy");
+            const std::shared_lock reading(mutex_);
+            require_time();
+            wanted.set(index(Product::Displacement));
+            const PreparedQuery<float> query(frame_, 0, wanted, points.origin_m);
+            find_rest(query, points, {}, {rest_m.data()}, {residual_m.data()});
+            std::vector<glm::vec3> displacement_m(points.count);
+            if (!results.holds(Product::Displacement))
+                results.set(Product::Displacement, {displacement_m.data()});
+            points.rest_m = {rest_m.data()};
+            query.evaluate(points, results);
+            const Strided<glm::vec3> displaced_m = results.vectors(Product::Displacement);
+            for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
+        }
+        written["height_m"] = array_of<float>(std::move(height_m));
+        written["rest_m"] = array_of<float>(std::move(rest_m));
+        written["residual_m"] = array_of<float>(std::move(residual_m));
+        return written;
+    }
+
+    PythonSea sea() const { return sea_; }
     double time_s() const { return frame_.time_s(); }
     long executed_transforms() const { return frame_.executed_transforms(); }
 
@@ -114,33 +173,46 @@ class PythonFrame {
         if (given.outputs)
             for (const std::string& name : *given.outputs) wanted.set(index(product_of(name).product));
         else if (none_given)
-            wanted = sea_->plan().queries.front().query.products;
-        const ProductSet& held = sea_->plan().queries.front().query.products;
+            wanted = sea_.products;
         for (const ProductRow& row : kProductTable) {
             const bool asked = wanted[index(row.product)] || !arrays[index(row.product)].is_none();
-            if (asked && !held[index(row.product)])
-                throw py::value_error(std::string(row.identifier) +
-                                      ": the sea was built without it; accepted: what its products name");
+            if (asked) require_product(row);
         }
         for (const ProductRow& row : kProductTable) {
             py::object& array = arrays[index(row.product)];
-            if (!wanted[index(row.product)] || !array.is_none()) continue;
-            array = row.components == 1
-                        ? py::array_t<float>(count)
-                        : py::array_t<float>({count, static_cast<py::ssize_t>(row.components)});
+            if (wanted[index(row.product)] && array.is_none()) array = fresh(row, count);
         }
         return arrays;
     }
 
+    static py::array_t<float> fresh(const ProductRow& row, py::ssize_t count) {
+        if (row.components == 1) return py::array_t<float>(count);
+        return py::array_t<float>({count, static_cast<py::ssize_t>(row.components)});
+    }
+
+    void require_product(const ProductRow& row) const {
+        if (!sea_.products[index(row.product)])
+            throw py::value_error(std::string(row.identifier) +
+                                  ": the sea was built without it; accepted: what its products name");
+    }
+
     void run(const Points<float>& points, const Results<float>& results) const {
         const py::gil_scoped_release others_may_run;
+        require_on_the_sea(points, "rest");
+        const std::shared_lock reading(mutex_);
+        require_time();
+        pelagic::evaluate(frame_, 0, points, results);
+    }
+
+    void require_time() const {
+        if (!is_set_) throw std::invalid_argument("the frame has no time yet: call set(t) first");
+    }
+
+    static void require_on_the_sea(const Points<float>& points, const std::string& name) {
         const std::size_t bad = first_off_the_sea(points);
         if (bad < points.count)
-            throw std::invalid_argument("rest: point " + std::to_string(bad) +
+            throw std::invalid_argument(name + ": point " + std::to_string(bad) +
                                         " is no place on the sea; accepted: " + text_of(kRest_m) + " m");
-        const std::shared_lock reading(mutex_);
-        if (!is_set_) throw std::invalid_argument("the frame has no time yet: call set(t) first");
-        pelagic::evaluate(frame_, 0, points, results);
     }
 
     // The count, where all are on it. On all threads: of a million points it would be a tenth of their
@@ -159,7 +231,7 @@ class PythonFrame {
             [](std::size_t a, std::size_t b) { return std::min(a, b); });
     }
 
-    std::shared_ptr<const Sea<float>> sea_;
+    PythonSea sea_;
     Frame<float> frame_;
     bool is_set_ = false;
     mutable std::shared_mutex mutex_;
@@ -221,7 +293,18 @@ void add_frame(py::module_& module) {
         .def(
             "set", &PythonFrame::set, py::arg("t"),
             "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile.")
-        .def_property_readonly("sea", &PythonFrame::sea)
+        .def(
+            "heights", &PythonFrame::heights, py::arg("xy"), py::arg("origin") = std::array{0.0, 0.0},
+            py::kw_only(), py::arg("footprint_m") = none(), py::arg("outputs") = none(),
+            "The sea above places of the world: what evaluate() gives at the points at rest that are displaced "
+            "there, found by iteration. The sea must hold positions.\n\n"
+            "xy: numbers of shape (n, 2), relative to origin [m]. footprint_m: as cell_m and pixel_m of "
+            "evaluate().\n"
+            "A dict: height_m, float32 (n,); rest_m, float32 (n, 2), the points at rest; residual_m, float32 "
+            "(n,), how far from its place each one's surface is, below a millimetre but where the sea has "
+            "folded over and the search ended; and the outputs named, by default normal and velocity, of "
+            "those that the sea holds. All are finite.")
+        .def_property_readonly("sea", &PythonFrame::sea, "The sea that it is of.")
         .def_property_readonly("time_s", &PythonFrame::time_s, "The time that was set [s].")
         .def_property_readonly("executed_transforms", &PythonFrame::executed_transforms,
                                "Transforms run since the frame was made: calls of set() times the sea's "

@@ -42,6 +42,7 @@ PYBIND11_MODULE(pelagic, module) {
     pelagic::python::add_frame(module);
     pelagic::python::add_light(module);
     pelagic::python::add_baked(module);
+    pelagic::python::add_viewport(module);
     module.def(
         "explain", &explain_bake, py::arg("scene"),
         "What baking this scene computes, and why: each output, product, field, transform with its size, "

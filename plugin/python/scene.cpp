@@ -216,10 +216,9 @@ void add_entry_class(py::module_& module, const Key& key) {
         names.append(inner.name);
         if (!inner.is_required) defaults.append(to_python(inner, inner.fallback));
     }
-    const py::object made =
-        py::module_::import("collections")
-            .attr("namedtuple")(key.entry_name, names, py::arg("module") = "pelagic",
-                                py::arg("defaults") = defaults);
+    const py::object made = py::module_::import("collections")
+                                .attr("namedtuple")(key.entry_name, names, py::arg("module") = "pelagic",
+                                                    py::arg("defaults") = defaults);
     made.attr("__doc__") = "An entry of " + key.path + ".";
     for (const Key& inner : key.entry_keys) made.attr(inner.name.c_str()).attr("__doc__") = doc_of(inner);
     module.attr(key.entry_name.c_str()) = made;

@@ -87,6 +87,8 @@ PythonSea build_sea(const Scene& scene, const SeaRequest& request, Watch& watch)
     require_valid(scene);
     ProductSet products;
     for (const std::string& name : request.products) products.set(index(product_of(name).product));
+    ProductSet held = products;
+    if (products[index(Product::Position)]) held.set(index(Product::Displacement));
     if (!request.views.empty() && (request.cell_m || request.pixel_m || request.lattice))
         throw py::value_error(
             "views: have footprints of their own; accepted: without cell_m, pixel_m and lattice");
@@ -98,12 +100,13 @@ PythonSea build_sea(const Scene& scene, const SeaRequest& request, Watch& watch)
     try {
         const py::gil_scoped_release others_may_run;
         const auto prepared = prepare(kept);
-        Query query = plain ? *plain : query_of_views(*prepared, request, products);
+        Query query = plain ? *plain : query_of_views(*prepared, request, held);
         query.name = "python";
-        query.products = products;
+        query.products = held;
         // Whatever the level, arrays are float32.
         return {std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}),
-                                                   building)};
+                                                   building),
+                products};
     } catch (const BuildCancelled& cancelled) {
         watch.rethrow();
         throw Cancelled(cancelled.what());
@@ -164,7 +167,7 @@ void add_sea(py::module_& module) {
             [](const PythonSea& self) {
                 py::list names;
                 for (const ProductRow& row : kProductTable)
-                    if (self.query().products[index(row.product)]) names.append(row.identifier);
+                    if (self.products[index(row.product)]) names.append(row.identifier);
                 return py::tuple(names);
             },
             "What evaluate() may be asked for.")

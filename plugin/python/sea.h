@@ -11,9 +11,11 @@
 
 namespace pelagic::python {
 
-// What Python holds: a Sea is immutable, and frames keep it alive. Its plan has one query, number 0.
+// What Python holds: a Sea is immutable, and frames keep it alive. Its plan has one query, number 0, of these
+// products and of displacements wherever positions are: those are the same sums.
 struct PythonSea {
     std::shared_ptr<const Sea<float>> sea;
+    ProductSet products;
     const Plan& plan() const { return sea->plan(); }
     const Query& query() const { return plan().queries.front().query; }
 };

@@ -103,7 +103,8 @@ Crate camera_layer(const Camera& camera) {
                 writer.flush();
             });
         const auto samples_of = [&](std::function<CrateValue(std::uint64_t)> sample) {
-            return Crate::Fields{{"timeSamples", crate.time_samples(times, moving.count(), std::move(sample))}};
+            return Crate::Fields{
+                {"timeSamples", crate.time_samples(times, moving.count(), std::move(sample))}};
         };
         const auto stored_from = [](std::uint64_t first) {
             return Crate::Stored{.type = ValueType::Vec3d, .first = first, .stride = sizeof(Sample)};

@@ -71,3 +71,79 @@ with checking("simulation_of gives the sea that plays, at any time"):
     simulation = play.simulation_of(obj)
     assert simulation.sea.significant_height_m > 1 and simulation.scene.sea.wind_speed_mps == 17.0
     assert simulation.frame_at(3.0).time_s == 3.0 and simulation.frame_at(1.0).time_s == 1.0
+
+with checking("the projected grid is the core's for the camera, at every frame"):
+    fresh_file()
+    scene = bpy.context.scene
+    obj = add_ocean(surface__kind="projected-grid", surface__cell_px=40.0)
+    camera = scene.camera
+    camera.rotation_euler.y = 0.1  # rolled
+    for frame, height_m in ((1, 3.0), (40, 30.0)):
+        camera.location.z = height_m
+        camera.keyframe_insert("location", frame=frame)
+
+    def core_grid(frame):
+        shot = ocean.scene_of(obj, scene)
+        view = pelagic.View.of_scene(shot, frame)
+        sea = pelagic.Sea(shot, views=[view])
+        grid = sea.projected_grid(view)
+        answer = pelagic.Frame(sea)
+        answer.set(shot.shot.time_s(frame))
+        made = answer.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m)
+        made["position"][:, :2] += np.array(grid.origin_m, np.float32)
+        return made
+
+    counts = set()
+    for frame in (1, 20, 40, 1):
+        scene.frame_set(frame)
+        core, mine = core_grid(frame), numbers(obj.data)
+        assert core["position"].shape == mine.shape, frame
+        counts.add(len(mine))
+        # The camera's axes are single precision in Blender, and go through a point in the shot.
+        near = np.linalg.norm(mine - camera.matrix_world.translation, axis=1) < 200
+        assert np.abs(mine - core["position"])[near].max() < 0.05, np.abs(mine - core["position"])[near].max()
+        assert "UVMap" in obj.data.uv_layers and len(obj.data.attributes["rest_position"].data) == len(mine)
+    assert len(counts) > 1, "the grid's size follows the camera"
+
+with checking("its cells are coarser where the viewport's share is less"):
+    before = len(obj.data.vertices)
+    obj.pelagic.viewport_percentage = 50
+    bpy.context.view_layer.update()
+    assert 0.2 * before < len(obj.data.vertices) < 0.35 * before
+
+with checking("it follows a camera that is moved by hand, also under water and looking up"):
+    camera.animation_data_clear()
+    for height_m, tilt in ((2.0, 1.5), (-3.0, 1.5), (5.0, 2.8), (5.0, 0.0)):
+        camera.location.z, camera.rotation_euler.x = height_m, tilt
+        bpy.context.view_layer.update()
+        assert not play.simulation_of(obj).problem and np.isfinite(numbers(obj.data)).all()
+
+with checking("without a camera it says so, and goes on with one"):
+    scene.camera = None
+    scene.frame_set(2)
+    assert "camera" in play.simulation_of(obj).problem
+    scene.camera = camera
+    scene.frame_set(3)
+    assert not play.simulation_of(obj).problem
+
+with checking("velocity is per second of the screen, and the clock is the shot's"):
+    fresh_file()
+    scene = bpy.context.scene
+    obj = add_ocean()
+    scene.frame_set(25)
+    full, there = numbers(obj.data, "velocity"), numbers(obj.data)
+    change(obj, shot__time_scale=0.5)
+    scene.frame_set(49)
+    assert np.array_equal(numbers(obj.data), there) and np.array_equal(numbers(obj.data, "velocity"), 0.5 * full)
+    change(obj, shot__time_scale=1.0, shot__time_offset_s=1.0)
+    scene.frame_set(1)
+    assert np.array_equal(numbers(obj.data), there)
+
+with checking("a loop is a loop"):
+    change(obj, shot__time_offset_s=0.0, shot__loop_s=2.0)
+    scene.frame_set(1)
+    first = numbers(obj.data)
+    scene.frame_set(25)
+    assert not np.array_equal(numbers(obj.data), first)
+    scene.frame_set(49)
+    assert np.abs(numbers(obj.data) - first).max() < 1e-3

@@ -130,7 +130,8 @@ TEST(UsdCamera, CamerasThatNoStageCanHaveAreRefused) {
     EXPECT_THROW(camera_crate({}), std::invalid_argument);
     EXPECT_THROW(camera_crate({.fps = 0.0, .pose_at = pose}), std::invalid_argument);
     EXPECT_THROW(camera_crate({.first_frame = 2, .last_frame = 1, .pose_at = pose}), std::invalid_argument);
-    EXPECT_THROW(camera_crate({.pose_at = [](int) { return CameraPose{.fov_deg = 180.0}; }}), std::invalid_argument);
+    EXPECT_THROW(camera_crate({.pose_at = [](int) { return CameraPose{.fov_deg = 180.0}; }}),
+                 std::invalid_argument);
     EXPECT_THROW(camera_crate({.pose_at = pose, .clipping_m = {0.0, 1.0}}), std::invalid_argument);
     EXPECT_THROW(camera_crate({.pose_at = pose, .clipping_m = {2.0, 1.0}}), std::invalid_argument);
 }

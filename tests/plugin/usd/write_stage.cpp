@@ -327,9 +327,9 @@ void write_camera(const std::filesystem::path& dir, const std::string& name, con
         frames += (frames.empty() ? "\"" : ", \"") + std::to_string(frame) +
                   "\": " + json_matrix(camera.pose_at(frame));
     save(dir / (without_extension(file) + ".json"),
-         "{\"focalLength\": " + json_array(std::span<const float>(focal_lengths)) + ",\n\"horizontalAperture\": " +
-             single(film.horizontal_aperture) + ",\n\"verticalAperture\": " + single(film.vertical_aperture) +
-             ",\n\"first\": " + std::to_string(camera.first_frame) +
+         "{\"focalLength\": " + json_array(std::span<const float>(focal_lengths)) +
+             ",\n\"horizontalAperture\": " + single(film.horizontal_aperture) + ",\n\"verticalAperture\": " +
+             single(film.vertical_aperture) + ",\n\"first\": " + std::to_string(camera.first_frame) +
              ",\n\"last\": " + std::to_string(camera.last_frame) + ",\n\"matrices\": {" + frames + "}}\n");
 }
 

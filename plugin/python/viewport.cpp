@@ -1,0 +1,331 @@
+// pelagic.GpuSea, GpuLight and GpuGrid: what a host's own GPU code draws the sea from, as plugin/preview does.
+// Arrays and text; no OpenGL.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/lighting/tone.h"
+#include "core/plan/plan.h"
+#include "core/scene/canonical.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/rungs.h"
+#include "plugin/gpu/packed_frame.h"
+#include "plugin/gpu/shader_variants.h"
+#include "plugin/gpu/sky_atlas.h"
+#include "plugin/gpu/uniforms.h"
+#include "plugin/python/arrays.h"
+#include "plugin/python/bindings.h"
+#include "plugin/render/render.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+
+// Names to numbers and tuples.
+py::dict dict_of(const std::vector<Uniform>& uniforms) {
+    py::dict made;
+    for (const Uniform& uniform : uniforms) {
+        const glm::vec4& v = uniform.value;
+        if (uniform.is_integer) {
+            made[py::str(uniform.name)] = static_cast<int>(v.x);
+        } else if (uniform.components == 1) {
+            made[py::str(uniform.name)] = v.x;
+        } else {
+            py::tuple values(uniform.components);
+            for (int i = 0; i < uniform.components; ++i) values[i] = v[i];
+            made[py::str(uniform.name)] = values;
+        }
+    }
+    return made;
+}
+
+// ---- Light
+
+struct GpuLight {
+    explicit GpuLight(const Scene& scene) : made_from(canonical(scene, kFeeds)) {
+        const Sky sky = make_sky(scene);
+        map_size = sky.map.size();
+        uniforms = light_uniforms(sky, make_water(scene));
+        exposure = exposure_for(sky);
+        atlas = sky_atlas(sky.map);
+    }
+    bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from; }
+
+    static constexpr FeedSet kFeeds = feeds(Feed::Light, Feed::Water);
+    std::string made_from;
+    int map_size = 0;
+    std::vector<Uniform> uniforms;
+    float exposure = 1.0f;
+    SkyAtlas atlas;
+};
+
+double checked_footprint(double finest_m) {
+    if (!(finest_m >= 0.0 && finest_m < 1e6))
+        throw py::value_error("finest_m: accepted: a length [m] from 0 up");
+    return finest_m;
+}
+
+template <class Made, class... More>
+std::shared_ptr<Made> make_beside_others(const Scene& scene, More... more) {
+    require_valid(scene);
+    const Scene kept = scene;  // other threads may change the caller's meanwhile
+    const py::gil_scoped_release others_may_run;
+    return std::make_shared<Made>(kept, more...);
+}
+
+// ---- Grid
+
+struct GpuGrid {
+    ProjectedGridSize size;
+    glm::dvec2 origin_m{0.0};
+    py::array vertices;
+};
+
+py::array triangles_of(const GpuGrid& grid) {
+    std::vector<std::uint32_t> indices = projected_grid_triangles(grid.size);
+    const auto count = static_cast<py::ssize_t>(indices.size() / 3);
+    return array_of<std::uint32_t>(std::move(indices), {count, 3});
+}
+
+// ---- Sea
+
+class GpuSea {
+  public:
+    GpuSea(const Scene& scene, double finest_m)
+        : finest_m_(finest_m),
+          made_from_(canonical(scene, kFeeds)),
+          lighting_(render_options(scene).lighting),
+          prepared_(prepare(scene)),
+          sea_(std::make_shared<const Sea<float>>(
+              make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}))),
+          frame_(sea_),
+          packed_(sea_, 0) {
+        if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
+    }
+
+    bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from_; }
+
+    double finest_m() const { return finest_m_; }
+    double finest_for(const View& view) const {
+        const double finest_m = projected_grid_needs(view, projected_grid_options(*prepared_)).finest_pixel_m;
+        return first_rung_m(std::max(finest_m, kLeast_m));
+    }
+
+    void set(double t_s) {
+        const py::gil_scoped_release others_may_run;
+        const std::lock_guard writing(mutex_);
+        frame_.set(t_s);
+        packed_.pack(frame_);
+    }
+
+    py::dict shaders(const GpuLight& light) const {
+        const DrawOptions options{.lighting = lighting_, .for_host = true};
+        const auto pair = [](const ShaderVariant& variant) {
+            return py::make_tuple(std::string(variant.vertex().body()),
+                                  std::string(variant.fragment().body()));
+        };
+        py::dict made;
+        made["sea"] = pair(ShaderVariant::of_sea(*packed_.layout(), options, light.map_size));
+        made["sky"] = pair(ShaderVariant::of_sky(options, light.map_size));
+        return made;
+    }
+
+    py::dict uniforms() const { return dict_of(query_uniforms(*packed_.layout())); }
+
+    // Views of the packed frame's memory, which `self` keeps alive.
+    static py::dict textures(const py::object& self) {
+        const auto& sea = self.cast<const GpuSea&>();
+        static constexpr std::array<const char*, 3> kNames{"cell_fields", "pixel_fields", "pixel_fields_2"};
+        py::dict made;
+        for (std::size_t p = 0; p < sea.packed_.planes().size(); ++p) {
+            const SeaLayout::Plane& plane = sea.packed_.layout()->planes()[p];
+            made[kNames[p]] =
+                view_of(self, sea.packed_.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
+        }
+        if (!sea.train_table_.empty())
+            made["train_table"] =
+                view_of(self, &sea.train_table_[0].x,
+                        {SeaLayout::kTrainTexels,
+                         static_cast<py::ssize_t>(sea.train_table_.size()) / SeaLayout::kTrainTexels, 4});
+        return made;
+    }
+
+    py::tuple at_origin(std::array<double, 2> origin_m) const {
+        const glm::dvec2 origin(origin_m[0], origin_m[1]);
+        const std::lock_guard reading(mutex_);
+        const SeaLayout& layout = *packed_.layout();
+        py::object cycles = py::none();
+        if (layout.has_trains()) {
+            std::vector<float> values = layout.train_cycles(origin, packed_.time_within_loop_s());
+            values.resize(std::max<std::size_t>(values.size(), 1));  // a texture has a texel
+            const auto count = static_cast<py::ssize_t>(values.size());
+            cycles = array_of<float>(std::move(values), {1, count, 1});
+        }
+        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin)), cycles);
+    }
+
+    GpuGrid grid(const View& view, std::optional<double> cell_px) const {
+        ProjectedGridOptions options = projected_grid_options(*prepared_);
+        if (cell_px) {
+            if (!(*cell_px > 0.0 && *cell_px <= std::numeric_limits<double>::max()))
+                throw py::value_error("cell_px: accepted: a number above 0");
+            options.cell_px = *cell_px;
+        }
+        ProjectedGrid grid;
+        std::vector<glm::vec4> vertices;
+        {
+            const py::gil_scoped_release others_may_run;
+            grid = projected_grid(view, options);
+            if (packed_.layout()->pixels().footprints_m.size() > 1)
+                keep_to_rungs(grid, projected_grid_needs(view, options));
+            vertices.resize(grid.rest_m.size());
+            for (std::size_t i = 0; i < vertices.size(); ++i)
+                vertices[i] = glm::vec4(grid.rest_m[i].x, grid.rest_m[i].y, grid.cell_m[i], grid.pixel_m[i]);
+        }
+        return {{.columns = grid.columns, .rows = grid.rows},
+                grid.origin_m,
+                array_of<float>(std::move(vertices))};
+    }
+
+    std::size_t bytes() const {
+        std::size_t sum = sea_->plan().sea_bytes() + sea_->plan().frame_bytes();
+        for (const SeaLayout::Plane& plane : packed_.layout()->planes())
+            sum += sizeof(float) * static_cast<std::size_t>(plane.channels) * plane.size.x * plane.size.y;
+        return sum;
+    }
+
+  private:
+    // A cell is several pixels wide.
+    static Query query_of(const PreparedScene& prepared, double finest_m) {
+        return view_query(prepared, {.products = {},
+                                     .finest_cell_m = 0.5 * prepared.scene.surface.cell_px * finest_m,
+                                     .finest_pixel_m = finest_m});
+    }
+
+    static py::array view_of(const py::object& owner, const float* data, std::vector<py::ssize_t> shape) {
+        py::array_t<float> view(std::move(shape), data, owner);
+        view.attr("setflags")(py::arg("write") = false);
+        return view;
+    }
+
+    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Quality, Feed::Grid);
+    static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres
+    double finest_m_ = 0.0;
+    std::string made_from_;
+    LightingChoice lighting_;
+    std::shared_ptr<const PreparedScene> prepared_;
+    std::shared_ptr<const Sea<float>> sea_;
+    Frame<float> frame_;
+    PackedFrame packed_;
+    std::vector<glm::vec4> train_table_;
+    mutable std::mutex mutex_;
+};
+
+void add_gpu_light(py::module_& module) {
+    py::class_<GpuLight, std::shared_ptr<GpuLight>>(
+        module, "GpuLight",
+        "Sky, sun and water of a scene for GpuSea's shaders. ShotError for an invalid scene, ValueError for a "
+        "sky's picture that can't be read.")
+        .def(py::init(&make_beside_others<GpuLight>), py::arg("scene"))
+        .def("serves", &GpuLight::serves, py::arg("scene"), "Whether that scene has the same light.")
+        .def_property_readonly(
+            "uniforms", [](const GpuLight& self) { return dict_of(self.uniforms); },
+            "Uniforms of both shaders by name: numbers and tuples.")
+        .def_property_readonly(
+            "sky_map",
+            [](const py::object& self) {
+                const SkyAtlas& atlas = self.cast<const GpuLight&>().atlas;
+                py::array_t<float> view({atlas.size.y, atlas.size.x, 4}, &atlas.texels[0].x, self);
+                view.attr("setflags")(py::arg("write") = false);
+                return view;
+            },
+            "The texture sky_map: float32 (height, width, 4), all its levels in one picture. Read-only.")
+        .def(
+            "exposure", [](const GpuLight& self, float stops) { return self.exposure * std::exp2(stops); },
+            py::arg("stops") = 0.0f,
+            "The uniform exposure, of both shaders: the light's own, and so many stops more.");
+}
+
+void add_gpu_grid(py::module_& module) {
+    py::class_<GpuGrid>(module, "GpuGrid", "The projected grid of a view, as vertices for GpuSea's shader.")
+        .def_property_readonly(
+            "size", [](const GpuGrid& self) { return py::make_tuple(self.size.columns, self.size.rows); },
+            "(columns, rows) of cells.")
+        .def_property_readonly(
+            "origin_m", [](const GpuGrid& self) { return py::make_tuple(self.origin_m.x, self.origin_m.y); },
+            "(x, y) [m], in double precision: vertices are relative to it.")
+        .def_readonly("vertices", &GpuGrid::vertices,
+                      "float32 (n, 4): the attributes rest_in (the first two) [m], cell_in and pixel_in [m].")
+        .def_property_readonly("triangles", &triangles_of,
+                               "uint32 (m, 3), made anew; the nearest first. They depend on the size alone.");
+}
+
+}  // namespace
+
+void add_viewport(py::module_& module) {
+    add_gpu_light(module);
+    add_gpu_grid(module);
+    py::class_<GpuSea, std::shared_ptr<GpuSea>>(
+        module, "GpuSea",
+        "A sea for pictures from any camera, with what a GPU needs to draw it by itself: the preview's "
+        "shaders, and their textures and uniforms.\n\n"
+        "Built once from a scene, which takes as long as a Sea; other threads run meanwhile. ShotError for an "
+        "invalid scene. Single precision. finest_m: no pixel's footprint is taken as finer [m], and what is "
+        "left out of it roughens the surface; each halving costs up to four times the memory and the time. 0: "
+        "nothing is left out.")
+        .def(py::init([](const Scene& scene, double finest_m) {
+                 return make_beside_others<GpuSea>(scene, checked_footprint(finest_m));
+             }),
+             py::arg("scene"), py::arg("finest_m") = 0.0)
+        .def_property_readonly("finest_m", &GpuSea::finest_m, "As it was built [m].")
+        .def("finest_for", &GpuSea::finest_for, py::arg("view"),
+             "The finest_m that shows all waves that the pixels of this view can hold: a power of two [m].")
+        .def("serves", &GpuSea::serves, py::arg("scene"),
+             "Whether that scene has the same waves, foam and quality, so that nothing needs to be built.")
+        .def("set", &GpuSea::set, py::arg("t"),
+             "Makes it the sea at any finite time t [s]: `textures` changes. Other threads run meanwhile.")
+        .def(
+            "shaders", &GpuSea::shaders, py::arg("light"),
+            "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "
+            "Equal for seas with as many cascades and footprints.\n\n"
+            "The host puts a function `vec4 host_colour(vec4 display)` before the fragment shaders, from sRGB "
+            "values to what its framebuffer stores. Uniforms besides those of GpuSea and GpuLight: mat4 "
+            "clip_from_grid (the host's projection of points relative to the grid's origin), exposure, and the "
+            "pixels' rays: vec3 view_forward, view_right, view_up (the latter two times the tangent that a "
+            "pixel covers), vec2 view_centre [px] from the bottom left, view_pixel_tangent. The sky is one "
+            "triangle, three vertices without attributes; its uniform `farthest` is the depth, 1 at the far "
+            "plane.")
+        .def_property_readonly(
+            "uniforms", &GpuSea::uniforms,
+            "Uniforms of the sea's shader by name: numbers (int where the shader's are) and "
+            "tuples.")
+        .def_property_readonly(
+            "textures", &GpuSea::textures,
+            "Textures of the sea's shader by name: float32 (height, width, 1, 2 or 4), texels as they are. "
+            "Read-only views of memory that the next set() overwrites; only train_table stays.")
+        .def(
+            "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
+            "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which don't "
+            "depend on time, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
+            "None.")
+        .def(
+            "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
+            "The projected grid of a view, a GpuGrid. cell_px: the cells' side on the screen; by default the "
+            "scene's surface.cell_px.")
+        .def_property_readonly("bytes", &GpuSea::bytes, "Memory that it holds [bytes].");
+}
+
+}  // namespace pelagic::python

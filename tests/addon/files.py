@@ -1,0 +1,163 @@
+"""Several oceans, duplicates, undo, files, deletion, memory."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+from pelagic_ocean import ocean, play
+
+folder = Path(tempfile.mkdtemp())
+
+
+def select(obj):
+    bpy.ops.object.select_all(action="DESELECT")
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+
+
+def go_to(frame):
+    bpy.context.scene.frame_set(frame)
+
+
+with checking("three oceans, each with its own sea"):
+    fresh_file()
+    three = [add_ocean(sea__wind_speed_mps=wind) for wind in (4.0, 12.0, 24.0)]
+    go_to(8)
+    heights = [numbers(obj.data)[:, 2].std() for obj in three]
+    assert heights[0] < heights[1] < heights[2], heights
+
+with checking("a duplicate goes its own way; a linked one shares the mesh, which its first ocean drives"):
+    first = three[1]
+    select(first)
+    bpy.ops.object.duplicate()
+    copy = bpy.context.object
+    assert copy.data != first.data
+    change(copy, sea__wind_speed_mps=30.0)
+    go_to(9)
+    assert numbers(copy.data)[:, 2].std() > 2 * numbers(first.data)[:, 2].std()
+    select(first)
+    bpy.ops.object.duplicate_move_linked()
+    linked = bpy.context.object
+    assert linked.data == first.data
+    before = numbers(first.data)
+    change(linked, sea__wind_speed_mps=30.0)
+    assert np.array_equal(numbers(first.data), before)
+    assert play.simulation_of(linked) is play.simulation_of(first)
+
+with checking("renamed oceans play on, also with swapped names"):
+    low, high = three[0], three[2]
+    go_to(10)
+    expected = numbers(low.data), numbers(high.data)
+    low.name, high.name = "swap", low.name
+    low.name = "Ocean.002"
+    go_to(11)
+    go_to(10)
+    assert np.array_equal(numbers(low.data), expected[0]) and np.array_equal(numbers(high.data), expected[1])
+
+with checking("saved and loaded: the same settings, the same sea, playing"):
+    path = str(folder / "three.blend")
+    names = sorted(obj.name for obj in ocean.oceans())
+    expected = {obj.name: numbers(obj.data) for obj in ocean.oceans()}
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.read_homefile()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert sorted(obj.name for obj in ocean.oceans()) == names
+    go_to(40)
+    go_to(10)
+    for obj in ocean.oceans():
+        assert np.array_equal(numbers(obj.data), expected[obj.name]), obj.name
+
+with checking("appended into another file, it plays there"):
+    fresh_file()
+    with bpy.data.libraries.load(path) as (source, target):
+        target.objects = [names[0]]
+    obj = target.objects[0]
+    bpy.context.collection.objects.link(obj)
+    go_to(10)
+    assert np.array_equal(numbers(obj.data), expected[names[0]])
+
+with checking("undo and redo, 20 times each"):
+    fresh_file()
+    bpy.ops.ed.undo_push(message="start")
+    obj = add_ocean()
+    expected = []
+    for step in range(20):
+        if step % 4 == 3:
+            go_to(step)
+        change(obj, sea__wind_speed_mps=3.0 + step)
+        bpy.ops.ed.undo_push(message=f"wind {step}")
+        expected.append((bpy.context.scene.frame_current, 3.0 + step, numbers(obj.data)))
+
+    def agrees(step):
+        sea = bpy.context.scene.objects["Ocean"]
+        frame, wind, positions = expected[step]
+        assert bpy.context.scene.frame_current == frame and sea.pelagic.sea.wind_speed_mps == wind
+        bpy.context.view_layer.update()
+        assert np.array_equal(numbers(sea.data), positions), step
+        go_to(frame)
+        assert np.array_equal(numbers(sea.data), positions), step
+
+    for step in reversed(range(19)):
+        bpy.ops.ed.undo()
+        agrees(step)
+    for step in range(1, 20):
+        bpy.ops.ed.redo()
+        agrees(step)
+    for _ in range(20):
+        bpy.ops.ed.undo()
+    assert not ocean.oceans()
+    go_to(3)
+
+with checking("a deleted ocean's simulation is freed"):
+    fresh_file()
+    obj = add_ocean()
+    go_to(2)
+    assert list(play._simulations) == [obj.name]
+    bpy.data.objects.remove(obj)
+    go_to(3)
+    assert not play._simulations and not list(play._built)
+
+with checking("200 frames of scrubbing, 50 settings: the resident size stays flat"):
+    obj = add_ocean(surface__resolution=128)
+    order = np.random.default_rng(1).integers(1, 250, 250)
+    for step, frame in enumerate(order):
+        if step == 50:
+            before = resident_mib()
+        if step >= 50 and step % 4 == 0:
+            change(obj, sea__wind_speed_mps=5.0 + frame / 25)
+        go_to(int(frame))
+    grown = resident_mib() - before
+    print(f"resident: {before:.0f} MiB, then {grown:+.1f} MiB")
+    assert grown < 8
+
+with checking("keyframed settings: each frame has its own sea"):
+    obj = add_ocean()
+    obj.pelagic.sea.wind_speed_mps = 4.0
+    obj.pelagic.sea.keyframe_insert("wind_speed_mps", frame=1)
+    obj.pelagic.sea.wind_speed_mps = 24.0
+    obj.pelagic.sea.keyframe_insert("wind_speed_mps", frame=11)
+    heights = []
+    for frame in (1, 6, 11):
+        go_to(frame)
+        heights.append(numbers(obj.data)[:, 2].std())
+    assert heights[0] < heights[1] < heights[2], heights
+
+with checking("a render has its own resolution, and the viewport gets its own back"):
+    fresh_file()
+    obj = add_ocean()
+    obj.pelagic.viewport_percentage = 25
+    bpy.context.view_layer.update()
+    assert len(obj.data.vertices) == 9**2
+    counts = []
+    bpy.app.handlers.render_post.append(lambda *_: counts.append(len(obj.data.vertices)))
+    render = bpy.context.scene.render
+    render.engine, render.resolution_percentage, render.filepath = "CYCLES", 2, str(folder / "picture")
+    bpy.context.scene.cycles.samples, bpy.context.scene.cycles.use_denoising = 1, False
+    bpy.ops.render.render()
+    assert counts == [33**2], counts
+    bpy.context.view_layer.update()
+    assert len(obj.data.vertices) == 9**2

@@ -1,0 +1,57 @@
+"""The zip is installed as a user does it, in a home of its own: enabled, disabled, enabled again.
+
+    install.py -- ZIP
+"""
+
+import os
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+archive = sys.argv[-1]
+folder = Path(bpy.utils.user_resource("SCRIPTS", path="addons", create=True))
+assert Path(os.environ["HOME"]) in folder.parents, f"{folder} isn't in the test's own home"
+sys.path[:] = [path for path in sys.path if path != str(ROOT / "addon")]
+
+with checking("the zip's form: one folder, with the manifest of an extension and the same version as bl_info"):
+    with zipfile.ZipFile(archive) as opened:
+        names = opened.namelist()
+        manifest = tomllib.loads(opened.read("pelagic_ocean/blender_manifest.toml").decode())
+    assert {name.split("/")[0] for name in names} == {"pelagic_ocean"}
+    assert len(manifest["tagline"]) <= 64 and not manifest["tagline"].endswith(".")
+    assert all(len(why) <= 64 and not why.endswith(".") for why in manifest["permissions"].values())
+    assert not any("__pycache__" in name for name in names)
+
+with checking("installing and enabling"):
+    bpy.ops.preferences.addon_install(filepath=archive, overwrite=True)
+    bpy.ops.preferences.addon_enable(module="pelagic_ocean")
+    import pelagic_ocean
+    from pelagic_ocean import module
+    assert folder in Path(pelagic_ocean.__file__).parents
+    assert folder in Path(module.pelagic.__file__).parents, module.pelagic.__file__
+    assert manifest["version"] == ".".join(map(str, pelagic_ocean.bl_info["version"])) == module.pelagic.__version__
+    bpy.ops.pelagic.add_ocean()
+    assert np.ptp(numbers(bpy.context.object.data)[:1000, 2]) > 0.1
+
+with checking("the module's libraries come from the zip"):
+    # Those that Blender itself has loaded already, by the same name, are shared with it.
+    loaded = {line.split()[-1] for line in open("/proc/self/maps", encoding="utf-8") if str(folder) in line}
+    assert any("libtomlplusplus" in path for path in loaded), loaded
+
+with checking("disabling: nothing is left, and the file stays usable"):
+    bpy.ops.preferences.addon_disable(module="pelagic_ocean")
+    assert not hasattr(bpy.types.Object, "pelagic") and not hasattr(bpy.types, "PELAGIC_PT_object")
+    assert not any("pelagic" in handler.__module__ for name in dir(bpy.app.handlers)
+                   if isinstance(getattr(bpy.app.handlers, name), list)
+                   for handler in getattr(bpy.app.handlers, name))
+    bpy.context.scene.frame_set(5)
+
+with checking("enabling again: the ocean plays on"):
+    before = numbers(bpy.context.object.data)
+    bpy.ops.preferences.addon_enable(module="pelagic_ocean")
+    bpy.context.scene.frame_set(6)
+    assert not np.array_equal(numbers(bpy.context.object.data), before)

@@ -1,0 +1,105 @@
+"""Every operator, and what is refused in words."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+from pelagic_ocean import ocean, play
+
+
+def grid(side=8, size_m=40.0):
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=side, y_subdivisions=side, size=size_m)
+    return bpy.context.object
+
+
+with checking("add_ocean: an object with a mesh that moves, selected and active"):
+    fresh_file()
+    assert bpy.ops.pelagic.add_ocean() == {"FINISHED"}
+    sea = bpy.context.object
+    assert ocean.is_ocean(sea) and sea.select_get() and len(sea.data.vertices) > 257**2
+    first = numbers(sea.data)
+    bpy.context.scene.frame_set(12)
+    assert not np.array_equal(numbers(sea.data), first)
+    assert bpy.context.scene.camera.data.clip_end >= 60e3
+    assert all(polygon.use_smooth for polygon in sea.data.polygons[:100])
+
+with checking("the faces look up, and the UV map is the patch"):
+    assert sea.data.polygons[1000].normal.z > 0.5
+    corner = np.array([entry.uv for entry in sea.data.uv_layers["UVMap"].data[:1]])
+    assert np.allclose(corner, 0.0, atol=1e-6)
+
+with checking("use_mesh: the mesh's own vertices and faces, and release_mesh gives them back"):
+    obj = grid()
+    obj.data.vertices[3].co.z = 1.5
+    before = numbers(obj.data)
+    bpy.ops.pelagic.use_mesh()
+    assert ocean.is_ocean(obj) and obj.pelagic.own_mesh and len(obj.data.vertices) == len(before)
+    moved = numbers(obj.data)
+    assert np.std(moved[:, 2]) > 0.1 and np.array_equal(numbers(obj.data, "rest_position"), before)
+    bpy.context.scene.frame_set(20)
+    assert not np.array_equal(numbers(obj.data), moved)
+    bpy.ops.pelagic.release_mesh()
+    assert not ocean.is_ocean(obj) and np.array_equal(numbers(obj.data), before)
+    assert "velocity" not in obj.data.attributes
+    bpy.context.scene.frame_set(21)
+    assert np.array_equal(numbers(obj.data), before)
+
+with checking("a mesh's vertex stands at its own place on the same sea, raised by its own height"):
+    import pelagic
+    bpy.ops.pelagic.use_mesh()
+    simulation = play.simulation_of(obj)
+    cell_m = 40.0 / 8
+    frame = pelagic.Frame(pelagic.Sea(simulation.scene, ["position"], cell_m=cell_m, pixel_m=cell_m))
+    frame.set(simulation.scene.shot.time_s(21))
+    core = frame.evaluate(np.ascontiguousarray(before[:, :2]))["position"]
+    core[:, 2] += before[:, 2]
+    assert np.abs(numbers(obj.data) - core).max() < 1e-4
+
+with checking("use_mesh on a mesh without vertices is refused, and nothing is changed"):
+    empty = bpy.data.objects.new("Empty mesh", bpy.data.meshes.new("Empty mesh"))
+    bpy.context.collection.objects.link(empty)
+    bpy.context.view_layer.objects.active = empty
+    assert refused(bpy.ops.pelagic.use_mesh, "has no vertices")
+    assert not ocean.is_ocean(empty)
+
+with checking("loose vertices, and a mesh whose points all lie in one place"):
+    loose = bpy.data.meshes.new("Loose")
+    loose.from_pydata([(0, 0, 0), (5, 0, 0), (5, 0, 0)], [], [])
+    obj = bpy.data.objects.new("Loose", loose)
+    bpy.context.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.pelagic.use_mesh()
+    assert np.isfinite(numbers(loose)).all()
+
+with checking("vertices taken away in edit mode: the rest plays on"):
+    obj = grid()
+    bpy.ops.pelagic.use_mesh()
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    obj.data.vertices[0].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.delete(type="VERT")
+    bpy.context.scene.frame_set(30)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    count, before = len(obj.data.vertices), numbers(obj.data)
+    assert count == 80
+    bpy.context.scene.frame_set(31)
+    assert len(obj.data.vertices) == count and not np.array_equal(numbers(obj.data), before)
+
+with checking("list_add and list_remove"):
+    sea = add_ocean()
+    calm = numbers(sea.data)
+    bpy.ops.pelagic.list_add(path="sea.swell")
+    bpy.ops.pelagic.list_add(path="sea.swell")
+    sea.pelagic.sea.swell[0].height_m = 4.0
+    bpy.context.view_layer.update()
+    assert len(ocean.scene_of(sea, bpy.context.scene).sea.swell) == 2
+    assert not np.array_equal(numbers(sea.data), calm)
+    bpy.ops.pelagic.list_remove(path="sea.swell", index=1)
+    bpy.ops.pelagic.list_remove(path="sea.swell", index=0)
+    bpy.context.view_layer.update()
+    assert np.array_equal(numbers(sea.data), calm)

@@ -1,0 +1,123 @@
+"""Every property at both ends of its range, and each choice: a sea, or a sentence that says why there is none."""
+
+import math
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+import pelagic
+from pelagic_ocean import ocean, play, properties
+
+scene = bpy.context.scene
+obj = add_ocean()
+obj.pelagic.viewport_percentage = 1  # so that the largest resolution is one that can be tried
+TOO_LARGE = {"waves.cascades[].resolution"}  # gigabytes at its upper end: asked for, not built
+
+
+def settle():
+    """The sea as it is now: None, or why there is none."""
+    bpy.context.view_layer.update()
+    simulation = play.simulation_of(obj)
+    if simulation.problem:
+        return simulation.problem
+    assert np.isfinite(numbers(obj.data)).all()
+    return None
+
+
+def ends(key):
+    """Values at both ends of a property, or all its choices."""
+    if key["type"] in ("number", "integer"):
+        low, high = key["range"]
+        return low, min(high, properties.INTEGER_LIMIT) if key["type"] == "integer" else high
+    if key["type"] == "truth":
+        return False, True
+    words = [choice["word"] for choice in key["choices"] if choice["built"]]
+    if key["type"] == "word":
+        return words
+    if key["type"] == "words":
+        return set(), set(words)
+    return ("", "no such file.exr")
+
+
+def kind(key, value):
+    return int(value) if key["type"] == "integer" else value
+
+
+with checking("the defaults are the core's"):
+    fresh = ocean.scene_of(obj, scene)
+    default = pelagic.Scene()
+    for field in properties.FIELDS:
+        if field.path == "surface.resolution":
+            continue
+        now, core = (getattr(getattr(each, field.table), field.name) for each in (fresh, default))
+        assert now == core, f"{field.path}: {now!r}, {core!r}"
+
+with checking("every property at both ends"):
+    tried, refusals = 0, []
+    for field in properties.FIELDS:
+        group = getattr(obj.pelagic, field.table)
+        if field.key["type"] == "entries":
+            continue
+        before = getattr(group, field.name)
+        other, needed = properties.ONLY_WITH.get(field.path, ("waves.model", "fft"))
+        change(obj, **{other.replace(".", "__"): needed})
+        if field.switch:
+            setattr(group, field.switch, True)
+        for value in ends(field.key):
+            setattr(group, field.name, kind(field.key, value))
+            held = getattr(group, field.name)
+            assert held == value or math.isclose(held, value, rel_tol=1e-6), f"{field.path}: {held!r}, not {value!r}"
+            why = settle()
+            tried += 1
+            if why is not None:
+                assert field.name in why or "sea.spectrum" in why, f"{field.path} = {value!r}: {why!r}"
+                refusals.append(f"{field.path} = {value!r}: {why}")
+        setattr(group, field.name, before)
+        if field.switch:
+            setattr(group, field.switch, False)
+        change(obj, sea__spectrum="jonswap", waves__model="fft")
+        assert settle() is None, field.path
+    print(f"{tried} values; refused:", *refusals, sep="\n  ")
+    assert tried > 60
+
+with checking("the entries of lists at both ends"):
+    for field in properties.FIELDS:
+        if field.key["type"] != "entries":
+            continue
+        rows = getattr(getattr(obj.pelagic, field.table), field.name)
+        for key in field.key["keys"]:
+            for value in ends(key):
+                rows.clear()
+                setattr(rows.add(), key["name"], kind(key, value))
+                assert math.isclose(getattr(rows[0], key["name"]), value, rel_tol=1e-6), key["path"]
+                if key["path"] not in TOO_LARGE:
+                    settle()
+        rows.clear()
+        obj.update_tag()
+        assert settle() is None
+
+with checking("a wind of 0 is a flat sea"):
+    change(obj, sea__wind_speed_mps=0.0)
+    assert np.abs(numbers(obj.data)[:, 2]).max() < 1e-3
+    scene.frame_set(7)
+    assert np.isfinite(numbers(obj.data, "velocity")).all()
+
+with checking("settings of a shot go in and come out the same"):
+    shot = pelagic.Scene.from_file(ROOT / "examples" / "north-sea-storm.toml")
+    ocean.set_from(obj, shot)
+    again = ocean.scene_of(obj, scene)
+    for field in properties.FIELDS:
+        now, was = (getattr(getattr(each, field.table), field.name) for each in (again, shot))
+        assert now == was, f"{field.path}: {now!r}, {was!r}"
+
+with checking("what Blender can't hold is refused before anything is changed"):
+    shot.shot.seed, shot.sea.wind_speed_mps = 2**40, 3.0
+    try:
+        ocean.set_from(obj, shot)
+        raise AssertionError("a seed of 2⁴⁰ was taken")
+    except ValueError as error:
+        assert "shot.seed" in str(error)
+    assert obj.pelagic.sea.wind_speed_mps != 3.0

@@ -1,0 +1,116 @@
+"""Heights at places of the world."""
+
+import math
+import threading
+import time
+import unittest
+
+import numpy as np
+import pelagic
+
+
+def storm(choppiness=1.0):
+    scene = pelagic.Scene()
+    scene.sea.wind_speed_mps = 16.0
+    scene.waves.choppiness = choppiness
+    return scene
+
+
+class Heights(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sea = pelagic.Sea(storm(), cell_m=[0.5, 1.0, 2.0, 4.0, 8.0], pixel_m=[0.5, 1.0, 2.0, 4.0, 8.0])
+        cls.frame = pelagic.Frame(cls.sea)
+        cls.frame.set(3.0)
+        cls.xy = np.random.default_rng(1).uniform(-200.0, 200.0, (400, 2))
+
+    def test_the_surface_is_above_the_places(self):
+        found = self.frame.heights(self.xy)
+        self.assertEqual(sorted(found), ["height_m", "normal", "residual_m", "rest_m", "velocity"])
+        self.assertLess(found["residual_m"].max(), 1e-3)
+        there = self.frame.evaluate(found["rest_m"])
+        np.testing.assert_allclose(there["position"][:, :2], self.xy, atol=1.1e-3)
+        np.testing.assert_allclose(there["position"][:, 2], found["height_m"], atol=1e-6)
+        np.testing.assert_array_equal(there["normal"], found["normal"])
+        np.testing.assert_array_equal(there["velocity"], found["velocity"])
+        # The horizontal displacement matters: heights at rest are others.
+        at_rest = self.frame.evaluate(np.float32(self.xy))["position"]
+        self.assertGreater(np.abs(at_rest[:, 2] - found["height_m"]).max(), 0.2)
+
+    def test_a_place_is_the_same_alone_and_in_any_form(self):
+        found = self.frame.heights(self.xy)
+        alone = self.frame.heights([tuple(self.xy[7])])
+        for name, array in found.items():
+            np.testing.assert_array_equal(alone[name][0], array[7])
+        strided = np.zeros((400, 9))
+        strided[:, 3:5] = self.xy
+        np.testing.assert_array_equal(self.frame.heights(strided[:, 3:5])["height_m"], found["height_m"])
+        self.assertEqual(len(self.frame.heights(np.empty((0, 2)))["height_m"]), 0)
+
+    def test_a_footprint_leaves_short_waves_out(self):
+        fine, coarse = (self.frame.heights(self.xy, footprint_m=size)["normal"][:, :2].std() for size in (0.5, 8.0))
+        self.assertLess(coarse, 0.7 * fine)
+        each = self.frame.heights(self.xy, footprint_m=np.full(400, 3.0, np.float32))
+        np.testing.assert_array_equal(each["height_m"], self.frame.heights(self.xy, footprint_m=3.0)["height_m"])
+
+    def test_an_origin_stands_for_far_places(self):
+        far = self.frame.heights(self.xy, (3e6, -2e6))
+        self.assertLess(far["residual_m"].max(), 1e-3)
+        there = self.frame.evaluate(far["rest_m"], (3e6, -2e6), outputs=("position",))["position"]
+        np.testing.assert_allclose(there[:, :2], self.xy, atol=1.1e-3)
+
+    def test_a_folded_sea_is_finite(self):
+        frame = pelagic.Frame(pelagic.Sea(storm(choppiness=5.0), cell_m=0.25, pixel_m=0.25))
+        frame.set(1.0)
+        found = frame.heights(self.xy)
+        for name, array in found.items():
+            self.assertTrue(np.isfinite(array).all(), name)
+        self.assertGreater((found["residual_m"] < 1e-3).mean(), 0.7)
+        self.assertTrue((found["normal"][:, 2] < 0.0).any())  # it has folded indeed
+
+    def test_outputs_are_those_of_the_sea(self):
+        self.assertEqual(sorted(self.frame.heights(self.xy, outputs=("position", "coverage"))),
+                         ["coverage", "height_m", "position", "residual_m", "rest_m"])
+        plain = pelagic.Frame(pelagic.Sea(storm(), ("position",)))
+        plain.set(0.0)
+        self.assertEqual(sorted(plain.heights(self.xy)), ["height_m", "residual_m", "rest_m"])
+        with self.assertRaisesRegex(ValueError, "normal: the sea was built without it"):
+            plain.heights(self.xy, outputs=("normal",))
+        without = pelagic.Frame(pelagic.Sea(storm(), ("normal",)))
+        without.set(0.0)
+        with self.assertRaisesRegex(ValueError, "position: the sea was built without it"):
+            without.heights(self.xy)
+
+    def test_what_is_no_place_is_refused(self):
+        for wrong in ([1.0, 2.0], [(1.0, 2.0, 3.0)], "here", None, [(math.nan, 0.0)], [(1e30, 0.0)]):
+            with self.assertRaisesRegex(ValueError, "xy: "):
+                self.frame.heights(wrong)
+        with self.assertRaisesRegex(ValueError, "footprint_m"):
+            self.frame.heights(self.xy, footprint_m=-1.0)
+        with self.assertRaisesRegex(ValueError, "set"):
+            pelagic.Frame(self.sea).heights(self.xy)
+
+    def test_threads_may_ask_together(self):
+        expected, answers = self.frame.heights(self.xy)["height_m"], []
+        threads = [threading.Thread(target=lambda: answers.append(self.frame.heights(self.xy)["height_m"]))
+                   for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(answers), 4)
+        for answer in answers:
+            np.testing.assert_array_equal(answer, expected)
+
+    def test_a_frame_of_floats_is_cheap(self):
+        best_s = math.inf
+        for _ in range(20):
+            begin = time.perf_counter()
+            self.frame.heights(self.xy)
+            best_s = min(best_s, time.perf_counter() - begin)
+        print(f"400 places: {1e3 * best_s:.2f} ms")
+        self.assertLess(best_s, 0.02)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -25,7 +25,8 @@ MARK = "pelagic_water"  # on a material of the add-on: the version of its trees
 VERSION = 1
 WATER_INDEX = 1.34
 SPREAD = 0.2
-LEAST_VARIANCE = 1e-7  # a glassy sea's: σ is a sixth of the sun's own spread in slope
+LEAST_VARIANCE = 1e-7  # of a glassy sea
+LEAST_ALPHA = 5e-4  # a third of what the sun's own width adds; below, Cycles takes a lobe for a mirror, which no lamp lights
 
 
 # ---- The hidden waves, facet by facet
@@ -51,58 +52,76 @@ def facets_group():
     x_axis, y_axis = axes
     v_x, v_y, cosine = to_eye.dot(x_axis), to_eye.dot(y_axis), to_eye.dot(normal).at_least(1e-4)
 
-    # S = L Lᵀ, with L = (a 0; b c): slopes are L times two independent normal numbers.
+    # S = s I + L Lᵀ: a lobe's variance s along any axis, and the places of lobes, L = (a 0; b c) times two independent
+    # normal numbers.
     v_xx, v_yy, v_xy = variance
-    a = v_xx.at_least(LEAST_VARIANCE).sqrt()
+    half, difference = 0.5 * (v_xx + v_yy), 0.5 * (v_xx - v_yy)
+    least = half - (difference * difference).plus_product(v_xy, v_xy).sqrt()
+    lobe = SPREAD * least.at_least(0.0)
+    a = (v_xx - lobe).at_least(LEAST_VARIANCE).sqrt()
     b = v_xy / a
-    c = (v_yy - b * b).at_least(0.01 * LEAST_VARIANCE).sqrt()
+    c = (v_yy - lobe - b * b).at_least(0.01 * LEAST_VARIANCE).sqrt()
 
-    def spread(x, y):
-        """Lᵀ (x, y) as a vector: its length is σ along the direction, times sin θ."""
+    def placed(x, y):
+        """Lᵀ (x, y) as a vector: its length is the places' deviation along the direction, times sin θ."""
         return tree.vector((a * x).plus_product(b, y), c * y)
 
-    towards = spread(v_x, v_y)
-    sigma = towards.length().at_least(1e-6)
-    w_x, w_y, _ = (towards / 1.0)._scaled(1.0 / sigma).parts()
+    def deviation(x, y):
+        """That of all facets."""
+        return (v_xx * x * x + v_yy * y * y).plus_product(2.0 * v_xy, x * y).at_least(1e-12).sqrt()
+
+    sigma = deviation(v_x, v_y)
+    towards = placed(v_x, v_y)
+    places = towards.length().at_least(1e-6)
+    w_x, w_y, _ = towards._scaled(1.0 / places).parts()
     k = (cosine / sigma).at_most(1e3)
 
-    # The eye sees slopes −x along and y across the line of sight: y is normal, and x has the density (k + x)₊ φ(x). Drawn
-    # are the places of lobes, which have the rest = 1 − SPREAD of the variance, weighted by how much the eye sees of a
-    # whole lobe (moments by Stein's lemma). k + x is the square of a normal number: its mean and variance are right.
+    # The eye sees slopes −x σ along and y across the line of sight: y is normal, and x has the density (k + x)₊ φ(x). The
+    # places of lobes have the part `rest` of that variance, weighted by how much the eye sees of a whole lobe (moments by
+    # Stein's lemma). k + x is drawn as the square of a normal number: its mean and variance are right.
     mills = 0.797885 * (-(k * (0.79875 + k * (0.17595 + k * 0.04591)))).at_least(-80.0).exp()  # φ(k)/Φ(k), to 1.2e-4
     mean = 1.0 / (k + mills)
-    curved = mean * (mills - mean)
-    rest = 1 - SPREAD
-    wide = rest * (1.0 + rest * curved)
+    own = (lobe * (1.0 - cosine * cosine)).at_least(0.0).sqrt() / sigma  # a lobe's deviation, in units of σ
+    rest = 1.0 - own * own
+    wide = rest * (1.0 + rest * mean * (mills - mean))
     middle = k + rest * mean
     part = 0.5 * wide / (middle + (middle * middle - 0.5 * wide).sqrt())
     root, step = (middle - part).sqrt(), part.sqrt()
     z_x, z_y, _ = _normal_numbers(tree, asked).parts()
     along = -(z_x * w_x).plus_product(z_y, w_y)
     x = rest * mean - part + step * along * (2.0 * root + step * along)
-    y = ((z_y * w_x) - z_x * w_y) * math.sqrt(rest)
-    # A facet in the lobe's stead, from the distribution of all facets that the eye sees.
-    x_facet = mean + (x - rest * mean) * ((1.0 + curved) / wide).sqrt()
-    y_facet = y / math.sqrt(rest)
+    across = (z_y * w_x) - z_x * w_y
 
-    def slope(x, y):
+    def slope(x):
         """The slope in the frame: L (−x ŵ + y ŵ⊥)."""
-        first, second = -(x * w_x).plus_product(y, w_y), (y * w_x) - x * w_y
+        along = x * (sigma / places)
+        first, second = -(along * w_x).plus_product(across, w_y), (across * w_x) - along * w_y
         return a * first, (b * first).plus_product(c, second)
 
-    s_x, s_y = slope(x_facet, y_facet)
-    f_z = (1.0 + s_x * s_x).plus_product(s_y, s_y)
-    f_z = 1.0 / f_z.sqrt()
-    facet_cosine = ((cosine + sigma * x_facet) * f_z).at_most(1.0)
-    fresnel = _fresnel(facet_cosine)
-    # The part that no wave blocks on the way of the mirrored light l: (1 + Λv)/(1 + Λv + Λl).
-    l_x, l_y = -2.0 * facet_cosine * f_z * s_x - v_x, -2.0 * facet_cosine * f_z * s_y - v_y
-    l_z = 2.0 * facet_cosine * f_z - cosine
-    seen = 1.0 + _smith_lambda(k)
-    open_part = l_z.above(0.0) * seen / (seen + _smith_lambda(l_z / spread(l_x, l_y).length().at_least(1e-6)))
+    # Fresnel's term of a lobe: two facets, a deviation to either side, each with what the eye sees of it. The one with
+    # more of it moves the lobe its way.
+    s_x, s_y = slope(x)
+    upright = 1.0 / (1.0 + s_x * s_x).plus_product(s_y, s_y).sqrt()
+    steep, flat = (k + x - own).at_least(0.0), (k + x + own).at_least(1e-3)
+    steep_part = steep * _fresnel((sigma * steep * upright).at_most(1.0))
+    flat_part = flat * _fresnel((sigma * flat * upright).at_most(1.0))
+    fresnel = (steep_part + flat_part) / (steep + flat)
+    x = x + own * ((flat_part - steep_part) / (flat_part + steep_part) - (flat - steep) / (flat + steep))
 
-    t_x, t_y = slope(x, y)
-    facet = (normal + x_axis * -t_x + y_axis * -t_y).normalized()
+    # The part that no wave blocks on the way of the mirrored light l: (1 + Λv)/(1 + Λv + Λl). Cycles itself leaves out
+    # what a lobe mirrors below the horizon, hence the mean height of the rest of it, and takes away what the lobe's facets
+    # hide of each other, which is in Λ already.
+    s_x, s_y = slope(x)
+    upright = 1.0 / (1.0 + s_x * s_x).plus_product(s_y, s_y).sqrt()
+    tilted = (k + x).at_least(0.0)
+    twice = 2.0 * sigma * tilted * upright * upright
+    l_x, l_y, l_z = -1.0 * twice * s_x - v_x, -1.0 * twice * s_y - v_y, twice - cosine
+    blur = 2.0 * sigma * own
+    l_z = 0.5 * (l_z + (l_z * l_z).plus_product(2.5 * blur, blur).sqrt())
+    seen = 1.0 + _smith_lambda(k)
+    open_part = seen / (seen + _smith_lambda(l_z / deviation(l_x, l_y)))
+    open_part = open_part * (1.0 + _smith_lambda(tilted / own.at_least(1e-3))).at_most(1.5)
+    facet = (normal + x_axis * -s_x + y_axis * -s_y).normalized()
 
     foam_variance = 0.1  # of the foam's own roughness: foam.glsl
     foam_sigma = (sigma * sigma).plus_product(foam_variance, 1.0 - cosine * cosine).sqrt()
@@ -110,7 +129,7 @@ def facets_group():
 
     tree.node("NodeGroupOutput", {
         "Normal": _transformed(tree, facet, "NORMAL", "OBJECT", "WORLD").normalized(),
-        "Roughness": (SPREAD * (v_xx + v_yy)).at_least(2 * SPREAD * LEAST_VARIANCE).sqrt().sqrt(),
+        "Roughness": (2.0 * lobe).sqrt().at_least(LEAST_ALPHA).sqrt(),
         "Fresnel": fresnel, "Reflection": fresnel * open_part, "Foam Ratio": foam_ratio})
     tree.arrange()
     return group

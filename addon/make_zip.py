@@ -37,7 +37,10 @@ def shared_libraries(module):
 
 def licence_of(library):
     """The copyright file of the Debian package that a library is from."""
-    owner = subprocess.run(["dpkg", "-S", library.resolve()], capture_output=True, text=True).stdout.split(":")[0]
+    # Packages name files by /lib or by /usr/lib, which are the same folder.
+    path = str(library.resolve())
+    names = [path, path.removeprefix("/usr")]
+    owner = subprocess.run(["dpkg", "-S", *names], capture_output=True, text=True).stdout.split(":")[0]
     file = Path("/usr/share/doc") / owner / "copyright"
     if not owner or not file.is_file():
         sys.exit(f"the licence of {library} isn't found: the zip is made where its libraries are Debian's packages")
@@ -67,8 +70,9 @@ def contents(module):
 
 def main():
     module, out = Path(sys.argv[1]), Path(sys.argv[2])
+    files = contents(module)
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as made:
-        for name, data in contents(module).items():
+        for name, data in files.items():
             info = zipfile.ZipInfo(name, DATE)
             info.compress_type, info.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
             made.writestr(info, data)

@@ -17,7 +17,8 @@ bl_info = {
 
 import importlib
 
-PARTS = ("properties", "play", "operators", "panels")
+PARTS = ("properties", "play", "operators", "presets", "panels", "floating", "sampling", "exchange", "baking",
+         "baked", "native", "menu", "viewport")
 
 _registered = []
 

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What this Blender can do. The only file that asks: everything else calls these functions."""
 
+from pathlib import Path
+
+import bpy
+import gpu
 import numpy as np
 
 
@@ -17,6 +21,66 @@ def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
 
 
+def curves(owner):
+    """The curves that animate an object or its data: a collection with remove(), or an empty list."""
+    animation = owner.animation_data
+    if animation is None or animation.action is None:
+        return []
+    if not hasattr(animation, "action_slot"):  # actions have slots since 4.4
+        return animation.action.fcurves
+    for layer in animation.action.layers:
+        for strip in layer.strips:
+            bag = strip.channelbag(animation.action_slot)
+            if bag:
+                return bag.fcurves
+    return []
+
+
+def set_uv(layer, uv):
+    """uv: float32 (corners, 2), contiguous."""
+    if hasattr(layer, "uv"):  # since 3.5
+        layer.uv.foreach_set("vector", uv.ravel())
+    else:
+        layer.data.foreach_set("uv", uv.ravel())
+
+
+def user_folder(package, name, create):
+    """A Path to a folder of the user's own, which stays when the add-on is updated: an extension's, since 4.2, or the
+    one for scripts' presets."""
+    if package.startswith("bl_ext."):
+        return Path(bpy.utils.extension_path_user(package, path=name, create=create))
+    return Path(bpy.utils.user_resource("SCRIPTS", path=f"{name}/pelagic", create=create))
+
+
+# ---- Shaders of our own
+
+
+def shader_problem():
+    """Why this Blender can't draw with our own GLSL, in words; empty if it can."""
+    if bpy.app.background:
+        return "This Blender has no window to draw in"
+    backend = getattr(gpu.platform, "backend_type_get", lambda: "OPENGL")()  # Blender 3.4 knows OpenGL alone
+    if backend != "OPENGL":
+        return (f"The viewport preview's shaders are for OpenGL, and this Blender draws with {backend.title()}. Where there "
+                "is a choice it's in Preferences, System, Backend")
+    return ""
+
+
+def shader(vertex, fragment):
+    """A gpu.types.GPUShader of GLSL 3.30 whose fragment shader calls host_colour(). RuntimeError, in words, if this Blender
+    takes no such text."""
+    free_names = "#undef select\n"  # one of Blender's macros, which our text has a function of
+    # What a view stores depends on the framebuffer; Blender's own function knows.
+    colour = "vec4 host_colour(vec4 display) { return blender_srgb_to_framebuffer_space(display); }\n"
+    try:
+        return gpu.types.GPUShader(free_names + vertex, free_names + colour + fragment)
+    except TypeError as error:  # the constructor is gone
+        raise RuntimeError("This Blender's gpu module takes no GLSL as it is, which the viewport preview is made of") from error
+    except Exception as error:
+        raise RuntimeError("The graphics driver doesn't compile the viewport preview's shaders. The console says "
+                           "where") from error
+
+
 def new_group_socket(group, name, kind, is_output=False, default=None):
     """A socket of a node group; kind: "Float", "Color", "Vector"."""
     idname = "NodeSocket" + kind
@@ -27,11 +91,3 @@ def new_group_socket(group, name, kind, is_output=False, default=None):
     if default is not None:
         socket.default_value = default
     return socket
-
-
-def set_uv(layer, uv):
-    """uv: float32 (corners, 2), contiguous."""
-    if hasattr(layer, "uv"):  # since 3.5
-        layer.uv.foreach_set("vector", uv.ravel())
-    else:
-        layer.data.foreach_set("uv", uv.ravel())

@@ -10,7 +10,7 @@ import bpy
 from mathutils import Vector
 
 from .module import pelagic
-from .properties import BY_PATH, FIELDS, TABLES, VERSION, counts
+from .properties import BY_PATH, FIELDS, TABLES, VERSION, counts, shortest_for
 
 NO_MODULE = "Pelagic's compiled module isn't there"
 
@@ -40,7 +40,8 @@ def clean_name(name):
 
 
 def frame_rate(bpy_scene):
-    return bpy_scene.render.fps / bpy_scene.render.fps_base
+    render = bpy_scene.render
+    return shortest_for(render.fps / render.fps_base, lambda fps: render.fps / fps, render.fps_base)
 
 
 def _on_disk(path):
@@ -59,15 +60,20 @@ def _with_settings(settings):
         key = BY_PATH[path].key
         if key["type"] == "entries":
             value = [getattr(pelagic, key["entry"])(*entry) for entry in value]
-        elif key["type"] == "text":
+        elif BY_PATH[path].is_path:
             value = _on_disk(value)
         setattr(getattr(scene, BY_PATH[path].table), key["name"], value)
     return scene
 
 
+HOUR = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d)?(Z|[+-]\d\d:\d\d)")
+
+
 def _measured(values):
     """A scene with a buoy's hour in it. ShotError if the file or the hour isn't given, or isn't there."""
     file, hour = _on_disk(values["sea.spectrum_file"] or ""), values["sea.spectrum_time"]
+    if hour and not HOUR.fullmatch(hour):
+        raise ValueError(f"sea.spectrum_time = {hour}: accepted: {BY_PATH['sea.spectrum_time'].key['accepted']}")
     lines = ["[sea]", 'spectrum = "file"']
     lines += [f"spectrum_file = '{Path(file).name}'"] if file else []
     lines += [f"spectrum_time = {hour}"] if hour else []
@@ -154,6 +160,8 @@ def set_from(obj, scene):
     for field, value in values:
         field.check(value)
     for field, value in values:
+        if field.is_path and value and value != field.key["default"]:
+            value = str(Path(value).absolute())
         field.write(getattr(obj.pelagic, field.table), value)
 
 

@@ -25,7 +25,7 @@ class NeedsOcean(NeedsModule):
         return super().poll(context) and ocean.is_ocean(context.object)
 
 
-def _show_now(context, obj):
+def show_now(context, obj):
     """The sea is in the mesh when the operator returns."""
     depsgraph = context.evaluated_depsgraph_get()
     play.show(obj, context.scene, depsgraph)
@@ -62,7 +62,7 @@ class PELAGIC_OT_add_ocean(NeedsModule, bpy.types.Operator):
         if self.see_far:
             _see_far(context)
         context.scene.render.use_lock_interface = True  # frames change on the render's thread
-        simulation = _show_now(context, obj)
+        simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"ERROR"}, simulation.problem)
             return {"CANCELLED"}
@@ -93,7 +93,7 @@ class PELAGIC_OT_use_mesh(NeedsModule, bpy.types.Operator):
         meshes.capture(obj.data)
         obj.pelagic.own_mesh = True
         ocean.mark(obj)
-        simulation = _show_now(context, obj)
+        simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)
         return {"FINISHED"}

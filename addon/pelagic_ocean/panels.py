@@ -7,11 +7,12 @@ import bpy
 from . import ocean, play
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
+from .presets import PELAGIC_MT_presets
 from .properties import FIELDS, counts
 
 # Title → tables of keys.
 PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
-          "Light": ("light", "water"), "Output": ("quality", "output")}
+          "Light": ("light", "water"), "Output": ("output", "quality")}
 
 def _draw_words(layout, text):
     """A message in lines that fit."""
@@ -43,19 +44,24 @@ def _draw_field(layout, group, field):
     elif field.switch:
         row = layout.row(heading=field.key["label"])
         row.prop(group, field.switch, text="")
-        value = row.row()
-        value.active = getattr(group, field.switch)
-        value.prop(group, field.name, text="")
+        if getattr(group, field.switch):
+            row.prop(group, field.name, text="")
+        else:
+            row.label(text="automatic" if field.absent is None else "infinite")
     elif field.key["type"] == "words":
         layout.column(heading=field.key["label"]).prop(group, field.name, expand=True)
     else:
         layout.prop(group, field.name)
 
 
-def _draw_tables(layout, settings, tables):
-    for field in FIELDS:
-        if field.table in tables and counts(field, settings):
-            _draw_field(layout, getattr(settings, field.table), field)
+def _draw_tables(layout, settings, tables, title):
+    for table in tables:
+        column = layout.column()
+        if table != title.lower():
+            column.label(text=table.title())
+        for field in FIELDS:
+            if field.table == table and counts(field, settings):
+                _draw_field(column, getattr(settings, table), field)
 
 
 class Main:
@@ -77,6 +83,8 @@ class Main:
                 _draw_words(layout.box(), simulation.problem)
             elif simulation.is_building:
                 layout.label(text="Building the sea…", icon="SORTTIME")
+            elif simulation.sea:
+                layout.label(text=f"Waves of {simulation.sea.significant_height_m:.1f} m (significant height)")
 
 
 class Sub:
@@ -91,11 +99,13 @@ class Sub:
         layout = self.layout
         layout.use_property_split = True
         settings = context.object.pelagic
+        if self.bl_label == "Sea":
+            layout.menu(PELAGIC_MT_presets.bl_idname)
         if self.bl_label == "Surface":
             _draw_surface(layout, settings)
             if settings.own_mesh:
                 return
-        _draw_tables(layout, settings, self.tables)
+        _draw_tables(layout, settings, self.tables, self.bl_label)
 
 
 def _draw_surface(layout, settings):

@@ -10,18 +10,16 @@ while the old one plays on; without a window, and during renders, whoever asks w
 """
 
 import re
-import threading
 import weakref
-from dataclasses import dataclass
 
 import bpy
-import numpy as np
 from bpy.app.handlers import persistent
 
 from . import meshes, surfaces
 from .module import pelagic
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of
 from .properties import FIELDS
+from .sea import BuiltSea, Moment, Worker
 
 # A change of a key that feeds these is another sea. The rest only looks different; the clock matters to loops.
 SEA_FEEDS = {"waves", "foam", "quality", "surface", "grid"}
@@ -32,91 +30,16 @@ PLACE = {field.path: place for place, field in enumerate(FIELDS)}
 POLL_S = 0.02  # how often a window looks whether a sea is ready
 
 
-class BuiltSea:
-    """A sea on a surface, one frame of it, and that frame's buffers."""
-
-    def __init__(self, scene, surface, view):
-        """surface: None for the projected grid, whose points are those of a pelagic.View."""
-        products = ["position", "velocity", "slope_variance"] + ["coverage"] * scene.effects.whitecaps
-        if surface is None:
-            self.sea = pelagic.Sea(scene, products, views=[view])
-        else:
-            ladder_m = surface.ladder_m()
-            self.sea = pelagic.Sea(scene, products, cell_m=ladder_m, pixel_m=ladder_m)
-        self._products = products
-        self._fixed, self._uv_m = surface, scene.surface.size_m
-        self._frame, self._asked_frame = pelagic.Frame(self.sea), None
-        self._lock = threading.RLock()
-        self._now = None  # what the buffers hold
-        self._surface, self._arrays = None, None
-
-    @property
-    def needs_view(self):
-        return self._fixed is None
-
-    def serves(self, view):
-        return self._fixed is not None or (view is not None and self.sea.serves(view))
-
-    def buffers(self, moment):
-        """The surface, and each product's array, at a Moment; until the next call."""
-        with self._lock:
-            if moment != self._now:
-                self._evaluate(moment)
-                self._now = moment
-            return self._surface, self._arrays
-
-    def _evaluate(self, moment):
-        surface = self._fixed or surfaces.projected_grid(self.sea, moment.view, moment.share, self._uv_m)
-        if self._surface is None or len(surface) != len(self._surface):
-            self._arrays = {product: np.empty(len(surface) if product == "coverage" else (len(surface), 3), np.float32)
-                            for product in self._products}
-        self._surface = surface
-        self._frame.set(moment.time_s)
-        self._frame.evaluate(surface.rest, surface.origin_m, cell_m=surface.cell_m, pixel_m=surface.cell_m,
-                             **self._arrays)
-        position, velocity = self._arrays["position"], self._arrays["velocity"]
-        if surface.origin_m != (0.0, 0.0):
-            position[:, :2] += np.array(surface.origin_m, np.float32)
-        if surface.height_m is not None:
-            position[:, 2] += surface.height_m
-        if moment.time_scale != 1.0:
-            velocity *= np.float32(moment.time_scale)  # metres in a second of the screen
-
-    def frame_at(self, time_s):
-        with self._lock:
-            if self._now is not None and time_s == self._now.time_s:
-                return self._frame
-            if self._asked_frame is None:
-                self._asked_frame = pelagic.Frame(self.sea)
-                self._asked_frame.set(time_s)
-            elif self._asked_frame.time_s != time_s:
-                self._asked_frame.set(time_s)
-            return self._asked_frame
-
-
-@dataclass(frozen=True)
-class Moment:
-    """What a sea is shown at: its time [s], how much of that passes in a second of the screen, and for the projected grid
-    whose view, and what share of the columns and rows that it needs."""
-
-    time_s: float
-    time_scale: float = 1.0
-    view: object = None
-    share: float = 1.0
-
-
-class Job(threading.Thread):
+class Job(Worker):
     """Builds a sea beside everything else."""
 
     def __init__(self, key, make):
-        super().__init__(daemon=True)
-        self.key, self._make = key, make
-        self.made, self.problem = None, ""
-        self.start()
+        self.key, self.made, self.problem = key, None, ""
+        super().__init__(lambda: self._build(make))
 
-    def run(self):
+    def _build(self, make):
         try:
-            self.made = self._make()
+            self.made = make()
         except (ValueError, RuntimeError, MemoryError) as error:
             self.problem = str(error) or type(error).__name__
 
@@ -135,6 +58,7 @@ class Simulation:
         self._key = None
         self._asked = None  # what scene was made from
         self._job = None
+        self._last = None  # the frame that was last asked for, the step to it, the view
 
     @property
     def sea(self):
@@ -154,8 +78,22 @@ class Simulation:
         """A pelagic.Frame at a time [s], for queries; the next call may set it to another. Any order, any thread."""
         return self._built.frame_at(time_s)
 
-    def buffers(self, moment):
-        return self._built.buffers(moment)
+    def moment_at(self, frame, view, share):
+        shot = self.scene.shot
+        return Moment(shot.time_s(frame), shot.time_scale, view, share)
+
+    def buffers(self, frame, moment):
+        """The surface and the products' arrays at the moment of a frame. While it plays in even steps before a camera that
+        stands still, the next frame is computed meanwhile."""
+        upcoming = None
+        if self._last is not None and frame != self._last[0]:
+            step = frame - self._last[0]
+            if (step, moment.view) == self._last[1:] and not _rendering:
+                upcoming = self.moment_at(frame + step, moment.view, moment.share)
+            self._last = (frame, step, moment.view)
+        elif self._last is None:
+            self._last = (frame, 0, moment.view)
+        return self._built.buffers(moment, upcoming)
 
     def follow(self, obj, bpy_scene, depsgraph, wait):
         """Brings the sea to the object's settings, or begins to. obj: the original. Returns the view that it is seen by,
@@ -266,11 +204,24 @@ def _simulation(obj):
     return _simulations.setdefault(obj.name_full, Simulation())
 
 
+def _driver_of(obj):
+    """Of linked duplicates, the ocean that drives their mesh."""
+    mesh = obj.original.data
+    return next(other for other in oceans() if other.data == mesh)
+
+
 def simulation_of(obj):
     """The Simulation of an ocean, original or evaluated; of linked duplicates, the one that drives their mesh."""
-    mesh = obj.original.data
-    first = next(other for other in oceans() if other.data == mesh)
-    return _simulation(first)
+    return _simulation(_driver_of(obj))
+
+
+def brought_up(obj, bpy_scene, depsgraph):
+    """The Simulation of an ocean, brought to its settings though nothing may show it; it has no sea while that is being
+    built."""
+    first = _driver_of(obj)
+    simulation = _simulation(first)
+    simulation.follow(first, bpy_scene, depsgraph, bpy.app.background or bool(_rendering))
+    return simulation
 
 
 def _show(obj, bpy_scene, depsgraph, again):
@@ -279,12 +230,12 @@ def _show(obj, bpy_scene, depsgraph, again):
     view = simulation.follow(obj, bpy_scene, depsgraph, bpy.app.background or bool(_rendering))
     if simulation.sea is None or (view is None and simulation.needs_view):
         return
-    shot = simulation.scene.shot
-    moment = Moment(shot.time_s(bpy_scene.frame_current_final), shot.time_scale, view, view and _share(obj, bpy_scene))
+    frame = bpy_scene.frame_current_final
+    moment = simulation.moment_at(frame, view, _share(obj, bpy_scene) if view else 1.0)
     shown = (obj.data.name_full, id(simulation.sea), moment)
     if shown == simulation.shown and not again:
         return
-    surface, arrays = simulation.buffers(moment)
+    surface, arrays = simulation.buffers(frame, moment)
     if not meshes.holds(obj.data, surface):
         if surface.faces is None:
             return

@@ -28,6 +28,7 @@ ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", "file"), "sea.spectrum_time":
 # A unit of the table → arguments of a property. Degrees stay degrees: Blender's angles would be radians in scripts.
 UNITS = {"m": {"subtype": "DISTANCE", "unit": "LENGTH"}, "m/s": {"unit": "VELOCITY"},
          "s": {"subtype": "TIME_ABSOLUTE", "unit": "TIME"}, "pixels": {"subtype": "PIXEL"}}
+ABBREVIATIONS = {"fft", "jonswap", "tma", "usda", "usdc"}
 SIGNS = {"degrees": "°"}  # shorter in a label
 INTEGER_LIMIT = 2**31 - 1  # of Blender's
 
@@ -35,6 +36,15 @@ INTEGER_LIMIT = 2**31 - 1  # of Blender's
 def shortest(number):
     """The decimal that Blender's float32 was set from, as a double: 0.1, not 0.10000000149."""
     return float(str(np.float32(number)))
+
+
+def shortest_for(value, encode, stored):
+    """The shortest decimal near value that encode() turns into this float32; value itself if none does."""
+    for digits in range(1, 17):
+        short = float(f"{value:.{digits}g}")
+        if np.float32(encode(short)) == np.float32(stored):
+            return short
+    return value
 
 
 # ---- Keys
@@ -54,6 +64,10 @@ class Field:
     def switch(self):
         """The name of the property that says whether there is a number, or ""."""
         return "" if self.absent == 0 else "use_" + self.name
+
+    @property
+    def is_path(self):
+        return "path" in self.key["accepted"]
 
     def read(self, group):
         """The value as the module takes it, of a group: plain numbers, strings, tuples."""
@@ -115,8 +129,8 @@ def _field(key):
 
 
 def _has_property(key):
-    if key["choices"] and not any(choice["built"] for choice in key["choices"]):
-        return False
+    if key["choices"] and sum(choice["built"] for choice in key["choices"]) < 2:
+        return False  # nothing to choose
     return key["built"] and key["path"] not in FROM_BLENDER and not key["path"].startswith("camera.")
 
 
@@ -173,9 +187,13 @@ def _numeric(key, limit=math.inf):
     return {"min": low, "max": high, "soft_min": soft_low, "soft_max": soft_high, "default": start}
 
 
+def _spoken(word):
+    return word.upper() if word in ABBREVIATIONS else _sentence(word.replace("-", " "))
+
+
 def _choices(key, flags):
     """Items whose numbers, which are what a file keeps, don't change when the core gets another word."""
-    return [(choice["word"], _sentence(choice["word"].replace("-", " ")), "",
+    return [(choice["word"], _spoken(choice["word"]), "",
              1 << place if flags else zlib.crc32(choice["word"].encode()) & 0x7FFFFFFF)
             for place, choice in enumerate(key["choices"]) if choice["built"]]
 
@@ -190,8 +208,8 @@ def _integer(key):
 
 
 def _string(key):
-    is_path = "path" in key["accepted"]
-    return StringProperty(**_common(key), default=key["default"] or "", **({"subtype": "FILE_PATH"} if is_path else {}))
+    subtype = {"subtype": "FILE_PATH"} if _field(key).is_path else {}
+    return StringProperty(**_common(key), default=key["default"] or "", **subtype)
 
 
 MAKERS = {

@@ -3,16 +3,21 @@
 
 #include <pybind11/pybind11.h>
 
+#include <memory>
+
 #include "core/scene/scene.h"
 
 namespace pelagic::python {
 
 void add_scene(pybind11::module_& module);
+void add_presets(pybind11::module_& module, pybind11::class_<Scene, std::shared_ptr<Scene>>& scene);
 void add_watch(pybind11::module_& module);
 void add_surfaces(pybind11::module_& module);
 void add_sea(pybind11::module_& module);
 void add_frame(pybind11::module_& module);
 void add_light(pybind11::module_& module);
+void add_picture(pybind11::module_& module);
+void add_bake(pybind11::module_& module);
 void add_baked(pybind11::module_& module);
 void add_viewport(pybind11::module_& module);
 

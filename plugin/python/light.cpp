@@ -1,4 +1,6 @@
 // The lighting on arrays: pelagic.Sky, pelagic.WaterBody and pelagic.shade.
+#include "plugin/python/light.h"
+
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <tbb/blocked_range.h>
@@ -11,7 +13,6 @@
 #include <vector>
 
 #include "core/lighting/background.h"
-#include "core/lighting/lighting.h"
 #include "core/lighting/tone.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
@@ -113,13 +114,6 @@ Choice choice_of(const std::string& name, const std::string& word,
     throw py::value_error(name + " \"" + word + "\"; accepted: " + accepted);
 }
 
-// The layers of SeaRadiance by their names in Python.
-constexpr std::array<std::pair<const char*, glm::vec3 SeaRadiance::*>, 4> kLayers{
-    {{"sun", &SeaRadiance::sun},
-     {"sky", &SeaRadiance::sky},
-     {"sea", &SeaRadiance::sea},
-     {"foam", &SeaRadiance::foam}}};
-
 struct ShadeArguments {
     py::object to_eye, normal, slope_variance, coverage;
     std::array<py::object, kLayers.size()> layers;
@@ -167,6 +161,12 @@ py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArgument
 
 }  // namespace
 
+SkyQuality sky_quality_of(const std::string& word) {
+    return choice_of<SkyQuality>(
+        "sky_quality", word,
+        {{"one", SkyQuality::One}, {"nine", SkyQuality::Nine}, {"integral", SkyQuality::Integral}});
+}
+
 void add_light(py::module_& module) {
     add_sky(module);
     py::class_<WaterBody>(module, "WaterBody", "What is in a scene's water.")
@@ -185,9 +185,7 @@ void add_light(py::module_& module) {
            const std::string& fresnel, const py::object& sun_layer, const py::object& sky_layer,
            const py::object& sea_layer, const py::object& foam_layer) {
             LightingChoice choice;
-            choice.sky_quality = choice_of<SkyQuality>(
-                "sky_quality", sky_quality,
-                {{"one", SkyQuality::One}, {"nine", SkyQuality::Nine}, {"integral", SkyQuality::Integral}});
+            choice.sky_quality = sky_quality_of(sky_quality);
             choice.fresnel = choice_of<FresnelFit>(
                 "fresnel", fresnel, {{"exact", FresnelFit::Exact}, {"paper", FresnelFit::Paper}});
             return shade(

@@ -41,6 +41,8 @@ PYBIND11_MODULE(pelagic, module) {
     pelagic::python::add_sea(module);
     pelagic::python::add_frame(module);
     pelagic::python::add_light(module);
+    pelagic::python::add_picture(module);
+    pelagic::python::add_bake(module);
     pelagic::python::add_baked(module);
     pelagic::python::add_viewport(module);
     module.def(

@@ -16,6 +16,7 @@
 #include "core/scene/validate.h"
 #include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/values.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::python {
@@ -34,118 +35,6 @@ std::string doc_of(const Key& key) {
     return text;
 }
 
-// ---- Values: words are strings, vectors and lists are tuples, a list's entries named tuples
-
-// The class of a list's entries: an attribute of the module.
-py::object entry_class(const Key& key) {
-    return py::module_::import("pelagic").attr(key.entry_name.c_str());
-}
-
-// Tuples, because a list would be a copy whose append() is lost.
-struct ToPython {
-    const Key& key;
-    py::object operator()(std::monostate) const { return py::none(); }
-    py::object operator()(const std::vector<KeyEntry>& entries) const {
-        const py::object made = entry_class(key);
-        py::tuple out(entries.size());
-        for (std::size_t i = 0; i < entries.size(); ++i) {
-            py::tuple values(entries[i].values.size());
-            for (std::size_t k = 0; k < values.size(); ++k)
-                values[k] = std::visit(ToPython{key.entry_keys[k]}, entries[i].values[k].second);
-            out[i] = made(*values);
-        }
-        return out;
-    }
-    template <class Element>
-    py::object operator()(const std::vector<Element>& list) const {
-        return py::tuple(py::cast(list));
-    }
-    template <class Plain>
-    py::object operator()(const Plain& value) const {
-        return py::cast(value);
-    }
-};
-
-py::object to_python(const Key& key, const KeyValue& value) {
-    return std::visit(ToPython{key}, value);
-}
-
-[[noreturn]] void refuse_type(const Key& key, const std::string& path, py::handle given) {
-    throw py::type_error(text_of(Problem{
-        path, py::repr(given),
-        "is of type " + std::string(py::str(py::type::handle_of(given).attr("__name__"))), key.accepted}));
-}
-
-template <class Value>
-KeyValue cast_to(const Key& key, const std::string& path, py::handle given, bool convert = true) {
-    py::detail::make_caster<Value> caster;
-    if (!caster.load(given, convert)) refuse_type(key, path, given);
-    return py::detail::cast_op<Value>(caster);
-}
-
-KeyValue from_python(const Key& key, const std::string& path, py::handle given);
-
-// An entry: anything that has the keys as items, as dictionaries do, or as attributes.
-KeyEntry entry_from_python(const Key& list, const std::string& path, py::handle given) {
-    KeyEntry entry;
-    const bool is_dict = py::isinstance<py::dict>(given);
-    if (is_dict)
-        for (const auto& [name, value] : given.cast<py::dict>())
-            if (std::none_of(list.entry_keys.begin(), list.entry_keys.end(),
-                             [&](const Key& key) { return py::str(name).equal(py::str(key.name)); }))
-                refuse_type(list, path, given);
-    for (const Key& key : list.entry_keys) {
-        const py::str name(key.name);
-        const bool has_key = is_dict ? given.contains(name) : py::hasattr(given, name);
-        if (!has_key) {
-            if (key.is_required) refuse_type(list, path, given);
-            entry.values.emplace_back(key.name, key.fallback);
-            continue;
-        }
-        const py::object value = is_dict ? py::object(given[name]) : py::object(given.attr(name));
-        entry.values.emplace_back(key.name, from_python(key, path + '.' + key.name, value));
-    }
-    return entry;
-}
-
-KeyValue from_python(const Key& key, const std::string& path, py::handle given) {
-    if (key.is_optional && given.is_none()) return {};
-    switch (key.type) {
-        case KeyType::Truth:
-            return cast_to<bool>(key, path, given, false);
-        case KeyType::Integer:
-            return cast_to<std::int64_t>(key, path, given);
-        case KeyType::Number:
-            return cast_to<double>(key, path, given);
-        case KeyType::Point:
-            return cast_to<std::vector<double>>(key, path, given);
-        case KeyType::Pair:
-            return cast_to<std::vector<std::int64_t>>(key, path, given);
-        case KeyType::Words:
-            return cast_to<std::vector<std::string>>(key, path, given);
-        case KeyType::Entries:
-            break;
-        case KeyType::Text:
-        case KeyType::Word:
-        case KeyType::DataFile:
-        case KeyType::DataTime:
-            return cast_to<std::string>(key, path, given);
-    }
-    if (!key.empty_word.empty() && py::isinstance<py::str>(given) &&
-        std::string(py::str(given)) == key.empty_word)
-        return std::vector<KeyEntry>();
-    if (py::isinstance<py::str>(given) || !py::isinstance<py::sequence>(given)) refuse_type(key, path, given);
-    std::vector<KeyEntry> entries;
-    for (const py::handle element : given)
-        entries.push_back(entry_from_python(key, path + '[' + std::to_string(entries.size()) + ']', element));
-    return entries;
-}
-
-void set_from_python(Scene& scene, const Key& key, py::handle given) {
-    if (const auto problem = set_value(scene, key, from_python(key, key.path, given)))
-        throw ShotError(text_of(*problem));
-}
-
 // ---- Classes out of the table of keys
 
 // A table of a scene, which it keeps alive; the base of a class for each table.
@@ -162,7 +51,7 @@ void add_methods(const std::string& table, const py::object& base, py::dict& mem
     if (table == "shot")
         members["time_s"] = py::cpp_function(
             [](const TableOfScene& self, double frame) { return self.scene->shot.time_s(frame); },
-            py::arg("frame"), py::is_method(base),
+            py::name("time_s"), py::is_method(base), py::arg("frame"),
             "The sea's time that a frame shows [s], also between frames: "
             "t = time_offset_s + time_scale (frame - 1)/fps, whatever the range.");
     if (table != "sea") return;
@@ -170,8 +59,8 @@ void add_methods(const std::string& table, const py::object& base, py::dict& mem
         py::cpp_function([](const TableOfScene& self) { return self.scene->sea.measured.has_value(); }),
         py::none(), "Whether a buoy's hour is in it, from Scene.from_file.");
     members["forget_measured"] = py::cpp_function(
-        [](const TableOfScene& self) { self.scene->sea.measured.reset(); }, py::is_method(base),
-        "Lets the buoy's hour go, so that spectrum can be another than \"file\".");
+        [](const TableOfScene& self) { self.scene->sea.measured.reset(); }, py::name("forget_measured"),
+        py::is_method(base), "Lets the buoy's hour go, so that spectrum can be another than \"file\".");
 }
 
 std::string repr_of(const KeyTable& table, const Scene& scene) {
@@ -338,7 +227,8 @@ void add_scene(py::module_& module) {
             py::arg("memo"))
         .def("__str__", [](const Scene& self) { return canonical(self); });
     py::class_<TableOfScene> base(module, "Table", "A table of a scene: its keys are the attributes.");
-    base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }));
+    base.def(py::init([](const std::shared_ptr<Scene>& self) { return TableOfScene{self}; }),
+             py::arg("scene"));
     for (const KeyTable& table : key_tables()) {
         const py::object made = add_table_class(module, base, table);
         scene.def_property(
@@ -353,6 +243,7 @@ void add_scene(py::module_& module) {
             },
             ("[" + table.name + "]: " + table.help).c_str());
     }
+    add_presets(module, scene);
     module.def(
         "keys", &described_keys,
         "Every key of a shot file as a dictionary: path, name, label, type, unit, help, accepted, default, "

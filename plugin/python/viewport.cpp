@@ -188,9 +188,11 @@ class GpuSea {
         std::vector<glm::vec4> vertices;
         {
             const py::gil_scoped_release others_may_run;
+            const ProjectedGridNeeds needs = projected_grid_needs(view, options);
+            options.size = {.columns = std::min(needs.size.columns, kMostCells),
+                            .rows = std::min(needs.size.rows, kMostCells)};
             grid = projected_grid(view, options);
-            if (packed_.layout()->pixels().footprints_m.size() > 1)
-                keep_to_rungs(grid, projected_grid_needs(view, options));
+            if (packed_.layout()->pixels().footprints_m.size() > 1) keep_to_rungs(grid, needs);
             vertices.resize(grid.rest_m.size());
             for (std::size_t i = 0; i < vertices.size(); ++i)
                 vertices[i] = glm::vec4(grid.rest_m[i].x, grid.rest_m[i].y, grid.cell_m[i], grid.pixel_m[i]);
@@ -222,6 +224,8 @@ class GpuSea {
     }
 
     static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Quality, Feed::Grid);
+    // A side of a grid. Views along the surface from far behind, as orthographic ones are, would need millions.
+    static constexpr int kMostCells = 1024;
     static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres
     double finest_m_ = 0.0;
     std::string made_from_;
@@ -324,7 +328,7 @@ void add_viewport(py::module_& module) {
         .def(
             "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
             "The projected grid of a view, a GpuGrid. cell_px: the cells' side on the screen; by default the "
-            "scene's surface.cell_px.")
+            "scene's surface.cell_px. At most 1024 cells a side: where a view needs more, they are larger.")
         .def_property_readonly("bytes", &GpuSea::bytes, "Memory that it holds [bytes].");
 }
 

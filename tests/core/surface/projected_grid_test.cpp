@@ -19,6 +19,7 @@ struct Shot {
     double height_m = 4.0, pitch_deg = 0.0, azimuth_deg = 0.0, fov_deg = 50.0;
     glm::ivec2 resolution{1280, 720};
     glm::dvec2 at_m{0.0};
+    double roll_deg = 0.0;
 };
 
 View view_of(const Shot& shot) {
@@ -31,6 +32,10 @@ View view_of(const Shot& shot) {
                                                               level * std::sin(azimuth), std::sin(pitch));
     camera.fov_deg = shot.fov_deg;
     camera.resolution = shot.resolution;
+    camera.keys = {{.frame = 1,
+                    .position_m = camera.position_m,
+                    .look_at_m = camera.look_at_m,
+                    .roll_deg = shot.roll_deg}};
     return view_at(camera, 1.0);
 }
 
@@ -69,13 +74,16 @@ std::vector<Shot> hard_shots() {
     shots.push_back({.resolution = {2000, 20}});
     shots.push_back({.pitch_deg = -40.0, .resolution = {1, 1}});
     shots.push_back({.azimuth_deg = 200.0, .at_m = {1e6, -1e6}});
+    for (const double roll_deg : {3.0, -45.0, 90.0, 180.0})
+        for (const double pitch_deg : {-90.0, -35.0, 0.0, 20.0})
+            shots.push_back({.pitch_deg = pitch_deg, .roll_deg = roll_deg});
     return shots;
 }
 
 std::string text_of(const Shot& shot) {
     return "height " + std::to_string(shot.height_m) + " pitch " + std::to_string(shot.pitch_deg) + " fov " +
            std::to_string(shot.fov_deg) + " " + std::to_string(shot.resolution.x) + " × " +
-           std::to_string(shot.resolution.y);
+           std::to_string(shot.resolution.y) + " roll " + std::to_string(shot.roll_deg);
 }
 
 // Draws points at rest that a displacement within the bounds brings into view, in reverse: a pixel, a height
@@ -89,7 +97,8 @@ TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
                          .pitch_deg = -90.0 + 150.0 * uniform(random),
                          .azimuth_deg = 360.0 * uniform(random),
                          .fov_deg = 5.0 + 120.0 * uniform(random),
-                         .resolution = {200 + static_cast<int>(800 * uniform(random)), 400}});
+                         .resolution = {200 + static_cast<int>(800 * uniform(random)), 400},
+                         .roll_deg = i % 2 == 0 ? 0.0 : 360.0 * uniform(random)});
     int in_view = 0;
     for (const Shot& shot : shots) {
         const View view = view_of(shot);

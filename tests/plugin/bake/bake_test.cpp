@@ -163,6 +163,27 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesAtEachFrame) {
     }
 }
 
+// A renderer blurs over seconds of the screen.
+TEST(MeshOfAFrame, ShowsTheShotsClockAndMovesByIt) {
+    Scene scene;
+    scene.surface.resolution = 16;
+    scene.shot.time_scale = 0.25;
+    scene.shot.time_offset_s = 100.0;
+    Scene plain = scene;  // the same sea time at frame 1
+    plain.shot.time_scale = 1.0;
+    FrameSlot slow, fast;
+    make_sequence(plan_bake(scene))->compute(1, slow);
+    make_sequence(plan_bake(plain))->compute(1, fast);
+    EXPECT_EQ(slow.record.time_s, 100.0);
+    const Values &a = slow.outputs.front()->values, &b = fast.outputs.front()->values;
+    EXPECT_EQ(a.vectors(Product::Position), b.vectors(Product::Position));
+    ASSERT_FALSE(a.vectors(Product::Velocity).empty());
+    for (std::size_t i = 0; i < a.vectors(Product::Velocity).size(); ++i)
+        EXPECT_EQ(a.vectors(Product::Velocity)[i], 0.25f * b.vectors(Product::Velocity)[i]);
+    make_sequence(plan_bake(scene))->compute(97, slow);  // four seconds later, one of the sea
+    EXPECT_EQ(slow.record.time_s, 101.0);
+}
+
 TEST_F(Bakes, AProjectedGridIsTheCamerasOwn) {
     Scene scene = camera_scene();
     auto record = bake_and_read(scene);

@@ -136,6 +136,22 @@ class Scene(unittest.TestCase):
         self.assertEqual(pelagic.Scene().shot.time_s(25), 1.0)
         self.assertEqual(pelagic.Scene().shot.time_s(1.5), 0.5 / 24)
 
+    def test_presets_set_the_keys_that_they_list(self):
+        presets = pelagic.presets()
+        self.assertEqual([p["name"] for p in presets if p["group"] == "beaufort"],
+                         [f"beaufort-{force}" for force in range(13)])
+        self.assertGreater(len(presets), 13)
+        for preset in presets:
+            scene = pelagic.Scene()
+            scene.shot.seed = 77
+            scene.apply_preset(preset["name"])
+            for path, value in preset["values"].items():
+                table, name = path.split(".")
+                self.assertEqual(getattr(getattr(scene, table), name), value, path)
+            self.assertEqual((scene.validate(), scene.shot.seed), ([], 77), preset["name"])
+        with self.assertRaisesRegex(ValueError, 'nearest is "beaufort-8"'):
+            pelagic.Scene().apply_preset("beaufor-8")
+
     def test_explain_says_what_the_sea_does(self):
         self.assertIn("transforms", pelagic.explain(small_scene()))
 

@@ -189,7 +189,10 @@ TEST(ShotKeys, HelpSaysOfEachWhatDependsOnItAndWhatIsNotBuilt) {
                                                [](const KeyChoice& choice) { return !choice.is_built; }))
             << part;
         for (const Key& inner : key.entry_keys)
-            EXPECT_NE(help.find("\n  " + inner.path + '\n'), std::string::npos) << inner.path;
+            EXPECT_NE(
+                help.find("\n  " + inner.path + (inner.is_required || inner.is_optional ? "\n" : " = ")),
+                std::string::npos)
+                << inner.path;
     }
 }
 

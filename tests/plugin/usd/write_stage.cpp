@@ -336,10 +336,13 @@ void write_camera(const std::filesystem::path& dir, const std::string& name, con
 // So many samples that the writer hands them over in several pieces, with an odd number of frames before
 // them.
 void write_long_camera(const std::filesystem::path& dir) {
-    const usd::Camera camera{.first_frame = -1000, .last_frame = 3000, .pose_at = [](int frame) {
-                                 const double moved = std::max(frame, -7);
-                                 return pose_of({{moved, -0.1 * moved, 9.0}, {70, 0, 0.3 * moved}});
-                             }};
+    const usd::Camera camera{
+        .first_frame = -1000, .last_frame = 3000, .pose_at = [](int frame) {
+            const double moved = std::max(frame, -7);
+            usd::CameraPose pose = pose_of({{moved, -0.1 * moved, 9.0}, {70, 0, 0.3 * moved}});
+            pose.fov_deg = 40.0 + 0.01 * moved;
+            return pose;
+        }};
     std::vector<int> sampled;
     for (int frame = -7; frame <= 3000; ++frame) sampled.push_back(frame);
     write_camera(dir, "hard/long", camera, sampled);

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Plays a bake: an object that shows a baked sequence of meshes from disk, without simulating.
+
+Blender need not read USD for it: pelagic.read_mesh does. The mesh is put together as that of a live ocean is.
+"""
+
+import json
+import re
+import zlib
+from functools import lru_cache
+from pathlib import Path
+
+import bpy
+import numpy as np
+from bpy.app.handlers import persistent
+from bpy.props import IntProperty, PointerProperty, StringProperty
+from bpy_extras.io_utils import ImportHelper
+
+from . import meshes, ocean
+from .module import pelagic
+from .operators import NeedsModule
+from .surfaces import Surface
+
+UV_M = 100.0  # of a camera's grid: the length that is 1 in its UV map
+ACCEPTED = "accepted: a bake's folder, or NAME.json or NAME.usda in it"
+
+
+class Bake:
+    """The files of a bake: DIR/NAME.json and DIR/mesh/NAME.####.usdc."""
+
+    def __init__(self, path):
+        """path: NAME.json, NAME.usda, or the folder of a single bake. OSError or ValueError, in words."""
+        path = Path(path)
+        if path.is_dir():
+            records = sorted(path.glob("*.json"))
+            if len(records) != 1:
+                raise ValueError(f"{path}: {len(records) or 'no'} bakes in this folder; {ACCEPTED}")
+            path = records[0]
+        self.record = path.with_suffix(".json")
+        self.name, self.folder = self.record.stem, self.record.parent / "mesh"
+        try:
+            told = json.loads(self.record.read_text(encoding="utf-8"))
+            self.scene = _scene_of(told["settings"])
+        except FileNotFoundError:
+            raise ValueError(f"{self.record}: is not there; {ACCEPTED}") from None
+        except (KeyError, TypeError, AttributeError, ValueError) as error:
+            raise ValueError(f"{self.record}: is not the record of a bake ({error})") from None
+        self.first, self.last = self.scene.shot.frames
+        self.files = {int(match[1]): file for file in self.folder.glob(f"{self.name}.*.usd?")
+                      if (match := re.fullmatch(re.escape(self.name) + r"\.(-?\d{3,})\.usd[ac]", file.name))}
+        self.files = {frame: file for frame, file in self.files.items() if self.first <= frame <= self.last}
+        if not self.files:
+            raise ValueError(f"{self.folder}: has no frames of {self.name}; accepted: a bake with a mesh")
+
+    def missing(self):
+        """The frames of the shot that aren't on disk, in words: "3, 7-9", "" if none."""
+        ranges = []
+        for frame in range(self.first, self.last + 1):
+            if frame in self.files:
+                continue
+            if ranges and ranges[-1][1] == frame - 1:
+                ranges[-1][1] = frame
+            else:
+                ranges.append([frame, frame])
+        return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in ranges)
+
+    def nearest(self, frame):
+        """The last frame on disk up to this one, or the first there is."""
+        return max((each for each in self.files if each <= frame), default=min(self.files))
+
+    def surface(self, arrays):
+        """What meshes.put_surface() takes, for a frame's arrays."""
+        told = arrays if "face_corners" in arrays else self._topology()
+        if len(told["st"]) != len(arrays["position"]):
+            raise ValueError(f"{self.folder}: a frame has {len(arrays['position'])} points, and its faces are of "
+                             f"{len(told['st'])}")
+        corners = told["face_corners"]
+        starts = np.concatenate([[0], np.cumsum(told["face_counts"])[:-1]]).astype(np.int32)
+        signature = f"baked {len(told['st'])} {zlib.crc32(corners):08x} {zlib.crc32(starts):08x}"
+        if told is arrays:  # a camera's grid: a frame has its own faces, and where its points rest nobody knows
+            return Surface(signature, arrays["position"][:, :2], 1.0, lambda: (corners, starts), uv_m=UV_M, moves=True)
+        size_m = np.float32(self.scene.surface.size_m)
+        return Surface(signature, (told["st"] - np.float32(0.5)) * size_m, 1.0, lambda: (corners, starts), uv_m=size_m)
+
+    def _topology(self):
+        for file in sorted(self.folder.glob(f"{self.name}.topology.usd?")):
+            return _read(str(file), file.stat().st_mtime_ns)
+        raise ValueError(f"{self.folder}: {self.name}.topology.usdc is missing")
+
+
+def _scene_of(settings):
+    scene = pelagic.Scene()
+    for path, value in settings.items():
+        table, name = path.split(".")
+        if isinstance(value, list) and value and isinstance(value[0], dict):
+            known = {"sea.swell": pelagic.Swell, "waves.cascades": pelagic.CascadeSize, "camera.keys": pelagic.CameraKey}
+            value = tuple(known[path](**entry) for entry in value)
+        if value is not None and path != "sea.spectrum_time":
+            setattr(getattr(scene, table), name, value)
+    return scene
+
+
+@lru_cache(2)
+def _read(path, _changed_ns):
+    return pelagic.read_mesh(path)
+
+
+@lru_cache(8)
+def _bake(path, _changed_ns, _folder_changed_ns):
+    return Bake(path)
+
+
+def bake_of(obj):
+    """The Bake that an object plays. OSError or ValueError, in words."""
+    record = Path(bpy.path.abspath(obj.pelagic_baked.path))
+    folder = record.parent / "mesh"
+    try:
+        return _bake(str(record), record.stat().st_mtime_ns, folder.stat().st_mtime_ns)
+    except FileNotFoundError as error:
+        raise ValueError(f"{error.filename}: is not there; {ACCEPTED}") from None
+
+
+problems = {}  # object's name → why it doesn't show the frame
+
+
+def show(obj, frame):
+    """Puts the bake's mesh of a Blender frame into the object. What is wrong is in problems afterwards."""
+    problems.pop(obj.name_full, None)
+    try:
+        bake = bake_of(obj)
+        wanted = min(max(frame - obj.pelagic_baked.offset, bake.first), bake.last)
+        nearest = bake.nearest(wanted)
+        if nearest != wanted:
+            problems[obj.name_full] = f"Missing on disk: {bake.missing()}. Shown instead of {wanted}: {nearest}"
+        file = bake.files[nearest]
+        arrays = _read(str(file), file.stat().st_mtime_ns)
+        surface = bake.surface(arrays)
+        if not meshes.holds(obj.data, surface):
+            meshes.put_surface(obj.data, surface)
+        elif surface.moves:
+            meshes.move_rest(obj.data, surface)
+        meshes.put_frame(obj.data, arrays)
+    except (OSError, ValueError) as error:
+        problems[obj.name_full] = str(error)
+
+
+@persistent
+def _on_data(*_):
+    """Another file, undo, redo."""
+    _on_frame(bpy.context.scene)
+
+
+@persistent
+def _on_frame(bpy_scene, _depsgraph=None):
+    shown = set()
+    for obj in bpy_scene.objects:
+        if obj.pelagic_baked.path and obj.type == "MESH" and obj.data not in shown:
+            shown.add(obj.data)
+            show(obj, round(bpy_scene.frame_current_final))  # a shutter's ends are half a frame away: the same mesh
+
+
+def _changed(settings, context):
+    if settings.path:
+        show(settings.id_data, context.scene.frame_current)
+
+
+class PELAGIC_PG_baked(bpy.types.PropertyGroup):
+    path: StringProperty(name="Bake", subtype="FILE_PATH", update=_changed,
+                         description="NAME.json in the folder of the bake that this object plays")
+    offset: IntProperty(name="Offset", update=_changed,
+                        description="Frames by which it is later than in the bake")
+
+
+class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
+    """Show a baked ocean from disk: nothing is simulated"""
+
+    bl_idname = "pelagic.play_bake"
+    bl_label = "Play Pelagic Bake"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filename_ext = ".json"
+    filter_glob: StringProperty(default="*.json;*.usda", options={"HIDDEN"})
+
+    def execute(self, context):
+        try:
+            bake = Bake(bpy.path.abspath(self.filepath))
+        except (OSError, ValueError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        obj = bpy.data.objects.new(bake.name, bpy.data.meshes.new(bake.name))
+        context.collection.objects.link(obj)
+        obj.pelagic_baked.path = str(bake.record)
+        if obj.name_full in problems:
+            self.report({"WARNING"}, problems[obj.name_full])
+        if bake.missing():
+            self.report({"WARNING"}, f"Missing on disk: {bake.missing()}")
+        if abs(ocean.frame_rate(context.scene) / bake.scene.shot.fps - 1.0) > 1e-6:
+            self.report({"WARNING"}, f"The bake has {bake.scene.shot.fps:g} frames a second, this scene "
+                                     f"{ocean.frame_rate(context.scene):g}")
+        for other in context.selected_objects:
+            other.select_set(False)
+        obj.select_set(True)
+        context.view_layer.objects.active = obj
+        return {"FINISHED"}
+
+
+class PELAGIC_PT_baked(bpy.types.Panel):
+    bl_label = "Pelagic Bake"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and bool(context.object.pelagic_baked.path)
+
+    def draw(self, context):
+        layout, obj = self.layout, context.object
+        layout.use_property_split = True
+        layout.prop(obj.pelagic_baked, "path")
+        layout.prop(obj.pelagic_baked, "offset")
+        if obj.name_full in problems:
+            layout.label(text=problems[obj.name_full], icon="ERROR")
+
+
+CLASSES = (PELAGIC_PG_baked, PELAGIC_OT_play_bake, PELAGIC_PT_baked)
+HANDLERS = {"frame_change_post": _on_frame, "load_post": _on_data, "undo_post": _on_data, "redo_post": _on_data}
+
+
+def _menu(self, _context):
+    self.layout.operator(PELAGIC_OT_play_bake.bl_idname, text="Pelagic Bake (.json, .usda)")
+
+
+def register():
+    for made in CLASSES:
+        bpy.utils.register_class(made)
+    bpy.types.Object.pelagic_baked = PointerProperty(type=PELAGIC_PG_baked, name="Pelagic Bake")
+    if pelagic is not None:
+        for name, handler in HANDLERS.items():
+            getattr(bpy.app.handlers, name).append(handler)
+    bpy.types.TOPBAR_MT_file_import.append(_menu)
+
+
+def unregister():
+    bpy.types.TOPBAR_MT_file_import.remove(_menu)
+    for name, handler in HANDLERS.items():
+        handlers = getattr(bpy.app.handlers, name)
+        if handler in handlers:
+            handlers.remove(handler)
+    del bpy.types.Object.pelagic_baked
+    for made in reversed(CLASSES):
+        bpy.utils.unregister_class(made)

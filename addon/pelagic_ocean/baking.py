@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bakes an ocean to disk: the same code as `pelagic bake`, beside Blender's other work, and the same bits.
+
+What is whole on disk already is kept, so that a bake that was stopped goes on the next time.
+"""
+
+import threading
+from pathlib import Path
+
+import bpy
+from bpy.app.handlers import persistent
+from bpy.props import PointerProperty, StringProperty
+
+from . import ocean
+from .exchange import PELAGIC_OT_export_shot, shot_of
+from .module import pelagic
+from .operators import NeedsOcean
+
+TIMER_S = 0.1
+
+
+def folder_of(obj):
+    """The folder of an ocean's bake. ValueError while // has no place."""
+    folder = obj.pelagic_bake.folder
+    if folder.startswith("//") and not bpy.data.filepath:
+        raise ValueError(f"{folder}: // is beside the .blend, which isn't saved yet; accepted: a saved file, or a whole path")
+    return Path(bpy.path.abspath(folder)) / ocean.clean_name(obj.name)
+
+
+class Baking(threading.Thread):
+    """One bake, from start() until it isn't alive."""
+
+    def __init__(self, scene, out):
+        super().__init__(daemon=True)
+        self.cancel = pelagic.Cancel()
+        self.text = "Bake: planning"
+        self.report, self.problem = None, ""
+        self._scene, self._out = scene, out
+
+    def run(self):
+        try:
+            self.report = pelagic.bake(self._scene, self._out, progress=self._tell, cancel=self.cancel)
+        except (ValueError, OSError, MemoryError, RuntimeError) as error:
+            self.problem = str(error) or type(error).__name__
+
+    def _tell(self, stage, _frame, done, kept, total, built):
+        if stage == "frames":
+            self.text = f"Bake: {done + kept} of {total} frames"
+        elif stage == "building":
+            self.text = f"Bake: the sea, {100 * built:.0f} %"
+
+    def outcome(self):
+        """The kind of a report, and its words."""
+        if self.problem:
+            return "ERROR", self.problem
+        report = self.report
+        text = f"{report.done} frames baked" + (f", {report.kept} were there" if report.kept else "")
+        if report.cancelled:
+            return "WARNING", f"Stopped: {text}, of {report.total}. The next bake goes on from there"
+        return "INFO", f"{text}, in {report.seconds:.1f} s: {report.record.parent}"
+
+
+_baking = None  # the one that runs
+
+
+class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
+    """Bake the scene's frames of the ocean to disk, as USD and maps. Esc stops it; the next bake goes on from there"""
+
+    bl_idname = "pelagic.bake"
+    bl_label = "Bake"
+
+    _timer = None
+
+    @classmethod
+    def poll(cls, context):
+        return _baking is None and super().poll(context)
+
+    def _begin(self, context):
+        try:
+            scene, remarks = shot_of(context, context.object)
+            baking = Baking(scene, folder_of(context.object))
+        except (ValueError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return None
+        for remark in remarks:
+            self.report({"WARNING"}, remark)
+        return baking
+
+    def _end(self, baking):
+        kind, text = baking.outcome()
+        self.report({kind}, text)
+        return {"CANCELLED"} if kind == "ERROR" else {"FINISHED"}
+
+    def execute(self, context):
+        baking = self._begin(context)
+        if baking is None:
+            return {"CANCELLED"}
+        baking.run()
+        return self._end(baking)
+
+    def invoke(self, context, _event):
+        global _baking
+        if bpy.app.background:
+            return self.execute(context)
+        _baking = self._begin(context)
+        if _baking is None:
+            return {"CANCELLED"}
+        _baking.start()
+        self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        global _baking
+        if event.type == "ESC" and event.value == "PRESS":
+            _baking.cancel.set()
+            return {"RUNNING_MODAL"}
+        if event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        context.workspace.status_text_set(f"{_baking.text}   Esc: stop")
+        _redraw(context)
+        if _baking.is_alive():
+            return {"PASS_THROUGH"}
+        ended, _baking = _baking, None
+        context.window_manager.event_timer_remove(self._timer)
+        context.workspace.status_text_set(None)
+        _redraw(context)
+        return self._end(ended)
+
+
+class PELAGIC_OT_stop_bake(bpy.types.Operator):
+    """Stop the bake; the next one goes on from there"""
+
+    bl_idname = "pelagic.stop_bake"
+    bl_label = "Stop"
+
+    @classmethod
+    def poll(cls, _context):
+        return _baking is not None
+
+    def execute(self, _context):
+        _baking.cancel.set()
+        return {"FINISHED"}
+
+
+def _redraw(context):
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in {"PROPERTIES", "VIEW_3D"}:
+                area.tag_redraw()
+
+
+@persistent
+def _stop(*_):
+    """Another file is coming, or the add-on goes: nobody would look after the bake any more."""
+    global _baking
+    if _baking is not None:
+        _baking.cancel.set()
+        _baking.join()
+        _baking = None
+
+
+def _draw(self, context):
+    """The end of the Output panels."""
+    layout, settings = self.layout, context.object.pelagic_bake
+    layout.prop(settings, "folder")
+    row = layout.row(align=True)
+    if _baking is not None:
+        row.label(text=_baking.text, icon="SORTTIME")
+        row.operator(PELAGIC_OT_stop_bake.bl_idname, icon="X")
+    else:
+        row.operator(PELAGIC_OT_bake.bl_idname, icon="RENDER_ANIMATION")
+    layout.operator(PELAGIC_OT_export_shot.bl_idname, icon="EXPORT")
+
+
+class PELAGIC_PG_bake(bpy.types.PropertyGroup):
+    folder: StringProperty(name="Folder", default="//bakes", subtype="DIR_PATH",
+                           description="Where bakes go, each ocean's into a folder of its name. // is beside the .blend")
+
+
+CLASSES = (PELAGIC_PG_bake, PELAGIC_OT_bake, PELAGIC_OT_stop_bake)
+PANELS = ("PELAGIC_PT_object_output", "PELAGIC_PT_view_output")
+
+
+def register():
+    for made in CLASSES:
+        bpy.utils.register_class(made)
+    bpy.types.Object.pelagic_bake = PointerProperty(type=PELAGIC_PG_bake, name="Bake")
+    bpy.app.handlers.load_pre.append(_stop)
+    for name in PANELS:
+        getattr(bpy.types, name).append(_draw)
+
+
+def unregister():
+    _stop()
+    for name in PANELS:
+        getattr(bpy.types, name).remove(_draw)
+    bpy.app.handlers.load_pre.remove(_stop)
+    del bpy.types.Object.pelagic_bake
+    for made in reversed(CLASSES):
+        bpy.utils.unregister_class(made)

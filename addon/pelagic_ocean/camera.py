@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A Blender camera as a shot's, and back: where it is, what it looks at, its angle of view and its roll.
+
+Blender keeps single precision. What goes into a shot is the shortest decimal that gives the same number, so that a shot
+that was imported comes out as it went in.
+"""
+
+import math
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from . import compat, ocean
+from .module import pelagic
+from .operators import CLIP_END_M
+from .properties import shortest, shortest_for
+
+FILM_MM = 36.0
+ROLL_DIGITS = 4  # of degrees: 1e-4 is a fiftieth of a pixel at the edge of an 8K picture
+SAME_DIRECTION = 1e-3  # radians
+# What a straight line between two keys may miss, in a pose's numbers: 10 µm, 1e-5° of view, 2e-4° of roll.
+TOLERANCE = np.array([1e-5] * 6 + [1e-5, 2e-4])
+
+
+@dataclass(frozen=True)
+class Pose:
+    position_m: tuple
+    look_at_m: tuple
+    fov_deg: float
+    roll_deg: float
+
+    def numbers(self):
+        return (*self.position_m, *self.look_at_m, self.fov_deg, self.roll_deg)
+
+
+# ---- Out of Blender
+
+
+def half_film_mm(data, render):
+    """Half of what the picture's width is on the film."""
+    width = render.resolution_x * render.pixel_aspect_x
+    height = render.resolution_y * render.pixel_aspect_y
+    fit = data.sensor_fit
+    if fit == "VERTICAL":
+        return 0.5 * data.sensor_height * width / height
+    return 0.5 * data.sensor_width * (width / height if fit == "AUTO" and height > width else 1.0)
+
+
+def fov_deg(data, render):
+    half = half_film_mm(data, render)
+    angle = math.degrees(2.0 * math.atan(half / data.lens))
+    angle = shortest_for(angle, lambda deg: half / math.tan(math.radians(deg) / 2.0), data.lens)
+    low, high = ocean.FOV_DEG
+    return min(max(angle, low), high)
+
+
+def _target(camera):
+    """What the camera, or what carries it, tracks."""
+    for obj in (camera, camera.parent):
+        for constraint in obj.constraints if obj else ():
+            if constraint.type == "TRACK_TO" and constraint.target and not constraint.mute:
+                return constraint.target
+    return None
+
+
+def pose_of(obj, bpy_scene, depsgraph=None):
+    """The pose of the scene's camera as the ocean object sees it."""
+    camera, target = bpy_scene.camera, _target(bpy_scene.camera)
+    pinhole = ocean.pinhole_of(obj, bpy_scene, depsgraph)
+    look_at = pinhole.position_m + ocean.LOOK_AHEAD_M * pinhole.forward
+    if depsgraph:
+        camera, obj = camera.evaluated_get(depsgraph), obj.evaluated_get(depsgraph)
+    if target:
+        place = (target.evaluated_get(depsgraph) if depsgraph else target).matrix_world.translation
+        place = obj.matrix_world.inverted_safe() @ place
+        if (place - pinhole.position_m).angle(pinhole.forward, math.pi) < SAME_DIRECTION:
+            look_at = place
+    return Pose(tuple(map(shortest, pinhole.position_m)), tuple(map(shortest, look_at)),
+                fov_deg(camera.data, bpy_scene.render), round(pinhole.roll_deg(), ROLL_DIGITS) + 0.0)
+
+
+def needed_keys(poses):
+    """The frames of {frame: Pose} that have to be keys: the others lie on the straight lines between them."""
+    frames = np.array(sorted(poses))
+    numbers = np.array([poses[frame].numbers() for frame in frames.tolist()])
+    kept, at = [0], 0
+    while at < len(frames) - 1:
+        to = at + 1  # always possible; then as far as one line goes
+        while to + 1 < len(frames):
+            share = ((frames[at + 1:to + 1] - frames[at]) / (frames[to + 1] - frames[at]))[:, None]
+            line = numbers[at] + share * (numbers[to + 1] - numbers[at])
+            if (np.abs(line - numbers[at + 1:to + 1]) > TOLERANCE).any():
+                break
+            to += 1
+        kept.append(to)
+        at = to
+    if len(kept) == 2 and (numbers[kept[0]] == numbers[kept[1]]).all():
+        kept = kept[:1]
+    return [int(frames[index]) for index in kept]
+
+
+def set_poses(scene, poses):
+    """A camera of {frame: Pose}: still, or a key where its way bends or it rolls."""
+    kept = needed_keys(poses)
+    first = poses[kept[0]]
+    zooms = any(poses[frame].fov_deg != first.fov_deg for frame in kept)
+    default = pelagic.Scene().camera
+    scene.camera.fov_deg = default.fov_deg if zooms else first.fov_deg
+    if len(kept) == 1 and not first.roll_deg:
+        scene.camera.position_m, scene.camera.look_at_m, scene.camera.keys = first.position_m, first.look_at_m, ()
+        return
+    scene.camera.position_m, scene.camera.look_at_m = default.position_m, default.look_at_m
+    scene.camera.keys = tuple(
+        pelagic.CameraKey(frame, pose.position_m, pose.look_at_m, pose.fov_deg if zooms else None, pose.roll_deg)
+        for frame, pose in ((frame, poses[frame]) for frame in kept))
+
+
+@contextmanager
+def _oceans_at_rest():
+    """Frames change without the seas': only what carries the camera matters."""
+    handlers = bpy.app.handlers.frame_change_post
+    before = list(handlers)
+    costly = {f"{__package__}.{name}" for name in ("play", "viewport", "baked")}
+    handlers[:] = [each for each in before if each.__module__ not in costly]
+    try:
+        yield
+    finally:
+        handlers[:] = before
+
+
+def animated_poses(context, obj):
+    """{frame: Pose} of the scene's camera for every frame of its range."""
+    bpy_scene = context.scene
+    now = bpy_scene.frame_current, bpy_scene.frame_subframe
+    poses = {}
+    with _oceans_at_rest():
+        for frame in range(bpy_scene.frame_start, bpy_scene.frame_end + 1):
+            bpy_scene.frame_set(frame)
+            poses[frame] = pose_of(obj, bpy_scene, context.evaluated_depsgraph_get())
+    bpy_scene.frame_set(now[0], subframe=now[1])
+    return poses
+
+
+# ---- Into Blender
+
+
+def _lens_mm(angle_deg):
+    return 0.5 * FILM_MM / math.tan(math.radians(angle_deg) / 2.0)
+
+
+def _keyframe(owner, path, values):
+    """Straight lines between these values of a property, {frame: value}."""
+    for frame, value in values.items():
+        setattr(owner, path, value)
+        owner.keyframe_insert(path, frame=frame)
+    for curve in compat.curves(owner):
+        for point in curve.keyframe_points:
+            point.interpolation = "LINEAR"
+
+
+def make(context, scene, name):
+    """The shot's camera: it tracks an empty where it looks, and hangs in another if it rolls. Returns the camera."""
+    poses = {key.frame: Pose(key.position_m, key.look_at_m, key.fov_deg or scene.camera.fov_deg, key.roll_deg)
+             for key in scene.camera.keys}
+    poses = poses or {1: Pose(scene.camera.position_m, scene.camera.look_at_m, scene.camera.fov_deg, 0.0)}
+    first = poses[min(poses)]
+    data = bpy.data.cameras.new(f"{name} Camera")
+    data.sensor_fit, data.sensor_width, data.lens = "HORIZONTAL", FILM_MM, _lens_mm(first.fov_deg)
+    data.clip_end = CLIP_END_M
+    camera = bpy.data.objects.new(data.name, data)
+    target = bpy.data.objects.new(f"{name} Target", None)
+    made = [camera, target]
+    carrier = camera
+    if any(pose.roll_deg for pose in poses.values()):
+        carrier = camera.parent = bpy.data.objects.new(f"{name} Rig", None)
+        made.append(carrier)
+        camera.rotation_euler.z = -math.radians(first.roll_deg)
+    for each in made:
+        context.collection.objects.link(each)
+    carrier.location, target.location = first.position_m, first.look_at_m
+    track = carrier.constraints.new("TRACK_TO")
+    track.target, track.track_axis, track.up_axis = target, "TRACK_NEGATIVE_Z", "UP_Y"
+    if len(poses) > 1:
+        _keyframe(carrier, "location", {frame: pose.position_m for frame, pose in poses.items()})
+        _keyframe(target, "location", {frame: pose.look_at_m for frame, pose in poses.items()})
+        if carrier != camera:
+            _keyframe(camera, "rotation_euler",
+                      {frame: (0, 0, -math.radians(pose.roll_deg)) for frame, pose in poses.items()})
+        if any(pose.fov_deg != first.fov_deg for pose in poses.values()):
+            every = range(min(poses), max(poses) + 1)  # angles go straight, focal lengths don't
+            angles = np.interp(every, list(poses), [pose.fov_deg for pose in poses.values()])
+            _keyframe(data, "lens", dict(zip(every, map(_lens_mm, angles))))
+    return camera

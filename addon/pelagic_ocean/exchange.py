@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shot files in and out: what was imported comes out as it went in."""
+
+import math
+from pathlib import Path
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+from bpy_extras.io_utils import ExportHelper, ImportHelper
+
+from . import camera, ocean
+from .module import pelagic
+from .operators import NeedsModule, show_now
+from .query import first_ocean
+
+OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; accepted: a patch or the camera's grid "
+            "(Surface, Release Mesh)")
+
+# ---- Out
+
+
+def shot_of(context, obj):
+    """The whole shot of an ocean: a pelagic.Scene, and sentences about what it can't say. ValueError for what a shot file
+    can't say at all."""
+    if obj.pelagic.own_mesh:
+        raise ValueError(f"{obj.name}: {OWN_MESH}")
+    bpy_scene = context.scene
+    scene = ocean.scene_of(obj, bpy_scene, context.evaluated_depsgraph_get())
+    remarks = []
+    _, rotation, scale = obj.matrix_world.decompose()
+    if max(abs(each - 1.0) for each in scale) > 1e-6:
+        remarks.append(f"{obj.name} is scaled: the shot's sea is in its own metres, without the scale")
+    if rotation.angle > 1e-6 or obj.matrix_world.translation.length > 0.0:
+        remarks.append(f"{obj.name} is moved or turned: the shot's camera is as seen from it, the sun stays")
+    if obj.animation_data and obj.animation_data.action:
+        remarks.append(f"{obj.name} is animated: the shot has its settings at frame {bpy_scene.frame_current}")
+    if ocean.pinhole_of(obj, bpy_scene) is None:
+        remarks.append("the scene has no perspective camera: the shot has the default one")
+    else:
+        if bpy_scene.camera.data.shift_x or bpy_scene.camera.data.shift_y:
+            remarks.append(f"{bpy_scene.camera.name} has a lens shift, which a shot can't say")
+        if bpy_scene.render.pixel_aspect_x != bpy_scene.render.pixel_aspect_y:
+            remarks.append("a shot can't say that pixels aren't square")
+        camera.set_poses(scene, camera.animated_poses(context, obj))
+    problems = scene.validate()
+    if problems:
+        raise ValueError("\n".join(problems))
+    return scene, remarks
+
+
+def set_frame_rate(render, fps):
+    """The whole number above and a base: Blender has no other rates."""
+    render.fps = max(1, math.ceil(fps - 1e-9))
+    render.fps_base = render.fps / fps
+
+
+class PELAGIC_OT_export_shot(NeedsModule, ExportHelper, bpy.types.Operator):
+    """Write the ocean with the scene's camera and frames as a shot file, for pelagic bake and pelagic render"""
+
+    bl_idname = "pelagic.export_shot"
+    bl_label = "Export Pelagic Shot"
+
+    filename_ext = ".toml"
+    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+
+    def invoke(self, context, event):
+        obj = ocean_of(context)
+        if obj and not self.filepath:
+            self.filepath = ocean.clean_name(obj.name) + self.filename_ext
+        return super().invoke(context, event)
+
+    def execute(self, context):
+        obj = ocean_of(context)
+        if obj is None:
+            self.report({"ERROR"}, "There is no ocean in this scene")
+            return {"CANCELLED"}
+        try:
+            scene, remarks = shot_of(context, obj)
+            scene.save(bpy.path.abspath(self.filepath))
+        except (ValueError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        for remark in remarks:
+            self.report({"WARNING"}, remark)
+        return {"FINISHED"}
+
+
+def ocean_of(context):
+    """The active ocean, else the scene's first."""
+    return context.object if ocean.is_ocean(context.object) else first_ocean(context.scene)
+
+
+# ---- In
+
+
+class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
+    """Add the ocean of a shot file with its camera, sun and sky, and give the scene its frames"""
+
+    bl_idname = "pelagic.import_shot"
+    bl_label = "Import Pelagic Shot"
+    bl_options = {"REGISTER", "UNDO"}
+
+    filename_ext = ".toml"
+    filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
+    set_scene: BoolProperty(name="Camera and Frames", default=True,
+                            description="Add the shot's camera, and give the scene its range, rate and resolution")
+
+    def execute(self, context):
+        path = Path(bpy.path.abspath(self.filepath)).absolute()
+        try:
+            scene = pelagic.Scene.from_file(path)
+            obj = ocean.make(scene.shot.name, context.collection)
+            try:
+                ocean.set_from(obj, scene)
+                if self.set_scene:
+                    _set_scene(context, scene)
+            except ValueError:
+                bpy.data.objects.remove(obj)
+                raise
+        except (ValueError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if scene.sea.is_measured:
+            obj.pelagic.sea.spectrum_file = str(Path(scene.sea.spectrum_file).absolute())
+        if scene.light.sky != pelagic.Scene().light.sky:
+            obj.pelagic.light.sky = str(Path(scene.light.sky).absolute())
+        obj.pelagic.horizon = False  # the shot's surface and no more
+        for other in context.selected_objects:
+            other.select_set(False)
+        obj.select_set(True)
+        context.view_layer.objects.active = obj
+        simulation = show_now(context, obj)
+        if simulation.problem:
+            self.report({"WARNING"}, simulation.problem)
+        if obj.name != scene.shot.name:
+            self.report({"WARNING"}, f"There is a {scene.shot.name} in this file already: this one is {obj.name}")
+        return {"FINISHED"}
+
+
+def _set_scene(context, scene):
+    """ValueError for frames that Blender doesn't have."""
+    first, last = scene.shot.frames
+    if first < 0:
+        raise ValueError(f"shot.frames = [{first}, {last}]: Blender's frames begin at 0")
+    bpy_scene = context.scene
+    bpy_scene.frame_start, bpy_scene.frame_end = first, last
+    bpy_scene.frame_set(min(max(bpy_scene.frame_current, first), last))
+    render = bpy_scene.render
+    set_frame_rate(render, scene.shot.fps)
+    render.resolution_x, render.resolution_y = scene.camera.resolution
+    render.resolution_percentage = 100
+    render.pixel_aspect_x = render.pixel_aspect_y = 1.0
+    bpy_scene.camera = camera.make(context, scene, scene.shot.name)
+
+
+CLASSES = (PELAGIC_OT_export_shot, PELAGIC_OT_import_shot)
+
+
+def _export_menu(self, _context):
+    self.layout.operator(PELAGIC_OT_export_shot.bl_idname, text="Pelagic Shot (.toml)")
+
+
+def _import_menu(self, _context):
+    self.layout.operator(PELAGIC_OT_import_shot.bl_idname, text="Pelagic Shot (.toml)")
+
+
+def register():
+    for made in CLASSES:
+        bpy.utils.register_class(made)
+    bpy.types.TOPBAR_MT_file_export.append(_export_menu)
+    bpy.types.TOPBAR_MT_file_import.append(_import_menu)
+
+
+def unregister():
+    bpy.types.TOPBAR_MT_file_export.remove(_export_menu)
+    bpy.types.TOPBAR_MT_file_import.remove(_import_menu)
+    for made in reversed(CLASSES):
+        bpy.utils.unregister_class(made)

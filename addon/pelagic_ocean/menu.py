@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Object → Pelagic: what is done to objects, in one place, so that Blender's search finds it too."""
+
+import bpy
+
+from .floating import PELAGIC_OT_float
+from .native import PELAGIC_OT_replace_ocean_modifier
+from .operators import PELAGIC_OT_use_mesh
+from .sampling import PELAGIC_OT_sample_heights
+
+
+class PELAGIC_MT_object(bpy.types.Menu):
+    bl_label = "Pelagic"
+
+    def draw(self, _context):
+        layout = self.layout
+        layout.operator(PELAGIC_OT_float.bl_idname)
+        layout.operator(PELAGIC_OT_float.bl_idname, text="Float No More").enabled = False
+        layout.operator_menu_enum(PELAGIC_OT_sample_heights.bl_idname, "into")
+        layout.separator()
+        layout.operator(PELAGIC_OT_use_mesh.bl_idname)
+        layout.operator(PELAGIC_OT_replace_ocean_modifier.bl_idname)
+
+
+def _menu(self, _context):
+    self.layout.menu(PELAGIC_MT_object.__name__)
+
+
+def register():
+    bpy.utils.register_class(PELAGIC_MT_object)
+    bpy.types.VIEW3D_MT_object.append(_menu)
+
+
+def unregister():
+    bpy.types.VIEW3D_MT_object.remove(_menu)
+    bpy.utils.unregister_class(PELAGIC_MT_object)

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where the water is: the live sea of an ocean object, which may be moved, turned and scaled."""
+
+import numpy as np
+from mathutils import Matrix
+
+from . import ocean, play
+
+
+def first_ocean(bpy_scene):
+    """The scene's first ocean by name, None if it has none."""
+    return min((obj for obj in bpy_scene.objects if ocean.is_ocean(obj)), key=lambda obj: obj.name, default=None)
+
+
+class Water:
+    """The sea of an ocean at one frame. Places are the ocean's own, in metres, with z = 0 at rest; `matrix` leads from
+    them to the world."""
+
+    def __init__(self, obj, bpy_scene, depsgraph=None, frame=None):
+        """frame: also between two; default the scene's. Without a depsgraph, which nobody may ask for while one is
+        being evaluated: as it plays just now. LookupError while the ocean has no sea."""
+        simulation = play.brought_up(obj, bpy_scene, depsgraph) if depsgraph else play.simulation_of(obj)
+        if simulation.sea is None:
+            raise LookupError(f"{obj.name} has no sea: {simulation.problem or 'it is being built'}")
+        frame = bpy_scene.frame_current_final if frame is None else frame
+        self._frame = simulation.frame_at(simulation.scene.shot.time_s(frame))
+        self.matrix = Matrix((obj.evaluated_get(depsgraph) if depsgraph else obj).matrix_world)
+
+    def carried(self, rest):
+        """Where the water is at this frame that is at rest (n, 2) in a calm sea: (n, 3)."""
+        rest = np.ascontiguousarray(rest, np.float32)
+        return self._frame.evaluate(rest, outputs=("position",))["position"].astype(float)
+
+    def heights(self, places):
+        """How high the surface is at places (n, 2): (n,)."""
+        return self._frame.heights(np.asarray(places, float), outputs=())["height_m"].astype(float)
+
+    def world_heights(self, points):
+        """The z in the world of the surface at points (n, 2) of the world: (n,). The ocean may be turned about z."""
+        to_sea, to_world = np.array(self.matrix.inverted_safe()), np.array(self.matrix)
+        places = np.asarray(points, float) @ to_sea[:2, :2].T + to_sea[:2, 3]
+        return self.heights(places) * to_world[2, 2] + to_world[2, 3]

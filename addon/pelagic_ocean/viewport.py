@@ -1,0 +1,361 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The viewport preview: the sea in solid and material views, lit in real time, with the scene's objects in it.
+
+One ocean is drawn at a time, by a handler that exists only while the preview is on. Its mesh is hidden meanwhile, and so
+isn't updated either; it is shown again for saving, and while some view needs it. Where the handler draws, and why:
+after the scene (POST_VIEW) Blender binds its overlay, whose colours are display values, with the scene's depth.
+"""
+
+import bpy
+import gpu
+from bpy.app.handlers import persistent
+from bpy.props import BoolProperty, PointerProperty
+
+from . import compat, ocean, play
+from .gpu_sea import Camera, Drawing
+from .module import pelagic
+
+SHADINGS = {"SOLID", "MATERIAL"}  # views that draw the preview; the others need the mesh
+# How fine a view's pixels count as: waves that only finer ones could show roughen the surface, so that a frame is cheap
+# to make and to upload. How coarse: there, hardly anything is left to save.
+FINEST_M, COARSEST_M = 1 / 32, 2.0
+STILL_S = 0.25  # a view that hasn't moved for so long gets the fine grid
+POLL_S = 0.02
+
+
+class Preview:
+    """The preview while it is on. A draw handler may not change data: it leaves that to _tend(), a timer's function."""
+
+    def __init__(self, obj):
+        self.name = obj.name_full
+        self._obj = obj
+        self.drawing = Drawing()
+        self.hidden_in = []  # (names of scene and view layer, whether it was selected)
+        self.problem = ""
+        self.seen = False  # whether a view has drawn since _tend()
+        self._settings = self._scene = None
+        self._job = None
+        self._refused = None  # settings that give no sea
+        self._handler = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
+
+    def close(self):
+        if self._handler is not None:
+            bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
+            self._handler = None
+
+    def obj(self):
+        """The ocean, also after undo; None if it is gone. Follows renaming."""
+        try:
+            self.name = self._obj.name_full
+        except ReferenceError:
+            self._obj = bpy.data.objects.get(self.name)
+        return self._obj if ocean.is_ocean(self._obj) else None
+
+    @property
+    def is_building(self):
+        return self._job is not None
+
+    def scene(self, obj, bpy_scene):
+        """The pelagic.Scene of the ocean as it is set now. ValueError for what the core refuses."""
+        settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene))
+        if settings != self._settings:
+            self._scene = ocean.scene_of(obj, bpy_scene, settings=settings[0])
+            self._settings = settings
+        return self._scene
+
+    def build(self, scene):
+        """Begins to make whatever the scene and the views need that isn't there. Whether there is something to draw."""
+        drawing = self.drawing
+        sea, light = drawing.sea, drawing.light
+        if self._job is None and self._settings != self._refused:
+            finest_m = FINEST_M if sea is None else min(max(drawing.finest_m() or sea.finest_m, FINEST_M),
+                                                                 COARSEST_M)
+            # A coarser one would save work, but not so much that every step of a zoom is worth a new sea.
+            keeps_sea = sea is not None and sea.serves(scene) and sea.finest_m <= finest_m <= 4 * sea.finest_m
+            keeps_light = light is not None and light.serves(scene)
+            if not (keeps_sea and keeps_light):
+                self._job = play.Job(self._settings, lambda: (
+                    sea if keeps_sea else pelagic.GpuSea(scene, finest_m),
+                    light if keeps_light else pelagic.GpuLight(scene)))
+        return sea is not None
+
+    def poll(self):
+        """Whether there is news from the thread."""
+        job = self._job
+        if job is None or job.is_alive():
+            return False
+        self._job = None
+        if job.made is None:
+            self.problem, self._refused = job.problem, job.key
+        else:
+            self.problem = ""
+            self.drawing.take(*job.made)
+        return True
+
+    def _draw(self):
+        try:
+            self._draw_view(bpy.context)
+        except Exception as error:  # once, in words, rather than at every redraw
+            self.problem = str(error) or type(error).__name__
+            self.close()
+            _tend_soon()
+
+    def _draw_view(self, context):
+        obj = self.obj()
+        self.seen = True
+        if obj is None or context.scene.objects.get(obj.name) != obj or self.wants_mesh():
+            _tend_soon()
+            return
+        scene = self.scene(obj, context.scene)
+        if self.build(scene) and self.hidden_in and context.space_data.shading.type in SHADINGS:
+            camera = Camera(gpu.matrix.get_projection_matrix(), gpu.matrix.get_model_view_matrix(),
+                            gpu.state.viewport_get()[2:], obj.matrix_world)
+            self.drawing.draw(context.region.as_pointer(), camera, scene.shot.time_s(context.scene.frame_current_final),
+                              scene.surface.cell_px, context.scene.view_settings.exposure,
+                              context.window_manager.pelagic_preview.show_sky)
+        if self.is_building or not self.hidden_in or self.drawing.is_coarse():
+            _tend_soon()
+
+    def wants_mesh(self):
+        """Whether some view shows the mesh itself."""
+        return any(space.shading.type not in SHADINGS for space in _spaces())
+
+    def hide(self):
+        """Hides the mesh in the windows' view layers."""
+        obj = self.obj()
+        for window in bpy.context.window_manager.windows:
+            layer = window.view_layer
+            key = (window.scene.name, layer.name)
+            if layer.objects.get(obj.name) == obj and not obj.hide_get(view_layer=layer):
+                selected = obj.select_get(view_layer=layer)
+                obj.hide_set(True, view_layer=layer)
+                if key not in (known for known, _ in self.hidden_in):
+                    self.hidden_in.append((key, selected))
+
+    def show(self):
+        """Undoes hide()."""
+        obj = self.obj()
+        for (scene_name, layer_name), selected in self.hidden_in:
+            bpy_scene = bpy.data.scenes.get(scene_name)
+            layer = bpy_scene.view_layers.get(layer_name) if bpy_scene else None
+            if obj is not None and layer is not None and layer.objects.get(obj.name) == obj:
+                obj.hide_set(False, view_layer=layer)
+                obj.select_set(selected, view_layer=layer)
+        self.hidden_in.clear()
+
+    def is_shown_again(self):
+        """Whether somebody has made the mesh visible that hide() hid."""
+        obj = self.obj()
+        return any(not obj.hide_get(view_layer=window.view_layer)
+                   for window in bpy.context.window_manager.windows
+                   if (window.scene.name, window.view_layer.name) in (known for known, _ in self.hidden_in)
+                   and window.view_layer.objects.get(obj.name) == obj)
+
+
+_preview = None
+_problem = ""  # why the last one went off by itself
+
+
+def _spaces():
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                yield area.spaces.active
+
+
+def _redraw():
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in {"VIEW_3D", "PROPERTIES"}:
+                area.tag_redraw()
+
+
+def is_on():
+    return _preview is not None
+
+
+def turn_on(obj):
+    """Draws an ocean from now on. RuntimeError, in words, where this Blender can't."""
+    global _preview, _problem
+    turn_off()
+    _problem = compat.shader_problem()
+    if _problem:
+        raise RuntimeError(_problem)
+    _preview = Preview(obj)
+    _redraw()
+
+
+def turn_off(problem=""):
+    global _preview, _problem
+    if _preview is None:
+        return
+    gone, _preview, _problem = _preview, None, problem
+    gone.close()
+    gone.show()
+    _redraw()
+
+
+# ---- What a draw handler leaves to do
+
+
+def _tend_soon():
+    if not bpy.app.timers.is_registered(_tend):
+        bpy.app.timers.register(_tend, first_interval=POLL_S)
+
+
+def _tend():
+    """A timer: hides and shows the mesh, takes what was built, draws a view again that has come to rest."""
+    preview = _preview
+    if preview is None:
+        return None
+    if preview._handler is None or preview.obj() is None:
+        turn_off(preview.problem)
+        return None
+    if preview.hidden_in and preview.is_shown_again():
+        turn_off()
+        return None
+    if preview.poll():
+        _redraw()
+    if preview.wants_mesh():
+        if preview.hidden_in:
+            preview.show()
+    elif preview.drawing.sea is not None and not preview.hidden_in:
+        preview.hide()
+        _redraw()
+    if preview.is_building:
+        return POLL_S
+    if preview.drawing.is_coarse():
+        # Views that were drawn since the last look are moving.
+        if not preview.seen:
+            _redraw()
+            return None
+        preview.seen = False
+        return STILL_S
+    return None
+
+
+# ---- The file's data
+
+
+@persistent
+def _before_save(*_):
+    if _preview is not None:
+        _preview.show()
+
+
+@persistent
+def _after_save(*_):
+    if _preview is not None:
+        _tend_soon()
+
+
+@persistent
+def _after_undo(*_):
+    """The mesh is as it was at that step: perhaps shown."""
+    if _preview is not None and _preview.obj() is not None and _preview.hidden_in:
+        _preview.hide()
+
+
+@persistent
+def _before_load(*_):
+    global _preview
+    if _preview is not None:
+        gone, _preview = _preview, None
+        gone.close()
+
+
+HANDLERS = (("save_pre", _before_save), ("save_post", _after_save), ("undo_post", _after_undo),
+            ("redo_post", _after_undo), ("load_pre", _before_load))
+
+
+# ---- For the artist
+
+
+class PELAGIC_OT_viewport_preview(bpy.types.Operator):
+    """Draw the sea in solid and material views as it is lit, to the horizon, and hide its mesh; or stop that"""
+
+    bl_idname = "pelagic.viewport_preview"
+    bl_label = "Viewport Preview"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context):
+        return is_on() or _ocean_of(context) is not None
+
+    def execute(self, context):
+        if is_on():
+            turn_off()
+            return {"FINISHED"}
+        try:
+            turn_on(_ocean_of(context))
+        except RuntimeError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+def _ocean_of(context):
+    """The active object, or else the first ocean that is seen; None without one."""
+    if pelagic is None:
+        return None
+    if ocean.is_ocean(context.object):
+        return context.object
+    return next((obj for obj in ocean.oceans() if obj.visible_get(view_layer=context.view_layer)), None)
+
+
+class PELAGIC_PG_preview(bpy.types.PropertyGroup):
+    show_sky: BoolProperty(name="Sky", default=False, update=lambda _group, _context: _redraw(),
+                           description="Draw the sky and the sun behind everything, too")
+
+
+class PELAGIC_PT_preview(bpy.types.Panel):
+    bl_label = "Viewport Preview"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Pelagic"
+
+    @classmethod
+    def poll(cls, context):
+        return is_on() or _ocean_of(context) is not None
+
+    def draw(self, context):
+        layout = self.layout
+        layout.operator(PELAGIC_OT_viewport_preview.bl_idname, icon="MOD_OCEAN", depress=is_on())
+        layout.prop(context.window_manager.pelagic_preview, "show_sky")
+        problem = _preview.problem if is_on() else _problem
+        if problem:
+            for line in problem.splitlines():
+                layout.label(text=line, icon="ERROR")
+        elif is_on() and _preview.wants_mesh():
+            layout.label(text="Waits: a view shows the mesh (Rendered, Wireframe)", icon="INFO")
+        elif is_on() and _preview.is_building:
+            layout.label(text="Building the sea…", icon="SORTTIME")
+
+
+def _header(self, context):
+    if PELAGIC_OT_viewport_preview.poll(context):
+        self.layout.operator(PELAGIC_OT_viewport_preview.bl_idname, text="", icon="MOD_OCEAN", depress=is_on())
+
+
+CLASSES = (PELAGIC_OT_viewport_preview, PELAGIC_PG_preview, PELAGIC_PT_preview)
+
+
+def register():
+    for made in CLASSES:
+        bpy.utils.register_class(made)
+    bpy.types.WindowManager.pelagic_preview = PointerProperty(type=PELAGIC_PG_preview)
+    bpy.types.VIEW3D_HT_header.append(_header)
+    for where, handler in HANDLERS:
+        getattr(bpy.app.handlers, where).append(handler)
+
+
+def unregister():
+    turn_off()
+    if bpy.app.timers.is_registered(_tend):
+        bpy.app.timers.unregister(_tend)
+    for where, handler in HANDLERS:
+        getattr(bpy.app.handlers, where).remove(handler)
+    bpy.types.VIEW3D_HT_header.remove(_header)
+    del bpy.types.WindowManager.pelagic_preview
+    for made in reversed(CLASSES):
+        bpy.utils.unregister_class(made)

@@ -1,0 +1,147 @@
+#include "core/scene/presets.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "core/scene/names.h"
+
+namespace pelagic {
+namespace {
+
+struct Force {
+    const char* name;
+    double wind_speed_mps;
+    double fetch_km;  // with which a JONSWAP sea has the table's height
+    const char* help;
+};
+
+// What the sea looks like: after the same table's descriptions, shortened.
+constexpr std::array<Force, 13> kForces{{
+    {"Calm", 0.0, 100.0, "like a mirror"},
+    {"Light air", 0.9, 100.0, "ripples without crests"},
+    {"Light breeze", 2.4, 200.0, "small wavelets, glassy crests that don't break"},
+    {"Gentle breeze", 4.4, 300.0, "large wavelets, the first scattered whitecaps"},
+    {"Moderate breeze", 6.7, 50.0, "small waves that grow longer, fairly frequent whitecaps; 1 m"},
+    {"Fresh breeze", 9.3, 100.0, "moderate, long waves, many whitecaps; 2 m"},
+    {"Strong breeze", 12.3, 130.0, "large waves, white crests everywhere; 3 m"},
+    {"Near gale", 15.5, 150.0, "the sea heaps up, foam begins to be blown in streaks; 4 m"},
+    {"Gale", 18.9, 200.0, "moderately high, longer waves, foam in marked streaks; 5.5 m"},
+    {"Strong gale", 22.6, 230.0, "high waves, dense streaks, crests begin to topple; 7 m"},
+    {"Storm", 26.4, 280.0, "very high waves with overhanging crests, the sea looks white; 9 m"},
+    {"Violent storm", 30.5, 350.0, "exceptionally high waves, long white patches everywhere; 11.5 m"},
+    {"Hurricane", 35.0, 400.0, "the air is full of foam, the sea white; 14 m"},
+}};
+
+Preset beaufort(int number) {
+    const Force& force = kForces[static_cast<std::size_t>(number)];
+    return {.name = "beaufort-" + std::to_string(number),
+            .label = std::to_string(number) + ' ' + force.name,
+            .help = force.help,
+            .group = PresetGroup::Beaufort,
+            .values = {{"sea.wind_speed_mps", force.wind_speed_mps},
+                       {"sea.fetch_m", force.fetch_km * 1e3},
+                       {"sea.spectrum", std::string(word_of(SpectrumKind::Jonswap))}}};
+}
+
+// All keys of the tables that a named sea sets, as they are in this scene.
+Preset named(const char* name, const char* label, const char* help, const Scene& scene) {
+    Preset preset{.name = name, .label = label, .help = help, .group = PresetGroup::Sea, .values = {}};
+    for (const KeyTable& table : key_tables()) {
+        if (table.name != "sea" && table.name != "waves" && table.name != "light" && table.name != "water")
+            continue;
+        for (const Key& key : table.keys)
+            if (key.set && key.is_built) preset.values.emplace_back(key.path, value_of(scene, key));
+    }
+    return preset;
+}
+
+std::vector<Preset> named_seas() {
+    std::vector<Preset> out;
+    Scene glassy;
+    glassy.sea.wind_speed_mps = 0.0;
+    glassy.sea.swell = {{2.4, 10.5, 100.0}, {0.6, 6.0, 55.0}, {0.08, 2.6, 150.0}};
+    glassy.light = {.sun_elevation_deg = 14.0, .sun_azimuth_deg = 48.0};
+    out.push_back(named("glassy-swell", "Glassy swell", "long swell without wind, the sun low", glassy));
+
+    Scene trade;
+    trade.sea.wind_speed_mps = 8.0;
+    trade.sea.fetch_m = 1e6;
+    trade.sea.spectrum = SpectrumKind::Elfouhaily;
+    trade.sea.spreading = SpreadingKind::Elfouhaily;
+    trade.sea.swell = {{1.2, 9.5, 340.0}};
+    trade.light = {.sun_elevation_deg = 48.0, .sun_azimuth_deg = 130.0};
+    out.push_back(named("trade-wind", "Trade wind", "a steady breeze over deep blue water at noon", trade));
+
+    Scene coast;
+    coast.sea.wind_speed_mps = 7.0;
+    coast.sea.fetch_m = 15e3;
+    coast.sea.depth_m = 6.0;
+    coast.sea.spectrum = SpectrumKind::Tma;
+    coast.light = {.sun_elevation_deg = 32.0, .sun_azimuth_deg = 60.0};
+    coast.water = {.type = WaterType::Coastal, .chlorophyll_mg_m3 = 2.0};
+    out.push_back(named("coastal-bay", "Coastal bay", "short, steep waves over shallow green water", coast));
+
+    Scene evening;
+    evening.sea.wind_speed_mps = 5.0;
+    evening.sea.fetch_m = 100e3;
+    evening.sea.swell = {{0.8, 8.0, 200.0}};
+    evening.light = {.sun_elevation_deg = 4.0, .sun_azimuth_deg = 90.0};
+    out.push_back(
+        named("evening-breeze", "Evening breeze", "light wind, the sun's path on the water", evening));
+
+    Scene gale;
+    gale.sea.wind_speed_mps = 24.0;
+    gale.sea.fetch_m = 400e3;
+    gale.sea.depth_m = 90.0;
+    gale.sea.spectrum = SpectrumKind::Tma;
+    gale.sea.spreading = SpreadingKind::DonelanBanner;
+    gale.waves.choppiness = 1.15;
+    gale.light = {.sun_elevation_deg = 24.0, .sun_azimuth_deg = 35.0};
+    gale.water = {.type = WaterType::Coastal, .chlorophyll_mg_m3 = 1.0};
+    out.push_back(
+        named("north-sea-storm", "North Sea storm", "a storm over a shelf sea, streaked with foam", gale));
+
+    Scene southern;
+    southern.sea.wind_speed_mps = 17.0;
+    southern.sea.fetch_m = 900e3;
+    southern.sea.swell = {{5.0, 15.0, 20.0}, {2.0, 12.0, 320.0}};
+    southern.light = {.sun_elevation_deg = 16.0, .sun_azimuth_deg = 60.0};
+    out.push_back(
+        named("southern-ocean", "Southern Ocean", "a gale over a swell as high as a house", southern));
+    return out;
+}
+
+}  // namespace
+
+std::string_view word_of(PresetGroup group) {
+    return group == PresetGroup::Beaufort ? "beaufort" : "sea";
+}
+
+std::span<const Preset> presets() {
+    static const std::vector<Preset> all = [] {
+        std::vector<Preset> out;
+        for (int force = 0; force < static_cast<int>(kForces.size()); ++force) out.push_back(beaufort(force));
+        std::vector<Preset> seas = named_seas();
+        std::move(seas.begin(), seas.end(), std::back_inserter(out));
+        return out;
+    }();
+    return all;
+}
+
+const Preset* find_preset(std::string_view name) {
+    for (const Preset& preset : presets())
+        if (preset.name == name) return &preset;
+    return nullptr;
+}
+
+void apply(const Preset& preset, Scene& scene) {
+    for (const auto& [path, value] : preset.values) {
+        // A buoy's hour stands in the way of any other spectrum.
+        if (path == "sea.spectrum") scene.sea.measured.reset();
+        if (const auto problem = set_value(scene, key_of(path), value))
+            throw std::logic_error("a preset that doesn't fit its key: " + text_of(*problem));
+    }
+}
+
+}  // namespace pelagic

@@ -1,0 +1,228 @@
+// pelagic.bake and pelagic.Maps: what `pelagic bake` runs, into files and into arrays.
+#include "plugin/bake/bake.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/base/precision.h"
+#include "core/plan/plan.h"
+#include "core/waves/frame.h"
+#include "plugin/bake/output_part.h"
+#include "plugin/python/arrays.h"
+#include "plugin/python/bindings.h"
+#include "plugin/python/values.h"
+#include "plugin/python/watch.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+
+// ---- Files
+
+const char* word_of(BakeStage stage) {
+    switch (stage) {
+        case BakeStage::Planning:
+            return "planning";
+        case BakeStage::Building:
+            return "building";
+        case BakeStage::Frames:
+            return "frames";
+    }
+    throw std::logic_error("a bake in no stage");
+}
+
+using FramesAsked = std::variant<int, std::string, std::vector<int>>;
+
+std::vector<int> frames_of(const std::optional<FramesAsked>& asked, const Shot& shot) {
+    if (!asked) return {};
+    if (const auto* text = std::get_if<std::string>(&*asked)) return parse_frames(*text, shot);
+    if (const int* one = std::get_if<int>(&*asked)) return {*one};
+    std::vector<int> frames = std::get<std::vector<int>>(*asked);
+    if (frames.empty())
+        throw py::value_error("frames: are none; accepted: frames, or None for the whole shot");
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    return frames;
+}
+
+BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
+                    const std::optional<FramesAsked>& frames, const py::object& progress,
+                    const py::object& cancel) {
+    require_valid(scene);
+    Watch watch(progress, cancel);
+    const Scene kept = scene;
+    BakeOptions options{.out = out.value_or(kept.shot.name),
+                        .frames = frames_of(frames, kept.shot),
+                        .progress =
+                            [&](const BakeProgress& now) {
+                                watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total,
+                                           now.built);
+                            },
+                        .cancel = watch.flag()};
+    BakeReport report;
+    {
+        const py::gil_scoped_release others_may_run;
+        report = bake(kept, options);
+    }
+    watch.rethrow();
+    return report;
+}
+
+void add_bake_report(py::module_& module) {
+    py::class_<BakeReport>(module, "BakeReport", "What a bake did.")
+        .def_readonly("root", &BakeReport::root, "The stage, DIR/NAME.usda; an empty path without a mesh.")
+        .def_readonly("maps", &BakeReport::maps, "The folder of the maps; an empty path without maps.")
+        .def_readonly("record", &BakeReport::record, "DIR/NAME.json.")
+        .def_readonly("done", &BakeReport::done, "Frames that were baked.")
+        .def_readonly("kept", &BakeReport::kept, "Frames that were whole already.")
+        .def_readonly("total", &BakeReport::total, "Frames that were asked for.")
+        .def_readonly("cancelled", &BakeReport::cancelled,
+                      "Whether it was cancelled; what is in the files is whole, and the next bake goes on.")
+        .def_readonly("seconds", &BakeReport::seconds, "From the call to its end.")
+        .def_readonly("stale", &BakeReport::stale,
+                      "Frames of the shot that lie there and belong to another version of it, not asked for.")
+        .def_readonly("foreign", &BakeReport::foreign,
+                      "Files that lie there and aren't the shot's, a line each.")
+        .def_property_readonly("times", &time_text,
+                               "Where the time went, a line; empty where nothing was baked.");
+}
+
+// ---- Arrays
+
+// The maps of a scene at any time.
+class Maps {
+  public:
+    virtual ~Maps() = default;
+    // The values of each output, in the plan's order.
+    virtual std::vector<Values> at(double t_s) = 0;
+    virtual const Plan& plan() const = 0;
+};
+
+template <class T>
+class MapsOf final : public Maps {
+  public:
+    MapsOf(Plan plan, const BuildWatch& watch)
+        : frame_(std::make_shared<const Sea<T>>(std::move(plan), watch)),
+          parts_(make_parts(frame_.sea().plan())) {}
+
+    std::vector<Values> at(double t_s) override {
+        frame_.set(t_s);
+        std::vector<Values> values;
+        for (const auto& part : parts_) {
+            const auto slot = part->make_slot();
+            part->compute(frame_, 0, *slot);  // the number is for surfaces that a camera shapes
+            values.push_back(std::move(slot->values));
+        }
+        return values;
+    }
+    const Plan& plan() const override { return frame_.sea().plan(); }
+
+  private:
+    Frame<T> frame_;
+    std::vector<std::unique_ptr<OutputPart>> parts_;
+};
+
+std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::string>& maps, bool tiles,
+                                const py::object& progress, const py::object& cancel) {
+    Scene asked = scene;
+    asked.output.mesh = MeshFormat::None;
+    asked.output.cascade_tiles = tiles;
+    set_from_python(asked, key_at("output.maps"), py::cast(maps));
+    require_valid(asked);
+    Watch watch(progress, cancel);
+    const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
+    try {
+        const py::gil_scoped_release others_may_run;
+        Plan plan = plan_bake(asked);
+        return with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
+            return std::make_unique<MapsOf<T>>(std::move(plan), building);
+        });
+    } catch (const BuildCancelled& cancelled) {
+        watch.rethrow();
+        throw Cancelled(cancelled.what());
+    }
+}
+
+// The arrays of one output, n × n texels, by product.
+void add_arrays(py::dict& arrays, Values& values) {
+    for (const ProductRow& row : kProductTable) {
+        const std::size_t texels = values.size(row.product);
+        if (texels == 0) continue;
+        const auto n = static_cast<py::ssize_t>(std::llround(std::sqrt(static_cast<double>(texels))));
+        if (row.components == 1)
+            arrays[row.identifier] =
+                array_of<float>(std::move(values.numbers(NumberProduct::checked(row.product))), {n, n});
+        else
+            arrays[row.identifier] =
+                array_of<float>(std::move(values.vectors(VectorProduct::checked(row.product))), {n, n});
+    }
+}
+
+// By square: the patch first, then each cascade's tile.
+py::tuple maps_at(Maps& self, double t_s) {
+    std::vector<Values> values;
+    {
+        const py::gil_scoped_release others_may_run;
+        values = self.at(t_s);
+    }
+    py::dict patch;
+    py::list tiles;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::optional<int> cascade = self.plan().outputs[i].cascade;
+        while (cascade && static_cast<int>(tiles.size()) <= *cascade) tiles.append(py::dict());
+        py::dict to = cascade ? tiles[*cascade].cast<py::dict>() : patch;
+        add_arrays(to, values[i]);
+    }
+    return py::make_tuple(patch, tiles);
+}
+
+}  // namespace
+
+void add_bake(py::module_& module) {
+    add_bake_report(module);
+    module.def(
+        "bake", &run_bake, py::arg("scene"), py::arg("out") = py::none(), py::arg("frames") = py::none(),
+        py::arg("progress") = py::none(), py::arg("cancel") = py::none(),
+        "Bakes a scene into files, as `pelagic bake` does, and the same bits. Files that are whole "
+        "already are kept. Other threads run meanwhile.\n\n"
+        "out: the folder, made where it is missing; by default ./NAME. frames: a frame, a list, a text like "
+        "\"1-48x5\", or None for the whole shot.\n"
+        "progress: called as progress(stage, frame, done, kept, total, built) from any thread: \"planning\", "
+        "\"building\" (built: the share of the sea that is) or \"frames\"; the frame finished last; frames "
+        "written, kept, and asked for. cancel: a Cancel, or a callable that is asked as often and is true "
+        "when it is enough: the bake ends soon, and its report says so.\n"
+        "FileError where a file can't be written, ShotError for a scene that is refused, ValueError for "
+        "frames outside the shot.");
+    py::class_<Maps>(
+        module, "Maps",
+        "The maps of a scene as arrays, the values that a bake writes, in the quality's precision.\n\n"
+        "maps: names of output.maps: what is computed at output.map_resolution over the patch of "
+        "surface.size_m. tiles: the same over each cascade's periodic tile. progress, cancel: as "
+        "Sea's.")
+        .def(py::init(&make_maps), py::arg("scene"),
+             py::arg("maps") = py::make_tuple("displacement", "normal", "slope-variance", "whitecaps"),
+             py::kw_only(), py::arg("tiles") = false, py::arg("progress") = py::none(),
+             py::arg("cancel") = py::none())
+        .def(
+            "at", &maps_at, py::arg("t"),
+            "(patch, tiles) at a time [s]: the patch's arrays, and a list of each cascade's, the largest first. "
+            "Each is a dict of float32 (n, n, 3): displacement [m], normal, slope_variance, jacobian, and (n, n): "
+            "coverage. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. One call at "
+            "a time.");
+}
+
+}  // namespace pelagic::python

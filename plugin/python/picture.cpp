@@ -1,0 +1,83 @@
+// pelagic.render: what `pelagic render` draws, as arrays.
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "plugin/python/arrays.h"
+#include "plugin/python/bindings.h"
+#include "plugin/python/light.h"
+#include "plugin/python/watch.h"
+#include "plugin/render/render.h"
+
+namespace pelagic::python {
+namespace {
+
+namespace py = pybind11;
+
+// A layer of the picture: a view of memory that it keeps alive.
+py::array layer_of(const py::capsule& owner, const Picture& picture, glm::vec3 SeaRadiance::*layer) {
+    constexpr auto kPixel = static_cast<py::ssize_t>(sizeof(SeaRadiance));
+    const py::ssize_t width = picture.resolution.x, height = picture.resolution.y;
+    return py::array_t<float>({height, width, py::ssize_t{3}},
+                              {kPixel * width, kPixel, static_cast<py::ssize_t>(sizeof(float))},
+                              &(picture.layers.front().*layer).x, owner);
+}
+
+py::dict render_frame(const Scene& scene, int frame, const std::optional<std::array<int, 2>>& size,
+                      std::optional<int> samples, const std::optional<std::string>& sky_quality,
+                      const py::object& progress, const py::object& cancel) {
+    Scene kept = scene;
+    if (size) kept.camera.resolution = {(*size)[0], (*size)[1]};
+    require_valid(kept);
+    RenderOptions options = render_options(kept);
+    if (samples) options.samples = *samples;
+    if (sky_quality) options.lighting.sky_quality = sky_quality_of(*sky_quality);
+    check_render(kept, options);
+    Watch watch(progress, cancel);
+    auto picture = std::make_unique<Picture>();
+    bool is_whole = false;
+    try {
+        const py::gil_scoped_release others_may_run;
+        const std::array frames{frame};
+        // Half of the way is the sea's: the first frame is about as long in the making.
+        Renderer renderer(kept, options, make_sky(kept), frames,
+                          {.progress = [&](double done) { watch.tell(0.5 * done); }, .cancel = watch.flag()});
+        is_whole = renderer.render(
+            frame, *picture,
+            {.progress = [&](double done) { watch.tell(0.5 + 0.5 * done); }, .cancel = watch.flag()});
+    } catch (const BuildCancelled&) {
+        is_whole = false;
+    }
+    watch.rethrow();
+    if (!is_whole) throw Cancelled("rendering was cancelled");
+    py::dict layers;
+    const Picture& made = *picture;
+    const py::capsule owner(picture.release(), [](void* held) { delete static_cast<Picture*>(held); });
+    for (const auto& [name, layer] : kLayers) layers[name] = layer_of(owner, made, layer);
+    layers["is_sea"] = py::array_t<bool>({py::ssize_t{made.resolution.y}, py::ssize_t{made.resolution.x}},
+                                         reinterpret_cast<const bool*>(made.sea.data()), owner);
+    return layers;
+}
+
+}  // namespace
+
+void add_picture(py::module_& module) {
+    module.def(
+        "render", &render_frame, py::arg("scene"), py::arg("frame"), py::arg("size") = py::none(),
+        py::arg("samples") = py::none(), py::kw_only(), py::arg("sky_quality") = py::none(),
+        py::arg("progress") = py::none(), py::arg("cancel") = py::none(),
+        "A frame through the scene's camera, as `pelagic render` draws it: a dict of float32 (height, width, 3), "
+        "rows from the top, in the sky's units, whose sum is the picture: \"sun\", \"sky\", \"sea\", \"foam\", by "
+        "the source of the light (behind the sea \"sky\" is the sky itself with the sun's disc); and "
+        "\"is_sea\", bool (height, width).\n\n"
+        "size: (width, height), by default the camera's. samples: N of N × N a pixel; sky_quality: \"one\", "
+        "\"nine\" or \"integral\"; by default the quality level's. progress: called with the share that is "
+        "done, 0 … 1. cancel: a Cancel, or a callable; Cancelled is then raised.");
+}
+
+}  // namespace pelagic::python

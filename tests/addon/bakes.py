@@ -1,0 +1,173 @@
+"""Bakes: baked in Blender as on the command line, and played from disk.
+
+    bakes.py -- PELAGIC_PROGRAM
+"""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+import pelagic
+
+from pelagic_ocean import baked, exchange
+
+program = sys.argv[-1]
+folder = Path(tempfile.mkdtemp())
+LIVE = {"position": "position", "velocity": "velocity", "slope_variance": "slope_variance",
+        "whitecap_coverage": "whitecap_coverage"}
+
+
+def shot_file(name, more=""):
+    path = folder / f"{name}.toml"
+    path.write_text(f'[shot]\nname = "{name}"\nframes = [1, 6]\n[sea]\nwind_speed_mps = 15.0\n{more}', encoding="utf-8")
+    return path
+
+
+def bake(path):
+    subprocess.run([program, "bake", str(path), "--out", str(folder / path.stem)], check=True, capture_output=True)
+    return folder / path.stem
+
+
+def played(path):
+    assert bpy.ops.pelagic.play_bake(filepath=str(path)) == {"FINISHED"}
+    return bpy.context.object
+
+
+PATCH = "[surface]\nsize_m = 90.0\nresolution = 48\n"
+GRID = """[surface]
+kind = "projected-grid"
+cell_px = 16.0
+[camera]
+resolution = [320, 180]
+keys = [ { frame = 1, position_m = [0.0, -60.0, 4.0], look_at_m = [0.0, 0.0, 0.0] },
+         { frame = 6, position_m = [0.0, -60.0, 24.0], look_at_m = [0.0, 0.0, 0.0] } ]
+"""
+
+for name, mesh in (("binary", ""), ("text", '[output]\nmesh = "usda"\n')):
+    with checking(f"a {name} bake plays what the live ocean shows, to the bit"):
+        fresh_file()
+        path = shot_file(name, PATCH + mesh)
+        bpy.ops.pelagic.import_shot(filepath=str(path))
+        live = bpy.context.object
+        there = bake(path)
+        from_disk = played(there)
+        scene = bpy.context.scene
+        for frame in (4, 1, 6):
+            scene.frame_set(frame)
+            for attribute in LIVE:
+                assert np.array_equal(numbers(from_disk.data, attribute), numbers(live.data, attribute)), (frame, attribute)
+        assert [tuple(face.vertices) for face in from_disk.data.polygons] == [tuple(face.vertices) for face in live.data.polygons]
+        uvs = [np.array([entry.uv for entry in obj.data.uv_layers["UVMap"].data]) for obj in (from_disk, live)]
+        assert np.allclose(*uvs, atol=1e-5)
+        assert np.allclose(numbers(from_disk.data, "rest_position"), numbers(live.data, "rest_position"), atol=1e-5)
+
+with checking("frames outside the bake show its ends; an offset moves it"):
+    scene.frame_set(6)
+    last = numbers(from_disk.data)
+    scene.frame_end = 300
+    scene.frame_set(200)
+    assert np.array_equal(numbers(from_disk.data), last)
+    from_disk.pelagic_baked.offset = 100
+    scene.frame_set(106)
+    assert np.array_equal(numbers(from_disk.data), last)
+    scene.frame_set(105)
+    assert not np.array_equal(numbers(from_disk.data), last)
+
+with checking("a camera's grid has other faces in each frame"):
+    fresh_file()
+    there = bake(shot_file("grid", GRID))
+    for given in (there, there / "grid.json", there / "grid.usda"):
+        from_disk = played(given)
+    counts = set()
+    for frame in (1, 6, 3, 1):
+        bpy.context.scene.frame_set(frame)
+        told = pelagic.read_mesh(there / "mesh" / f"grid.{frame:04}.usdc")
+        counts.add(len(told["position"]))
+        assert np.array_equal(numbers(from_disk.data), told["position"])
+        assert np.array_equal(numbers(from_disk.data, "velocity"), told["velocity"])
+        assert len(from_disk.data.polygons) == len(told["face_counts"])
+        assert not from_disk.data.validate(verbose=True)
+    assert len(counts) > 1, counts
+
+with checking("missing frames are named, and the one before is shown"):
+    for frame in (3, 4, 6):
+        (there / "mesh" / f"grid.{frame:04}.usdc").unlink()
+    from_disk = played(there)
+    bpy.context.scene.frame_set(4)
+    assert "3-4, 6" in baked.problems[from_disk.name_full]
+    assert np.array_equal(numbers(from_disk.data), pelagic.read_mesh(there / "mesh" / "grid.0002.usdc")["position"])
+    bpy.context.scene.frame_set(2)
+    assert from_disk.name_full not in baked.problems
+
+with checking("saved and loaded it plays on"):
+    blend = str(folder / "play.blend")
+    name = from_disk.name
+    bpy.ops.wm.save_as_mainfile(filepath=blend)
+    bpy.ops.wm.open_mainfile(filepath=blend)
+    bpy.context.scene.frame_set(1)
+    assert np.array_equal(numbers(bpy.data.objects[name].data), pelagic.read_mesh(there / "mesh" / "grid.0001.usdc")["position"])
+
+with checking("what is no bake is refused in words, and a damaged frame leaves the last one"):
+    assert refused(lambda: played(folder / "none"), "is not there")
+    (folder / "empty").mkdir()
+    assert refused(lambda: played(folder / "empty"), "no bakes in this folder")
+    (folder / "empty" / "x.json").write_text('{"a": 1}', encoding="utf-8")
+    assert refused(lambda: played(folder / "empty"), "is not the record of a bake")
+    from_disk = bpy.data.objects[name]
+    file = there / "mesh" / "grid.0005.usdc"
+    file.write_bytes(file.read_bytes()[:-100])
+    before = numbers(from_disk.data)
+    bpy.context.scene.frame_set(5)
+    assert "cut short" in baked.problems[from_disk.name_full]
+    assert np.array_equal(numbers(from_disk.data), before)
+    shutil.rmtree(there)
+    bpy.context.scene.frame_set(2)
+    assert "is not there" in baked.problems[from_disk.name_full]
+
+with checking("baked in Blender as exported and baked on the command line, byte by byte"):
+    fresh_file()
+    sea = add_ocean(sea__wind_speed_mps=11.3, surface__size_m=77.7, light__sun_elevation_deg=12.1)
+    sea.name = "our sea"
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 5
+    scene.render.fps, scene.render.fps_base = 30, 1.001
+    scene.camera.data.keyframe_insert("lens", frame=1)
+    scene.camera.data.lens = 80
+    scene.camera.data.keyframe_insert("lens", frame=5)
+    for kind in ("patch", "projected-grid"):
+        change(sea, surface__kind=kind, output__maps={"displacement"}, output__map_resolution=32)
+        sea.pelagic.surface.cell_px = 20
+        sea.pelagic_bake.folder = str(folder / kind)
+        assert bpy.ops.pelagic.bake() == {"FINISHED"}
+        shot = folder / f"{kind}.toml"
+        bpy.ops.pelagic.export_shot(filepath=str(shot))
+        subprocess.run([program, "bake", str(shot), "--out", str(folder / "line" / kind)], check=True, capture_output=True)
+        ours, theirs = folder / kind / "our_sea", folder / "line" / kind
+        names = sorted(str(file.relative_to(ours)) for file in ours.rglob("*") if file.is_file())
+        assert names == sorted(str(file.relative_to(theirs)) for file in theirs.rglob("*") if file.is_file())
+        assert sum(name.endswith(".exr") for name in names) == 5 and len(names) > 12
+        for name in names:
+            assert (ours / name).read_bytes() == (theirs / name).read_bytes(), name
+
+with checking("a second bake keeps what is there"):
+    before = {file: file.stat().st_mtime_ns for file in ours.rglob("*.usdc")}
+    assert bpy.ops.pelagic.bake() == {"FINISHED"}
+    assert before == {file: file.stat().st_mtime_ns for file in ours.rglob("*.usdc")}
+
+with checking("a folder that can't be written, // of a file that isn't saved, the own mesh: words"):
+    sea.pelagic_bake.folder = "/proc/bakes"
+    assert refused(bpy.ops.pelagic.bake, "/proc/bakes")
+    sea.pelagic_bake.folder = "//bakes"
+    assert refused(bpy.ops.pelagic.bake, "isn't saved yet")
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "place.blend"))
+    assert bpy.ops.pelagic.bake() == {"FINISHED"}
+    assert (folder / "bakes" / "our_sea" / "our_sea.json").exists()
+    bpy.ops.mesh.primitive_grid_add(size=20)
+    bpy.ops.pelagic.use_mesh()
+    assert refused(bpy.ops.pelagic.bake, "own mesh")

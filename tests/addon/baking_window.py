@@ -1,0 +1,86 @@
+"""In a window: a bake runs beside it, shows how far it is, is stopped by Esc, and goes on the next time.
+
+    xvfb-run blender --factory-startup --enable-event-simulate --python baking_window.py
+"""
+
+import os
+import shutil
+import sys
+import tempfile
+import traceback
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+from pelagic_ocean import baking
+
+FRAMES = 500
+folder = Path(tempfile.mkdtemp())
+
+
+def frames():
+    return sorted(file.name for file in folder.rglob("*.usdc") if file.name.split(".")[-2].isdigit())
+
+
+def steps():
+    """Each yield lets the window work until the function is true."""
+    yield lambda: True  # from here on there is a window
+    window = bpy.context.window_manager.windows[0]
+    with bpy.context.temp_override(window=window):
+        sea = add_ocean(surface__resolution=64)
+        scene = bpy.context.scene
+    sea.pelagic_bake.folder = str(folder)
+    scene.frame_start, scene.frame_end = 1, FRAMES
+    with bpy.context.temp_override(window=window):
+        assert bpy.ops.pelagic.bake("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    assert not bpy.ops.pelagic.bake.poll()
+    yield lambda: len(frames()) >= 3
+    with checking("the window works meanwhile, and knows how far the bake is"):
+        scene.frame_set(7)
+        assert f"of {FRAMES} frames" in baking._baking.text, baking._baking.text
+    window.event_simulate(type="ESC", value="PRESS")
+    window.event_simulate(type="ESC", value="RELEASE")
+    yield lambda: baking._baking is None
+    with checking("Esc stops it, and what is there is whole"):
+        first = {file: file.stat().st_mtime_ns for file in folder.rglob("*.usdc")}
+        assert 3 <= len(frames()) < FRAMES, len(frames())
+    with bpy.context.temp_override(window=window):
+        bpy.ops.pelagic.bake("INVOKE_DEFAULT")
+    yield lambda: baking._baking is None
+    with checking("the next one goes on from there"):
+        assert len(frames()) == FRAMES
+        kept = [file for file, when in first.items() if file.stat().st_mtime_ns == when]
+        assert len(kept) >= len(first) - 1, (len(kept), len(first))
+    with bpy.context.temp_override(window=window):
+        scene.frame_end = 20 * FRAMES
+        bpy.ops.pelagic.bake("INVOKE_DEFAULT")
+    yield lambda: len(frames()) >= FRAMES + 2
+    with checking("another file stops it"):
+        bpy.ops.wm.read_homefile()
+        assert baking._baking is None
+
+
+running = steps()
+waiting_for = next(running)
+
+
+@bpy.app.handlers.persistent
+def look():
+    global waiting_for
+    try:
+        if waiting_for():
+            waiting_for = next(running)
+        return 0.1
+    except StopIteration:
+        code = 0
+    except BaseException:
+        traceback.print_exc()
+        code = 1
+    shutil.rmtree(folder)
+    sys.stdout.flush()
+    os._exit(code)
+
+
+bpy.app.timers.register(look, first_interval=0.1, persistent=True)

@@ -1,0 +1,54 @@
+"""Presets: the core's each give a sea; the user's own are saved, applied, deleted."""
+
+import os
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+import pelagic
+from pelagic_ocean import ocean, play, presets
+
+fresh_file()
+obj = add_ocean()
+
+with checking("the core's presets: a sea each, and higher waves with each force of the wind"):
+    heights = {}
+    for preset in pelagic.presets():
+        bpy.ops.pelagic.preset_apply(name=preset["name"])
+        bpy.context.view_layer.update()
+        simulation = play.simulation_of(obj)
+        assert not simulation.problem, f"{preset['name']}: {simulation.problem}"
+        scene = ocean.scene_of(obj, bpy.context.scene)
+        for path, value in preset["values"].items():
+            table, name = path.split(".")
+            assert getattr(getattr(scene, table), name) == value, f"{preset['name']}: {path}"
+        heights[preset["name"]] = simulation.sea.significant_height_m
+    beaufort = [heights[f"beaufort-{force}"] for force in range(13)]
+    assert beaufort == sorted(beaufort) and beaufort[0] < 0.05 and beaufort[12] > 10, beaufort
+
+with checking("a preset of one's own: saved, applied, and only the sea, the light and the water are in it"):
+    assert Path(os.environ["BLENDER_USER_SCRIPTS"]) in presets.folder(create=True).parents
+    bpy.ops.pelagic.preset_apply(name="southern-ocean")
+    change(obj, sea__wind_direction_deg=77.0)
+    expected = ocean.scene_of(obj, bpy.context.scene)
+    bpy.ops.pelagic.preset_save(name="My own/ sea")
+    (name,) = presets.own_presets()
+    bpy.ops.pelagic.preset_apply(name="beaufort-2")
+    change(obj, surface__resolution=20)
+    bpy.ops.pelagic.preset_apply(name=name)
+    scene = ocean.scene_of(obj, bpy.context.scene)
+    assert str(scene.sea) == str(expected.sea) and str(scene.light) == str(expected.light)
+    assert scene.surface.resolution == 20
+
+with checking("what is refused: no name, a name of the core's, a preset that isn't there"):
+    assert refused(lambda: bpy.ops.pelagic.preset_save(name=" "), "needs a name")
+    assert refused(lambda: bpy.ops.pelagic.preset_save(name="beaufort-3"), "another name")
+    assert refused(lambda: bpy.ops.pelagic.preset_apply(name="nowhere"), "nowhere")
+
+with checking("deleted, it is gone"):
+    bpy.ops.pelagic.preset_delete(name=name)
+    assert not presets.own_presets()
+    assert refused(lambda: bpy.ops.pelagic.preset_delete(name=name), "no preset")

@@ -1,0 +1,166 @@
+"""Shot files in and out: what was imported comes out as it went in, and what Blender animates comes out as keys."""
+
+import math
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+import pelagic
+from mathutils import Matrix, Vector
+
+from pelagic_ocean import camera, exchange
+
+folder = Path(tempfile.mkdtemp())
+
+
+def imported(path):
+    fresh_file()
+    assert bpy.ops.pelagic.import_shot(filepath=str(path)) == {"FINISHED"}
+    return bpy.context.object
+
+
+def exported(name="out"):
+    path = folder / f"{name}.toml"
+    assert bpy.ops.pelagic.export_shot(filepath=str(path)) == {"FINISHED"}
+    return pelagic.Scene.from_file(path)
+
+
+def written(text, name="shot"):
+    path = folder / f"{name}.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+with checking("every example comes out as it went in"):
+    examples = sorted((ROOT / "examples").glob("*.toml"))
+    assert len(examples) >= 8
+    for path in examples:
+        there, back = pelagic.Scene.from_file(path), None
+        imported(path)
+        back = exported(path.stem)
+        assert str(back) == str(there) and back.shot.frames == there.shot.frames, f"{path.name}:\n{there}\n{back}"
+
+with checking("numbers that single precision doesn't hold come out with the digits that they went in with"):
+    text = """[shot]
+name = "odd"
+frames = [3, 17]
+fps = 29.97
+time_scale = 0.7
+[sea]
+wind_speed_mps = 12.3
+swell = [ { height_m = 1.1, period_s = 9.7, direction_deg = 33.3 } ]
+[surface]
+size_m = 133.7
+[camera]
+position_m = [0.1, -60.3, 4.7]
+look_at_m = [1.7, 2.3, -0.9]
+fov_deg = 47.3
+[light]
+sun_elevation_deg = 0.1
+"""
+    there = pelagic.Scene.from_file(written(text))
+    imported(folder / "shot.toml")
+    back = exported()
+    assert str(back) == str(there), f"{there}\n{back}"
+
+with checking("keys with angle and roll come out as they went in"):
+    text = """[shot]
+frames = [1, 30]
+[camera]
+keys = [ { frame = 1, position_m = [0.0, -60.0, 4.0], look_at_m = [0.0, 0.0, 1.0], fov_deg = 50.0, roll_deg = 0.0 },
+         { frame = 13, position_m = [5.5, -50.0, 6.1], look_at_m = [1.0, 3.0, 0.0], fov_deg = 31.7, roll_deg = 7.5 },
+         { frame = 30, position_m = [9.0, -47.0, 30.0], look_at_m = [2.0, 4.0, 0.0], fov_deg = 70.0, roll_deg = -12.25 } ]
+"""
+    there = pelagic.Scene.from_file(written(text, "keys"))
+    imported(folder / "keys.toml")
+    back = exported()
+    assert str(back) == str(there), f"{there}\n{back}"
+    assert back.camera.keys == there.camera.keys
+
+with checking("the camera sees what the shot's camera sees"):
+    scene = bpy.context.scene
+    for frame in (1, 7, 30):
+        scene.frame_set(frame)
+        view = pelagic.View.of_scene(there, frame)
+        seen = scene.camera.matrix_world
+        assert np.allclose(seen.translation, view.position_m, atol=1e-4), frame
+        for axis, column in ((view.right, 0), (view.up, 1), (-np.array(view.forward), 2)):
+            assert np.allclose(seen.col[column].xyz, axis, atol=1e-4), (frame, column)
+        assert math.isclose(math.tan(scene.camera.data.angle_x / 2), view.tan_half_width, rel_tol=1e-5)
+
+with checking("a camera that looks straight down, and one that rolls without moving"):
+    for camera_keys in ("position_m = [0.0, 0.0, 50.0]\nlook_at_m = [0.0, 0.0, 0.0]",
+                        "keys = [ { frame = 1, position_m = [0.0, -9.0, 5.0], look_at_m = [0.0, 0.0, 0.0], roll_deg = 30.0 } ]"):
+        there = pelagic.Scene.from_file(written(f"[camera]\n{camera_keys}\n", "down"))
+        imported(folder / "down.toml")
+        assert str(exported()) == str(there)
+
+with checking("an artist's camera, animated by curves and a parent, becomes keys on the same way"):
+    fresh_file()
+    sea = add_ocean()
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 1, 40
+    eye = scene.camera
+    eye.data.lens = 35
+    bpy.ops.object.empty_add()
+    parent = bpy.context.object
+    eye.parent = parent
+    for frame, angle, lens in ((1, 0.0, 35.0), (20, 0.4, 50.0), (40, 0.1, 50.0)):
+        parent.rotation_euler = (0.1 * angle, 0.2 * angle, angle)
+        parent.keyframe_insert("rotation_euler", frame=frame)
+        eye.data.lens = lens
+        eye.data.keyframe_insert("lens", frame=frame)
+    scene.frame_set(8)
+    shot = exported("artist")
+    assert scene.frame_current == 8
+    assert 25 < len(shot.camera.keys) <= 40
+    for frame in (1, 2, 9, 20, 33, 40):
+        scene.frame_set(frame)
+        view = pelagic.View.of_scene(shot, frame)
+        assert np.allclose(eye.matrix_world.translation, view.position_m, atol=2e-5), frame
+        for axis, column in ((view.right, 0), (view.up, 1), (-np.array(view.forward), 2)):
+            assert np.allclose(eye.matrix_world.col[column].xyz, axis, atol=1e-5), (frame, column)
+        assert math.isclose(math.tan(eye.data.angle_x / 2), view.tan_half_width, rel_tol=1e-6)
+
+with checking("a moved and turned ocean: the shot's camera is as seen from it"):
+    sea.matrix_world = Matrix.Translation((100, 5, 2)) @ Matrix.Rotation(0.5, 4, "Z")
+    scene.frame_set(9)
+    shot, remarks = exchange.shot_of(bpy.context, sea)
+    view = pelagic.View.of_scene(shot, 9)
+    assert np.allclose(sea.matrix_world @ Vector(view.position_m), eye.matrix_world.translation, atol=1e-4)
+    assert any("moved or turned" in remark for remark in remarks)
+    sea.matrix_world = Matrix()
+
+with checking("what a shot can't say is said; sensor fits and portrait pictures are understood"):
+    eye.data.shift_x = 0.2
+    sea.scale.x = 2.0
+    scene.frame_set(1)
+    _, remarks = exchange.shot_of(bpy.context, sea)
+    assert any("lens shift" in remark for remark in remarks) and any("scaled" in remark for remark in remarks)
+    eye.data.shift_x, sea.scale.x = 0.0, 1.0
+    for x, y in ((1920, 1080), (600, 900)):
+        for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
+            scene.render.resolution_x, scene.render.resolution_y, eye.data.sensor_fit = x, y, fit
+            corners = eye.data.view_frame(scene=scene)
+            width = max(corner.x for corner in corners) - min(corner.x for corner in corners)
+            expected = 2 * math.degrees(math.atan2(width / 2, -corners[0].z))
+            assert math.isclose(camera.fov_deg(eye.data, scene.render), expected, rel_tol=1e-5), (x, y, fit)
+
+with checking("refused in words: the own mesh, a broken file, a folder that can't be written, negative frames"):
+    bpy.ops.mesh.primitive_grid_add(size=20)
+    bpy.ops.pelagic.use_mesh()
+    assert refused(lambda: exported(), "own mesh")
+    assert refused(lambda: bpy.ops.pelagic.import_shot(filepath=str(written("[sea]\nwind = 3\n", "bad"))), "sea.wind")
+    assert refused(lambda: bpy.ops.pelagic.import_shot(filepath=str(folder / "none.toml")), "does not exist")
+    before = len(bpy.data.objects)
+    assert refused(lambda: bpy.ops.pelagic.import_shot(filepath=str(written("[shot]\nframes = [-5, 3]\n", "early"))),
+                   "begin at 0")
+    assert refused(lambda: bpy.ops.pelagic.import_shot(filepath=str(written("[shot]\nseed = 9000000000\n", "seed"))),
+                   "shot.seed")
+    assert len(bpy.data.objects) == before
+    bpy.context.view_layer.objects.active = sea
+    assert refused(lambda: bpy.ops.pelagic.export_shot(filepath="/proc/no/such/folder.toml"), "/proc/no")

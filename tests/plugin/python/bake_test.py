@@ -1,0 +1,193 @@
+"""Bakes, maps and pictures from Python: the command line's, to the bit."""
+
+import os
+import pathlib
+import subprocess
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+import pelagic
+
+PROGRAM = os.environ["PELAGIC_PROGRAM"]
+
+
+def shot(frames=(1, 3)):
+    scene = pelagic.Scene()
+    scene.shot.name, scene.shot.frames = "bay", frames
+    scene.sea.wind_speed_mps = 14.0
+    scene.surface.size_m, scene.surface.resolution = 60.0, 24
+    scene.waves.cascades = [pelagic.CascadeSize(60.0, 96), pelagic.CascadeSize(11.0, 32)]
+    scene.output.maps, scene.output.map_resolution = ("displacement", "normal", "slope-variance", "whitecaps"), 32
+    scene.output.cascade_tiles = True
+    scene.camera.resolution = (64, 40)
+    return scene
+
+
+def files(folder):
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(pathlib.Path(folder).rglob("*"))
+            if path.is_file()}
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+
+class Bake(InFolder):
+    def test_files_are_the_command_lines_byte_by_byte(self):
+        scene = shot()
+        scene.save(self.path / "shot.toml")
+        subprocess.run([PROGRAM, "bake", str(self.path / "shot.toml"), "--out", str(self.path / "theirs")], check=True,
+                       stdout=subprocess.DEVNULL)
+        report = pelagic.bake(scene, self.path / "ours")
+        self.assertEqual((report.done, report.kept, report.total, report.cancelled), (3, 0, 3, False))
+        ours, theirs = files(self.path / "ours"), files(self.path / "theirs")
+        self.assertEqual(sorted(ours), sorted(theirs))
+        self.assertGreater(len(ours), 3 * (1 + 4 + 2 * 4))
+        for name, content in ours.items():
+            if name != "bay.json":  # which has the times that it took
+                self.assertEqual(content, theirs[name], name)
+        self.assertEqual(report.root, self.path / "ours" / "bay.usda")
+        self.assertEqual(report.maps, self.path / "ours" / "maps")
+        self.assertIn("compute", report.times)
+
+    def test_frames_are_kept_and_named_as_on_the_command_line(self):
+        out = self.path / "out"
+        self.assertEqual(pelagic.bake(shot(), out, frames=2).done, 1)
+        report = pelagic.bake(shot(), out, frames="1-3x2")
+        self.assertEqual((report.done, report.kept), (2, 0))
+        report = pelagic.bake(shot(), out, frames=[3, 1, 1])
+        self.assertEqual((report.done, report.kept, report.total), (0, 2, 2))
+        changed = shot()
+        changed.shot.seed = 7
+        report = pelagic.bake(changed, out, frames=[1])
+        self.assertEqual((report.done, report.stale), (1, [2, 3]))
+
+    def test_progress_tells_each_frame(self):
+        told = []
+        pelagic.bake(shot(), self.path / "out", progress=lambda *now: told.append(now))
+        self.assertEqual([now[0] for now in told if now[0] == "frames"][-1:], ["frames"])
+        self.assertEqual([now[2] for now in told if now[0] == "frames" and now[2] > 0], [1, 2, 3])
+        self.assertEqual(told[-1][1:5], (3, 3, 0, 3))
+        self.assertIn("building", {now[0] for now in told})
+
+    def test_a_bake_in_a_thread_is_cancelled_from_another_and_goes_on(self):
+        cancel, reports, begun = pelagic.Cancel(), [], threading.Event()
+
+        def run():
+            reports.append(pelagic.bake(shot((1, 4000)), self.path / "out", cancel=cancel,
+                                        progress=lambda stage, frame, done, *rest: done > 1 and begun.set()))
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        self.assertTrue(begun.wait(60.0))
+        ticks = 0
+        while ticks < 10:  # others run meanwhile
+            time.sleep(0.001)
+            ticks += 1
+        cancel.set()
+        thread.join(60.0)
+        self.assertFalse(thread.is_alive())
+        self.assertTrue(reports[0].cancelled)
+        self.assertTrue(2 <= reports[0].done < 4000)
+        again = pelagic.bake(shot((1, 4000)), self.path / "out", frames=list(range(1, reports[0].done + 1)))
+        self.assertEqual((again.done, again.kept), (0, reports[0].done))
+
+    def test_a_callable_may_cancel_and_may_fail(self):
+        report = pelagic.bake(shot((1, 4000)), self.path / "out", cancel=lambda: True)
+        self.assertTrue(report.cancelled)
+
+        def fail(*now):
+            raise LookupError("mine")
+
+        with self.assertRaisesRegex(LookupError, "mine"):
+            pelagic.bake(shot(), self.path / "out", progress=fail)
+
+    def test_what_cannot_be_baked_is_said_in_the_command_lines_words(self):
+        for wrong, said in (("7", "outside the shot"), ([9], "range|shot"), ([], "none"), ("x", "not a frame")):
+            with self.assertRaisesRegex(ValueError, said):
+                pelagic.bake(shot(), self.path / "out", frames=wrong)
+        (self.path / "file").write_text("in the way")
+        with self.assertRaisesRegex(pelagic.FileError, "file"):
+            pelagic.bake(shot(), self.path / "file")
+        scene = shot()
+        scene.sea.wind_speed_mps = -1.0
+        with self.assertRaisesRegex(pelagic.ShotError, "sea.wind_speed_mps = -1"):
+            pelagic.bake(scene, self.path / "out")
+
+
+class Maps(unittest.TestCase):
+    def test_maps_are_the_query_on_their_squares(self):
+        scene = shot()
+        maps = pelagic.Maps(scene)
+        patch, tiles = maps.at(1.5)
+        self.assertEqual(sorted(patch), ["coverage", "displacement", "jacobian", "normal", "slope_variance"])
+        self.assertEqual((patch["displacement"].shape, patch["coverage"].shape, tiles), ((32, 32, 3), (32, 32), []))
+        size_m, n = 60.0, 32
+        line = np.arange(n, dtype=np.float32) * np.float32(size_m / n) - np.float32(0.5 * size_m)
+        rest = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
+        frame = pelagic.Frame(pelagic.Sea(scene, tuple(patch), cell_m=size_m / n, pixel_m=size_m / n,
+                                          lattice=(-0.5 * size_m, size_m / n)))
+        frame.set(1.5)
+        for name, array in frame.evaluate(rest).items():
+            np.testing.assert_allclose(patch[name].reshape(array.shape), array, atol=2e-5, err_msg=name)
+        self.assertGreater(patch["displacement"][..., 2].std(), 0.1)
+
+    def test_tiles_are_the_cascades_own(self):
+        patch, tiles = pelagic.Maps(shot(), ["displacement"], tiles=True).at(0.5)
+        self.assertEqual([tile["displacement"].shape for tile in tiles], [(96, 96, 3), (32, 32, 3)])
+        self.assertGreater(tiles[0]["displacement"][..., 2].std(), tiles[1]["displacement"][..., 2].std())
+
+    def test_times_in_any_order(self):
+        maps = pelagic.Maps(shot(), ("normal",))
+        first = maps.at(1.0)[0]["normal"]
+        maps.at(2.0)
+        np.testing.assert_array_equal(maps.at(1.0)[0]["normal"], first)
+
+    def test_names_are_the_keys(self):
+        with self.assertRaisesRegex(pelagic.ShotError, "output.maps"):
+            pelagic.Maps(shot(), ("slopes",))
+        cancel = pelagic.Cancel()
+        cancel.set()
+        with self.assertRaises(pelagic.Cancelled):
+            pelagic.Maps(shot(), cancel=cancel)
+
+
+class Pictures(unittest.TestCase):
+    def test_a_picture_adds_up_and_has_sea_below_and_sky_above(self):
+        layers = pelagic.render(shot(), 1, (48, 32), 1, sky_quality="one")
+        self.assertEqual(sorted(layers), ["foam", "is_sea", "sea", "sky", "sun"])
+        for name in ("sun", "sky", "sea", "foam"):
+            self.assertEqual((layers[name].shape, layers[name].dtype), ((32, 48, 3), np.float32))
+            self.assertTrue(np.isfinite(layers[name]).all())
+        is_sea = layers["is_sea"]
+        self.assertEqual((is_sea.dtype, is_sea.shape), (np.dtype(bool), (32, 48)))
+        self.assertTrue(is_sea[-1].all() and not is_sea[0].any())
+        self.assertTrue((layers["sea"][is_sea][:, 2] > 0.0).all() and (layers["sea"][~is_sea] == 0.0).all())
+
+    def test_it_is_the_sky_that_sky_has(self):
+        scene = shot()
+        scene.camera.position_m, scene.camera.look_at_m = (0.0, 0.0, 3.0), (0.0, 10.0, 13.0)
+        view = pelagic.View.of_scene(scene, 1)
+        layers = pelagic.render(scene, 1, (65, 65), 1)
+        np.testing.assert_allclose(layers["sky"][32, 32], pelagic.Sky(scene).radiance(np.float32([view.forward]))[0],
+                                   rtol=1e-5)
+
+    def test_it_can_be_cancelled_and_refuses_what_is_too_large(self):
+        told = []
+        pelagic.render(shot(), 1, (16, 16), 1, progress=told.append)
+        self.assertEqual(told, sorted(told))
+        with self.assertRaises(pelagic.Cancelled):
+            pelagic.render(shot(), 1, cancel=lambda: True)
+        for wrong in (dict(samples=0), dict(size=(0, 3)), dict(sky_quality="ten")):
+            with self.assertRaises(ValueError):
+                pelagic.render(shot(), 1, **wrong)
+
+
+if __name__ == "__main__":
+    unittest.main()

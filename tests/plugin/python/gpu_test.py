@@ -1,0 +1,145 @@
+"""What a host's GPU code draws the sea from. The pictures themselves: tests/addon/viewport.py, tests/plugin/preview."""
+
+import math
+import unittest
+
+import numpy as np
+import pelagic
+
+
+def small_scene(**waves):
+    scene = pelagic.Scene()
+    scene.waves.cascades = [{"size_m": 100.0, "resolution": 128}, {"size_m": 13.0, "resolution": 32}]
+    for name, value in waves.items():
+        setattr(scene.waves, name, value)
+    return scene
+
+
+def view(height_m=4.0, resolution=(320, 180)):
+    return pelagic.View(position_m=(7.0, -3.0, height_m), right=(1, 0, 0), up=(0, 0, 1), forward=(0, 1, 0),
+                        tan_half_width=0.5, resolution=resolution)
+
+
+class Seas(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sea = pelagic.GpuSea(small_scene(), 0.125)
+
+    def test_textures_hold_the_frame_that_was_set(self):
+        sea = pelagic.GpuSea(small_scene())
+        self.assertEqual(sea.textures, {})
+        sea.set(1.5)
+        textures = {name: texels.copy() for name, texels in sea.textures.items()}
+        self.assertEqual({name: texels.shape[2] for name, texels in textures.items()},
+                         {"cell_fields": 4, "pixel_fields": 4, "pixel_fields_2": 1})
+        sea.set(2.5)
+        self.assertFalse(np.array_equal(sea.textures["cell_fields"], textures["cell_fields"]))
+        sea.set(1.5)
+        for name, texels in textures.items():
+            np.testing.assert_array_equal(sea.textures[name], texels)
+        # The largest tile is that of the whole largest cascade, and its height has the sea's variance, nearly.
+        height_m = textures["cell_fields"][:128, :128, 0]
+        self.assertGreater(4 * height_m.std(), 0.3 * pelagic.Sea(small_scene()).significant_height_m)
+        with self.assertRaises(ValueError):
+            sea.textures["cell_fields"][0, 0, 0] = 1.0
+
+    def test_tables_follow_the_origin(self):
+        here, cycles = self.sea.at_origin((0.0, 0.0))
+        self.assertIsNone(cycles)
+        self.assertEqual((here.dtype, here.size % 16), (np.uint8, 0))
+        self.assertFalse(np.array_equal(here, self.sea.at_origin((1.0, 0.0))[0]))
+        np.testing.assert_array_equal(here, self.sea.at_origin((0.0, 0.0))[0])
+
+    def test_trains_have_a_table_and_phases_that_depend_on_time_and_place(self):
+        sea = pelagic.GpuSea(small_scene(model="trochoid", cascades=[]))
+        sea.set(1.0)
+        _, count, channels = sea.textures["train_table"].shape
+        self.assertEqual((count - 1, channels), (sea.uniforms["train_count"], 4))
+        before = sea.at_origin((0.0, 0.0))[1]
+        self.assertEqual(before.shape, (1, count - 1, 1))
+        self.assertFalse(np.array_equal(before, sea.at_origin((9.0, 0.0))[1]))
+        sea.set(2.0)
+        self.assertFalse(np.array_equal(before, sea.at_origin((0.0, 0.0))[1]))
+
+    def test_shaders_name_all_that_the_host_gives_them(self):
+        light = pelagic.GpuLight(small_scene())
+        shaders = self.sea.shaders(light)
+        for vertex, fragment in shaders.values():
+            self.assertNotIn("#version", vertex + fragment)
+            self.assertIn("host_colour(", fragment)
+        text = "".join(shaders["sea"])
+        for name in (*self.sea.uniforms, *light.uniforms, "exposure", "clip_from_grid", "view_centre", "sky_map", "SeaTables",
+                     "rest_in", "cell_in", "pixel_in"):
+            self.assertIn(name, text)
+        self.assertIn("farthest", shaders["sky"][0])
+
+    def test_a_finer_sea_has_larger_textures(self):
+        def texels(finest_m):
+            sea = pelagic.GpuSea(pelagic.Scene(), finest_m)
+            sea.set(0.0)
+            return sum(texels.size for texels in sea.textures.values())
+
+        self.assertGreater(texels(0.125), texels(1.0))
+        self.assertGreater(pelagic.GpuSea(small_scene()).bytes, 0)
+        for wrong in (-1.0, math.nan, math.inf):
+            with self.assertRaises(ValueError):
+                pelagic.GpuSea(small_scene(), wrong)
+
+    def test_the_finest_footprint_follows_the_view(self):
+        near, far = self.sea.finest_for(view(4.0)), self.sea.finest_for(view(400.0))
+        self.assertGreaterEqual(far, 32 * near)
+        self.assertEqual(math.log2(near) % 1, 0)
+
+    def test_serves_says_when_nothing_needs_to_be_built(self):
+        scene = small_scene()
+        light = pelagic.GpuLight(scene)
+        scene.light.sun_elevation_deg = 40.0
+        self.assertTrue(self.sea.serves(scene))
+        self.assertFalse(light.serves(scene))
+        scene = small_scene()
+        scene.sea.wind_speed_mps = 3.0
+        self.assertFalse(self.sea.serves(scene))
+        self.assertTrue(light.serves(scene))
+
+
+class Grids(unittest.TestCase):
+    def test_is_the_seas_projected_grid(self):
+        scene = small_scene()
+        own = pelagic.Sea(scene, views=[view()]).projected_grid(view())
+        grid = pelagic.GpuSea(scene).grid(view())
+        self.assertEqual((grid.size, grid.origin_m), ((own.columns, own.rows), (7.0, -3.0)))
+        np.testing.assert_array_equal(grid.vertices[:, :2], own.rest_m)
+        self.assertEqual((grid.triangles.dtype, len(grid.triangles)), (np.uint32, 2 * own.columns * own.rows))
+        self.assertLess(grid.triangles.max(), len(grid.vertices))
+
+    def test_larger_cells_are_fewer_and_there_are_never_too_many(self):
+        sea = pelagic.GpuSea(small_scene())
+        self.assertLess(len(sea.grid(view(), 24.0).vertices), len(sea.grid(view(), 8.0).vertices))
+        grid = sea.grid(view(resolution=(8000, 4500)), 1.0)
+        self.assertEqual(grid.size, (1024, 1024))
+        self.assertTrue(np.isfinite(grid.vertices).all())
+        for wrong in (0.0, -1.0, math.nan):
+            with self.assertRaises(ValueError):
+                sea.grid(view(), wrong)
+
+
+class Lights(unittest.TestCase):
+    def test_all_levels_of_the_sky_are_in_one_picture(self):
+        light = pelagic.GpuLight(pelagic.Scene())
+        atlas = light.sky_map
+        size = atlas.shape[0]
+        self.assertEqual(atlas.shape, (size, size * 3 // 2, 4))
+        fine, first = atlas[:size, :size, :3], 0
+        while size > 1:
+            size //= 2
+            fine = fine.reshape(size, 2, size, 2, 3).mean(axis=(1, 3))
+            whole = atlas.shape[0]
+            np.testing.assert_allclose(atlas[whole - 2 * size:whole - size, whole:whole + size, :3], fine, rtol=1e-4)
+
+    def test_exposure_is_in_stops(self):
+        light = pelagic.GpuLight(pelagic.Scene())
+        self.assertAlmostEqual(light.exposure(2.0) / light.exposure(), 4.0, places=5)
+
+
+if __name__ == "__main__":
+    unittest.main()

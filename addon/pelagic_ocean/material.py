@@ -275,36 +275,32 @@ PATTERN_MEAN, PATTERN_DEVIATION = 1.0319, 0.2058
 
 
 def ensure_material(obj, scene):
-    """Gives an object without a material the ocean's, or brings the one that it has from here up to the scene's water,
-    light and wind. Somebody else's material stays as it is. Returns the material, or None where it is somebody else's.
+    """Gives an object without a material the ocean's; somebody else's stays. Returns the ocean's material, or None."""
+    if not any(obj.data.materials):
+        obj.data.materials.clear()
+        obj.data.materials.append(new_material())
+    return update_material(obj, scene)
 
-    What depends on the scene is written only when that changes, so that an artist's own colours stay.
-    """
-    material = next((m for m in obj.data.materials if m), None)
-    if material is not None and MARK not in material:
-        return None
-    if material is None:
-        material = new_material()
-        if obj.data.materials:
-            obj.data.materials[0] = material
-        else:
-            obj.data.materials.append(material)
-    nodes = material.node_tree.nodes
-    _set(material, nodes, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
-    _set(material, nodes, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
+
+def update_material(obj, scene):
+    """Brings the ocean's material to the scene's water, light and wind; returns it, or None where there is none. What an
+    artist changed stays until the scene's own value changes."""
+    material = next((m for m in obj.data.materials if m and MARK in m), None)
+    if material is not None:
+        _set(material, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
+        _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
     return material
 
 
-def _set(material, nodes, name, value):
+def _set(material, name, value):
     """Writes a node's value where the value that was last written isn't the same."""
-    key = MARK + " " + name
-    plain = list(value) if isinstance(value, tuple) else value
-    before = material.get(key)
-    if before is not None and (list(before) if isinstance(value, tuple) else before) == plain:
+    key = f"{MARK} {name}"
+    if material.get(key) == repr(value):
         return
-    if name in nodes:
-        nodes[name].outputs[0].default_value = value
-    material[key] = plain
+    material[key] = repr(value)
+    node = material.node_tree.nodes.get(name)
+    if node is not None:
+        node.outputs[0].default_value = value
 
 
 def new_material():

@@ -1,7 +1,6 @@
 """A shot as a picture of the core and of the add-on, for the tests and benches that compare them."""
 
 import math
-import os
 import subprocess
 import tempfile
 from pathlib import Path
@@ -11,7 +10,7 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 import pelagic
-from pelagic_ocean import light, material, ocean
+from pelagic_ocean import ocean
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
@@ -56,13 +55,14 @@ def read_exr(file):
     return pixels
 
 
-def shot_in_blender(shot, resolution=None):
-    """The shot's first frame in an empty file: its sea to the horizon, light, material, camera. Returns the ocean."""
+def shot_in_blender(shot, size):
+    """The shot's first frame in an empty file, its sea on the grid of its camera. Returns the ocean."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy_scene = bpy.context.scene
     scene = pelagic.Scene.from_file(str(shot))
     bpy_scene.frame_start, bpy_scene.frame_end = scene.shot.frames
     bpy_scene.render.fps = round(scene.shot.fps)
+    bpy_scene.render.resolution_x, bpy_scene.render.resolution_y = size
     data = bpy.data.cameras.new("Camera")
     data.sensor_fit, data.angle, data.clip_end = "HORIZONTAL", math.radians(scene.camera.fov_deg), 100e3
     bpy_scene.camera = bpy.data.objects.new("Camera", data)
@@ -72,14 +72,9 @@ def shot_in_blender(shot, resolution=None):
                                      @ back.to_track_quat("Z", "Y").to_matrix().to_4x4())
     bpy.ops.pelagic.add_ocean()
     sea = bpy.context.object
-    if resolution:
-        scene.surface.resolution = resolution
+    scene.surface.kind = "projected-grid"
     ocean.set_from(sea, scene)
-    sea.pelagic.horizon = True
-    light.ensure_light(bpy_scene, scene)
-    material.ensure_material(sea, scene)
     bpy_scene.frame_set(bpy_scene.frame_start)
-    bpy.context.view_layer.update()
     return sea
 
 

@@ -40,7 +40,7 @@ def verdict(ratio, tolerance):
 
 def row_of(program, shot, folder):
     layers = core_layers(program, shot, folder, SIZE)
-    shot_in_blender(shot)
+    shot_in_blender(shot, SIZE)
     ours = cycles_exr(folder / f"{shot.stem}.cycles.exr", SIZE, SAMPLES)[..., :3]
     glitter = glitter_exr(folder / f"{shot.stem}.glitter.exr", SIZE, SAMPLES)
     core = sum(layers.values())

@@ -12,9 +12,8 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from . import compat
 from .module import pelagic
-from .nodes import Tree, Value
+from .nodes import Tree
 
 MARK = "pelagic_light"  # on the world and the lamp that are the add-on's
 EXPOSURE = "pelagic_exposure"  # on the world: the stops that were set last
@@ -65,7 +64,7 @@ def _put_sky(world, sky):
     picture, disc = nodes[PICTURE], nodes[DISC]
     picture.image = _sky_image(picture.image, sky)
     disc.inputs["Direction"].default_value = sky.sun_direction
-    disc.inputs["Radiance"].default_value = (*sky.sun_radiance, 1.0)
+    disc.inputs["Radiance"].default_value = sky.sun_radiance
     disc.inputs["Angular Radius"].default_value = sky.sun_angular_radius
 
 
@@ -73,34 +72,19 @@ def _make_nodes(world):
     """The picture of the sky, and before it the sun's disc for those who look at it: for all else there is the lamp."""
     tree = Tree(world.node_tree)
     picture = tree.node("ShaderNodeTexEnvironment")
-    disc = tree.node("ShaderNodeGroup", node_tree=_disc_group())
-    picture.name, disc.name = PICTURE, DISC
-    seen = tree.add("ShaderNodeAddShader", {
-        0: tree.add("ShaderNodeBackground", {"Color": Value(tree, picture.outputs["Color"])}),
-        1: tree.add("ShaderNodeBackground", {"Color": Value(tree, disc.outputs["Radiance"])})})
-    tree.node("ShaderNodeOutputWorld", {"Surface": seen})
-    tree.arrange()
+    picture.name = PICTURE
+    seen = tree.call(DISC, _disc, {"Direction": (0.0, 0.0, 1.0), "Radiance": (0.0, 0.0, 0.0), "Angular Radius": 0.0})
+    seen["Radiance"].socket.node.name = DISC
+    tree.node("ShaderNodeOutputWorld", {"Surface": tree.add("ShaderNodeAddShader", {
+        0: tree.add("ShaderNodeBackground", {"Color": tree.value(picture, "Color")}),
+        1: tree.add("ShaderNodeBackground", {"Color": seen["Radiance"]})})})
 
 
-def _disc_group():
-    for group in bpy.data.node_groups:
-        if MARK in group:
-            return group
-    group = bpy.data.node_groups.new("Pelagic Sun Disc", "ShaderNodeTree")
-    group[MARK] = True
-    for name, kind in (("Direction", "Vector"), ("Radiance", "Color"), ("Angular Radius", "Float")):
-        compat.new_group_socket(group, name, kind)
-    compat.new_group_socket(group, "Radiance", "Color", is_output=True)
-    tree = Tree(group)
-    inputs = tree.node("NodeGroupInput").outputs
+def _disc(tree, asked):
     # The chord, since the cosine of a small angle has no precision.
     towards = tree.add("ShaderNodeTexCoord", output="Generated").normalized()
-    chord = (towards - Value(tree, inputs["Direction"])).length()
-    seen = Value(tree, inputs["Angular Radius"]).above(chord)
-    seen = seen * tree.add("ShaderNodeLightPath", output="Is Camera Ray")
-    tree.node("NodeGroupOutput", {"Radiance": Value(tree, inputs["Radiance"])._scaled(seen)})
-    tree.arrange()
-    return group
+    inside = asked["Angular Radius"].above((towards - asked["Direction"]).length())
+    return {"Radiance": asked["Radiance"] * (inside * tree.add("ShaderNodeLightPath", output="Is Camera Ray"))}
 
 
 def _sky_image(image, sky):

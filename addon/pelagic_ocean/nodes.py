@@ -1,22 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Node trees written as formulas: a Value is the output of a node, and calculating with it adds nodes.
 
-    tree = Tree(group)
-    a = tree.attribute("whitecap_coverage", "Fac")
-    tree.add("ShaderNodeBsdfDiffuse", Color=(0.5 * a + 0.2).clamped())
+    tree = Tree(material.node_tree)
+    coverage = tree.attribute("whitecap_coverage", "Fac")
+    tree.add("ShaderNodeBsdfDiffuse", {"Color": 0.5 * coverage + 0.2})
+
+What a tree does is looked through again at each change to it, so large ones are made of groups.
 """
 
 import bpy
 
+from . import compat
+
+MARK = "pelagic_group"  # on a node group that call() made: its name and version
+VERSION = 1
+
 _SPACING = (190, 150)  # of the nodes in the editor
-_ROWS = 12
 
 
 class Value:
     """A number or a vector that a node puts out."""
 
-    def __init__(self, tree, socket):
-        self.tree, self.socket = tree, socket
+    def __init__(self, tree, socket, column=0):
+        self.tree, self.socket, self.column = tree, socket, column  # column: of its node in the editor
 
     @property
     def is_vector(self):
@@ -92,7 +98,7 @@ class Value:
     def parts(self):
         """The three components of a vector."""
         node = self.tree.node("ShaderNodeSeparateXYZ", {0: self})
-        return [Value(self.tree, output) for output in node.outputs]
+        return [self.tree.value(node, output) for output in range(3)]
 
 
 class Tree:
@@ -100,22 +106,43 @@ class Tree:
 
     def __init__(self, tree):
         self.tree = tree
+        self._columns = {}  # of the nodes
+        self._rows = {}  # that a column has
         tree.nodes.clear()
 
     def node(self, kind, inputs=(), **settings):
         """inputs: numbers, tuples or Values by the socket's name or number."""
         node = self.tree.nodes.new(kind)
         for name, value in settings.items():
-            setattr(node, name, value)
+            if getattr(node, name) != value:
+                setattr(node, name, value)
+        column = 0
         for name, value in dict(inputs).items():
             if isinstance(value, Value):
                 self.tree.links.new(value.socket, node.inputs[name])
+                column = max(column, 1 + value.column)
             else:
                 node.inputs[name].default_value = value
+        self._place(node, column)
         return node
 
+    def _place(self, node, column):
+        """To the right of what it uses."""
+        self._columns[node] = column
+        row = self._rows[column] = self._rows.get(column, -1) + 1
+        node.location = column * _SPACING[0], -row * _SPACING[1]
+
+    def call(self, name, build, inputs):
+        """Adds the node group of this name, whose tree build(tree, {input: Value}) makes the first time. inputs: numbers,
+        tuples or Values by name. Returns the group's outputs, {name: Value}, which are what build() returned."""
+        node = self.node("ShaderNodeGroup", inputs, node_tree=_shared_group(name, build, inputs))
+        return {socket.name: self.value(node, socket.name) for socket in node.outputs}
+
     def add(self, kind, inputs=(), output=0, **settings):
-        return Value(self, self.node(kind, inputs, **settings).outputs[output])
+        return self.value(self.node(kind, inputs, **settings), output)
+
+    def value(self, node, output):
+        return Value(self, node.outputs[output], self._columns[node])
 
     def math(self, operation, *values, clamp=False):
         return self.add("ShaderNodeMath", dict(enumerate(values)), operation=operation, use_clamp=clamp)
@@ -131,32 +158,31 @@ class Tree:
         """Of the mesh; 0 where it has none of the name."""
         return self.add("ShaderNodeAttribute", output=output, attribute_name=name)
 
-    def map_range(self, value, low, high, smooth=True):
-        """0 … 1 while the value goes from low to high."""
+    def map_range(self, value, low, high):
+        """0 … 1 while the value goes from low to high, smoothly."""
         return self.add("ShaderNodeMapRange", {"Value": value, "From Min": low, "From Max": high},
-                        interpolation_type="SMOOTHSTEP" if smooth else "LINEAR")
+                        interpolation_type="SMOOTHSTEP")
 
     def mix(self, part, a, b):
         """a + part·(b − a), numbers or vectors."""
         return a + (b - a) * part
 
-    def arrange(self):
-        """Places each node to the right of what it uses."""
-        columns = {}
 
-        def column_of(node):
-            if node not in columns:
-                columns[node] = 0
-                before = [link.from_node for socket in node.inputs for link in socket.links]
-                columns[node] = 1 + max((column_of(other) for other in before), default=-1)
-            return columns[node]
-
-        rows = {}
-        for node in self.tree.nodes:
-            column = column_of(node)
-            rows[column] = rows.get(column, -1) + 1
-            node.location = (column * _SPACING[0] + rows[column] // _ROWS * 40, -(rows[column] % _ROWS) * _SPACING[1])
-
-
-def new_group(name):
-    return bpy.data.node_groups.new(name, "ShaderNodeTree")
+def _shared_group(name, build, inputs):
+    mark = f"{name} {VERSION}"
+    for group in bpy.data.node_groups:
+        if group.get(MARK) == mark:
+            return group
+    group = bpy.data.node_groups.new(name, "ShaderNodeTree")
+    group[MARK] = mark
+    for socket, value in inputs.items():
+        is_vector = value.is_vector if isinstance(value, Value) else isinstance(value, tuple)
+        compat.new_group_socket(group, socket, "Vector" if is_vector else "Float",
+                                default=None if isinstance(value, Value) else value)
+    tree = Tree(group)
+    arrived = tree.node("NodeGroupInput").outputs
+    made = build(tree, {socket: Value(tree, arrived[socket]) for socket in inputs})
+    for socket, value in made.items():
+        compat.new_group_socket(group, socket, "Vector" if value.is_vector else "Float", is_output=True)
+    tree.node("NodeGroupOutput", made)
+    return group

@@ -17,6 +17,16 @@ def set_positions(mesh, positions):
         mesh.vertices.foreach_set("co", positions.ravel())
 
 
+def set_faces(mesh, corners, starts):
+    """The mesh's faces: their vertices one after another, and where each face begins. int32, contiguous."""
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(len(starts))
+    mesh.loops.foreach_set("vertex_index", corners)
+    mesh.polygons.foreach_set("loop_start", starts)
+    if not bpy.types.MeshPolygon.bl_rna.properties["loop_total"].is_readonly:  # since 3.6 it follows from the starts
+        mesh.polygons.foreach_set("loop_total", np.diff(starts, append=np.int32(len(corners))))
+
+
 def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
 

@@ -22,7 +22,7 @@ from .query import Water, first_ocean
 
 LEAST_FOOTPRINT_M = 0.05  # narrower, and single precision shows in the tilt
 SAMPLES = 9  # a side of the footprint
-ALONG = np.linspace(-0.5, 0.5, SAMPLES)
+GRID = np.stack(np.meshgrid(*2 * [np.linspace(-0.5, 0.5, SAMPLES)]), -1).reshape(-1, 2)
 
 
 def _is_ocean(_settings, obj):
@@ -81,16 +81,15 @@ def ride(water, rest, size, settings):
     heading = np.array(rest.col[0].xy)
     length = np.linalg.norm(heading)
     heading = heading / length if length > 1e-9 else np.array((1.0, 0.0))  # else it stands on its end
-    widths = np.maximum(np.array(size) * settings.damping, LEAST_FOOTPRINT_M)
-    offsets = np.stack(np.meshgrid(ALONG * widths[0], ALONG * widths[1]), -1).reshape(-1, 2)
-    offsets = offsets @ np.array((heading, (-heading[1], heading[0])))
-    places = offsets + rest.translation.xy
+    axes = np.array((heading, (-heading[1], heading[0])))
+    offsets = GRID * np.maximum(np.array(size) * settings.damping, LEAST_FOOTPRINT_M)
+    places = offsets @ axes + rest.translation.xy
     shift = np.zeros(2)
     if settings.drift > 0.0:
         shift = settings.drift * (water.carried(places)[:, :2] - places).mean(0)
-    # The plane that fits best: the points lie evenly round the middle.
+    # The plane that fits best, by least squares: the offsets are symmetric and their products sum to nothing.
     heights = water.heights(places + shift)
-    slopes = np.linalg.lstsq(offsets, heights - heights.mean(), rcond=None)[0] * settings.tilt
+    slopes = settings.tilt * (heights @ offsets / (offsets**2).sum(0)) @ axes
     tilt = Vector((0, 0, 1)).rotation_difference(Vector((-slopes[0], -slopes[1], 1.0))).to_matrix().to_4x4()
     place = rest.translation
     return (Matrix.Translation((place.x + shift[0], place.y + shift[1], place.z + heights.mean())) @ tilt
@@ -164,8 +163,10 @@ def _on_board(obj):
 def follow(bpy_scene, depsgraph):
     """Puts the scene's floating objects on the water of the depsgraph's frame."""
     waters = {}
-    for obj in floats(bpy_scene):
-        sea = obj.pelagic_float.ocean or first_ocean(bpy_scene)
+    objects = floats(bpy_scene)
+    first = first_ocean(bpy_scene) if objects else None
+    for obj in objects:
+        sea = obj.pelagic_float.ocean or first
         if sea is None:
             continue
         if sea not in waters:

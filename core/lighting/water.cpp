@@ -43,6 +43,10 @@ constexpr std::array<double, kBands> kPlanktonAbsorption{
     0.618, 0.528, 0.474, 0.416, 0.357, 0.294, 0.276, 0.291, 0.282, 0.236, 0.252,
     0.276, 0.317, 0.334, 0.356, 0.441, 0.595, 0.502, 0.329, 0.215};
 
+constexpr double wavelength_of(std::size_t band) {
+    return 400.0 + 10.0 * static_cast<double>(band);
+}
+
 // What rivers add: absorption of yellow substance at 440 nm [1/m], mineral particles [g/m³].
 struct Rivers {
     double yellow, minerals;
@@ -60,8 +64,12 @@ Rivers rivers_of(WaterKind kind) {
     return {0.0, 0.0};
 }
 
-double reflectance_at(std::size_t band, double chlorophyll, const Rivers& rivers) {
-    const double wavelength = 400.0 + 10.0 * static_cast<double>(band);
+struct Optics {
+    double absorption, backscatter;  // [1/m]
+};
+
+Optics optics_at(std::size_t band, double chlorophyll, const Rivers& rivers) {
+    const double wavelength = wavelength_of(band);
     const double c = std::max(chlorophyll, 0.01);  // the clearest natural water; 0 has no logarithm
     const double a_clear = (kWaterAbsorption[band] + 0.06 * kPlanktonAbsorption[band] * std::pow(c, 0.65)) *
                            (1.0 + 0.2 * std::exp(-0.014 * (wavelength - 440.0)));
@@ -71,9 +79,11 @@ double reflectance_at(std::size_t band, double chlorophyll, const Rivers& rivers
     // The bracket is negative above 100 mg/m³: water_body() rejects such water.
     const double plankton =
         (0.002 + 0.02 * (0.5 - 0.25 * std::log10(c)) * 550.0 / wavelength) * 0.30 * std::pow(c, 0.62);
-    const double back = sea_water + plankton + 0.018 * 0.51 * rivers.minerals;
-    return 0.33 * back / (a + back);
+    return {a, sea_water + plankton + 0.018 * 0.51 * rivers.minerals};
 }
+
+// Of the primaries of Rec. 709 under its white, D65, to the nearest band.
+constexpr std::array<double, 3> kDominant_nm{610.0, 550.0, 460.0};
 
 }  // namespace
 
@@ -85,12 +95,21 @@ WaterBody water_body(const WaterChoice& choice) {
     const Rivers rivers = rivers_of(choice.kind);
     glm::dvec3 sum(0.0), white(0.0);
     for (std::size_t band = 0; band < kBands; ++band) {
-        const glm::dvec3 seen = observed_xyz(400.0 + 10.0 * static_cast<double>(band));
-        sum += reflectance_at(band, c, rivers) * seen;
+        const glm::dvec3 seen = observed_xyz(wavelength_of(band));
+        const Optics at = optics_at(band, c, rivers);
+        sum += 0.33 * at.backscatter / (at.absorption + at.backscatter) * seen;
         white += seen;
     }
+    WaterBody water;
     // Blues outside the gamut have a negative red, which no display shows.
-    return {glm::vec3(glm::max(rec709_of(sum) / rec709_of(white), glm::dvec3(0.0)))};
+    water.reflectance = glm::max(rec709_of(sum) / rec709_of(white), glm::dvec3(0.0));
+    for (int channel = 0; channel < 3; ++channel) {
+        const auto band = static_cast<std::size_t>((kDominant_nm[channel] - 400.0) / 10.0);
+        const Optics at = optics_at(band, c, rivers);
+        water.absorption_per_m[channel] = static_cast<float>(at.absorption);
+        water.backscatter_per_m[channel] = static_cast<float>(at.backscatter);
+    }
+    return water;
 }
 
 }  // namespace pelagic

@@ -1,13 +1,16 @@
-// The colour of the water body, from what it contains.
+// The optics of the water body, from what it contains.
 #pragma once
 
 #include <glm/vec3.hpp>
 
 namespace pelagic {
 
-// Diffuse reflectance just below the surface, linear Rec. 709.
 struct WaterBody {
-    glm::vec3 reflectance{0.0f};
+    glm::vec3 reflectance{0.0f};  // diffuse, just below the surface, linear Rec. 709
+    // For hosts that trace light through the water [1/m], at the dominant wavelengths of the primaries of Rec. 709: a
+    // broader mean of such steep spectra has no colour that a display shows. Isotropic scattering of twice the
+    // backscatter sends as much back.
+    glm::vec3 absorption_per_m{0.0f}, backscatter_per_m{0.0f};
 };
 
 enum class WaterKind {

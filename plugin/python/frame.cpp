@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -75,6 +76,13 @@ void write_to(Results<float>& results, const ProductRow& row, const py::object& 
         results.set(VectorProduct::checked(row.product), writable_vectors(array, asked));
 }
 
+// While the work waits for its parts, this thread takes up nobody else's: Blender runs drivers as tasks of the same TBB,
+// and one that asked this frame would wait for the lock that its own thread holds.
+template <class Work>
+void alone(const Work& work) {
+    tbb::this_task_arena::isolate(work);
+}
+
 class PythonFrame {
   public:
     explicit PythonFrame(const PythonSea& sea) : sea_(sea), frame_(sea.sea) {}
@@ -82,7 +90,7 @@ class PythonFrame {
     void set(double t_s) {
         const py::gil_scoped_release others_may_run;
         const std::unique_lock writing(mutex_);
-        frame_.set(t_s);
+        alone([&] { frame_.set(t_s); });
         is_set_ = true;
     }
 
@@ -143,12 +151,12 @@ class PythonFrame {
             require_time();
             wanted.set(index(Product::Displacement));
             const PreparedQuery<float> query(frame_, 0, wanted, points.origin_m);
-            find_rest(query, points, {}, {rest_m.data()}, {residual_m.data()});
+            alone([&] { find_rest(query, points, {}, {rest_m.data()}, {residual_m.data()}); });
             std::vector<glm::vec3> displacement_m(points.count);
             if (!results.holds(Product::Displacement))
                 results.set(Product::Displacement, {displacement_m.data()});
             points.rest_m = {rest_m.data()};
-            query.evaluate(points, results);
+            alone([&] { query.evaluate(points, results); });
             const Strided<glm::vec3> displaced_m = results.vectors(Product::Displacement);
             for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
         }
@@ -201,7 +209,7 @@ class PythonFrame {
         require_on_the_sea(points, "rest");
         const std::shared_lock reading(mutex_);
         require_time();
-        pelagic::evaluate(frame_, 0, points, results);
+        alone([&] { pelagic::evaluate(frame_, 0, points, results); });
     }
 
     void require_time() const {

@@ -177,7 +177,13 @@ void add_light(py::module_& module) {
              py::arg("scene"))
         .def_property_readonly(
             "reflectance", [](const WaterBody& self) { return tuple_of(self.reflectance); },
-            "Diffuse, just below the surface, linear Rec. 709.");
+            "Diffuse, just below the surface, linear Rec. 709.")
+        .def_property_readonly(
+            "absorption_per_m", [](const WaterBody& self) { return tuple_of(self.absorption_per_m); },
+            "[1/m], at the dominant wavelengths of red, green and blue.")
+        .def_property_readonly(
+            "backscatter_per_m", [](const WaterBody& self) { return tuple_of(self.backscatter_per_m); },
+            "[1/m], at the same. Isotropic scattering of twice as much sends as much back.");
     module.def(
         "shade",
         [](const PythonSky& sky, const WaterBody& water, const py::object& to_eye, const py::object& normal,

@@ -37,7 +37,7 @@ RESULTS = {
     "products": "tuple[str, ...]", "origin_m": "tuple[float, float]", "resolution": "tuple[int, int]",
     **{name: "tuple[float, float, float]" for name in
        ("position_m", "right", "up", "forward", "sun_direction", "sun_radiance", "sun_irradiance", "sky_irradiance",
-        "reflectance")},
+        "reflectance", "absorption_per_m", "backscatter_per_m")},
 }
 
 HEADER = '''\

@@ -3,11 +3,9 @@
     xvfb-run blender --factory-startup --enable-event-simulate --python baking_window.py
 """
 
-import os
 import shutil
 import sys
 import tempfile
-import traceback
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -26,7 +24,6 @@ def frames():
 
 def steps():
     """Each yield lets the window work until the function is true."""
-    yield lambda: True  # from here on there is a window
     window = bpy.context.window_manager.windows[0]
     with bpy.context.temp_override(window=window):
         sea = add_ocean(surface__resolution=64)
@@ -60,27 +57,7 @@ def steps():
     with checking("another file stops it"):
         bpy.ops.wm.read_homefile()
         assert baking._baking is None
-
-
-running = steps()
-waiting_for = next(running)
-
-
-@bpy.app.handlers.persistent
-def look():
-    global waiting_for
-    try:
-        if waiting_for():
-            waiting_for = next(running)
-        return 0.1
-    except StopIteration:
-        code = 0
-    except BaseException:
-        traceback.print_exc()
-        code = 1
     shutil.rmtree(folder)
-    sys.stdout.flush()
-    os._exit(code)
 
 
-bpy.app.timers.register(look, first_interval=0.1, persistent=True)
+in_window(steps)

@@ -7,6 +7,7 @@
 import os
 import sys
 import time
+import traceback
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -87,3 +88,27 @@ def refused(call, words):
         assert words in str(error), f"{error!r} doesn't say {words!r}"
         return True
     return False
+
+
+def in_window(steps):
+    """Runs steps(), a generator that yields functions: between two of its steps the window works until the function is
+    true. Then Blender ends, with an error if a step failed."""
+    running = steps()
+    waiting_for = [lambda: True]
+
+    @bpy.app.handlers.persistent
+    def go_on():
+        try:
+            if waiting_for[0]():
+                waiting_for[0] = next(running)
+            return 0.1
+        except StopIteration:
+            code = 0
+        except BaseException:
+            traceback.print_exc()
+            code = 1
+        sys.stdout.flush()
+        os._exit(code)
+
+    bpy.context.preferences.view.show_splash = False
+    bpy.app.timers.register(go_on, first_interval=0.5, persistent=True)

@@ -43,6 +43,17 @@ TEST(LatLongPicture, ItsIrradianceIsTheSkys) {
     }
 }
 
+// Read as a picture of a sky it gives the same sky again, but for its own sun: it has none.
+TEST(LatLongPicture, ReadAsAPictureItIsTheSameSky) {
+    const Sky sky = daylight_sky({.sun_elevation_deg = 40.0, .sun_azimuth_deg = -60.0, .turbidity = 3.0});
+    const Sky again = picture_sky(lat_long(sky, 1024), 256);
+    EXPECT_EQ(again.sun_radiance, glm::vec3(0.0f));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(again.sky_irradiance[c] / sky.sky_irradiance[c], 1.0f, 0.01f);
+    for (const glm::vec2 u : {glm::vec2(0.0f), glm::vec2(0.5f, -0.2f), glm::vec2(-0.6f, 0.6f)})
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(again.map.radiance(u, 1.0f)[c] / sky.map.radiance(u, 1.0f)[c], 1.0f, 0.03f);
+}
+
 TEST(LatLongPicture, SizesOutOfRangeAreRefused) {
     const Sky sky = daylight_sky({}, 16);
     for (const int width : {0, 7, 9, 16386}) EXPECT_THROW(lat_long(sky, width), std::invalid_argument);

@@ -47,6 +47,21 @@ TEST(WaterBody, RiversMakeItBrighterAndBrowner) {
     EXPECT_GT(coastal.g, ocean.g);
 }
 
+// Pope and Fry 1997 at 610 nm: 0.2644 1/m, all but alone in clear water; in blue the light goes on for tens of metres.
+// Rivers dim it within metres. At each wavelength 0.33 b_b/(a + b_b) is near the reflectance's channel.
+TEST(WaterBody, CoefficientsAreThoseOfTheReflectance) {
+    const WaterBody clear = water_body({.kind = WaterKind::Ocean, .chlorophyll_mg_m3 = 0.03}),
+                    turbid = water_body({.kind = WaterKind::Turbid, .chlorophyll_mg_m3 = 3.0});
+    EXPECT_NEAR(clear.absorption_per_m.r, 0.2644f, 0.01f);
+    EXPECT_LT(clear.absorption_per_m.b, 0.03f);
+    EXPECT_GT(turbid.absorption_per_m.b, 0.3f);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_GT(turbid.backscatter_per_m[i], 10.0f * clear.backscatter_per_m[i]);
+        const float b = turbid.backscatter_per_m[i];
+        EXPECT_NEAR(0.33f * b / (turbid.absorption_per_m[i] + b) / turbid.reflectance[i], 1.0f, 0.35f);
+    }
+}
+
 // 0.33 b_b/(a + b_b) is below 0.33 for any content, and no component is negative.
 TEST(WaterBody, StaysAReflectance) {
     for (WaterKind kind : {WaterKind::Ocean, WaterKind::Coastal, WaterKind::Turbid}) {

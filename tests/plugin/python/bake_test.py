@@ -121,6 +121,40 @@ class Bake(InFolder):
             pelagic.bake(scene, self.path / "out")
 
 
+class Meshes(InFolder):
+    """What evaluate() gives is what a bake writes, to the bit."""
+
+    def baked(self, scene, frame):
+        pelagic.bake(scene, self.path, frame)
+        return pelagic.read_mesh(self.path / "mesh" / f"bay.{frame:04}.usdc")
+
+    def compare(self, ours, theirs, origin_m=(0.0, 0.0)):
+        ours["position"] = np.float32(np.float64(ours["position"]) + [*origin_m, 0.0])
+        for name in ("position", "normal", "velocity", "slope_variance", "coverage"):
+            np.testing.assert_array_equal(ours[name], theirs[name], name)
+
+    def test_a_patch(self):
+        scene = shot()
+        size_m, quads = scene.surface.size_m, scene.surface.resolution
+        frame = pelagic.Frame(pelagic.Sea(scene, lattice=(-size_m / 2, size_m / quads)))
+        frame.set(scene.shot.time_s(3))
+        self.compare(frame.evaluate(pelagic.patch(size_m, quads)[0]), self.baked(scene, 3))
+
+    def test_a_projected_grid(self):
+        scene = shot()
+        scene.surface.kind = "projected-grid"
+        scene.camera.position_m, scene.camera.look_at_m = (1234.5, 2.25, 4.0), (1234.5, 60.0, 2.0)
+        scene.output.maps, scene.output.cascade_tiles = (), False
+        view = pelagic.View.of_scene(scene, 2)
+        sea = pelagic.Sea(scene, views=[view])
+        frame, grid = pelagic.Frame(sea), sea.projected_grid(view)
+        frame.set(scene.shot.time_s(2))
+        baked = self.baked(scene, 2)
+        self.compare(frame.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m), baked,
+                     grid.origin_m)
+        np.testing.assert_array_equal(grid.quads.ravel(), baked["face_corners"])
+
+
 class Maps(unittest.TestCase):
     def test_maps_are_the_query_on_their_squares(self):
         scene = shot()
@@ -177,6 +211,24 @@ class Pictures(unittest.TestCase):
         layers = pelagic.render(scene, 1, (65, 65), 1)
         np.testing.assert_allclose(layers["sky"][32, 32], pelagic.Sky(scene).radiance(np.float32([view.forward]))[0],
                                    rtol=1e-5)
+
+    def test_a_mirror_is_shaded_as_shade_does(self):
+        scene = shot()
+        scene.sea.wind_speed_mps = 0.0
+        size = (40, 24)
+        layers = pelagic.render(scene, 1, size, 1)
+        view = pelagic.View.of_scene(scene, 1)
+        column, row = np.meshgrid(np.arange(size[0]) + 0.5, np.arange(size[1]) + 0.5)
+        tangent = 2.0 * view.tan_half_width / size[0]
+        ray = (np.float64(view.forward) + np.multiply.outer((column - size[0] / 2) * tangent, view.right) +
+               np.multiply.outer((size[1] / 2 - row) * tangent, view.up))
+        to_eye = np.float32(-ray / np.linalg.norm(ray, axis=-1, keepdims=True))[layers["is_sea"]]
+        up, flat = np.zeros_like(to_eye), np.zeros_like(to_eye)
+        up[:, 2] = 1.0
+        lit = pelagic.shade(pelagic.Sky(scene), pelagic.WaterBody(scene), to_eye, up, flat)
+        self.assertGreater(len(to_eye), 300)
+        for name in ("sky", "sea"):
+            np.testing.assert_allclose(layers[name][layers["is_sea"]], lit[name], rtol=2e-3, atol=1e-5, err_msg=name)
 
     def test_it_can_be_cancelled_and_refuses_what_is_too_large(self):
         told = []

@@ -96,6 +96,8 @@ class Shade(unittest.TestCase):
         clear, muddy = self.lit()["sea"][0], pelagic.shade(self.sky, murky, self.to_eye, self.up, self.rough)["sea"][0]
         np.testing.assert_allclose(clear * np.float32(murky.reflectance), muddy * np.float32(self.water.reflectance), rtol=0.05)
         self.assertGreater(muddy[0], 3.0 * clear[0])
+        self.assertTrue(all(m > c for m, c in zip(murky.backscatter_per_m, self.water.backscatter_per_m)))
+        self.assertGreater(self.water.absorption_per_m[0], 5.0 * self.water.absorption_per_m[2])
 
     def test_foam_takes_its_share(self):
         none, half, full = (self.lit(coverage=np.full(300, share, np.float32)) for share in (0.0, 0.5, 1.0))

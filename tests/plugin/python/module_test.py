@@ -314,6 +314,27 @@ class Threads(unittest.TestCase):
                 for name in ALL:
                     np.testing.assert_array_equal(answers[t][name], alone[t][name])
 
+    def test_seas_and_frames_are_made_in_several_threads_at_once(self):
+        rest, _ = pelagic.patch(SIZE_M, RESOLUTION)
+        answers = {}
+
+        def build(size_m):
+            scene = small_scene()
+            scene.waves.cascades = [pelagic.CascadeSize(size_m=size_m, resolution=int(size_m))]
+            frame = pelagic.Frame(pelagic.Sea(scene))
+            frame.set(1.0)
+            answers.setdefault(size_m, []).append(frame.evaluate(rest)["position"])
+
+        sizes = [48.0, 60.0, 72.0, 80.0, 96.0, 108.0]
+        threads = [threading.Thread(target=build, args=(size_m,)) for size_m in sizes]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        for size_m in sizes:
+            build(size_m)
+            np.testing.assert_array_equal(*answers[size_m])
+
     def test_other_threads_run_while_a_frame_is_computed(self):
         # A second thread looks at the clock all the time. While set() held the interpreter it could not, and its
         # longest pause would be all of set().

@@ -1,0 +1,122 @@
+"""In a window: an ocean is added, its settings change while it plays, it is undone, rendered, and seen.
+
+    xvfb-run blender --factory-startup --python window.py [-- PICTURE.png]
+"""
+
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+from pelagic_ocean import play, sea
+
+picture = sys.argv[-1] if sys.argv[-1].endswith(".png") else str(Path(tempfile.mkdtemp()) / "window.png")
+
+
+def height(obj):
+    return numbers(obj.data)[:, 2].std()
+
+
+def the_ocean():
+    """Undo makes objects anew."""
+    return bpy.data.objects["Ocean"]
+
+
+def pixels(path):
+    image = bpy.data.images.load(path)
+    values = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(values)
+    return values.reshape(image.size[1], image.size[0], 4)[..., :3]
+
+
+def steps():
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    here = {"window": window, "area": area, "region": region}
+    with bpy.context.temp_override(**here):
+        bpy.data.objects.remove(bpy.data.objects["Cube"])
+        area.spaces.active.region_3d.view_perspective = "CAMERA"
+        bpy.ops.ed.undo_push(message="start")
+        obj = add_ocean(surface__resolution=64)
+        bpy.ops.ed.undo_push(message="ocean")
+        scene = bpy.context.scene
+    yield lambda: np.ptp(numbers(obj.data)[:, 2]) > 0 and len(obj.data.vertices) == 65**2
+
+    with checking("while another sea is built, the old one plays on; then the new one is shown"):
+        before, built = height(obj), sea.BuiltSea
+        may_go_on = threading.Event()
+
+        class SlowSea(built):
+            def __init__(self, *arguments):
+                may_go_on.wait()
+                super().__init__(*arguments)
+
+        play.BuiltSea = SlowSea
+        obj.pelagic.sea.wind_speed_mps = 25.0
+        yield lambda: play.simulation_of(obj).is_building
+        first = numbers(obj.data)
+        scene.frame_set(5)
+        assert not np.array_equal(numbers(obj.data), first) and abs(height(obj) - before) < 0.3 * before
+        obj.pelagic.sea.wind_speed_mps = 28.0
+        may_go_on.set()
+        play.BuiltSea = built
+        yield lambda: height(obj) > 2 * before and not play.simulation_of(obj).is_building
+        assert play.simulation_of(obj).scene.sea.wind_speed_mps == 28.0
+
+    with checking("undo in a window"):
+        with bpy.context.temp_override(**here):
+            bpy.ops.ed.undo_push(message="wind")
+            bpy.ops.ed.undo()
+        yield lambda: abs(height(the_ocean()) - before) < 0.3 * before
+        with bpy.context.temp_override(**here):
+            bpy.ops.ed.redo()
+        yield lambda: height(the_ocean()) > 2 * before
+
+    with checking("it plays"):
+        scene = bpy.data.scenes[0]
+        start = scene.frame_current
+        with bpy.context.temp_override(**here):
+            bpy.ops.screen.animation_play()
+        yield lambda: scene.frame_current > start + 2
+        with bpy.context.temp_override(**here):
+            bpy.ops.screen.animation_cancel(restore_frame=False)
+
+    with checking("a render from the menu, with more vertices than the viewport has, and back"):
+        obj = the_ocean()
+        obj.pelagic.viewport_percentage = 25
+        yield lambda: len(obj.data.vertices) == 17**2
+        counts, ended = [], []
+        render = scene.render
+        render.engine, render.resolution_percentage = "CYCLES", 5
+        scene.cycles.samples, scene.cycles.use_denoising = 1, False
+        scene.frame_start, scene.frame_end = 3, 5
+        render.filepath, render.use_motion_blur = str(Path(picture).with_suffix("")) + ".frame", True
+        bpy.app.handlers.render_post.append(lambda *_: counts.append(len(the_ocean().data.vertices)))
+        bpy.app.handlers.render_complete.append(lambda *_: ended.append(True))
+        with bpy.context.temp_override(**here):
+            bpy.ops.render.render("INVOKE_DEFAULT", animation=True)
+        yield lambda: ended
+        yield lambda: len(the_ocean().data.vertices) == 17**2
+        assert counts == [65**2] * 3, counts
+
+    with checking("the sea is seen: " + picture):
+        obj = the_ocean()
+        obj.pelagic.viewport_percentage = 100
+        obj.pelagic.horizon = True
+        until = time.monotonic() + 5
+        yield lambda: time.monotonic() > until
+        with bpy.context.temp_override(window=window):
+            bpy.ops.screen.screenshot(filepath=picture)
+        shown = pixels(picture)
+        high, wide = shown.shape[:2]
+        lower = shown[high // 3:high // 2, wide // 4:wide // 2]
+        assert lower.std() > 0.01, lower.std()
+
+
+in_window(steps)

@@ -63,11 +63,11 @@ def _facets(tree, asked):
         """That of all facets."""
         return (v_xx * x * x + v_yy * y * y).plus_product(2.0 * v_xy, x * y).at_least(1e-12).sqrt()
 
-    sigma = deviation(v_x, v_y)
+    sigma = deviation(v_x, v_y).at_least(1e-3 * cosine)
     towards = placed(v_x, v_y)
     places = towards.length().at_least(1e-6)
     w_x, w_y, _ = towards._scaled(1.0 / places).parts()
-    k = (cosine / sigma).at_most(1e3)
+    k = cosine / sigma
 
     # The eye sees slopes −x σ along and y across the line of sight: y is normal, and x has the density (k + x)₊ φ(x). The
     # places of lobes have the part `rest` of that variance, weighted by how much the eye sees of a whole lobe (moments by

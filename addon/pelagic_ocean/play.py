@@ -10,6 +10,7 @@ while the old one plays on; without a window, and during renders, whoever asks w
 """
 
 import re
+import threading
 import weakref
 
 import bpy
@@ -150,6 +151,7 @@ class Simulation:
 
 _simulations = {}  # by the names of their objects
 _rendering = set()  # names of scenes
+_turn = threading.RLock()  # a render has a thread of its own
 
 
 # ---- Which oceans, and what of them
@@ -164,6 +166,8 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
     """What identifies the surface; a function that reads what it needs of Blender and returns another, for a thread, that
     makes it; and the view, if it depends on one. ValueError if it can't be made."""
     mesh, setting = obj.data, obj.pelagic
+    if mesh.library:
+        raise ValueError("The mesh is linked from another file, where Blender lets nobody write: append it, or make it local")
     if setting.own_mesh:
         signature = mesh.get(meshes.SIGNATURE, "")
         if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))]:
@@ -188,7 +192,9 @@ def _is_seen(obj, depsgraph):
     """Whether anything in this depsgraph shows it; during renders that is another question than in a window."""
     if not obj.evaluated_get(depsgraph).is_evaluated or obj.mode == "EDIT":
         return False
-    return depsgraph.mode == "RENDER" or obj.visible_get(view_layer=depsgraph.view_layer)
+    layer = depsgraph.view_layer
+    # What isn't in the view layer itself, and evaluated all the same, is there as an instance.
+    return depsgraph.mode == "RENDER" or obj.visible_get(view_layer=layer) or obj.name not in layer.objects
 
 
 def _driven(objects, depsgraph):
@@ -263,9 +269,10 @@ def _forget_deleted():
 
 @persistent
 def _on_frame(bpy_scene, depsgraph):
-    _forget_deleted()
-    for obj in _driven(bpy.data.objects, depsgraph):
-        _show(obj, bpy_scene, depsgraph, True)
+    with _turn:
+        _forget_deleted()
+        for obj in _driven(bpy.data.objects, depsgraph):
+            _show(obj, bpy_scene, depsgraph, True)
 
 
 @persistent

@@ -56,11 +56,14 @@ class Preview:
         return self._job is not None
 
     def scene(self, obj, bpy_scene):
-        """The pelagic.Scene of the ocean as it is set now. ValueError for what the core refuses."""
+        """The pelagic.Scene of the ocean as it is set now, or the last one that the core accepts; None before that."""
         settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene))
         if settings != self._settings:
-            self._scene = ocean.scene_of(obj, bpy_scene, settings=settings[0])
             self._settings = settings
+            try:
+                self._scene = ocean.scene_of(obj, bpy_scene, settings=settings[0])
+            except (ValueError, OSError) as error:
+                self.problem, self._refused = str(error), settings
         return self._scene
 
     def build(self, scene):
@@ -73,7 +76,9 @@ class Preview:
             # A coarser one would save work, but not so much that every step of a zoom is worth a new sea.
             keeps_sea = sea is not None and sea.serves(scene) and sea.finest_m <= finest_m <= 4 * sea.finest_m
             keeps_light = light is not None and light.serves(scene)
-            if not (keeps_sea and keeps_light):
+            if keeps_sea and keeps_light:
+                self.problem = ""
+            else:
                 self._job = play.Job(self._settings, lambda: (
                     sea if keeps_sea else pelagic.GpuSea(scene, finest_m),
                     light if keeps_light else pelagic.GpuLight(scene)))
@@ -107,7 +112,7 @@ class Preview:
             _tend_soon()
             return
         scene = self.scene(obj, context.scene)
-        if self.build(scene) and self.hidden_in and context.space_data.shading.type in SHADINGS:
+        if scene is not None and self.build(scene) and self.hidden_in and context.space_data.shading.type in SHADINGS:
             camera = Camera(gpu.matrix.get_projection_matrix(), gpu.matrix.get_model_view_matrix(),
                             gpu.state.viewport_get()[2:], obj.matrix_world)
             self.drawing.draw(context.region.as_pointer(), camera, scene.shot.time_s(context.scene.frame_current_final),

@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import ocean, play
+from pelagic_ocean import ocean, play, properties
 
 folder = Path(tempfile.mkdtemp())
 
@@ -71,6 +71,14 @@ with checking("saved and loaded: the same settings, the same sea, playing"):
     for obj in ocean.oceans():
         assert np.array_equal(numbers(obj.data), expected[obj.name]), obj.name
 
+with checking("a file from before there were versions gets today's number"):
+    names_of_old = [obj.name for obj in ocean.oceans()]
+    for obj in ocean.oceans():
+        obj.pelagic.version = 0
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "old.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "old.blend"))
+    assert [obj.pelagic.version for obj in ocean.oceans()] == [properties.VERSION] * len(names_of_old)
+
 with checking("appended into another file, it plays there"):
     fresh_file()
     with bpy.data.libraries.load(path) as (source, target):
@@ -79,6 +87,29 @@ with checking("appended into another file, it plays there"):
     bpy.context.collection.objects.link(obj)
     go_to(10)
     assert np.array_equal(numbers(obj.data), expected[names[0]])
+
+with checking("linked from another file it can't move, and says so"):
+    fresh_file()
+    with bpy.data.libraries.load(path, link=True) as (source, target):
+        target.objects = [names[0]]
+    obj = target.objects[0]
+    bpy.context.collection.objects.link(obj)
+    go_to(3)
+    assert "make it local" in play.simulation_of(obj).problem
+
+with checking("in a collection that is there only as an instance, it plays"):
+    fresh_file()
+    obj = add_ocean()
+    collection = bpy.data.collections.new("Seas")
+    collection.objects.link(obj)
+    bpy.context.collection.objects.unlink(obj)
+    instance = bpy.data.objects.new("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    bpy.context.collection.objects.link(instance)
+    go_to(3)
+    before = numbers(obj.data)
+    go_to(9)
+    assert not np.array_equal(numbers(obj.data), before)
 
 with checking("undo and redo, 20 times each"):
     fresh_file()

@@ -1,0 +1,313 @@
+"""The viewport preview in the real window: what is drawn where, beside the program's own picture; and that the mesh comes
+back whatever happens. Needs a display (xvfb-run will do) and PELAGIC_PROGRAM, the program's path."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from bpy_extras.object_utils import world_to_camera_view
+from harness import *  # noqa: F403
+from mathutils import Euler, Vector
+
+package = enable()
+from pelagic_ocean import compat, ocean, viewport
+
+FOLDER = Path(tempfile.mkdtemp())
+CUBE_M = 6.0
+
+
+# ---- The window
+
+
+def view3d():
+    window = bpy.context.window_manager.windows[0]
+    areas = [area for area in window.screen.areas if area.type == "VIEW_3D"]
+    return window, max(areas, key=lambda area: area.width)
+
+
+def in_view():
+    window, area = view3d()
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return bpy.context.temp_override(window=window, screen=window.screen, area=area, region=region)
+
+
+def redraw():
+    with in_view():
+        bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
+
+
+def settle():
+    """Until the preview has nothing left to do; its timers don't run while a script does."""
+    before = None
+    for _ in range(20):
+        redraw()
+        preview = viewport._preview
+        if preview is None:
+            return
+        if preview._job is not None:
+            preview._job.join()
+        viewport._tend()
+        now = (preview.drawing.sea, preview.drawing.light, list(preview.hidden_in), preview.drawing.is_coarse())
+        if now == before and not preview.is_building and not now[-1]:
+            return
+        before = now
+    raise AssertionError("the preview doesn't come to rest")
+
+
+def pixels_of(file):
+    """float32 (height, width, 3), rows from the bottom, display values."""
+    image = bpy.data.images.load(str(file))
+    width, height = image.size
+    numbers = np.empty(width * height * image.channels, np.float32)
+    image.pixels.foreach_get(numbers)
+    channels = image.channels
+    bpy.data.images.remove(image)
+    return numbers.reshape(height, width, channels)[:, :, :3]
+
+
+def picture(name):
+    settle()
+    window, area = view3d()
+    file = FOLDER / f"{name}.png"
+    with in_view():
+        bpy.ops.screen.screenshot(filepath=str(file))
+        region = bpy.context.region
+        x, y, width, height = region.x, region.y, region.width, region.height
+    return pixels_of(file)[y:y + height, x:x + width]
+
+
+def look(pitch_deg, height_m, distance_m=60.0):
+    """From the south, along y."""
+    _, area = view3d()
+    region_3d = area.spaces.active.region_3d
+    region_3d.view_perspective = "PERSP"
+    rotation = Euler((np.radians(90 + pitch_deg), 0, 0)).to_quaternion()
+    region_3d.view_rotation = rotation
+    region_3d.view_distance = 1.0
+    region_3d.view_location = Vector((0, -distance_m, height_m)) - rotation @ Vector((0, 0, 1))
+    region_3d.update()
+
+
+def place_of(point):
+    """Row and column of a world point in the picture."""
+    with in_view():
+        region, region_3d = bpy.context.region, bpy.context.region_data
+        clip = region_3d.perspective_matrix @ Vector((*point, 1))
+        return (int((clip.y / clip.w * 0.5 + 0.5) * region.height), int((clip.x / clip.w * 0.5 + 0.5) * region.width))
+
+
+def programs_picture(obj):
+    """What `pelagic preview` draws from the same place."""
+    with in_view():
+        region, region_3d = bpy.context.region, bpy.context.region_data
+        pose, projection = region_3d.view_matrix.inverted(), region_3d.window_matrix.copy()
+        size = region.width, region.height
+    scene = ocean.scene_of(obj, bpy.context.scene)
+    scene.camera.position_m = tuple(pose.translation)
+    scene.camera.look_at_m = tuple(pose.translation - 100 * pose.col[2].to_3d())
+    scene.camera.fov_deg = float(np.degrees(2 * np.arctan(1 / projection[0][0])))
+    scene.camera.resolution = size
+    shot, file = FOLDER / "same.toml", FOLDER / "same.png"
+    scene.save(shot)
+    subprocess.run([os.environ["PELAGIC_PROGRAM"], "preview", str(shot), "--offscreen", str(file), "--frame", "1"], check=True)
+    return pixels_of(file)
+
+
+def change_of(a, b):
+    """Per pixel, 0 … 1."""
+    return np.abs(a - b).max(axis=2)
+
+
+# ---- The test
+
+
+def steps():
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    window, area = view3d()
+    with in_view():
+        bpy.ops.screen.screen_full_area(use_hide_panels=True)
+    _, area = view3d()
+    space = area.spaces.active
+    space.show_gizmo = False
+    space.overlay.show_overlays = False
+    with in_view():
+        obj = add_ocean()
+    options = bpy.context.window_manager.pelagic_preview
+    look(-4.0, 12.0)
+
+    with checking("the mesh is hidden, and the picture is the program's own"):
+        shown = picture("mesh")
+        options.show_sky = True
+        with in_view():
+            assert bpy.ops.pelagic.viewport_preview() == {"FINISHED"}
+        drawn = picture("sea and sky")
+        assert viewport.is_on() and not viewport._problem, viewport._problem
+        assert obj.hide_get() and not obj.hide_viewport and not obj.hide_render
+        assert change_of(shown, drawn).mean() > 0.1
+        theirs = programs_picture(obj)
+        difference = change_of(drawn, theirs)
+        ratio = drawn.mean(axis=(0, 1)) / theirs.mean(axis=(0, 1))
+        print(f"    differences: median {np.median(difference):.4f}, mean {difference.mean():.4f}; mean colours {ratio}")
+        assert np.median(difference) <= 2 / 255 and difference.mean() < 0.02
+        assert np.abs(ratio - 1).max() < 0.02
+
+    obj.pelagic.quality.level = "draft"  # quicker
+    drawn = picture("draft")
+
+    with checking("without the sky there is the view's own background over the horizon, and the sea is the same"):
+        options.show_sky = False
+        sea = picture("sea")
+        horizon = place_of((0, 1e5, 0))[0]
+        assert change_of(sea, drawn)[:horizon - 3].max() <= 2 / 255
+        above = sea[horizon + 3:]
+        assert above.std(axis=(0, 1)).max() < 0.02 and change_of(above, drawn[horizon + 3:]).mean() > 0.1
+
+    with checking("a near clip end doesn't cut the sea off"):
+        clip_end, space.clip_end = space.clip_end, 100.0
+        assert change_of(picture("clip end"), sea)[:horizon - 3].mean() < 0.005
+        space.clip_end = clip_end
+
+    with checking("a cube floats in it: its top is seen, its bottom is under water"):
+        bpy.ops.mesh.primitive_cube_add(size=CUBE_M)
+        cube = bpy.context.object
+        with_cube = picture("cube")
+        changed = change_of(with_cube, sea) > 0.05
+        top, left = place_of((-CUBE_M / 2, CUBE_M / 2, CUBE_M / 2))
+        front, right = place_of((CUBE_M / 2, -CUBE_M / 2, CUBE_M / 2))
+        bottom, middle = place_of((0, -CUBE_M / 2, -CUBE_M / 2))
+        rows, columns = np.nonzero(changed)
+        # What lies in front of the cube is the same, and so is what is beside it.
+        assert changed[front - 1, left + 3:right - 3].all(), "no cube"
+        assert not changed[:bottom + 3].any(), "the cube's bottom is seen through the sea"
+        assert columns.min() >= place_of((-CUBE_M / 2, -CUBE_M / 2, 0))[1] - 2 and rows.max() <= top + 2
+        water = rows.min()
+        print(f"    the cube is seen from row {water} to {rows.max()}; its bottom would be at {bottom}")
+        assert place_of((0, -CUBE_M / 2, -2.5))[0] < water < place_of((0, -CUBE_M / 2, 2.5))[0]
+        space.shading.type = "MATERIAL"
+        in_material = change_of(picture("material"), sea) > 0.05
+        assert in_material[front - 1, left + 3:right - 3].all() and not in_material[:bottom + 3].any()
+        space.shading.type = "SOLID"
+
+    with checking("it moves with the timeline, without the mesh"):
+        before = numbers(obj.data)
+        bpy.context.scene.frame_set(20)
+        assert change_of(picture("frame 20"), with_cube)[:horizon].mean() > 0.01
+        assert np.array_equal(numbers(obj.data), before)
+        bpy.context.scene.frame_set(1)
+        assert change_of(picture("frame 1"), with_cube).max() <= 2 / 255
+
+    with checking("it follows settings: another sun without another sea, another wind"):
+        sea_before = viewport._preview.drawing.sea
+        obj.pelagic.light.sun_elevation_deg = 60.0
+        assert change_of(picture("sun"), with_cube)[:horizon].mean() > 0.02
+        assert viewport._preview.drawing.sea is sea_before
+        obj.pelagic.sea.wind_speed_mps = 4.0
+        picture("wind")
+        assert viewport._preview.drawing.sea is not sea_before
+
+    with checking("orthographic views and views through the camera are drawn"):
+        region_3d = space.region_3d
+        region_3d.view_perspective, region_3d.view_distance = "ORTHO", 60.0
+        region_3d.view_rotation = (1, 0, 0, 0)
+        region_3d.view_location = (0, 0, 0)
+        top_view = picture("orthographic")
+        assert top_view[:, :, 2].mean() > top_view[:, :, 0].mean() + 0.02, "no blue sea from above"
+        camera = bpy.context.scene.camera
+        camera.location, camera.rotation_euler = (0, -60, 12), (np.radians(86), 0, 0)
+        camera.data.shift_y, camera.data.shift_x = -0.1, 0.2
+        region_3d.view_perspective = "CAMERA"
+        through = picture("camera")
+        scene = bpy.context.scene
+        horizon_in_frame = world_to_camera_view(scene, camera, Vector((0, 1e6, 0))).y
+        assert 0.3 < horizon_in_frame < 0.95
+        row = place_of((0, 1e6, 0))[0]
+        assert change_of(through[row - 12:row - 6], through[row + 6:row + 12]).mean() > 0.05, "the horizon isn't where it should be"
+        look(-4.0, 12.0)
+
+    with checking("two views at once"):
+        with in_view():
+            bpy.ops.screen.back_to_previous()
+        settle()
+        with in_view():
+            bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
+        yield lambda: all(area.width > 1 for area in bpy.context.window_manager.windows[0].screen.areas)
+        settle()
+        assert len(viewport._preview.drawing._grids) >= 2
+
+    with checking("a view that needs the mesh gets it"):
+        space = view3d()[1].spaces.active
+        space.shading.type = "WIREFRAME"
+        settle()
+        assert viewport.is_on() and not obj.hide_get()
+        space.shading.type = "SOLID"
+        settle()
+        assert obj.hide_get()
+
+    with checking("undo and redo leave the preview on and the mesh hidden"):
+        with in_view():
+            bpy.ops.ed.undo_push(message="before")
+            cube.location.x = 3.0
+            bpy.ops.ed.undo_push(message="moved")
+            for step in (bpy.ops.ed.undo, bpy.ops.ed.redo, bpy.ops.ed.undo):
+                step()
+                settle()
+                assert viewport.is_on() and viewport._preview.obj().hide_get()
+        obj = viewport._preview.obj()
+        obj.name = "The sea"
+        settle()
+        assert viewport.is_on() and viewport._preview.obj() == obj
+
+    with checking("off: everything is as before, and nothing is left behind"):
+        with in_view():
+            bpy.ops.pelagic.viewport_preview()
+        assert not viewport.is_on() and not obj.hide_get()
+        assert viewport._tend() is None
+
+    with checking("whoever shows the mesh again turns it off"):
+        viewport.turn_on(obj)
+        settle()
+        obj.hide_set(False)
+        settle()
+        assert not viewport.is_on() and not obj.hide_get()
+
+    with checking("an error is said once, and the handler goes"):
+        works, compat.shader = compat.shader, refuse_shaders
+        viewport.turn_on(obj)
+        settle()
+        assert not viewport.is_on() and viewport._problem == "no shaders today" and not obj.hide_get()
+        compat.shader = works
+
+    with checking("a setting that gives no sea is said, and the old sea stays"):
+        viewport.turn_on(obj)
+        settle()
+        obj.pelagic.light.sky = str(FOLDER / "missing.exr")
+        settle()
+        assert viewport.is_on() and "missing.exr" in viewport._preview.problem, viewport._preview.problem
+        obj.pelagic.light.sky = "daylight"
+        settle()
+        assert viewport.is_on() and not viewport._preview.problem
+
+    with checking("a saved file has its mesh shown, and opens without the preview"):
+        file = str(FOLDER / "saved.blend")
+        with in_view():
+            bpy.ops.wm.save_as_mainfile(filepath=file)
+            settle()
+            assert viewport.is_on() and obj.hide_get()
+            bpy.ops.wm.open_mainfile(filepath=file)
+        assert not viewport.is_on() and not bpy.data.objects["The sea"].hide_get()
+
+    with checking("the add-on goes while it is on"):
+        viewport.turn_on(bpy.data.objects["The sea"])
+        settle()
+        package.unregister()
+        assert not viewport.is_on() and not bpy.data.objects["The sea"].hide_get()
+
+
+def refuse_shaders(vertex, fragment):
+    raise RuntimeError("no shaders today")
+
+
+in_window(steps)

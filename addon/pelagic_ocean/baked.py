@@ -21,6 +21,7 @@ from .module import pelagic
 from .operators import NeedsModule
 from .surfaces import Surface
 
+ENTRIES = {key["path"]: getattr(pelagic, key["entry"]) for key in pelagic.keys() if key["entry"]} if pelagic else {}
 UV_M = 100.0  # of a camera's grid: the length that is 1 in its UV map
 ACCEPTED = "accepted: a bake's folder, or NAME.json or NAME.usda in it"
 
@@ -89,12 +90,12 @@ class Bake:
 
 
 def _scene_of(settings):
+    """Of a record's."""
     scene = pelagic.Scene()
     for path, value in settings.items():
         table, name = path.split(".")
         if isinstance(value, list) and value and isinstance(value[0], dict):
-            known = {"sea.swell": pelagic.Swell, "waves.cascades": pelagic.CascadeSize, "camera.keys": pelagic.CameraKey}
-            value = tuple(known[path](**entry) for entry in value)
+            value = tuple(ENTRIES[path](**entry) for entry in value)
         if value is not None and path != "sea.spectrum_time":
             setattr(getattr(scene, table), name, value)
     return scene

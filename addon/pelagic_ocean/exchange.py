@@ -20,8 +20,8 @@ OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; acc
 
 
 def shot_of(context, obj):
-    """The whole shot of an ocean: a pelagic.Scene, and sentences about what it can't say. ValueError for what a shot file
-    can't say at all."""
+    """The whole shot of an ocean: a pelagic.Scene, and sentences about what it can't say. ValueError for what a
+    shot file can't say at all."""
     if obj.pelagic.own_mesh:
         raise ValueError(f"{obj.name}: {OWN_MESH}")
     bpy_scene = context.scene

@@ -89,3 +89,15 @@ def shader(vertex, fragment):
     except Exception as error:
         raise RuntimeError("The graphics driver doesn't compile the viewport preview's shaders. The console says "
                            "where") from error
+
+
+def new_group_socket(group, name, kind, is_output=False, default=None):
+    """A socket of a node group; kind: "Float", "Color", "Vector"."""
+    idname = "NodeSocket" + kind
+    if hasattr(group, "interface"):  # since 4.0
+        socket = group.interface.new_socket(name, in_out="OUTPUT" if is_output else "INPUT", socket_type=idname)
+    else:
+        socket = (group.outputs if is_output else group.inputs).new(idname, name)
+    if default is not None:
+        socket.default_value = default
+    return socket

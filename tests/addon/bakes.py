@@ -96,6 +96,8 @@ with checking("a camera's grid has other faces in each frame"):
         assert len(from_disk.data.polygons) == len(told["face_counts"])
         assert not from_disk.data.validate(verbose=True)
     assert len(counts) > 1, counts
+    assert from_disk.data.materials[0] is not None
+    assert any(obj.type == "LIGHT" and obj.data.type == "SUN" for obj in bpy.context.scene.objects)
 
 with checking("missing frames are named, and the one before is shown"):
     for frame in (3, 4, 6):

@@ -40,7 +40,7 @@ def wind_for(scene, height_m):
     low, high = WIND_MPS
     for _ in range(WIND_STEPS):
         scene.sea.wind_speed_mps = middle = math.sqrt(low * high)
-        if pelagic.Sea(scene, ("position",)).significant_height_m < height_m:
+        if scene.significant_height_m() < height_m:
             low = middle
         else:
             high = middle

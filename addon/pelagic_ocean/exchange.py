@@ -34,8 +34,9 @@ def shot_of(context, obj):
         remarks.append(f"{obj.name} is scaled: the shot's sea is in its own metres, without the scale")
     if rotation.angle > 1e-6 or obj.matrix_world.translation.length > 0.0:
         remarks.append(f"{obj.name} is moved or turned: the shot's camera is as seen from it, the sun stays")
-    lamp = light.own_sun(bpy_scene)  # of the add-on's; others are nobody's business here
-    if lamp is not None and lamp.matrix_world.col[2].xyz.angle(Vector(pelagic.Sky(scene).sun_direction)) > SAME_DIRECTION:
+    lamp = light.own_sun(bpy_scene)
+    if lamp is not None and lamp.matrix_world.col[2].xyz.angle(
+            Vector(pelagic.Sky(scene).sun_direction)) > SAME_DIRECTION:
         remarks.append(f"{lamp.name} was turned: the shot's sun is where the ocean's settings have it")
     if obj.animation_data and obj.animation_data.action:
         remarks.append(f"{obj.name} is animated: the shot has its settings at frame {bpy_scene.frame_current}")

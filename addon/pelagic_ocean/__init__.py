@@ -17,7 +17,7 @@ bl_info = {
 
 import importlib
 
-PARTS = ("properties", "play", "operators", "presets", "panels", "floating", "sampling", "exchange", "baking",
+PARTS = ("properties", "play", "look", "operators", "presets", "panels", "floating", "sampling", "exchange", "baking",
          "baked", "native", "menu", "viewport")
 
 _registered = []

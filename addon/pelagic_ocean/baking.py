@@ -4,6 +4,7 @@
 What is whole on disk already is kept, so that a bake that was stopped goes on the next time.
 """
 
+import atexit
 import threading
 from pathlib import Path
 
@@ -152,7 +153,7 @@ def _redraw(context):
 
 @persistent
 def _stop(*_):
-    """Another file is coming, or the add-on goes: nobody would look after the bake any more."""
+    """Another file is coming, or the add-on or Blender goes: nobody would look after the bake any more."""
     global _baking
     if _baking is not None:
         _baking.cancel.set()
@@ -187,6 +188,7 @@ def register():
         bpy.utils.register_class(made)
     bpy.types.Object.pelagic_bake = PointerProperty(type=PELAGIC_PG_bake, name="Bake")
     bpy.app.handlers.load_pre.append(_stop)
+    atexit.register(_stop)
     for name in PANELS:
         getattr(bpy.types, name).append(_draw)
 
@@ -195,6 +197,7 @@ def unregister():
     _stop()
     for name in PANELS:
         getattr(bpy.types, name).remove(_draw)
+    atexit.unregister(_stop)
     bpy.app.handlers.load_pre.remove(_stop)
     del bpy.types.Object.pelagic_bake
     for made in reversed(CLASSES):

@@ -17,6 +17,16 @@ def set_positions(mesh, positions):
         mesh.vertices.foreach_set("co", positions.ravel())
 
 
+def set_faces(mesh, corners, starts):
+    """The mesh's faces: their vertices one after another, and where each face begins. int32, contiguous."""
+    mesh.loops.add(len(corners))
+    mesh.polygons.add(len(starts))
+    mesh.loops.foreach_set("vertex_index", corners)
+    mesh.polygons.foreach_set("loop_start", starts)
+    if not bpy.types.MeshPolygon.bl_rna.properties["loop_total"].is_readonly:  # since 3.6 it follows from the starts
+        mesh.polygons.foreach_set("loop_total", np.diff(starts, append=np.int32(len(corners))))
+
+
 def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
 
@@ -79,3 +89,15 @@ def shader(vertex, fragment):
     except Exception as error:
         raise RuntimeError("The graphics driver doesn't compile the viewport preview's shaders. The console says "
                            "where") from error
+
+
+def new_group_socket(group, name, kind, is_output=False, default=None):
+    """A socket of a node group; kind: "Float", "Color", "Vector"."""
+    idname = "NodeSocket" + kind
+    if hasattr(group, "interface"):  # since 4.0
+        socket = group.interface.new_socket(name, in_out="OUTPUT" if is_output else "INPUT", socket_type=idname)
+    else:
+        socket = (group.outputs if is_output else group.inputs).new(idname, name)
+    if default is not None:
+        socket.default_value = default
+    return socket

@@ -141,7 +141,8 @@ def _set_scene(context, scene):
     """ValueError for frames that Blender doesn't have."""
     first, last = scene.shot.frames
     if first < 0:
-        raise ValueError(f"shot.frames = [{first}, {last}]: Blender's frames begin at 0")
+        raise ValueError(f"shot.frames = [{first}, {last}]: Blender's frames begin at 0; accepted: a later range, or "
+                         "an import without Camera and Frames")
     bpy_scene = context.scene
     bpy_scene.frame_start, bpy_scene.frame_end = first, last
     bpy_scene.frame_set(min(max(bpy_scene.frame_current, first), last))

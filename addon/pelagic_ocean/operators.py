@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
-from . import meshes, ocean, play
+from . import look, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import BY_PATH
 
@@ -52,6 +52,8 @@ class PELAGIC_OT_add_ocean(NeedsModule, bpy.types.Operator):
 
     see_far: BoolProperty(name="See the horizon", default=True,
                           description="Raise the clipping distance of the camera and of the views")
+    light: BoolProperty(name="Material, sun and sky", default=True,
+                        description="Give the ocean its material and the scene the ocean's sun and sky")
 
     def execute(self, context):
         obj = ocean.make("Ocean", context.collection)
@@ -61,6 +63,8 @@ class PELAGIC_OT_add_ocean(NeedsModule, bpy.types.Operator):
         context.view_layer.objects.active = obj
         if self.see_far:
             _see_far(context)
+        if self.light:
+            look.give(obj, context.scene)
         context.scene.render.use_lock_interface = True  # frames change on the render's thread
         simulation = show_now(context, obj)
         if simulation.problem:

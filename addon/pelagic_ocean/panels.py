@@ -8,7 +8,7 @@ from . import ocean, play
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
 from .presets import PELAGIC_MT_presets
-from .properties import FIELDS, counts
+from .properties import FIELDS, VERSION, counts
 
 # Title → tables of keys.
 PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
@@ -78,6 +78,8 @@ class Main:
         elif not ocean.is_ocean(context.object):
             layout.operator(PELAGIC_OT_use_mesh.bl_idname, icon="MOD_OCEAN")
         else:
+            if context.object.pelagic.version > VERSION:
+                _draw_words(layout.box(), "This ocean was made by a newer Pelagic: what is new in it is missing here")
             simulation = play.simulation_of(context.object)
             if simulation.problem:
                 _draw_words(layout.box(), simulation.problem)

@@ -10,6 +10,7 @@ while the old one plays on; without a window, and during renders, whoever asks w
 """
 
 import re
+import threading
 import weakref
 
 import bpy
@@ -150,6 +151,7 @@ class Simulation:
 
 _simulations = {}  # by the names of their objects
 _rendering = set()  # names of scenes
+_turn = threading.RLock()  # a render has a thread of its own
 
 
 # ---- Which oceans, and what of them
@@ -267,9 +269,10 @@ def _forget_deleted():
 
 @persistent
 def _on_frame(bpy_scene, depsgraph):
-    _forget_deleted()
-    for obj in _driven(bpy.data.objects, depsgraph):
-        _show(obj, bpy_scene, depsgraph, True)
+    with _turn:
+        _forget_deleted()
+        for obj in _driven(bpy.data.objects, depsgraph):
+            _show(obj, bpy_scene, depsgraph, True)
 
 
 @persistent

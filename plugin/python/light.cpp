@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/lighting/background.h"
+#include "core/lighting/tone.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/render/render.h"
@@ -87,6 +88,9 @@ void add_sky(py::module_& module) {
         .def_property_readonly(
             "sky_irradiance", [](const PythonSky& self) { return tuple_of(self.sky->sky_irradiance); },
             "Of the sky without the sun, on a horizontal plane.")
+        .def_property_readonly(
+            "exposure", [](const PythonSky& self) { return exposure_for(*self.sky); },
+            "For pictures of this light: radiance · exposure = 0.18 is middle grey.")
         .def(
             "image", &image_of, py::arg("width"),
             "float32 (width/2, width, 3): the sky without the sun's disc as a lat-long picture, rows from the "

@@ -91,6 +91,7 @@ with checking("a camera's grid has other faces in each frame"):
         counts.add(len(told["position"]))
         assert np.array_equal(numbers(from_disk.data), told["position"])
         assert np.array_equal(numbers(from_disk.data, "velocity"), told["velocity"])
+        assert np.array_equal(numbers(from_disk.data, "rest_position")[:, :2], told["position"][:, :2])
         assert len(from_disk.data.polygons) == len(told["face_counts"])
         assert not from_disk.data.validate(verbose=True)
     assert len(counts) > 1, counts

@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import ocean, play
+from pelagic_ocean import ocean, play, properties
 
 folder = Path(tempfile.mkdtemp())
 
@@ -70,6 +70,14 @@ with checking("saved and loaded: the same settings, the same sea, playing"):
     go_to(10)
     for obj in ocean.oceans():
         assert np.array_equal(numbers(obj.data), expected[obj.name]), obj.name
+
+with checking("a file from before there were versions gets today's number"):
+    names_of_old = [obj.name for obj in ocean.oceans()]
+    for obj in ocean.oceans():
+        obj.pelagic.version = 0
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "old.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "old.blend"))
+    assert [obj.pelagic.version for obj in ocean.oceans()] == [properties.VERSION] * len(names_of_old)
 
 with checking("appended into another file, it plays there"):
     fresh_file()

@@ -182,6 +182,25 @@ with checking("a setting of the sea moves what floats"):
     bpy.context.view_layer.update()
     assert state(raft) == before
 
+with checking("in the projected grid's sea, too, and in an own mesh's"):
+    scene.frame_set(60)
+    change(sea, surface__kind="projected-grid")
+    bpy.context.view_layer.update()
+    assert np.allclose(state(raft)[0], shown[0], atol=0.1) and state(raft) != shown, (state(raft), shown)
+    change(sea, surface__kind="patch")
+    bpy.context.view_layer.update()
+    assert state(raft) == shown
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=60, y_subdivisions=60, size=100)
+    bpy.ops.pelagic.use_mesh()
+    own = bpy.context.object
+    raft.pelagic_float.ocean = own
+    bpy.context.view_layer.update()
+    assert state(raft) != shown and np.isfinite(state(raft)[0]).all()
+    raft.pelagic_float.ocean = None
+    bpy.data.objects.remove(own)
+    bpy.context.view_layer.update()
+    assert state(raft) == shown
+
 with checking("in renders of an animation, too: the picture shows it where it is at each frame"):
     folder = Path(tempfile.mkdtemp())
     lamp = buoy((0, 0, 0), (1, 1, 1), tilt=0.0, drift=0.0)
@@ -230,6 +249,22 @@ with checking("off, it is as it was"):
     bpy.ops.pelagic.float()
     scene.frame_set(60)
     assert state(raft) == shown
+
+with checking("undone and redone it floats on"):
+    names = sea.name, raft.name
+    bpy.ops.ed.undo_push(message="before")
+    raft.pelagic_float.damping = 3.0
+    bpy.context.view_layer.update()
+    heavy = state(raft)
+    bpy.ops.ed.undo_push(message="heavy")
+    scene.frame_set(9)
+    bpy.ops.ed.undo_push(message="another frame")
+    for step, expected in ((bpy.ops.ed.undo, heavy), (bpy.ops.ed.undo, shown), (bpy.ops.ed.redo, heavy),
+                           (bpy.ops.ed.undo, shown)):
+        step()
+        scene, sea, raft = bpy.context.scene, *(bpy.data.objects[name] for name in names)
+        bpy.context.view_layer.update()
+        assert scene.frame_current == 60 and state(raft) == expected
 
 with checking("saved and loaded it floats on, in the same places"):
     path = str(folder / "float.blend")

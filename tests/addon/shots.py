@@ -99,6 +99,16 @@ with checking("a camera that looks straight down, and one that rolls without mov
         imported(folder / "down.toml")
         assert str(exported()) == str(there)
 
+with checking("a sky's picture beside the shot is found again from elsewhere"):
+    sky = bpy.data.images.new("sky", 8, 4, float_buffer=True)
+    sky.filepath_raw, sky.file_format = str(folder / "sky.exr"), "OPEN_EXR"
+    sky.save()
+    there = pelagic.Scene.from_file(written('[light]\nsky = "sky.exr"\n', "cloudy"))
+    imported(folder / "cloudy.toml")
+    (folder / "elsewhere").mkdir()
+    assert str(exported("elsewhere/out")) == str(there)
+    assert Path(bpy.context.object.pelagic.light.sky) == folder / "sky.exr"
+
 with checking("an artist's camera, animated by curves and a parent, becomes keys on the same way"):
     fresh_file()
     sea = add_ocean()

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Sun and sky in Blender, the core's: a world with its picture of the sky, and a sun lamp.
+
+Units: a world's radiance and a sun lamp's irradiance (its strength, across the rays) are the core's numbers, in kcd/m²
+and klx; Blender has no units of its own for light. Both put the middle column of a picture of the sky at +x, and let
+azimuth grow to the left.
+"""
+
+import math
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from .module import pelagic
+from .nodes import Tree
+
+MARK = "pelagic_light"  # on the world and the lamp that are the add-on's
+EXPOSURE = "pelagic_exposure"  # on the world: the stops that were set last
+SKY_WIDTH = 1024
+PICTURE, DISC = "Pelagic Sky", "Pelagic Sun Disc"  # the world's nodes
+
+
+def ensure_light(bpy_scene, scene, exposure=True):
+    """The scene's sky becomes the Blender scene's world, its sun a lamp, and the picture is exposed for them. A world
+    that was there before stays in the file."""
+    world = bpy_scene.world
+    if world is None or MARK not in world:
+        if world is not None:
+            world.use_fake_user = True
+        world = bpy.data.worlds.new("Pelagic Sky")
+        world[MARK] = True
+        bpy_scene.world = world
+    if own_sun(bpy_scene) is None:
+        lamp = bpy.data.objects.new("Pelagic Sun", bpy.data.lights.new("Pelagic Sun", "SUN"))
+        lamp[MARK] = True
+        bpy_scene.collection.objects.link(lamp)
+    if exposure:
+        world[EXPOSURE] = bpy_scene.view_settings.exposure
+    update_light(bpy_scene, scene)
+
+
+def update_light(bpy_scene, scene):
+    """Brings what ensure_light() made up to the scene; what an artist took away or put in its place stays so."""
+    sky = pelagic.Sky(scene)
+    world, lamp = bpy_scene.world, own_sun(bpy_scene)
+    if world is not None and MARK in world:
+        _put_sky(world, sky)
+        if EXPOSURE in world and math.isclose(world[EXPOSURE], bpy_scene.view_settings.exposure, abs_tol=1e-4):
+            bpy_scene.view_settings.exposure = world[EXPOSURE] = exposure_stops(sky)
+    if lamp is not None:
+        _put_sun(lamp, sky)
+
+
+def own_sun(bpy_scene):
+    return next((obj for obj in bpy_scene.objects if MARK in obj and obj.type == "LIGHT"), None)
+
+
+def _put_sky(world, sky):
+    world.use_nodes = True
+    nodes = world.node_tree.nodes
+    if PICTURE not in nodes:
+        _make_nodes(world)
+    picture, disc = nodes[PICTURE], nodes[DISC]
+    picture.image = _sky_image(picture.image, sky)
+    disc.inputs["Direction"].default_value = sky.sun_direction
+    disc.inputs["Radiance"].default_value = sky.sun_radiance
+    disc.inputs["Angular Radius"].default_value = sky.sun_angular_radius
+
+
+def _make_nodes(world):
+    """The picture of the sky, and before it the sun's disc for those who look at it: for all else there is the lamp."""
+    tree = Tree(world.node_tree)
+    picture = tree.node("ShaderNodeTexEnvironment")
+    picture.name = PICTURE
+    seen = tree.call(DISC, _disc, {"Direction": (0.0, 0.0, 1.0), "Radiance": (0.0, 0.0, 0.0), "Angular Radius": 0.0})
+    seen["Radiance"].socket.node.name = DISC
+    tree.node("ShaderNodeOutputWorld", {"Surface": tree.add("ShaderNodeAddShader", {
+        0: tree.add("ShaderNodeBackground", {"Color": tree.value(picture, "Color")}),
+        1: tree.add("ShaderNodeBackground", {"Color": seen["Radiance"]})})})
+
+
+def _disc(tree, asked):
+    # The chord, since the cosine of a small angle has no precision.
+    towards = tree.add("ShaderNodeTexCoord", output="Generated").normalized()
+    inside = asked["Angular Radius"].above((towards - asked["Direction"]).length())
+    return {"Radiance": asked["Radiance"] * (inside * tree.add("ShaderNodeLightPath", output="Is Camera Ray"))}
+
+
+def _sky_image(image, sky):
+    radiance = sky.image(SKY_WIDTH)
+    height, width, _ = radiance.shape
+    if image is None or tuple(image.size) != (width, height):
+        image = bpy.data.images.new("Pelagic Sky", width, height, float_buffer=True, is_data=False)
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[..., :3] = radiance[::-1]  # Blender's rows go upwards
+    image.pixels.foreach_set(pixels.ravel())
+    image.update()
+    image.pack()  # a picture that Blender made itself isn't in the file otherwise
+    return image
+
+
+def _put_sun(lamp, sky):
+    across = [radiance * math.pi * sky.sun_angular_radius**2 for radiance in sky.sun_radiance]  # irradiance
+    strongest = max(across)
+    lamp.data.energy = strongest
+    if strongest > 0:
+        lamp.data.color = [value / strongest for value in across]
+    lamp.data.angle = 2 * sky.sun_angular_radius
+    lamp.rotation_mode = "QUATERNION"
+    lamp.rotation_quaternion = Vector(sky.sun_direction).to_track_quat("Z", "Y")  # a lamp shines along its -z
+
+
+def exposure_stops(sky):
+    """The stops at which the core shows the light: radiance · 2^stops = 0.18 is middle grey, here as there."""
+    return math.log2(sky.exposure)

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Oceans' materials and the scene's sun and sky follow the settings they come from."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from . import light, material, ocean
+from .module import pelagic, problem
+from .properties import FIELDS
+
+# Of settings_of(): what light and materials depend on.
+PLACES = [place for place, field in enumerate(FIELDS)
+          if field.table in ("light", "water") or field.path == "sea.wind_direction_deg"]
+
+_shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last
+
+
+def _lights(obj, bpy_scene):
+    """Whether it is the ocean whose sun and sky the scene has."""
+    return next((other for other in ocean.oceans() if bpy_scene in other.users_scene), None) == obj
+
+
+def give(obj, bpy_scene):
+    """An ocean's material; sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
+    scene = ocean.scene_of(obj, bpy_scene)
+    material.ensure_material(obj, scene)
+    if _lights(obj, bpy_scene):
+        light.ensure_light(bpy_scene, scene)
+
+
+@persistent
+def _follow(bpy_scene, depsgraph):
+    for obj in ocean.oceans():
+        if bpy_scene not in obj.users_scene:
+            continue
+        settings = ocean.settings_of(obj.evaluated_get(depsgraph))
+        key, wanted = (obj.name_full, bpy_scene.name), [settings[place] for place in PLACES]
+        if _shown.get(key) == wanted:
+            continue
+        _shown[key] = wanted
+        try:
+            scene = ocean.scene_of(obj, bpy_scene, settings=settings)
+            material.update_material(obj, scene)
+            if _lights(obj, bpy_scene):
+                light.update_light(bpy_scene, scene)
+        except (ValueError, pelagic.ShotError) as error:
+            print(f"{obj.name}: {error}")  # the panels say of each setting what is wrong with it
+
+
+@persistent
+def _forget(*_):
+    _shown.clear()
+
+
+class PELAGIC_OT_add_light(bpy.types.Operator):
+    """Make the ocean's sun and sky the scene's: a world, a lamp, and the exposure for them"""
+
+    bl_idname = "pelagic.add_light"
+    bl_label = "Sun and Sky"
+    bl_options = {"REGISTER", "UNDO"}
+
+    exposure: bpy.props.BoolProperty(name="Exposure", default=True, description="Set the picture's exposure for the light")
+
+    @classmethod
+    def poll(cls, context):
+        if pelagic is None:
+            cls.poll_message_set(problem)
+        return pelagic is not None and ocean.is_ocean(context.object)
+
+    def execute(self, context):
+        try:
+            light.ensure_light(context.scene, ocean.scene_of(context.object, context.scene), self.exposure)
+        except (ValueError, pelagic.ShotError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class PELAGIC_OT_add_material(bpy.types.Operator):
+    """Give the ocean its own material in place of the one it has"""
+
+    bl_idname = "pelagic.add_material"
+    bl_label = "Water Material"
+    bl_options = {"REGISTER", "UNDO"}
+
+    poll = PELAGIC_OT_add_light.poll
+
+    def execute(self, context):
+        context.object.data.materials.clear()
+        material.ensure_material(context.object, ocean.scene_of(context.object, context.scene))
+        return {"FINISHED"}
+
+
+CLASSES = (PELAGIC_OT_add_light, PELAGIC_OT_add_material)
+HANDLERS = (("frame_change_post", _follow), ("depsgraph_update_post", _follow), ("undo_post", _forget),
+            ("redo_post", _forget), ("load_post", _forget))
+
+
+def register():
+    for each in CLASSES:
+        bpy.utils.register_class(each)
+    if pelagic is not None:
+        for where, handler in HANDLERS:
+            getattr(bpy.app.handlers, where).append(handler)
+
+
+def unregister():
+    for where, handler in HANDLERS:
+        handlers = getattr(bpy.app.handlers, where)
+        if handler in handlers:
+            handlers.remove(handler)
+    for each in reversed(CLASSES):
+        bpy.utils.unregister_class(each)
+    _shown.clear()

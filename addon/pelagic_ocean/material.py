@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ocean's material, one tree for Cycles and EEVEE: facets that mirror (facets.py), light from the water, foam (foam.py)."""
+
+import math
+
+import bpy
+
+from .facets import WATER_INDEX, add_facets, transformed
+from .foam import add_foam
+from .module import pelagic
+from .nodes import Tree
+
+MARK = "pelagic_water"  # on a material of the add-on: the version of its tree
+VERSION = 1
+
+
+def ensure_material(obj, scene):
+    """Gives an object without a material the ocean's; somebody else's stays. Returns the ocean's material, or None."""
+    if not any(obj.data.materials):
+        obj.data.materials.clear()
+        obj.data.materials.append(new_material())
+    return update_material(obj, scene)
+
+
+def update_material(obj, scene):
+    """Brings the ocean's material to the scene's water, light and wind; returns it, or None where there is none. What an
+    artist changed stays until the scene's own value changes."""
+    material = next((m for m in obj.data.materials if m and MARK in m), None)
+    if material is not None:
+        _set(material, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
+        _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
+    return material
+
+
+def _set(material, name, value):
+    """Writes a node's value where the value that was last written isn't the same."""
+    key = f"{MARK} {name}"
+    if material.get(key) == repr(value):
+        return
+    material[key] = repr(value)
+    node = material.node_tree.nodes.get(name)
+    if node is not None:
+        node.outputs[0].default_value = value
+
+
+def new_material():
+    material = bpy.data.materials.new("Pelagic Water")
+    material[MARK] = VERSION
+    material.use_nodes = True
+    tree = Tree(material.node_tree)
+
+    def labelled(kind, name, value):
+        node = tree.node(kind)
+        node.name = node.label = name
+        node.outputs[0].default_value = value
+        return tree.value(node, 0)
+
+    water = labelled("ShaderNodeRGB", "Water Color", (0.0, 0.03, 0.05, 1.0))
+    dense = labelled("ShaderNodeRGB", "Foam Color", (0.55, 0.55, 0.55, 1.0))
+    wind = labelled("ShaderNodeValue", "Wind Angle", 0.0)
+    time = labelled("ShaderNodeValue", "Time", 0.0)
+    # Ripples change over about a second.
+    time.socket.driver_add("default_value").driver.expression = "frame / 24"
+
+    part = add_facets(tree, ripples=0.8, ripple_length_m=0.7, detail_distance_m=150.0, wind_angle=wind, time=time)
+    foam = add_foam(tree, tree.attribute("whitecap_coverage", "Fac"), part["Foam Ratio"], size=1.0,
+                    detail_distance_m=400.0, wind_angle=wind)
+
+    mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],
+                                                    "Anisotropy": 0.0, "Normal": part["Normal"]},
+                      distribution="BECKMANN")
+    # Light from the water has come in through a level surface, whatever its facets do: the normal is up.
+    upwards = transformed(tree, tree.vector(0.0, 0.0, 1.0), "NORMAL", "OBJECT", "WORLD")
+    body = tree.add("ShaderNodeBsdfDiffuse", {"Color": water * (1.0 - part["Fresnel"]), "Normal": upwards})
+    white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], water, dense)})
+    tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeMixShader", {
+        0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white})})
+    return material
+
+
+def upwelling_albedo(scene):
+    """(r, g, b): the diffuse reflectance of the sea for light that comes from below its surface, without the factor
+    (1 − Fresnel) on the way out: water_radiance() of water.glsl over the irradiance of the scene's own light, / π."""
+    sky, reflectance = pelagic.Sky(scene), pelagic.WaterBody(scene).reflectance
+    diffuse, underside = 0.06751, 0.48
+    into_water = 1.0 - fresnel(sky.sun_direction[2])
+    albedo = []
+    for sun, dome, r in zip(sky.sun_irradiance, sky.sky_irradiance, reflectance):
+        down = (sun * into_water + dome * (1.0 - diffuse)) / max(sun + dome, 1e-12)
+        albedo.append(down * r / (1.0 - underside * r) / WATER_INDEX**2)
+    return albedo
+
+
+def fresnel(cosine):
+    """The unpolarised reflectance of water."""
+    cosine = min(max(cosine, 0.0), 1.0)
+    g = math.sqrt(WATER_INDEX**2 - 1 + cosine * cosine)
+    along = (cosine * (g + cosine) - 1) / (cosine * (g - cosine) + 1)
+    return 0.5 * ((g - cosine) / (g + cosine))**2 * (1 + along * along)

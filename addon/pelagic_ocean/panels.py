@@ -118,6 +118,7 @@ def _draw_surface(layout, settings):
     if settings.surface.kind == "patch":
         layout.prop(settings, "horizon")
     layout.prop(settings, "viewport_percentage")
+    layout.prop(settings, "uv_map")
 
 
 PLACES = {"object": {"bl_space_type": "PROPERTIES", "bl_region_type": "WINDOW", "bl_context": "object"},

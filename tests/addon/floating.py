@@ -11,7 +11,6 @@ from harness import *  # noqa: F403
 enable()
 from mathutils import Matrix, Vector
 
-from pelagic_ocean import floating, play
 from pelagic_ocean.query import Water
 
 fresh_file()
@@ -287,7 +286,8 @@ with checking("a driver with pelagic_height lies on the water"):
     water = Water(sea, scene, bpy.context.evaluated_depsgraph_get())
     assert abs(driven.matrix_world.translation.z - water.world_heights([(11, 12)])[0]) < 1e-5
     assert abs(water.world_heights([(11, 12)])[0] - mesh_height(11, 12)) < 0.05
-    assert bpy.app.driver_namespace["pelagic_height"](11, 12, 33, "Ocean") == bpy.app.driver_namespace["pelagic_height"](11, 12)
+    height = bpy.app.driver_namespace["pelagic_height"]
+    assert height(11, 12, 33, "Ocean") == height(11, 12) != height(11, 12, 34)
 
 with checking("sample_heights: keyframes, attribute, text"):
     scene.frame_start, scene.frame_end = 1, 5

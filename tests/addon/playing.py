@@ -58,6 +58,32 @@ with checking("an effect that is off has no attribute"):
     change(obj, effects__whitecaps=True)
     assert "whitecap_coverage" in obj.data.attributes
 
+with checking("played in even steps, when frames are computed ahead, two oceans of one sea show what they do at a jump"):
+    bpy.ops.object.duplicate()
+    twin = bpy.context.object
+    frames = (40, 42, 44, 46, 45, 44, 43)
+    jumped = {}
+    for frame in frames:
+        scene.frame_set(1)
+        scene.frame_set(frame)
+        jumped[frame] = numbers(obj.data)
+    for frame in frames:
+        scene.frame_set(frame)
+        for mesh in (obj.data, twin.data):
+            assert np.array_equal(numbers(mesh), jumped[frame]), frame
+    bpy.data.objects.remove(twin)
+    bpy.context.view_layer.objects.active = obj
+
+with checking("the UV map comes and goes"):
+    obj.pelagic.uv_map = False
+    bpy.context.view_layer.update()
+    assert not obj.data.uv_layers
+    obj.pelagic.uv_map = True
+    bpy.context.view_layer.update()
+    uv = np.empty(2 * len(obj.data.loops), np.float32)
+    obj.data.uv_layers["UVMap"].data.foreach_get("uv", uv)
+    assert uv[:2].tolist() == [0.0, 0.0]
+
 with checking("a hidden ocean costs nothing"):
     obj.hide_set(True)
     before = numbers(obj.data)

@@ -114,3 +114,10 @@ def _put_sun(lamp, sky):
 def exposure_stops(sky):
     """The stops at which the core shows the light: radiance · 2^stops = 0.18 is middle grey, here as there."""
     return math.log2(sky.exposure)
+
+
+def stops_by_hand(bpy_scene):
+    """How many stops brighter the picture is than the light's own exposure has it."""
+    world = bpy_scene.world
+    own = world[EXPOSURE] if world is not None and EXPOSURE in world else 0.0
+    return bpy_scene.view_settings.exposure - own

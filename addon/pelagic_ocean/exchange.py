@@ -11,7 +11,7 @@ from mathutils import Vector
 
 from . import camera, light, look, ocean
 from .module import pelagic
-from .operators import NeedsModule, show_now
+from .operators import GivesLook, NeedsModule, show_now
 from .query import first_ocean
 
 OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; accepted: a patch or the camera's grid "
@@ -99,7 +99,7 @@ def ocean_of(context):
 # ---- In
 
 
-class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
+class PELAGIC_OT_import_shot(GivesLook, ImportHelper, bpy.types.Operator):
     """Add the ocean of a shot file with its camera, sun and sky, and give the scene its frames"""
 
     bl_idname = "pelagic.import_shot"
@@ -137,6 +137,7 @@ class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
             other.select_set(False)
         obj.select_set(True)
         context.view_layer.objects.active = obj
+        self.give_look(context, obj)
         simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)

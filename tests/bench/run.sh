@@ -2,24 +2,28 @@
 # Builds the benchmarks and prints their tables, the numbers first. Some twenty minutes on two cores.
 #   tests/bench/run.sh [PROGRAM…]      default: all, the light last:
 #     frame ocean construction choices sampling query stages conservation trains crate bake optics whitecaps
-#     backoff preview fig10
+#     backoff preview fig10, and in Blender blender_frame blender_memory blender_picture (ten minutes)
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
 [ $# -gt 0 ] || set -- frame ocean construction choices sampling query stages conservation trains crate bake \
-    optics whitecaps backoff preview fig10
+    optics whitecaps backoff preview fig10 blender_frame blender_memory blender_picture
 targets=()
 for program in "$@"; do
-    [ "$program" = ocean ] && targets+=(pelagic_python) || targets+=("bench_$program")
+    case $program in
+        ocean | blender_*) targets+=(pelagic_python) ;;
+        *) targets+=("bench_$program") ;;
+    esac
 done
 install_packages
 build release "${targets[@]}" >/dev/null
 for program in "$@"; do
-    if [ "$program" = ocean ]; then
+    if [ "$program" = ocean ] || [[ $program == blender_* ]]; then
         # Without --python-exit-code Blender hides a script's failure.
         PYTHONPATH=$PELAGIC_ROOT/build/release/python PYTHONDONTWRITEBYTECODE=1 blender -b --factory-startup \
-            --python-exit-code 1 --python "$here/blender_ocean.py" | grep -vE '^(Blender|Read prefs|Warning)|^$'
+            --python-exit-code 1 --python "$here/blender_${program#blender_}.py" |
+            grep -vE '^(Blender|Read prefs|Warning|Fra:|Saved: | Time: )|^$'
     elif [ "$program" = fig10 ]; then
         "$PELAGIC_ROOT/build/release/bench/bench_fig10" full plot="$PELAGIC_ROOT/build/release/fig10.png"
     else

@@ -13,14 +13,16 @@ from pathlib import Path
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
-from bpy.props import IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, IntProperty, PointerProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from . import meshes, ocean
+from . import light, material, meshes, ocean
 from .module import pelagic
 from .operators import NeedsModule
+from .query import first_ocean
 from .surfaces import Surface
 
+ENTRIES = {key["path"]: getattr(pelagic, key["entry"]) for key in pelagic.keys() if key["entry"]} if pelagic else {}
 UV_M = 100.0  # of a camera's grid: the length that is 1 in its UV map
 ACCEPTED = "accepted: a bake's folder, or NAME.json or NAME.usda in it"
 
@@ -89,12 +91,12 @@ class Bake:
 
 
 def _scene_of(settings):
+    """Of a record's."""
     scene = pelagic.Scene()
     for path, value in settings.items():
         table, name = path.split(".")
         if isinstance(value, list) and value and isinstance(value[0], dict):
-            known = {"sea.swell": pelagic.Swell, "waves.cascades": pelagic.CascadeSize, "camera.keys": pelagic.CameraKey}
-            value = tuple(known[path](**entry) for entry in value)
+            value = tuple(ENTRIES[path](**entry) for entry in value)
         if value is not None and path != "sea.spectrum_time":
             setattr(getattr(scene, table), name, value)
     return scene
@@ -180,6 +182,8 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
 
     filename_ext = ".json"
     filter_glob: StringProperty(default="*.json;*.usda", options={"HIDDEN"})
+    light: BoolProperty(name="Material, Sun and Sky", default=True,
+                        description="Give it the ocean's material, and a scene without oceans the bake's sun and sky")
 
     def execute(self, context):
         try:
@@ -197,6 +201,13 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
         if abs(ocean.frame_rate(context.scene) / bake.scene.shot.fps - 1.0) > 1e-6:
             self.report({"WARNING"}, f"The bake has {bake.scene.shot.fps:g} frames a second, this scene "
                                      f"{ocean.frame_rate(context.scene):g}")
+        try:
+            if self.light:
+                material.ensure_material(obj, bake.scene)
+            if self.light and first_ocean(context.scene) is None:
+                light.ensure_light(context.scene, bake.scene)
+        except ValueError as error:
+            self.report({"WARNING"}, str(error))
         for other in context.selected_objects:
             other.select_set(False)
         obj.select_set(True)

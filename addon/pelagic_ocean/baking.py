@@ -24,7 +24,8 @@ def folder_of(obj):
     """The folder of an ocean's bake. ValueError while // has no place."""
     folder = obj.pelagic_bake.folder
     if folder.startswith("//") and not bpy.data.filepath:
-        raise ValueError(f"{folder}: // is beside the .blend, which isn't saved yet; accepted: a saved file, or a whole path")
+        raise ValueError(f"{folder}: // is beside the .blend, which isn't saved yet; "
+                         "accepted: a saved file, or a whole path")
     return Path(bpy.path.abspath(folder)) / ocean.clean_name(obj.name)
 
 
@@ -176,7 +177,7 @@ def _draw(self, context):
 
 class PELAGIC_PG_bake(bpy.types.PropertyGroup):
     folder: StringProperty(name="Folder", default="//bakes", subtype="DIR_PATH",
-                           description="Where bakes go, each ocean's into a folder of its name. // is beside the .blend")
+                           description="Where bakes go, each into a folder of its name; // is beside the .blend")
 
 
 CLASSES = (PELAGIC_PG_bake, PELAGIC_OT_bake, PELAGIC_OT_stop_bake)

@@ -7,21 +7,23 @@ from pathlib import Path
 import bpy
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
+from mathutils import Vector
 
-from . import camera, ocean
+from . import camera, light, look, ocean
 from .module import pelagic
-from .operators import NeedsModule, show_now
+from .operators import GivesLook, NeedsModule, show_now
 from .query import first_ocean
 
 OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; accepted: a patch or the camera's grid "
             "(Surface, Release Mesh)")
+SAME_DIRECTION = 1e-3  # radians
 
 # ---- Out
 
 
 def shot_of(context, obj):
-    """The whole shot of an ocean: a pelagic.Scene, and sentences about what it can't say. ValueError for what a shot file
-    can't say at all."""
+    """The whole shot of an ocean: a pelagic.Scene, and sentences about what it can't say. ValueError for what a
+    shot file can't say at all."""
     if obj.pelagic.own_mesh:
         raise ValueError(f"{obj.name}: {OWN_MESH}")
     bpy_scene = context.scene
@@ -32,6 +34,10 @@ def shot_of(context, obj):
         remarks.append(f"{obj.name} is scaled: the shot's sea is in its own metres, without the scale")
     if rotation.angle > 1e-6 or obj.matrix_world.translation.length > 0.0:
         remarks.append(f"{obj.name} is moved or turned: the shot's camera is as seen from it, the sun stays")
+    lamp = light.own_sun(bpy_scene)
+    if lamp is not None and lamp.matrix_world.col[2].xyz.angle(
+            Vector(pelagic.Sky(scene).sun_direction)) > SAME_DIRECTION:
+        remarks.append(f"{lamp.name} was turned: the shot's sun is where the ocean's settings have it")
     if obj.animation_data and obj.animation_data.action:
         remarks.append(f"{obj.name} is animated: the shot has its settings at frame {bpy_scene.frame_current}")
     if ocean.pinhole_of(obj, bpy_scene) is None:
@@ -93,7 +99,7 @@ def ocean_of(context):
 # ---- In
 
 
-class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
+class PELAGIC_OT_import_shot(GivesLook, ImportHelper, bpy.types.Operator):
     """Add the ocean of a shot file with its camera, sun and sky, and give the scene its frames"""
 
     bl_idname = "pelagic.import_shot"
@@ -104,6 +110,8 @@ class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
     set_scene: BoolProperty(name="Camera and Frames", default=True,
                             description="Add the shot's camera, and give the scene its range, rate and resolution")
+    light: BoolProperty(name="Material, Sun and Sky", default=True,
+                        description="Give the ocean its material and the scene the ocean's sun and sky")
 
     def execute(self, context):
         path = Path(bpy.path.abspath(self.filepath)).absolute()
@@ -129,9 +137,15 @@ class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
             other.select_set(False)
         obj.select_set(True)
         context.view_layer.objects.active = obj
+        self.give_look(context, obj)
         simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)
+        try:
+            if self.light:
+                look.give(obj, context.scene)
+        except ValueError as error:
+            self.report({"WARNING"}, str(error))
         if obj.name != scene.shot.name:
             self.report({"WARNING"}, f"There is a {scene.shot.name} in this file already: this one is {obj.name}")
         return {"FINISHED"}

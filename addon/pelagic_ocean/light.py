@@ -40,9 +40,24 @@ def ensure_light(bpy_scene, scene, exposure=True):
     update_light(bpy_scene, scene)
 
 
+_daylights = {}  # text of a scene's light → its pelagic.Sky: the last few, for undo and for several who ask
+
+
+def sky_of(scene):
+    """The pelagic.Sky of a scene. A picture of a sky is read anew each time, for it may have changed."""
+    if scene.light.sky != pelagic.Scene().light.sky:
+        return pelagic.Sky(scene)
+    key = repr(scene.light)
+    if key not in _daylights:
+        while len(_daylights) >= 4:
+            del _daylights[next(iter(_daylights))]
+        _daylights[key] = pelagic.Sky(scene)
+    return _daylights[key]
+
+
 def update_light(bpy_scene, scene):
     """Brings what ensure_light() made up to the scene; what an artist took away or put in its place stays so."""
-    sky = pelagic.Sky(scene)
+    sky = sky_of(scene)
     world, lamp = bpy_scene.world, own_sun(bpy_scene)
     if world is not None and MARK in world:
         _put_sky(world, sky)
@@ -113,3 +128,10 @@ def _put_sun(lamp, sky):
 def exposure_stops(sky):
     """The stops at which the core shows the light: radiance · 2^stops = 0.18 is middle grey, here as there."""
     return math.log2(sky.exposure)
+
+
+def stops_by_hand(bpy_scene):
+    """How many stops brighter the picture is than the light's own exposure has it."""
+    world = bpy_scene.world
+    own = world[EXPOSURE] if world is not None and EXPOSURE in world else 0.0
+    return bpy_scene.view_settings.exposure - own

@@ -12,6 +12,8 @@ from .properties import FIELDS
 PLACES = [place for place, field in enumerate(FIELDS)
           if field.table in ("light", "water") or field.path == "sea.wind_direction_deg"]
 
+STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
+
 _shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last
 
 
@@ -20,11 +22,22 @@ def _lights(obj, bpy_scene):
     return next((other for other in ocean.oceans() if bpy_scene in other.users_scene), None) == obj
 
 
-def give(obj, bpy_scene):
-    """An ocean's material; sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
+def is_untouched(world):
+    """Whether a world is Blender's own grey one, or none: nobody misses it."""
+    if world is None:
+        return True
+    if not world.use_nodes:
+        return False
+    backgrounds = [node for node in world.node_tree.nodes if node.type == "BACKGROUND"]
+    return (len(world.node_tree.nodes) <= 2 and len(backgrounds) == 1
+            and all(abs(channel - STARTUP_GREY) < 1e-4 for channel in backgrounds[0].inputs["Color"].default_value[:3]))
+
+
+def give(obj, bpy_scene, sun_and_sky):
+    """An ocean's material; if wanted, sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
     scene = ocean.scene_of(obj, bpy_scene)
     material.ensure_material(obj, scene)
-    if _lights(obj, bpy_scene):
+    if sun_and_sky and _lights(obj, bpy_scene):
         light.ensure_light(bpy_scene, scene)
 
 

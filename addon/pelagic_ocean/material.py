@@ -7,6 +7,7 @@ import bpy
 
 from .facets import WATER_INDEX, add_facets, transformed
 from .foam import add_foam
+from .light import sky_of
 from .module import pelagic
 from .nodes import Tree
 
@@ -92,7 +93,7 @@ def new_material():
 def upwelling_albedo(scene):
     """(r, g, b): the diffuse reflectance of the sea for light that comes from below its surface, without the factor
     (1 − Fresnel) on the way out: water_radiance() of water.glsl over the irradiance of the scene's own light, / π."""
-    sky, reflectance = pelagic.Sky(scene), pelagic.WaterBody(scene).reflectance
+    sky, reflectance = sky_of(scene), pelagic.WaterBody(scene).reflectance
     diffuse, underside = 0.06751, 0.48
     into_water = 1.0 - fresnel(sky.sun_direction[2])
     albedo = []

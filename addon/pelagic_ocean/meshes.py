@@ -21,8 +21,8 @@ def holds(mesh, surface):
     return mesh.get(SIGNATURE) == surface.signature and len(mesh.vertices) == len(surface)
 
 
-def put_surface(mesh, surface):
-    """Makes the mesh's vertices and faces the surface's, at rest."""
+def put_surface(mesh, surface, uv_map=True):
+    """Makes the mesh's vertices and faces the surface's, at rest, with a UV map if wanted."""
     corners, starts = surface.faces()
     mesh.clear_geometry()
     mesh.vertices.add(len(surface))
@@ -31,17 +31,33 @@ def put_surface(mesh, surface):
     rest = surface.rest_3d()
     compat.set_positions(mesh, rest)
     mesh.update(calc_edges=True)
-    mesh.uv_layers.new(name=UV_MAP)
+    if uv_map:
+        mesh.uv_layers.new(name=UV_MAP)
     move_rest(mesh, surface, rest)
     mesh[SIGNATURE] = surface.signature
 
 
 def move_rest(mesh, surface, rest=None):
-    """Where the points are at rest, as attribute and as UV map. rest: of the surface, if known."""
+    """Where the points are at rest, as attribute and as UV map if there is one. rest: of the surface, if known."""
     put_rest(mesh, surface.rest_3d() if rest is None else rest)
+    layer = mesh.uv_layers.get(UV_MAP)
+    if layer is not None:
+        _fill_uv(mesh, layer, surface)
+
+
+def keep_uv(mesh, surface, wanted):
+    """Makes the UV map of a mesh that holds the surface, or takes it away."""
+    layer = mesh.uv_layers.get(UV_MAP)
+    if wanted and layer is None:
+        _fill_uv(mesh, mesh.uv_layers.new(name=UV_MAP), surface)
+    elif layer is not None and not wanted:
+        mesh.uv_layers.remove(layer)
+
+
+def _fill_uv(mesh, layer, surface):
     corners = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("vertex_index", corners)
-    compat.set_uv(mesh.uv_layers[UV_MAP], surface.uv(corners))
+    compat.set_uv(layer, surface.uv(corners))
 
 
 def put_rest(mesh, rest):

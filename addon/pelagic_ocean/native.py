@@ -40,7 +40,7 @@ def wind_for(scene, height_m):
     low, high = WIND_MPS
     for _ in range(WIND_STEPS):
         scene.sea.wind_speed_mps = middle = math.sqrt(low * high)
-        if pelagic.Sea(scene, ("position",)).significant_height_m < height_m:
+        if scene.significant_height_m() < height_m:
             low = middle
         else:
             high = middle
@@ -138,8 +138,9 @@ class PELAGIC_OT_replace_ocean_modifier(NeedsModule, bpy.types.Operator):
         curves = compat.curves(obj)
         for curve in [curve for curve in curves if curve.data_path.startswith(path)]:
             curves.remove(curve)
-        for driver in [driver for driver in animation.drivers if driver.data_path.startswith(path)] if animation else ():
-            animation.drivers.remove(driver)
+        drivers = animation.drivers if animation else []
+        for driver in [driver for driver in drivers if driver.data_path.startswith(path)]:
+            drivers.remove(driver)
         obj.modifiers.remove(modifier)
         if obj.data.users > 1:
             obj.data = obj.data.copy()

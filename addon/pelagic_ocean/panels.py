@@ -14,7 +14,7 @@ from .properties import FIELDS, VERSION, counts
 PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
           "Light": ("light", "water"), "Output": ("output", "quality")}
 
-def _draw_words(layout, text):
+def draw_words(layout, text):
     """A message in lines that fit."""
     line = ""
     for word in text.split():
@@ -74,15 +74,15 @@ class Main:
     def draw(self, context):
         layout = self.layout
         if pelagic is None:
-            _draw_words(layout.box(), problem)
+            draw_words(layout.box(), problem)
         elif not ocean.is_ocean(context.object):
             layout.operator(PELAGIC_OT_use_mesh.bl_idname, icon="MOD_OCEAN")
         else:
             if context.object.pelagic.version > VERSION:
-                _draw_words(layout.box(), "This ocean was made by a newer Pelagic: what is new in it is missing here")
+                draw_words(layout.box(), "This ocean was made by a newer Pelagic: what is new in it is missing here")
             simulation = play.simulation_of(context.object)
             if simulation.problem:
-                _draw_words(layout.box(), simulation.problem)
+                draw_words(layout.box(), simulation.problem)
             elif simulation.is_building:
                 layout.label(text="Building the sea…", icon="SORTTIME")
             elif simulation.sea:
@@ -118,6 +118,7 @@ def _draw_surface(layout, settings):
     if settings.surface.kind == "patch":
         layout.prop(settings, "horizon")
     layout.prop(settings, "viewport_percentage")
+    layout.prop(settings, "uv_map")
 
 
 PLACES = {"object": {"bl_space_type": "PROPERTIES", "bl_region_type": "WINDOW", "bl_context": "object"},

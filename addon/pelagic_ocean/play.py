@@ -83,18 +83,20 @@ class Simulation:
         shot = self.scene.shot
         return Moment(shot.time_s(frame), shot.time_scale, view, share)
 
-    def buffers(self, frame, moment):
-        """The surface and the products' arrays at the moment of a frame. While it plays in even steps before a camera that
-        stands still, the next frame is computed meanwhile."""
-        upcoming = None
-        if self._last is not None and frame != self._last[0]:
-            step = frame - self._last[0]
-            if (step, moment.view) == self._last[1:] and not _rendering:
-                upcoming = self.moment_at(frame + step, moment.view, moment.share)
-            self._last = (frame, step, moment.view)
-        elif self._last is None:
-            self._last = (frame, 0, moment.view)
-        return self._built.buffers(moment, upcoming)
+    def buffers(self, moment):
+        """The surface and the products' arrays at a moment, until look_ahead()."""
+        return self._built.buffers(moment)
+
+    def look_ahead(self, frame):
+        """While it plays in even steps before a camera that stands still, the frame after this one is computed beside what
+        Blender does."""
+        if self.shown is None or self._built is None:
+            return
+        moment, last = self.shown[2], self._last
+        step = frame - last[0] if last else 0
+        self._last = (frame, step, moment.view)
+        if step and self._last[1:] == last[1:]:
+            self._built.prepare(self.moment_at(frame + step, moment.view, moment.share))
 
     def follow(self, obj, bpy_scene, depsgraph, wait):
         """Brings the sea to the object's settings, or begins to. obj: the original. Returns the view that it is seen by,
@@ -238,18 +240,26 @@ def _show(obj, bpy_scene, depsgraph, again):
         return
     frame = bpy_scene.frame_current_final
     moment = simulation.moment_at(frame, view, _share(obj, bpy_scene) if view else 1.0)
-    shown = (obj.data.name_full, id(simulation.sea), moment)
+    shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again:
         return
-    surface, arrays = simulation.buffers(frame, moment)
+    surface, arrays = simulation.buffers(moment)
     if not meshes.holds(obj.data, surface):
         if surface.faces is None:
             return
-        meshes.put_surface(obj.data, surface)
-    elif surface.moves:
+        meshes.put_surface(obj.data, surface, obj.pelagic.uv_map)
+    elif surface.moves and not _is_of_the_same_view(shown, simulation.shown):
         meshes.move_rest(obj.data, surface)
+    if surface.faces is not None:  # a mesh of the user's own keeps its maps
+        meshes.keep_uv(obj.data, surface, obj.pelagic.uv_map)
     meshes.put_frame(obj.data, arrays)
     simulation.shown = shown
+
+
+def _is_of_the_same_view(shown, before):
+    """Whether the points at rest are the same, of two values of Simulation.shown."""
+    return before is not None and shown[:2] == before[:2] and (shown[2].view, shown[2].share) == (before[2].view,
+                                                                                                  before[2].share)
 
 
 def show(obj, bpy_scene, depsgraph):
@@ -271,8 +281,12 @@ def _forget_deleted():
 def _on_frame(bpy_scene, depsgraph):
     with _turn:
         _forget_deleted()
-        for obj in _driven(bpy.data.objects, depsgraph):
+        driven = _driven(bpy.data.objects, depsgraph)
+        for obj in driven:
             _show(obj, bpy_scene, depsgraph, True)
+        if not _rendering:
+            for obj in driven:  # after all of them: oceans with the same settings share a sea and its buffers
+                _simulation(obj).look_ahead(bpy_scene.frame_current_final)
 
 
 @persistent

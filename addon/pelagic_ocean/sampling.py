@@ -16,8 +16,8 @@ ATTRIBUTE = "sea_height"
 
 def pelagic_height(x, y, frame=None, ocean=""):
     """For drivers: the z of the water at x, y [m] of the world, at a frame (write frame: drivers know it; default the
-    scene's) of the ocean of this name or the scene's first. 0 without an ocean, while its sea is being built, and of one
-    that is hidden while nothing floats in it."""
+    scene's) of the ocean of this name or the scene's first. 0 without an ocean, while its sea is being built, and of
+    one that is hidden while nothing floats in it."""
     bpy_scene = bpy.context.scene
     obj = bpy_scene.objects.get(ocean) if ocean else first_ocean(bpy_scene)
     if obj is None:

@@ -22,6 +22,7 @@ class Surface:
     distance to the neighbours, or a number for all. faces: a function that gives (corners, starts), int32: the faces'
     vertices one after another, and where each face begins; None for a mesh that has its own. height_m: float32 (n,),
     what is added to z, or None. uv_m: the length that is 1 in the UV map. moves: whether the next frame has other points.
+    lattice: (first_m, spacing_m) where all points lie at first + i·spacing in x and in y.
     """
 
     signature: str
@@ -32,6 +33,7 @@ class Surface:
     height_m: np.ndarray = None
     uv_m: float = 1.0
     moves: bool = False
+    lattice: tuple = None
 
     def __len__(self):
         return len(self.rest)
@@ -67,8 +69,10 @@ def patch(size_m, resolution, horizon):
             return _with_rings(rest, quads, size_m, resolution)
         return rest, quads, size_m / resolution
 
-    rest, _, cell_m = points()
-    return Surface(f"patch {size_m!r} {resolution} {horizon}", rest, cell_m, lambda: _quads(points()[1]), uv_m=size_m)
+    rest, quads, cell_m = points()
+    lattice = (-0.5 * size_m, cell_m) if len(quads) == resolution**2 else None
+    return Surface(f"patch {size_m!r} {resolution} {horizon}", rest, cell_m, lambda: _quads(points()[1]), uv_m=size_m,
+                   lattice=lattice)
 
 
 def projected_grid(sea, view, share, uv_m):

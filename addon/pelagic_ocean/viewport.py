@@ -11,9 +11,10 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, ocean, play
+from . import compat, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
+from .panels import draw_words
 
 SHADINGS = {"SOLID", "MATERIAL"}  # views that draw the preview; the others need the mesh
 # How fine a view's pixels count as: waves that only finer ones could show roughen the surface, so that a frame is cheap
@@ -30,8 +31,9 @@ class Preview:
         self.name = obj.name_full
         self._obj = obj
         self.drawing = Drawing()
-        self.hidden_in = []  # (names of scene and view layer, whether it was selected)
+        self.hidden_in = {}  # (names of scene and view layer): whether it was selected there
         self.problem = ""
+        self.is_broken = False  # it can't draw; problem says why
         self.seen = False  # whether a view has drawn since _tend()
         self._settings = self._scene = None
         self._job = None
@@ -39,9 +41,7 @@ class Preview:
         self._handler = bpy.types.SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
 
     def close(self):
-        if self._handler is not None:
-            bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
-            self._handler = None
+        bpy.types.SpaceView3D.draw_handler_remove(self._handler, "WINDOW")
 
     def obj(self):
         """The ocean, also after undo; None if it is gone. Follows renaming."""
@@ -69,19 +69,19 @@ class Preview:
     def build(self, scene):
         """Begins to make whatever the scene and the views need that isn't there. Whether there is something to draw."""
         drawing = self.drawing
-        sea, light = drawing.sea, drawing.light
+        sea, lit = drawing.sea, drawing.light
         if self._job is None and self._settings != self._refused:
-            finest_m = FINEST_M if sea is None else min(max(drawing.finest_m() or sea.finest_m, FINEST_M),
-                                                                 COARSEST_M)
+            finest_m = FINEST_M if sea is None else drawing.finest_m() or sea.finest_m
+            finest_m = min(max(finest_m, FINEST_M), COARSEST_M)
             # A coarser one would save work, but not so much that every step of a zoom is worth a new sea.
             keeps_sea = sea is not None and sea.serves(scene) and sea.finest_m <= finest_m <= 4 * sea.finest_m
-            keeps_light = light is not None and light.serves(scene)
+            keeps_light = lit is not None and lit.serves(scene)
             if keeps_sea and keeps_light:
                 self.problem = ""
             else:
                 self._job = play.Job(self._settings, lambda: (
                     sea if keeps_sea else pelagic.GpuSea(scene, finest_m),
-                    light if keeps_light else pelagic.GpuLight(scene)))
+                    lit if keeps_light else pelagic.GpuLight(scene)))
         return sea is not None
 
     def poll(self):
@@ -99,10 +99,10 @@ class Preview:
 
     def _draw(self):
         try:
-            self._draw_view(bpy.context)
+            if not self.is_broken:
+                self._draw_view(bpy.context)
         except Exception as error:  # once, in words, rather than at every redraw
-            self.problem = str(error) or type(error).__name__
-            self.close()
+            self.problem, self.is_broken = str(error) or type(error).__name__, True
             _tend_soon()
 
     def _draw_view(self, context):
@@ -112,13 +112,14 @@ class Preview:
             _tend_soon()
             return
         scene = self.scene(obj, context.scene)
-        if scene is not None and self.build(scene) and self.hidden_in and context.space_data.shading.type in SHADINGS:
+        is_hidden = obj.hide_get(view_layer=context.view_layer)
+        if scene is not None and self.build(scene) and is_hidden and context.space_data.shading.type in SHADINGS:
             camera = Camera(gpu.matrix.get_projection_matrix(), gpu.matrix.get_model_view_matrix(),
                             gpu.state.viewport_get()[2:], obj.matrix_world)
             self.drawing.draw(context.region.as_pointer(), camera, scene.shot.time_s(context.scene.frame_current_final),
-                              scene.surface.cell_px, context.scene.view_settings.exposure,
+                              scene.surface.cell_px, light.stops_by_hand(context.scene),
                               context.window_manager.pelagic_preview.show_sky)
-        if self.is_building or not self.hidden_in or self.drawing.is_coarse():
+        if self.is_building or not is_hidden or self.drawing.is_coarse():
             _tend_soon()
 
     def wants_mesh(self):
@@ -126,21 +127,19 @@ class Preview:
         return any(space.shading.type not in SHADINGS for space in _spaces())
 
     def hide(self):
-        """Hides the mesh in the windows' view layers."""
-        obj = self.obj()
-        for window in bpy.context.window_manager.windows:
-            layer = window.view_layer
-            key = (window.scene.name, layer.name)
+        """Hides the mesh in the windows' view layers. Whether it was to be seen in one."""
+        obj, hidden = self.obj(), False
+        for key, layer in _layers():
             if layer.objects.get(obj.name) == obj and not obj.hide_get(view_layer=layer):
-                selected = obj.select_get(view_layer=layer)
+                self.hidden_in.setdefault(key, obj.select_get(view_layer=layer))
                 obj.hide_set(True, view_layer=layer)
-                if key not in (known for known, _ in self.hidden_in):
-                    self.hidden_in.append((key, selected))
+                hidden = True
+        return hidden
 
     def show(self):
         """Undoes hide()."""
         obj = self.obj()
-        for (scene_name, layer_name), selected in self.hidden_in:
+        for (scene_name, layer_name), selected in self.hidden_in.items():
             bpy_scene = bpy.data.scenes.get(scene_name)
             layer = bpy_scene.view_layers.get(layer_name) if bpy_scene else None
             if obj is not None and layer is not None and layer.objects.get(obj.name) == obj:
@@ -151,14 +150,18 @@ class Preview:
     def is_shown_again(self):
         """Whether somebody has made the mesh visible that hide() hid."""
         obj = self.obj()
-        return any(not obj.hide_get(view_layer=window.view_layer)
-                   for window in bpy.context.window_manager.windows
-                   if (window.scene.name, window.view_layer.name) in (known for known, _ in self.hidden_in)
-                   and window.view_layer.objects.get(obj.name) == obj)
+        return any(key in self.hidden_in and layer.objects.get(obj.name) == obj and not obj.hide_get(view_layer=layer)
+                   for key, layer in _layers())
 
 
 _preview = None
 _problem = ""  # why the last one went off by itself
+
+
+def _layers():
+    """The view layers that windows show, by the names of their scenes and their own."""
+    for window in bpy.context.window_manager.windows:
+        yield (window.scene.name, window.view_layer.name), window.view_layer
 
 
 def _spaces():
@@ -213,7 +216,7 @@ def _tend():
     preview = _preview
     if preview is None:
         return None
-    if preview._handler is None or preview.obj() is None:
+    if preview.is_broken or preview.obj() is None:
         turn_off(preview.problem)
         return None
     if preview.hidden_in and preview.is_shown_again():
@@ -224,8 +227,7 @@ def _tend():
     if preview.wants_mesh():
         if preview.hidden_in:
             preview.show()
-    elif preview.drawing.sea is not None and not preview.hidden_in:
-        preview.hide()
+    elif preview.drawing.sea is not None and preview.hide():
         _redraw()
     if preview.is_building:
         return POLL_S
@@ -329,10 +331,9 @@ class PELAGIC_PT_preview(bpy.types.Panel):
         layout.prop(context.window_manager.pelagic_preview, "show_sky")
         problem = _preview.problem if is_on() else _problem
         if problem:
-            for line in problem.splitlines():
-                layout.label(text=line, icon="ERROR")
+            draw_words(layout.box(), problem)
         elif is_on() and _preview.wants_mesh():
-            layout.label(text="Waits: a view shows the mesh (Rendered, Wireframe)", icon="INFO")
+            draw_words(layout.box(), "Waiting: a view in Rendered or Wireframe shows the mesh")
         elif is_on() and _preview.is_building:
             layout.label(text="Building the sea…", icon="SORTTIME")
 

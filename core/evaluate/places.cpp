@@ -18,44 +18,33 @@ namespace {
 constexpr std::size_t kAtOnce = 128;  // places that a task looks for side by side
 // A step is at most so many times the distance that is missing: near a fold the derivative is nearly singular.
 constexpr double kLongestStep = 3.0;
-// A search that is so many times as far off as it has been goes back, and on with shorter steps.
-constexpr double kAstray = 4.0;
 
 // Broyden's "good" method (1965) for f(r) = r + D(r) − p = 0 from r = p, whose derivative is near the identity
 // where the sea isn't steep.
 class Search {
   public:
-    struct Found {
-        glm::dvec2 rest_m{0.0}, displacement_m{0.0};
-        glm::dvec2 off_m{0.0};  // f
-    };
+    explicit Search(glm::dvec2 place_m) : place_m_(place_m), next_m_(place_m), best_m_(place_m) {}
 
-    explicit Search(glm::dvec2 place_m) : place_m_(place_m), rest_m_(place_m), best_{.rest_m = place_m} {}
+    glm::dvec2 next_m() const { return next_m_; }
+    glm::dvec2 best_m() const { return best_m_; }
+    double residual_m() const { return residual_m_; }  // of the best
 
-    glm::dvec2 rest_m() const { return rest_m_; }  // where to look next
-    glm::dvec2 best_m() const { return best_.rest_m; }
-    double residual_m() const { return best_distance_m_; }
-
-    // The displacement where it was looked (rest_m() as rounded by then); true: near enough.
-    bool take(Found found, double tolerance_m) {
-        found.off_m = found.rest_m + found.displacement_m - place_m_;
-        const double distance_m = glm::length(found.off_m);
-        if (steps_++ > 0) learn(found.rest_m - last_.rest_m, found.off_m - last_.off_m);
-        last_ = found;
-        if (distance_m < best_distance_m_) {
-            best_distance_m_ = distance_m;
-            best_ = found;
+    // The displacement at `rest_m`, next_m() as a query has rounded it; true: near enough.
+    bool take(glm::dvec2 rest_m, glm::dvec2 displacement_m, double tolerance_m) {
+        const glm::dvec2 off_m = rest_m + displacement_m - place_m_;
+        const double distance_m = glm::length(off_m);
+        if (std::isfinite(residual_m_)) learn(rest_m - last_rest_m_, off_m - last_off_m_);
+        if (distance_m < residual_m_) {
+            residual_m_ = distance_m;
+            best_m_ = rest_m;
         }
-        if (best_distance_m_ <= tolerance_m) return true;
-        if (distance_m > kAstray * best_distance_m_) {
-            last_ = best_;
-            inverse_ = glm::dmat2(haste_ *= 0.5);
-        }
-        glm::dvec2 step_m = -(inverse_ * last_.off_m);
-        const double length_m = glm::length(step_m), longest_m = kLongestStep * glm::length(last_.off_m);
+        last_rest_m_ = rest_m;
+        last_off_m_ = off_m;
+        glm::dvec2 step_m = -(inverse_ * off_m);
+        const double length_m = glm::length(step_m), longest_m = kLongestStep * distance_m;
         if (length_m > longest_m) step_m *= longest_m / length_m;
-        rest_m_ = last_.rest_m + step_m;
-        return false;
+        next_m_ = rest_m + step_m;
+        return residual_m_ <= tolerance_m;
     }
 
   private:
@@ -67,12 +56,9 @@ class Search {
         inverse_ += glm::outerProduct((step_m - expected_m) / scale, step_m * inverse_);
     }
 
-    glm::dvec2 place_m_, rest_m_;
-    Found last_, best_;
-    double best_distance_m_ = std::numeric_limits<double>::infinity();
-    double haste_ = 1.0;
+    glm::dvec2 place_m_, next_m_, best_m_, last_rest_m_{0.0}, last_off_m_{0.0};
+    double residual_m_ = std::numeric_limits<double>::infinity();
     glm::dmat2 inverse_{1.0};
-    int steps_ = 0;
 };
 
 // A task's places that are still looked for, side by side as a query wants them.
@@ -92,7 +78,7 @@ void find_some(const PreparedQuery<T>& query, const Points<T>& places, const Pla
     for (std::size_t i = 0; i < left; ++i) batch.place[i] = i;
     for (int step = 0; step < search.most_steps && left > 0; ++step) {
         for (std::size_t i = 0; i < left; ++i) {
-            batch.rest_m[i] = glm::vec<2, T>(searches[batch.place[i]].rest_m());
+            batch.rest_m[i] = glm::vec<2, T>(searches[batch.place[i]].next_m());
             if (places.cell_m) batch.cell_m[i] = places.cell_m[first + batch.place[i]];
         }
         Points<T> points{.origin_m = places.origin_m, .count = left, .rest_m = {batch.rest_m.data()}};
@@ -102,9 +88,9 @@ void find_some(const PreparedQuery<T>& query, const Points<T>& places, const Pla
         query.evaluate(points, results);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < left; ++i) {
-            const Search::Found found{.rest_m = glm::dvec2(batch.rest_m[i]),
-                                      .displacement_m = glm::dvec2(batch.displacement_m[i])};
-            if (!searches[batch.place[i]].take(found, search.tolerance_m))
+            Search& one = searches[batch.place[i]];
+            if (!one.take(glm::dvec2(batch.rest_m[i]), glm::dvec2(batch.displacement_m[i]),
+                          search.tolerance_m))
                 batch.place[kept++] = batch.place[i];
         }
         left = kept;

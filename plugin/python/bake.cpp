@@ -82,10 +82,18 @@ BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::pat
     return report;
 }
 
+std::optional<std::filesystem::path> path_or_none(const std::filesystem::path& path) {
+    return path.empty() ? std::nullopt : std::optional(path);
+}
+
 void add_bake_report(py::module_& module) {
     py::class_<BakeReport>(module, "BakeReport", "What a bake did.")
-        .def_readonly("root", &BakeReport::root, "The stage, DIR/NAME.usda; an empty path without a mesh.")
-        .def_readonly("maps", &BakeReport::maps, "The folder of the maps; an empty path without maps.")
+        .def_property_readonly(
+            "root", [](const BakeReport& self) { return path_or_none(self.root); },
+            "The stage, DIR/NAME.usda; None without a mesh.")
+        .def_property_readonly(
+            "maps", [](const BakeReport& self) { return path_or_none(self.maps); },
+            "The folder of the maps; None without maps.")
         .def_readonly("record", &BakeReport::record, "DIR/NAME.json.")
         .def_readonly("done", &BakeReport::done, "Frames that were baked.")
         .def_readonly("kept", &BakeReport::kept, "Frames that were whole already.")

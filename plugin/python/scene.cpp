@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/plan/prepared_scene.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
@@ -168,6 +169,13 @@ std::string text_of_shot(const Scene& scene) {
     return shot_text(placed);
 }
 
+double significant_height_of(const Scene& scene) {
+    require_valid(scene);
+    const Scene kept = scene;
+    const py::gil_scoped_release others_may_run;
+    return prepare(kept)->extent.significant_height_m;
+}
+
 std::vector<std::string> problem_lines(const Scene& scene) {
     std::vector<std::string> lines;
     for (const Problem& problem : validate(scene)) lines.push_back(text_of(problem));
@@ -221,6 +229,9 @@ void add_scene(py::module_& module) {
              "Every problem of the scene, a line each: KEY = VALUE: PROBLEM; accepted: WHAT IS. Empty: it "
              "can be "
              "planned.")
+        .def(
+            "significant_height_m", &significant_height_of,
+            "4 times the root of the variance of the surface's height [m]: of its spectrum, without building a Sea.")
         .def("__copy__", [](const Scene& self) { return std::make_shared<Scene>(self); })
         .def(
             "__deepcopy__", [](const Scene& self, const py::dict&) { return std::make_shared<Scene>(self); },

@@ -126,7 +126,7 @@ const std::string kSeaDoc =
     "filters nothing. Default: the spacing of the scene's patch.\n"
     "lattice: (first_m, spacing_m) where all points are known to lie at first + i·spacing in x and in y, "
     "seen from the world's origin: sampling may then be free of error. Only with points that do.\n"
-    "views: Views whose projected grids it is for, instead of these: footprints from the finest cell in them up "
+    "views: Views whose projected grids it is for, instead of the three above: footprints from the finest cell in them up "
     "to the horizon's. Their rungs are the same for all views, so that a point's answer doesn't depend on "
     "which other views there are. pixels: as fine as the views' pixels, for normals finer than the cells.\n"
     "progress: called with the share that is done, 0 … 1, from any thread. cancel: a Cancel, or a callable "

@@ -67,6 +67,13 @@ sun_elevation_deg = 0.1
     back = exported()
     assert str(back) == str(there), f"{there}\n{back}"
 
+with checking("sun, sky and material come along"):
+    scene = bpy.context.scene
+    sun = next(obj for obj in scene.objects if obj.type == "LIGHT" and obj.data.type == "SUN")
+    towards = sun.matrix_world.to_3x3() @ Vector((0, 0, 1))
+    assert 0.0 < math.degrees(math.asin(towards.z)) < 0.4 and sun.data.energy > 0, towards  # half of it is below
+    assert scene.world.use_nodes and bpy.context.object.data.materials[0] is not None
+
 with checking("keys with angle and roll come out as they went in"):
     text = """[shot]
 frames = [1, 30]
@@ -152,6 +159,12 @@ with checking("what a shot can't say is said; sensor fits and portrait pictures 
     _, remarks = exchange.shot_of(bpy.context, sea)
     assert any("lens shift" in remark for remark in remarks) and any("scaled" in remark for remark in remarks)
     eye.data.shift_x, sea.scale.x = 0.0, 1.0
+    sun = next(obj for obj in scene.objects if obj.type == "LIGHT" and obj.data.type == "SUN")
+    assert not any("was turned" in remark for remark in remarks)
+    sun.rotation_quaternion.rotate(Matrix.Rotation(0.1, 3, "Z"))
+    scene.frame_set(1)
+    _, remarks = exchange.shot_of(bpy.context, sea)
+    assert any("was turned" in remark for remark in remarks)
     for x, y in ((1920, 1080), (600, 900)):
         for fit in ("AUTO", "HORIZONTAL", "VERTICAL"):
             scene.render.resolution_x, scene.render.resolution_y, eye.data.sensor_fit = x, y, fit

@@ -204,6 +204,11 @@ def steps():
         obj.pelagic.light.sun_elevation_deg = 60.0
         assert change_of(picture("sun"), with_cube)[:horizon].mean() > 0.02
         assert viewport._preview.drawing.sea is sea_before
+        settings = bpy.context.scene.view_settings
+        darker = picture("sun again")[:horizon].mean()
+        settings.exposure += 1.0
+        assert picture("a stop brighter")[:horizon].mean() > 1.2 * darker
+        settings.exposure -= 1.0
         obj.pelagic.sea.wind_speed_mps = 4.0
         picture("wind")
         assert viewport._preview.drawing.sea is not sea_before

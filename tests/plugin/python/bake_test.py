@@ -63,6 +63,9 @@ class Bake(InFolder):
         self.assertEqual((report.done, report.kept), (2, 0))
         report = pelagic.bake(shot(), out, frames=[3, 1, 1])
         self.assertEqual((report.done, report.kept, report.total), (0, 2, 2))
+        maps_only = shot()
+        maps_only.output.mesh = "none"
+        self.assertIsNone(pelagic.bake(maps_only, self.path / "maps only", frames=1).root)
         changed = shot()
         changed.shot.seed = 7
         report = pelagic.bake(changed, out, frames=[1])

@@ -80,6 +80,24 @@ class Grids(unittest.TestCase):
         here = self.sea.projected_grid(self.view)
         np.testing.assert_allclose(grid.rest_m, here.rest_m, rtol=1e-6, atol=1e-6)
 
+    def test_awkward_cameras_and_a_calm_have_finite_seas(self):
+        poses = {"under water": ((0, 0, -3), (0, 5, -2)), "at the surface": ((0, 0, 0), (9, 0, 0)),
+                 "straight down": ((0, 0, 30), (0, 0, 0)), "up": ((0, 0, 30), (0, 1, 90)),
+                 "high": ((0, 0, 2e4), (9, 0, 0))}
+        for wind_mps in (0.0, 40.0):
+            for name, (position_m, look_at_m) in poses.items():
+                scene = camera_scene()
+                scene.sea.wind_speed_mps = wind_mps
+                scene.camera.position_m, scene.camera.look_at_m = position_m, look_at_m
+                view = pelagic.View.of_scene(scene, 1)
+                sea = pelagic.Sea(scene, views=[view])
+                grid = sea.projected_grid(view)
+                frame = pelagic.Frame(sea)
+                frame.set(1.0)
+                made = frame.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m)
+                for array in (grid.rest_m, grid.cell_m, grid.pixel_m, *made.values()):
+                    self.assertTrue(np.isfinite(array).all(), (name, wind_mps))
+
     def test_a_point_is_the_same_in_a_sea_for_more_views(self):
         low = pelagic.View.of_scene(camera_scene(0.5), 1)
         self.assertTrue(self.sea.serves(self.view))

@@ -364,6 +364,7 @@ class Threads(unittest.TestCase):
 class Numbers(unittest.TestCase):
     def test_the_sea_says_what_it_is(self):
         sea = pelagic.Sea(small_scene())
+        self.assertAlmostEqual(small_scene().significant_height_m(), sea.significant_height_m, delta=1e-3)
         points = pelagic.patch(2000.0, 200)[0]
         frame = pelagic.Frame(pelagic.Sea(small_scene(), ("displacement",), cell_m=0.0, pixel_m=0.0))
         frame.set(0.0)

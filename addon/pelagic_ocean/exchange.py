@@ -11,7 +11,7 @@ from mathutils import Vector
 
 from . import camera, light, look, ocean
 from .module import pelagic
-from .operators import NeedsModule, show_now
+from .operators import GivesLook, NeedsModule, show_now
 from .query import first_ocean
 
 OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; accepted: a patch or the camera's grid "
@@ -34,8 +34,9 @@ def shot_of(context, obj):
         remarks.append(f"{obj.name} is scaled: the shot's sea is in its own metres, without the scale")
     if rotation.angle > 1e-6 or obj.matrix_world.translation.length > 0.0:
         remarks.append(f"{obj.name} is moved or turned: the shot's camera is as seen from it, the sun stays")
-    lamp = light.own_sun(bpy_scene)  # of the add-on's; others are nobody's business here
-    if lamp is not None and lamp.matrix_world.col[2].xyz.angle(Vector(pelagic.Sky(scene).sun_direction)) > SAME_DIRECTION:
+    lamp = light.own_sun(bpy_scene)
+    if lamp is not None and lamp.matrix_world.col[2].xyz.angle(
+            Vector(pelagic.Sky(scene).sun_direction)) > SAME_DIRECTION:
         remarks.append(f"{lamp.name} was turned: the shot's sun is where the ocean's settings have it")
     if obj.animation_data and obj.animation_data.action:
         remarks.append(f"{obj.name} is animated: the shot has its settings at frame {bpy_scene.frame_current}")
@@ -98,7 +99,7 @@ def ocean_of(context):
 # ---- In
 
 
-class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
+class PELAGIC_OT_import_shot(GivesLook, ImportHelper, bpy.types.Operator):
     """Add the ocean of a shot file with its camera, sun and sky, and give the scene its frames"""
 
     bl_idname = "pelagic.import_shot"
@@ -136,6 +137,7 @@ class PELAGIC_OT_import_shot(NeedsModule, ImportHelper, bpy.types.Operator):
             other.select_set(False)
         obj.select_set(True)
         context.view_layer.objects.active = obj
+        self.give_look(context, obj)
         simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)

@@ -40,9 +40,24 @@ def ensure_light(bpy_scene, scene, exposure=True):
     update_light(bpy_scene, scene)
 
 
+_daylights = {}  # text of a scene's light → its pelagic.Sky: the last few, for undo and for several who ask
+
+
+def sky_of(scene):
+    """The pelagic.Sky of a scene. A picture of a sky is read anew each time, for it may have changed."""
+    if scene.light.sky != pelagic.Scene().light.sky:
+        return pelagic.Sky(scene)
+    key = repr(scene.light)
+    if key not in _daylights:
+        while len(_daylights) >= 4:
+            del _daylights[next(iter(_daylights))]
+        _daylights[key] = pelagic.Sky(scene)
+    return _daylights[key]
+
+
 def update_light(bpy_scene, scene):
     """Brings what ensure_light() made up to the scene; what an artist took away or put in its place stays so."""
-    sky = pelagic.Sky(scene)
+    sky = sky_of(scene)
     world, lamp = bpy_scene.world, own_sun(bpy_scene)
     if world is not None and MARK in world:
         _put_sky(world, sky)
@@ -74,7 +89,6 @@ def _make_nodes(world):
     picture = tree.node("ShaderNodeTexEnvironment")
     picture.name = PICTURE
     seen = tree.call(DISC, _disc, {"Direction": (0.0, 0.0, 1.0), "Radiance": (0.0, 0.0, 0.0), "Angular Radius": 0.0})
-    seen["Radiance"].socket.node.name = DISC
     tree.node("ShaderNodeOutputWorld", {"Surface": tree.add("ShaderNodeAddShader", {
         0: tree.add("ShaderNodeBackground", {"Color": tree.value(picture, "Color")}),
         1: tree.add("ShaderNodeBackground", {"Color": seen["Radiance"]})})})

@@ -4,13 +4,15 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import light, material, ocean
+from . import light, material, ocean, play
 from .module import pelagic, problem
 from .properties import FIELDS
 
 # Of settings_of(): what light and materials depend on.
 PLACES = [place for place, field in enumerate(FIELDS)
           if field.table in ("light", "water") or field.path == "sea.wind_direction_deg"]
+
+STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 
 _shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last
 
@@ -20,11 +22,22 @@ def _lights(obj, bpy_scene):
     return next((other for other in ocean.oceans() if bpy_scene in other.users_scene), None) == obj
 
 
-def give(obj, bpy_scene):
-    """An ocean's material; sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
+def is_untouched(world):
+    """Whether a world is Blender's own grey one, or none: nobody misses it."""
+    if world is None:
+        return True
+    if not world.use_nodes:
+        return False
+    backgrounds = [node for node in world.node_tree.nodes if node.type == "BACKGROUND"]
+    return (len(world.node_tree.nodes) <= 2 and len(backgrounds) == 1
+            and all(abs(channel - STARTUP_GREY) < 1e-4 for channel in backgrounds[0].inputs["Color"].default_value[:3]))
+
+
+def give(obj, bpy_scene, sun_and_sky):
+    """An ocean's material; if wanted, sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
     scene = ocean.scene_of(obj, bpy_scene)
     material.ensure_material(obj, scene)
-    if _lights(obj, bpy_scene):
+    if sun_and_sky and _lights(obj, bpy_scene):
         light.ensure_light(bpy_scene, scene)
 
 
@@ -34,13 +47,15 @@ def _follow(bpy_scene, depsgraph):
         if bpy_scene not in obj.users_scene:
             continue
         settings = ocean.settings_of(obj.evaluated_get(depsgraph))
-        key, wanted = (obj.name_full, bpy_scene.name), [settings[place] for place in PLACES]
+        sea = play.simulation_of(obj).sea
+        height_m = sea and sea.significant_height_m
+        key, wanted = (obj.name_full, bpy_scene.name), [height_m] + [settings[place] for place in PLACES]
         if _shown.get(key) == wanted:
             continue
         _shown[key] = wanted
         try:
             scene = ocean.scene_of(obj, bpy_scene, settings=settings)
-            material.update_material(obj, scene)
+            material.update_material(obj, scene, height_m)
             if _lights(obj, bpy_scene):
                 light.update_light(bpy_scene, scene)
         except (ValueError, pelagic.ShotError) as error:

@@ -25,6 +25,19 @@ class NeedsOcean(NeedsModule):
         return super().poll(context) and ocean.is_ocean(context.object)
 
 
+class GivesLook(NeedsModule):
+    light: BoolProperty(name="Sun and Sky", default=True, options={"SKIP_SAVE"},
+                        description="Give the scene the ocean's sun and sky. Unless asked for, a world of your own stays")
+
+    def give_look(self, context, obj):
+        if not self.properties.is_property_set("light"):
+            self.light = look.is_untouched(context.scene.world)
+        try:
+            look.give(obj, context.scene, self.light)
+        except (ValueError, OSError) as error:
+            self.report({"WARNING"}, str(error))
+
+
 def show_now(context, obj):
     """The sea is in the mesh when the operator returns."""
     depsgraph = context.evaluated_depsgraph_get()
@@ -43,7 +56,7 @@ def _see_far(context):
             space.clip_end = max(space.clip_end, CLIP_END_M)
 
 
-class PELAGIC_OT_add_ocean(NeedsModule, bpy.types.Operator):
+class PELAGIC_OT_add_ocean(GivesLook, bpy.types.Operator):
     """Add the open sea: its surface, water, sun and sky, moving with the timeline"""
 
     bl_idname = "pelagic.add_ocean"
@@ -52,9 +65,6 @@ class PELAGIC_OT_add_ocean(NeedsModule, bpy.types.Operator):
 
     see_far: BoolProperty(name="See the horizon", default=True,
                           description="Raise the clipping distance of the camera and of the views")
-    light: BoolProperty(name="Material, sun and sky", default=True,
-                        description="Give the ocean its material and the scene the ocean's sun and sky")
-
     def execute(self, context):
         obj = ocean.make("Ocean", context.collection)
         for other in context.selected_objects:
@@ -63,8 +73,7 @@ class PELAGIC_OT_add_ocean(NeedsModule, bpy.types.Operator):
         context.view_layer.objects.active = obj
         if self.see_far:
             _see_far(context)
-        if self.light:
-            look.give(obj, context.scene)
+        self.give_look(context, obj)
         context.scene.render.use_lock_interface = True  # frames change on the render's thread
         simulation = show_now(context, obj)
         if simulation.problem:
@@ -73,7 +82,7 @@ class PELAGIC_OT_add_ocean(NeedsModule, bpy.types.Operator):
         return {"FINISHED"}
 
 
-class PELAGIC_OT_use_mesh(NeedsModule, bpy.types.Operator):
+class PELAGIC_OT_use_mesh(GivesLook, bpy.types.Operator):
     """Make the active mesh a sea: its vertices are the surface at rest"""
 
     bl_idname = "pelagic.use_mesh"
@@ -97,6 +106,7 @@ class PELAGIC_OT_use_mesh(NeedsModule, bpy.types.Operator):
         meshes.capture(obj.data)
         obj.pelagic.own_mesh = True
         ocean.mark(obj)
+        self.give_look(context, obj)
         simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)

@@ -3,10 +3,13 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
-#include <memory>
+#include <string>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "plugin/files/files.h"
+#include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/shot/text_file.h"
 #include "plugin/usd/read_mesh.h"
@@ -45,16 +48,15 @@ constexpr std::pair<std::string_view, std::string_view> kNames[] = {
     {"faceVertexCounts", "face_counts"},
     {"faceVertexIndices", "face_corners"}};
 
-// An array that owns the numbers where they are.
-template <class T>
-py::array as_array(std::vector<T> values, int components) {
-    const auto count = static_cast<py::ssize_t>(values.size()) / components;
-    std::vector<py::ssize_t> shape{count};
-    if (components > 1) shape.push_back(components);
-    auto owned = std::make_unique<std::vector<T>>(std::move(values));
-    const T* const numbers = owned->data();
-    const py::capsule owner(owned.release(), [](void* made) { delete static_cast<std::vector<T>*>(made); });
-    return py::array_t<T>(shape, numbers, owner);
+py::array as_array(usd::MeshArray& array) {
+    return std::visit(
+        [&](auto& values) -> py::array {
+            using Number = typename std::remove_reference_t<decltype(values)>::value_type;
+            std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(values.size()) / array.components};
+            if (array.components > 1) shape.push_back(array.components);
+            return array_of<Number>(std::move(values), shape);
+        },
+        array.values);
 }
 
 py::dict read_mesh(const std::filesystem::path& path) {
@@ -64,13 +66,9 @@ py::dict read_mesh(const std::filesystem::path& path) {
         layer = read_layer(path);
     }
     py::dict arrays;
-    for (usd::MeshArray& array : layer.arrays) {
+    for (usd::MeshArray& array : layer.arrays)
         for (const auto& [name, key] : kNames)
-            if (name == array.name)
-                arrays[py::str(std::string(key))] =
-                    std::visit([&](auto& values) { return as_array(std::move(values), array.components); },
-                               array.values);
-    }
+            if (name == array.name) arrays[py::str(std::string(key))] = as_array(array);
     return arrays;
 }
 

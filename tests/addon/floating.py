@@ -231,6 +231,24 @@ with checking("in renders of an animation, too: the picture shows it where it is
         scene.frame_set(frame)
         assert abs(rows[frame] - lamp.matrix_world.translation.z) < 0.06, (frame, rows, lamp.matrix_world.translation.z)
     assert np.ptp(list(rows.values())) > 0.3, rows
+    # With motion blur it is as much longer as it moves while the shutter is open.
+    change(sea, shot__time_scale=8.0)
+    speeds, lengths = {}, {}
+    for frame in range(20, 60):
+        scene.frame_set(frame, subframe=0.25)
+        late = lamp.matrix_world.translation.z
+        scene.frame_set(frame - 1, subframe=0.75)
+        speeds[frame] = abs(late - lamp.matrix_world.translation.z)
+    fast = max(speeds, key=speeds.get)
+    scene.frame_set(fast)
+    for blurred in (False, True):
+        render.use_motion_blur = blurred
+        bpy.ops.render.render(write_still=True)
+        pixels = np.array(bpy.data.images.load(render.filepath + "png").pixels).reshape(64, 64, 4)[..., 0]
+        lengths[blurred] = (pixels.max(1) > 0.1).sum() / 8
+    assert speeds[fast] > 0.4 and abs(lengths[True] - lengths[False] - speeds[fast]) < 0.3, (speeds[fast], lengths)
+    render.use_motion_blur = False
+    change(sea, shot__time_scale=1.0)
     scene.frame_step = 1
     for obj in hidden:
         obj.hide_render = False

@@ -103,3 +103,20 @@ with checking("list_add and list_remove"):
     bpy.ops.pelagic.list_remove(path="sea.swell", index=0)
     bpy.context.view_layer.update()
     assert np.array_equal(numbers(sea.data), calm)
+
+with checking("a new ocean brings water, sun and sky; a world of the artist's own stays unless the operator is asked"):
+    fresh_file()
+    scene = bpy.context.scene
+    grey = scene.world
+    first = add_ocean()
+    assert first.data.materials[0] and scene.world != grey
+    assert any(obj.type == "LIGHT" and obj.data.type == "SUN" for obj in scene.objects)
+    fresh_file()
+    scene = bpy.context.scene
+    own = scene.world
+    own.node_tree.nodes["Background"].inputs["Color"].default_value = (0.5, 0.1, 0.1, 1)
+    bpy.ops.pelagic.add_ocean()
+    assert scene.world == own
+    bpy.data.objects.remove(bpy.context.object)
+    bpy.ops.pelagic.add_ocean(light=True)
+    assert scene.world != own

@@ -36,6 +36,26 @@ with checking("with a horizon the patch's vertices are the same"):
     assert len(far) > len(near) and np.array_equal(far[:len(near)], near)
     assert np.linalg.norm(far[:, :2], axis=1).max() > 25e3
 
+with checking("the patch comes first, and the mesh is closed to the horizon"):
+    rest, quads = pelagic.patch(150.0, 32)
+    at_rest = numbers(obj.data, "rest_position").astype(np.float64)
+    assert np.array_equal(at_rest[:len(rest), :2], rest)
+    corners = np.empty(len(obj.data.loops), np.int32)
+    obj.data.loops.foreach_get("vertex_index", corners)
+    corners = corners.reshape(-1, 4)
+    assert np.array_equal(corners[:len(quads)], quads) and len(np.unique(corners)) == len(at_rest)
+    # Every quad faces up, and together they are the outermost square without gap or overlap.
+    a, b, c, d = (at_rest[corners[:, i]] for i in range(4))
+    area = 0.5 * ((c - a)[:, 0] * (d - b)[:, 1] - (c - a)[:, 1] * (d - b)[:, 0])
+    side = 2 * at_rest.max()
+    assert area.min() > 0 and side / 2 >= 30e3 and abs(area.sum() / side**2 - 1) < 1e-6
+
+with checking("the UV map is the bake's"):
+    uv = np.empty((len(corners), 4, 2), np.float32)
+    obj.data.uv_layers["UVMap"].data.foreach_get("uv", uv.ravel())
+    assert (uv[:len(quads)].min(), uv[:len(quads)].max()) == (0.0, 1.0)
+    assert np.allclose(uv[0], [[0, 0], [1 / 32, 0], [1 / 32, 1 / 32], [0, 1 / 32]], atol=1e-6)
+
 with checking("frame 1 → 250 → 1 gives the same bits"):
     scene.frame_set(1)
     first = {name: numbers(obj.data, name) for name in ("position", "velocity", "slope_variance", "whitecap_coverage")}

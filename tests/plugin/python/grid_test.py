@@ -82,7 +82,8 @@ class Grids(unittest.TestCase):
 
     def test_awkward_cameras_and_a_calm_have_finite_seas(self):
         poses = {"under water": ((0, 0, -3), (0, 5, -2)), "at the surface": ((0, 0, 0), (9, 0, 0)),
-                 "straight down": ((0, 0, 30), (0, 0, 0)), "up": ((0, 0, 30), (0, 1, 90)), "high": ((0, 0, 2e4), (9, 0, 0))}
+                 "straight down": ((0, 0, 30), (0, 0, 0)), "up": ((0, 0, 30), (0, 1, 90)),
+                 "high": ((0, 0, 2e4), (9, 0, 0))}
         for wind_mps in (0.0, 40.0):
             for name, (position_m, look_at_m) in poses.items():
                 scene = camera_scene()

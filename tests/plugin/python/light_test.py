@@ -30,7 +30,8 @@ class Sky(unittest.TestCase):
                                                             math.sin(elevation)), atol=1e-4)
         solid_angle = math.pi * self.sky.sun_angular_radius**2
         np.testing.assert_allclose(self.sky.sun_irradiance,
-                                   np.float32(self.sky.sun_radiance) * solid_angle * self.sky.sun_direction[2], rtol=1e-3)
+                                   np.float32(self.sky.sun_radiance) * solid_angle * self.sky.sun_direction[2],
+                                   rtol=1e-3)
         self.assertTrue(all(value > 1.0 for value in self.sky.sky_irradiance))
         self.assertEqual(pelagic.Sky(scene_with_sun(-20.0)).sun_radiance, (0.0, 0.0, 0.0))
 
@@ -83,7 +84,8 @@ class Shade(unittest.TestCase):
         # Unpolarised light on water of index 1.34 at 36.87° (Fresnel's equations).
         cos_in = 0.8
         cos_out = math.sqrt(1 - (0.6 / 1.34)**2)
-        s, p = (cos_in - 1.34 * cos_out) / (cos_in + 1.34 * cos_out), (cos_out - 1.34 * cos_in) / (cos_out + 1.34 * cos_in)
+        s = (cos_in - 1.34 * cos_out) / (cos_in + 1.34 * cos_out)
+        p = (cos_out - 1.34 * cos_in) / (cos_out + 1.34 * cos_in)
         mirrored = self.sky.radiance(vectors(1, (0.6, 0.0, 0.8)))
         # The fit of the Fresnel term is good to some per cent; the map's texel is a degree wide.
         np.testing.assert_allclose(lit["sky"][:1], 0.5 * (s * s + p * p) * mirrored, rtol=0.08)
@@ -93,8 +95,10 @@ class Shade(unittest.TestCase):
         turbid = scene_with_sun()
         turbid.water.type = "turbid"
         murky = pelagic.WaterBody(turbid)
-        clear, muddy = self.lit()["sea"][0], pelagic.shade(self.sky, murky, self.to_eye, self.up, self.rough)["sea"][0]
-        np.testing.assert_allclose(clear * np.float32(murky.reflectance), muddy * np.float32(self.water.reflectance), rtol=0.05)
+        clear = self.lit()["sea"][0]
+        muddy = pelagic.shade(self.sky, murky, self.to_eye, self.up, self.rough)["sea"][0]
+        np.testing.assert_allclose(clear * np.float32(murky.reflectance), muddy * np.float32(self.water.reflectance),
+                                   rtol=0.05)
         self.assertGreater(muddy[0], 3.0 * clear[0])
         self.assertTrue(all(m > c for m, c in zip(murky.backscatter_per_m, self.water.backscatter_per_m)))
         self.assertGreater(self.water.absorption_per_m[0], 5.0 * self.water.absorption_per_m[2])

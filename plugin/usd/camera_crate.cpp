@@ -13,7 +13,8 @@ namespace {
 struct MovingFrames {
     std::int64_t first = 0;
     std::int64_t last = 0;
-    bool zooms = false;  // the field of view changes, too
+    double first_fov_deg = 0.0;  // of the shot's first frame
+    bool zooms = false;          // the field of view changes, too
     std::uint64_t count() const { return first < last ? static_cast<std::uint64_t>(last - first) + 1 : 0; }
 };
 
@@ -24,6 +25,7 @@ MovingFrames moving_frames(const Camera& camera) {
     for (std::int64_t frame = camera.first_frame; frame <= camera.last_frame; ++frame) {
         const CameraPose pose = camera.pose_at(static_cast<int>(frame));
         check(pose, static_cast<int>(frame));
+        if (frame == camera.first_frame) moving.first_fov_deg = pose.fov_deg;
         if (frame > camera.first_frame && pose != before) {
             if (moving.count() == 0) moving.first = frame - 1;
             moving.last = frame;
@@ -73,10 +75,7 @@ void check(const Camera& camera) {
 Crate camera_layer(const Camera& camera) {
     check(camera);
     const MovingFrames moving = moving_frames(camera);
-    const auto film_at = [&camera](std::int64_t frame) {
-        return film_back(camera.pose_at(static_cast<int>(frame)).fov_deg, camera.resolution);
-    };
-    const FilmBack film = film_at(camera.first_frame);
+    const FilmBack film = film_back(moving.first_fov_deg, camera.resolution);
 
     Crate crate;
     Crate::Fields layer;
@@ -112,8 +111,9 @@ Crate camera_layer(const Camera& camera) {
         translate = samples_of(stored_from(samples));
         rotate = samples_of(stored_from(samples + sizeof(glm::dvec3)));
         if (moving.zooms)
-            focal_length = samples_of([film_at, moving](std::uint64_t index) {
-                const FilmBack then = film_at(moving.first + static_cast<std::int64_t>(index));
+            focal_length = samples_of([&camera, moving](std::uint64_t index) {
+                const auto frame = static_cast<int>(moving.first + static_cast<std::int64_t>(index));
+                const FilmBack then = film_back(camera.pose_at(frame).fov_deg, camera.resolution);
                 return Crate::real32(static_cast<float>(then.focal_length));
             });
     } else {

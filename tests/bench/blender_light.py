@@ -25,7 +25,7 @@ from pictures import LUMINANCE, core_layers, cycles_exr, glitter_exr, shot_in_bl
 SHOTS = ("glassy-swell", "trade-wind", "first-shot", "north-sea-storm", "seamless-loop", "shallow-bay", "buoy-hour",
          "wave-trains")
 SIZE = (320, 180)
-SAMPLES = 64
+SAMPLES = 32
 
 
 def line_ratios(ours, core, clear):

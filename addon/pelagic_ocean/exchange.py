@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 from mathutils import Vector
 
-from . import camera, light, look, ocean
+from . import camera, light, ocean
 from .module import pelagic
 from .operators import GivesLook, NeedsModule, show_now
 from .query import first_ocean

@@ -67,7 +67,7 @@ def new_material():
     # Ripples change over about a second.
     time.socket.driver_add("default_value").driver.expression = "frame / 24"
 
-    part = add_facets(tree, ripples=0.8, ripple_length_m=0.7, detail_distance_m=150.0, wind_angle=wind, time=time)
+    part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
     foam = add_foam(tree, tree.attribute("whitecap_coverage", "Fac"), part["Foam Ratio"], size=1.0,
                     detail_distance_m=400.0, wind_angle=wind)
 

@@ -75,7 +75,7 @@ def shot_in_blender(shot, size):
     with nullcontext() if bpy.app.background else bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
         bpy.ops.pelagic.add_ocean()
         sea = bpy.context.object
-    scene.surface.kind = "projected-grid"
+    scene.surface.kind, scene.surface.cell_px = "projected-grid", 1.0  # the core's pictures have normals for each pixel
     ocean.set_from(sea, scene)
     bpy_scene.frame_set(bpy_scene.frame_start)
     return sea

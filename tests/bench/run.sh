@@ -2,24 +2,33 @@
 # Builds the benchmarks and prints their tables, the numbers first. Some twenty minutes on two cores.
 #   tests/bench/run.sh [PROGRAM…]      default: all, the light last:
 #     frame ocean construction choices sampling query stages conservation trains crate bake optics whitecaps
-#     backoff preview fig10
+#     backoff preview fig10 light
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
 [ $# -gt 0 ] || set -- frame ocean construction choices sampling query stages conservation trains crate bake \
-    optics whitecaps backoff preview fig10
+    optics whitecaps backoff preview fig10 light
 targets=()
 for program in "$@"; do
-    [ "$program" = ocean ] && targets+=(pelagic_python) || targets+=("bench_$program")
+    case $program in
+        ocean) targets+=(pelagic_python) ;;
+        light) targets+=(pelagic pelagic_python) ;;
+        *) targets+=("bench_$program") ;;
+    esac
 done
 install_packages
 build release "${targets[@]}" >/dev/null
+in_blender() {
+    # Without --python-exit-code Blender hides a script's failure.
+    PYTHONPATH=$PELAGIC_ROOT/build/release/python PYTHONDONTWRITEBYTECODE=1 blender -b --factory-startup \
+        --python-exit-code 1 --python "$here/$1" -- "${@:2}" | grep -vE '^(Blender|Read prefs|Warning|Fra:|Saved| Time)|^$'
+}
 for program in "$@"; do
     if [ "$program" = ocean ]; then
-        # Without --python-exit-code Blender hides a script's failure.
-        PYTHONPATH=$PELAGIC_ROOT/build/release/python PYTHONDONTWRITEBYTECODE=1 blender -b --factory-startup \
-            --python-exit-code 1 --python "$here/blender_ocean.py" | grep -vE '^(Blender|Read prefs|Warning)|^$'
+        in_blender blender_ocean.py
+    elif [ "$program" = light ]; then
+        in_blender blender_light.py "$PELAGIC_ROOT/build/release/pelagic"
     elif [ "$program" = fig10 ]; then
         "$PELAGIC_ROOT/build/release/bench/bench_fig10" full plot="$PELAGIC_ROOT/build/release/fig10.png"
     else

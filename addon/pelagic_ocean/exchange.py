@@ -9,7 +9,7 @@ from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 from mathutils import Vector
 
-from . import camera, light, look, ocean
+from . import camera, light, ocean
 from .module import pelagic
 from .operators import GivesLook, NeedsModule, show_now
 from .query import first_ocean
@@ -110,8 +110,6 @@ class PELAGIC_OT_import_shot(GivesLook, ImportHelper, bpy.types.Operator):
     filter_glob: StringProperty(default="*.toml", options={"HIDDEN"})
     set_scene: BoolProperty(name="Camera and Frames", default=True,
                             description="Add the shot's camera, and give the scene its range, rate and resolution")
-    light: BoolProperty(name="Material, Sun and Sky", default=True,
-                        description="Give the ocean its material and the scene the ocean's sun and sky")
 
     def execute(self, context):
         path = Path(bpy.path.abspath(self.filepath)).absolute()
@@ -141,11 +139,6 @@ class PELAGIC_OT_import_shot(GivesLook, ImportHelper, bpy.types.Operator):
         simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"WARNING"}, simulation.problem)
-        try:
-            if self.light:
-                look.give(obj, context.scene)
-        except ValueError as error:
-            self.report({"WARNING"}, str(error))
         if obj.name != scene.shot.name:
             self.report({"WARNING"}, f"There is a {scene.shot.name} in this file already: this one is {obj.name}")
         return {"FINISHED"}

@@ -72,7 +72,7 @@ def _facets(tree, asked):
     # The eye sees slopes −x σ along and y across the line of sight: y is normal, and x has the density (k + x)₊ φ(x). The
     # places of lobes have the part `rest` of that variance, weighted by how much the eye sees of a whole lobe (moments by
     # Stein's lemma). k + x is drawn as the square of a normal number: its mean and variance are right.
-    mills = 0.797885 * (-(k * (0.79875 + k * (0.17595 + k * 0.04591)))).at_least(-80.0).exp()  # φ(k)/Φ(k), to 1.2e-4
+    mills = _mills(tree, k)
     mean = 1.0 / (k + mills)
     own = (lobe * (1.0 - cosine * cosine)).at_least(0.0).sqrt() / sigma  # a lobe's deviation, in units of σ
     rest = 1.0 - own * own
@@ -115,12 +115,21 @@ def _facets(tree, asked):
     open_part = open_part * (1.0 + _smith_lambda(tree, tilted / own.at_least(1e-3))).at_most(1.5)
     facet = (normal + x_axis * -s_x + y_axis * -s_y).normalized()
 
-    foam_variance = 0.1  # of the foam's own roughness
-    foam_sigma = (sigma * sigma).plus_product(foam_variance, 1.0 - cosine * cosine).sqrt()
+    # Foam's facets are rougher by 0.1 along any axis, and those that the eye sees lean its way: foam.glsl.
+    sine = (1.0 - cosine * cosine).sqrt().at_least(1e-4)
+    foam_sigma = (sigma * sigma).plus_product(0.1 * sine, sine).sqrt()
+    foam_k = cosine / foam_sigma
+    foam_deviation = foam_sigma / sine
+    lean = foam_deviation / (foam_k + _mills(tree, foam_k)) / sine
+    spread = 0.8 * foam_deviation  # between √0.43 at grazing angles and 1
+    foam_facet = (normal + x_axis * (v_x * lean).plus_product(spread, z_x)
+                  + y_axis * (v_y * lean).plus_product(spread, z_y)).normalized()
+
     return {"Normal": transformed(tree, facet, "NORMAL", "OBJECT", "WORLD").normalized(),
             "Roughness": (2.0 * lobe).sqrt().at_least(LEAST_ALPHA).sqrt(),
             "Fresnel": fresnel, "Reflection": fresnel * open_part,
-            "Foam Ratio": (1.0 + _smith_lambda(tree, cosine / foam_sigma)) / seen}
+            "Foam Normal": transformed(tree, foam_facet, "NORMAL", "OBJECT", "WORLD").normalized(),
+            "Foam Ratio": (1.0 + _smith_lambda(tree, foam_k)) / seen}
 
 
 def _slope_frame(tree, _):
@@ -188,6 +197,15 @@ def _fresnel(tree, cosine):
         return {"Fresnel": 0.5 * across * across * (1.0 + along * along)}
 
     return tree.call("Pelagic Fresnel", build, {"Cosine": cosine})["Fresnel"]
+
+
+def _mills(tree, k):
+    """φ(k)/Φ(k) for k ≥ 0, of the normal distribution; 1.2e-4 off."""
+    def build(_, asked):
+        k = asked["k"]
+        return {"Ratio": 0.797885 * (-(k * (0.79875 + k * (0.17595 + k * 0.04591)))).at_least(-80.0).exp()}
+
+    return tree.call("Pelagic Mills", build, {"k": k})["Ratio"]
 
 
 def _smith_lambda(tree, k):

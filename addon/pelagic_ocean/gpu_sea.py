@@ -99,7 +99,7 @@ def _bind(shader, textures):
 class Grid:
     """A region's projected grid on the GPU."""
 
-    def __init__(self, sea, view, cell_px, shader, before):
+    def __init__(self, sea, view, cell_px, before):
         """before: the region's last Grid, whose triangles may serve again, or None."""
         grid = sea.grid(view, cell_px)
         self.key, self.size, self.origin_m = (view, cell_px), grid.size, grid.origin_m
@@ -177,12 +177,12 @@ class Drawing:
                     self._textures[name] = _texture(pixels)
             self._time_s = time_s
 
-    def _grid(self, region, camera, shader):
+    def _grid(self, region, camera):
         """The region's grid: coarse where the view isn't that of its last picture."""
         view, before = camera.view(), self._grids.pop(region, None)
         moved = before is not None and before.key[0] != view
         key = (view, self._cell_px * (COARSE if moved else 1))
-        grid = before if before is not None and before.key == key else Grid(self.sea, *key, shader, before)
+        grid = before if before is not None and before.key == key else Grid(self.sea, *key, before)
         self._grids[region] = grid  # the last one now
         while len(self._grids) > KEPT_GRIDS:
             del self._grids[next(iter(self._grids))]
@@ -190,7 +190,7 @@ class Drawing:
 
     def _draw_sea(self, region, camera, light):
         shader = self._shaders["sea"]
-        grid = self._grid(region, camera, shader)
+        grid = self._grid(region, camera)
         tables, cycles = self.sea.at_origin(grid.origin_m)
         tables = gpu.types.GPUUniformBuf(tables)
         shader.bind()

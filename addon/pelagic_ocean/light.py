@@ -89,7 +89,6 @@ def _make_nodes(world):
     picture = tree.node("ShaderNodeTexEnvironment")
     picture.name = PICTURE
     seen = tree.call(DISC, _disc, {"Direction": (0.0, 0.0, 1.0), "Radiance": (0.0, 0.0, 0.0), "Angular Radius": 0.0})
-    seen["Radiance"].socket.node.name = DISC
     tree.node("ShaderNodeOutputWorld", {"Surface": tree.add("ShaderNodeAddShader", {
         0: tree.add("ShaderNodeBackground", {"Color": tree.value(picture, "Color")}),
         1: tree.add("ShaderNodeBackground", {"Color": seen["Radiance"]})})})

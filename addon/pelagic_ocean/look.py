@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import light, material, ocean
+from . import light, material, ocean, play
 from .module import pelagic, problem
 from .properties import FIELDS
 
@@ -47,13 +47,15 @@ def _follow(bpy_scene, depsgraph):
         if bpy_scene not in obj.users_scene:
             continue
         settings = ocean.settings_of(obj.evaluated_get(depsgraph))
-        key, wanted = (obj.name_full, bpy_scene.name), [settings[place] for place in PLACES]
+        sea = play.simulation_of(obj).sea
+        height_m = sea and sea.significant_height_m
+        key, wanted = (obj.name_full, bpy_scene.name), [height_m] + [settings[place] for place in PLACES]
         if _shown.get(key) == wanted:
             continue
         _shown[key] = wanted
         try:
             scene = ocean.scene_of(obj, bpy_scene, settings=settings)
-            material.update_material(obj, scene)
+            material.update_material(obj, scene, height_m)
             if _lights(obj, bpy_scene):
                 light.update_light(bpy_scene, scene)
         except (ValueError, pelagic.ShotError) as error:

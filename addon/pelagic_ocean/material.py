@@ -23,13 +23,15 @@ def ensure_material(obj, scene):
     return update_material(obj, scene)
 
 
-def update_material(obj, scene):
-    """Brings the ocean's material to the scene's water, light and wind; returns it, or None where there is none. What an
-    artist changed stays until the scene's own value changes."""
+def update_material(obj, scene, significant_height_m=None):
+    """Brings the ocean's material to the scene's water, light and wind, and to the height of its waves where that is known;
+    returns it, or None where there is none. What an artist changed stays until the scene's own value changes."""
     material = next((m for m in obj.data.materials if m and MARK in m), None)
     if material is not None:
         _set(material, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
+        if significant_height_m is not None:
+            _set(material, "Wave Height", max(significant_height_m, 1e-3))
     return material
 
 
@@ -59,11 +61,13 @@ def new_material():
     water = labelled("ShaderNodeRGB", "Water Color", (0.0, 0.03, 0.05, 1.0))
     dense = labelled("ShaderNodeRGB", "Foam Color", (0.55, 0.55, 0.55, 1.0))
     wind = labelled("ShaderNodeValue", "Wind Angle", 0.0)
+    crest_light = labelled("ShaderNodeValue", "Crest Light", 2.0)
+    wave_height = labelled("ShaderNodeValue", "Wave Height", 1e6)
     time = labelled("ShaderNodeValue", "Time", 0.0)
     # Ripples change over about a second.
     time.socket.driver_add("default_value").driver.expression = "frame / 24"
 
-    part = add_facets(tree, ripples=0.8, ripple_length_m=0.7, detail_distance_m=150.0, wind_angle=wind, time=time)
+    part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
     foam = add_foam(tree, tree.attribute("whitecap_coverage", "Fac"), part["Foam Ratio"], size=1.0,
                     detail_distance_m=400.0, wind_angle=wind)
 
@@ -72,8 +76,15 @@ def new_material():
                       distribution="BECKMANN")
     # Light from the water has come in through a level surface, whatever its facets do: the normal is up.
     upwards = transformed(tree, tree.vector(0.0, 0.0, 1.0), "NORMAL", "OBJECT", "WORLD")
-    body = tree.add("ShaderNodeBsdfDiffuse", {"Color": water * (1.0 - part["Fresnel"]), "Normal": upwards})
-    white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], water, dense)})
+    # High crests are thin: more light comes through, and less of its red and green is lost.
+    height = tree.add("ShaderNodeVectorTransform", {0: tree.add("ShaderNodeNewGeometry", output="Position")},
+                      vector_type="POINT", convert_from="WORLD", convert_to="OBJECT").parts()[2]
+    thin = tree.map_range(height / wave_height, 0.3, 1.0) * crest_light
+    lit = water * (tree.vector(1.5, 1.2, 1.0) * thin + (1.0, 1.0, 1.0))
+    body = tree.add("ShaderNodeBsdfDiffuse", {"Color": lit * (1.0 - part["Fresnel"]), "Normal": upwards})
+    under_foam = water * WATER_INDEX**2  # bubbles are in the water: what they scatter needn't leave it through its surface
+    white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], under_foam, dense),
+                                                "Normal": part["Foam Normal"]})
     tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeMixShader", {
         0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white})})
     return material

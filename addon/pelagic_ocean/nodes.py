@@ -136,6 +136,7 @@ class Tree:
         """Adds the node group of this name, whose tree build(tree, {input: Value}) makes the first time. inputs: numbers,
         tuples or Values by name. Returns the group's outputs, {name: Value}, which are what build() returned."""
         node = self.node("ShaderNodeGroup", inputs, node_tree=_shared_group(name, build, inputs))
+        node.name = name
         return {socket.name: self.value(node, socket.name) for socket in node.outputs}
 
     def add(self, kind, inputs=(), output=0, **settings):

@@ -40,6 +40,7 @@ class GivesLook(NeedsModule):
 
 def show_now(context, obj):
     """The sea is in the mesh when the operator returns."""
+    context.scene.render.use_lock_interface = True  # in a render frames change on its own thread
     depsgraph = context.evaluated_depsgraph_get()
     play.show(obj, context.scene, depsgraph)
     return play.simulation_of(obj)
@@ -74,7 +75,6 @@ class PELAGIC_OT_add_ocean(GivesLook, bpy.types.Operator):
         if self.see_far:
             _see_far(context)
         self.give_look(context, obj)
-        context.scene.render.use_lock_interface = True  # frames change on the render's thread
         simulation = show_now(context, obj)
         if simulation.problem:
             self.report({"ERROR"}, simulation.problem)

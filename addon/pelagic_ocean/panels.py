@@ -5,6 +5,7 @@ sidebar of the 3D view."""
 import bpy
 
 from . import ocean, play
+from .look import PELAGIC_OT_add_light, PELAGIC_OT_add_material
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
 from .presets import PELAGIC_MT_presets
@@ -103,6 +104,10 @@ class Sub:
         settings = context.object.pelagic
         if self.bl_label == "Sea":
             layout.menu(PELAGIC_MT_presets.bl_idname)
+        if self.bl_label == "Light":
+            row = layout.row(align=True)
+            row.operator(PELAGIC_OT_add_light.bl_idname, icon="LIGHT_SUN")
+            row.operator(PELAGIC_OT_add_material.bl_idname, icon="MATERIAL")
         if self.bl_label == "Surface":
             _draw_surface(layout, settings)
             if settings.own_mesh:

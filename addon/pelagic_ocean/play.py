@@ -122,8 +122,9 @@ class Simulation:
         if known is not None and known.serves(view):
             self._adopt(key, known)
         elif wait or self._job is None:
-            scene, make_surface = self.scene, prepare()
-            self._job = Job(key, lambda: BuiltSea(scene, make_surface(), view))
+            if self._job is None or self._job.key != key:
+                scene, make_surface = self.scene, prepare()
+                self._job = Job(key, lambda: BuiltSea(scene, make_surface(), view))
             if wait:
                 self._job.join()
                 self.poll()

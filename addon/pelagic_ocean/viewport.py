@@ -6,6 +6,8 @@ isn't updated either; it is shown again for saving, and while some view needs it
 after the scene (POST_VIEW) Blender binds its overlay, whose colours are display values, with the scene's depth.
 """
 
+import math
+
 import bpy
 import gpu
 from bpy.app.handlers import persistent
@@ -47,7 +49,7 @@ class Preview:
         """The ocean, also after undo; None if it is gone. Follows renaming."""
         try:
             self.name = self._obj.name_full
-        except ReferenceError:
+        except (ReferenceError, AttributeError):  # not of this undo step, or gone
             self._obj = bpy.data.objects.get(self.name)
         return self._obj if ocean.is_ocean(self._obj) else None
 
@@ -57,11 +59,13 @@ class Preview:
 
     def scene(self, obj, bpy_scene):
         """The pelagic.Scene of the ocean as it is set now, or the last one that the core accepts; None before that."""
-        settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene))
+        turned = obj.matrix_world.to_euler().z
+        settings = (ocean.settings_of(obj), ocean.frame_rate(bpy_scene), turned)
         if settings != self._settings:
             self._settings = settings
             try:
                 self._scene = ocean.scene_of(obj, bpy_scene, settings=settings[0])
+                self._scene.light.sun_azimuth_deg -= math.degrees(turned)  # the sun stays where it is in the world
             except (ValueError, OSError) as error:
                 self.problem, self._refused = str(error), settings
         return self._scene

@@ -3,6 +3,7 @@
 import math
 import subprocess
 import tempfile
+from contextlib import nullcontext
 from pathlib import Path
 
 import bpy
@@ -70,9 +71,11 @@ def shot_in_blender(shot, size):
     back = (Vector(scene.camera.position_m) - Vector(scene.camera.look_at_m)).normalized()
     bpy_scene.camera.matrix_world = (Matrix.Translation(scene.camera.position_m)
                                      @ back.to_track_quat("Z", "Y").to_matrix().to_4x4())
-    bpy.ops.pelagic.add_ocean()
-    sea = bpy.context.object
-    scene.surface.kind = "projected-grid"
+    # A timer, from which tests in a window run, has no window of its own.
+    with nullcontext() if bpy.app.background else bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+        bpy.ops.pelagic.add_ocean()
+        sea = bpy.context.object
+    scene.surface.kind, scene.surface.cell_px = "projected-grid", 1.0  # the core's pictures have normals for each pixel
     ocean.set_from(sea, scene)
     bpy_scene.frame_set(bpy_scene.frame_start)
     return sea

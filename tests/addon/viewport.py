@@ -157,10 +157,17 @@ def steps():
     obj.pelagic.quality.level = "draft"  # quicker
     drawn = picture("draft")
 
+    with checking("a turned ocean is another sea under the same sky"):
+        obj.rotation_euler.z = 2.0
+        turned = picture("turned")
+        horizon = place_of((0, 1e5, 0))[0]
+        assert change_of(turned, drawn)[horizon + 3:].max() <= 3 / 255
+        assert change_of(turned, drawn)[:horizon].mean() > 0.01
+        obj.rotation_euler.z = 0.0
+
     with checking("without the sky there is the view's own background over the horizon, and the sea is the same"):
         options.show_sky = False
         sea = picture("sea")
-        horizon = place_of((0, 1e5, 0))[0]
         assert change_of(sea, drawn)[:horizon - 3].max() <= 2 / 255
         above = sea[horizon + 3:]
         assert above.std(axis=(0, 1)).max() < 0.02 and change_of(above, drawn[horizon + 3:]).mean() > 0.1
@@ -304,11 +311,21 @@ def steps():
             bpy.ops.wm.open_mainfile(filepath=file)
         assert not viewport.is_on() and not bpy.data.objects["The sea"].hide_get()
 
-    with checking("the add-on goes while it is on"):
+    with checking("a deleted ocean turns it off"):
         viewport.turn_on(bpy.data.objects["The sea"])
         settle()
+        bpy.data.objects.remove(bpy.data.objects["The sea"])
+        settle()
+        assert not viewport.is_on() and not viewport._problem, viewport._problem
+
+    with checking("the add-on goes while it is on"):
+        with in_view():
+            obj = add_ocean(quality__level="draft")
+        viewport.turn_on(obj)
+        settle()
+        assert obj.hide_get()
         package.unregister()
-        assert not viewport.is_on() and not bpy.data.objects["The sea"].hide_get()
+        assert not viewport.is_on() and not obj.hide_get()
 
 
 def refuse_shaders(vertex, fragment):

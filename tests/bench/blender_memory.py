@@ -70,7 +70,7 @@ def main():
           f"{'met' if grown_mib <= FLAT_MIB else 'missed'}")
 
 
-if "--" in sys.argv:
+if sys.argv[-1] in SIDES:
     blender_sides.pelagic_ocean.register()
     print("MiB", SIDES[sys.argv[-1]]())
 else:

@@ -2,7 +2,7 @@
 Blender makes anyway, what part of it is ours, and how long a moved slider takes.
 
     PYTHONPATH=build/release/python blender -b --factory-startup --python-exit-code 1 \\
-        --python tests/bench/blender_frame.py [-- TURNS]
+        --python tests/bench/blender_played.py [-- TURNS]
 
 One frame change: scene.frame_set() until the evaluated mesh is there, with foam and normals, of (N + 1)² vertices; each
 side in a scene of its own, in turn. The modifier: its time keyframed, its mesh generated anew. Pelagic: positions,

@@ -1,0 +1,50 @@
+"""The same material and light in EEVEE, which needs a display."""
+
+import sys
+import tempfile
+import traceback
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+SIZE = (160, 90)
+
+
+def picture():
+    from pictures import read_exr
+    bpy_scene = bpy.context.scene
+    bpy_scene.render.engine = "BLENDER_EEVEE_NEXT" if bpy.app.version[:2] in ((4, 2), (4, 3), (4, 4), (4, 5)) else "BLENDER_EEVEE"
+    bpy_scene.eevee.taa_render_samples = 16
+    bpy_scene.render.resolution_x, bpy_scene.render.resolution_y = SIZE
+    bpy_scene.render.image_settings.file_format = "OPEN_EXR"
+    with tempfile.TemporaryDirectory() as folder:
+        bpy_scene.render.filepath = str(Path(folder) / "picture.exr")
+        bpy.ops.render.render(write_still=True)
+        return read_exr(bpy_scene.render.filepath)[..., :3]
+
+
+def run():
+    enable()
+    import pelagic
+    from pictures import shot_in_blender
+
+    with checking("EEVEE draws sea and sky like the core's in brightness"):
+        shot_in_blender(ROOT / "examples" / "first-shot.toml", SIZE)
+        pixels = picture()
+        assert np.isfinite(pixels).all()
+        sea, sky = pixels[:45].mean(), pixels[80:].mean()
+        print("   sea", sea, "sky", sky)
+        assert 20 < sky < 80 and 12 < sea < 48 and pixels[:45].std() > 0.5  # `pelagic render`: 41 and 25
+
+
+def main():
+    try:
+        run()
+    except BaseException:
+        traceback.print_exc()
+        os._exit(1)
+    os._exit(0)
+
+
+bpy.app.timers.register(main, first_interval=0.5)

@@ -1,0 +1,138 @@
+"""The add-on's light and material: the core's numbers, in Blender's renderers."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+import math
+
+import pelagic
+from mathutils import Matrix, Vector
+from pelagic_ocean import light, material
+from pictures import LUMINANCE, cycles_exr
+
+SAMPLES = 64
+
+
+def flat_sea(**settings):
+    """A level square of sea with constant attributes, its scene, light and material; no ripples, which would be one slope
+    for all of it."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy_scene = bpy.context.scene
+    mesh = bpy.data.meshes.new("Sea")
+    corners = [(-3e3, -3e3, 0), (3e3, -3e3, 0), (3e3, 3e3, 0), (-3e3, 3e3, 0)]
+    mesh.from_pydata(corners, [], [(0, 1, 2, 3)])
+    for name, value in settings.items():
+        values = np.tile(np.asarray(value, np.float32), 4)
+        if values.size == 4:
+            mesh.attributes.new(name, "FLOAT", "POINT").data.foreach_set("value", values)
+        else:
+            mesh.attributes.new(name, "FLOAT_VECTOR", "POINT").data.foreach_set("vector", values)
+    rest = mesh.attributes.new("rest_position", "FLOAT_VECTOR", "POINT")
+    rest.data.foreach_set("vector", np.array(corners, np.float32).ravel())
+    obj = bpy.data.objects.new("Sea", mesh)
+    bpy_scene.collection.objects.link(obj)
+    scene = pelagic.Scene()
+    scene.light.sun_elevation_deg, scene.light.sun_azimuth_deg = 30.0, 20.0
+    light.ensure_light(bpy_scene, scene)
+    made = material.ensure_material(obj, scene)
+    made.node_tree.nodes["Pelagic Facets"].inputs["Ripples"].default_value = 0.0
+    data = bpy.data.cameras.new("Camera")
+    data.type, data.ortho_scale, data.clip_end = "ORTHO", 150.0, 1e4
+    bpy_scene.camera = bpy.data.objects.new("Camera", data)
+    bpy_scene.collection.objects.link(bpy_scene.camera)
+    return scene
+
+
+def seen(angle_deg, azimuth_deg):
+    """(r, g, b) of a picture from so far off the zenith, looking at the azimuth; and the direction to the eye."""
+    angle, azimuth = math.radians(angle_deg), math.radians(azimuth_deg + 180)
+    to_eye = Vector((math.sin(angle) * math.cos(azimuth), math.sin(angle) * math.sin(azimuth), math.cos(angle)))
+    bpy.context.scene.camera.matrix_world = (Matrix.Translation(500 * to_eye)
+                                             @ to_eye.to_track_quat("Z", "Y").to_matrix().to_4x4())
+    with tempfile.TemporaryDirectory() as folder:
+        pixels = cycles_exr(Path(folder) / "picture.exr", (24, 24), SAMPLES)
+    assert np.isfinite(pixels).all()
+    return pixels[..., :3].mean((0, 1)), np.array([to_eye], np.float32)
+
+
+def core(scene, to_eye, variance, coverage):
+    layers = pelagic.shade(pelagic.Sky(scene), pelagic.WaterBody(scene), to_eye, np.array([[0, 0, 1]], np.float32),
+                           np.array([variance], np.float32), np.array([coverage], np.float32), sky_quality="integral")
+    return sum(layer[0] for layer in layers.values())
+
+
+with checking("the world is the core's sky, at its place, and the lamp its sun"):
+    scene = flat_sea()
+    sky, lamp = pelagic.Sky(scene), light.own_sun(bpy.context.scene)
+    # A mirror shows the sky where it is. Its water is black for that, and Fresnel's term is known.
+    bpy.data.materials["Pelagic Water"].node_tree.nodes["Water Color"].outputs[0].default_value = (0, 0, 0, 1)
+    lamp.hide_render = True
+    for angle, azimuth in ((60, 20), (60, 110), (75, -70), (45, 200)):
+        picture, to_eye = seen(angle, azimuth)
+        mirrored = to_eye * np.array([-1, -1, 1], np.float32)
+        expected = sky.radiance(mirrored)[0] * material.fresnel(to_eye[0, 2])
+        assert np.allclose(picture, expected, rtol=0.01), (angle, azimuth, picture, expected)
+    assert np.allclose(lamp.matrix_world.to_3x3() @ Vector((0, 0, 1)), sky.sun_direction, atol=1e-5)
+    across = np.array(sky.sun_irradiance) / sky.sun_direction[2]
+    assert np.allclose(lamp.data.energy * np.array(lamp.data.color), across, rtol=2e-3)
+
+with checking("rough water and foam are the core's, facing the sun and away from it"):
+    for variance, coverage in (((0.03, 0.015, 0.005), 0.0), ((0.02, 0.02, 0.0), 0.5)):
+        scene = flat_sea(slope_variance=variance, whitecap_coverage=coverage)
+        for angle, azimuth in ((45, 20), (80, 20), (80, 200)):
+            picture, to_eye = seen(angle, azimuth)
+            ratio = picture / core(scene, to_eye, variance, coverage)
+            print("  ", variance, coverage, angle, azimuth, np.round(ratio, 3))
+            assert (np.abs(ratio - 1) < 0.15).all(), ratio
+
+with checking("without attributes it is a level mirror, neither black nor without end"):
+    scene = flat_sea()
+    picture, to_eye = seen(70, 110)
+    assert np.allclose(picture, core(scene, to_eye, (0, 0, 0), 0.0), rtol=0.03)
+
+with checking("the foam's mean is the coverage"):
+    scene = flat_sea(whitecap_coverage=0.1)
+    nodes = bpy.data.materials["Pelagic Water"].node_tree
+    glow = nodes.nodes.new("ShaderNodeEmission")
+    nodes.links.new(nodes.nodes["Pelagic Foam"].outputs["Foam"], glow.inputs["Color"])
+    nodes.links.new(glow.outputs[0], nodes.nodes["Material Output"].inputs["Surface"])
+    picture, _ = seen(0, 0)
+    assert 0.085 < picture[0] < 0.115, picture
+
+with checking("settings reach light and material; an artist's own colour, world and lamp stay"):
+    fresh_file()
+    bpy_scene = bpy.context.scene
+    obj = add_ocean()
+    nodes, lamp = obj.data.materials[0].node_tree.nodes, light.own_sun(bpy_scene)
+    before, height, exposure = tuple(nodes["Water Color"].outputs[0].default_value), lamp.matrix_world.copy(), bpy_scene.view_settings.exposure
+    change(obj, light__sun_elevation_deg=3.0, water__type="turbid")
+    bpy.context.view_layer.update()
+    assert tuple(nodes["Water Color"].outputs[0].default_value) != before
+    assert lamp.matrix_world != height and bpy_scene.view_settings.exposure > exposure
+    own = bpy.data.worlds.new("Mine")
+    bpy_scene.world = own
+    bpy_scene.view_settings.exposure = -1.5
+    nodes["Water Color"].outputs[0].default_value = (0.1, 0.2, 0.3, 1)
+    bpy.data.objects.remove(lamp)
+    change(obj, light__sun_elevation_deg=50.0, light__turbidity=5.0)
+    assert bpy_scene.world == own and bpy_scene.view_settings.exposure == -1.5 and light.own_sun(bpy_scene) is None
+    mine = bpy.data.materials.new("Mine")
+    obj.data.materials[0] = mine
+    change(obj, water__type="coastal")
+    assert list(obj.data.materials) == [mine]
+    bpy.ops.pelagic.add_light()
+    bpy.ops.pelagic.add_material()
+    assert light.own_sun(bpy_scene) and "Pelagic" in obj.data.materials[0].name
+
+with checking("the sky is kept in files"):
+    with tempfile.TemporaryDirectory() as folder:
+        bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "sea.blend"))
+        bpy.ops.wm.open_mainfile(filepath=str(Path(folder) / "sea.blend"))
+    image = bpy.context.scene.world.node_tree.nodes[light.PICTURE].image
+    pixels = np.array(image.pixels[:], np.float32)
+    assert image.packed_file and pixels.reshape(-1, 4)[:, :3].max() > 1

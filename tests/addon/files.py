@@ -138,6 +138,17 @@ with checking("undo and redo, 20 times each"):
     for step in range(1, 20):
         bpy.ops.ed.redo()
         agrees(step)
+    # A step that was kept before the mesh had followed the setting.
+    obj = bpy.context.scene.objects["Ocean"]
+    obj.pelagic.sea.wind_speed_mps = 30.0
+    bpy.ops.ed.undo_push(message="wind 30")
+    bpy.context.view_layer.update()
+    followed = numbers(obj.data)
+    bpy.ops.ed.undo_push(message="nothing")
+    bpy.ops.ed.undo()
+    bpy.context.view_layer.update()
+    assert np.array_equal(numbers(bpy.context.scene.objects["Ocean"].data), followed)
+    bpy.ops.ed.undo()
     for _ in range(20):
         bpy.ops.ed.undo()
     assert not ocean.oceans()

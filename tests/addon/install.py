@@ -12,6 +12,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
+sys.path.insert(0, str(ROOT / "addon"))
+import make_zip
+
 archive = sys.argv[-1]
 folder = Path(bpy.utils.user_resource("SCRIPTS", path="addons", create=True))
 assert Path(os.environ["HOME"]) in folder.parents, f"{folder} isn't in the test's own home"
@@ -38,6 +41,8 @@ with checking("installing and enabling"):
     assert np.ptp(numbers(bpy.context.object.data)[:1000, 2]) > 0.1
 
 with checking("the module's libraries come from the zip"):
+    needed = make_zip.shared_libraries(module.pelagic.__file__)
+    assert needed and all(folder in path.parents for path in needed.values()), needed
     # Those that Blender itself has loaded already, by the same name, are shared with it.
     loaded = {line.split()[-1] for line in open("/proc/self/maps", encoding="utf-8") if str(folder) in line}
     assert any("libtomlplusplus" in path for path in loaded), loaded

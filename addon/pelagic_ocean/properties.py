@@ -265,7 +265,7 @@ def _ocean_annotations():
         "uv_map": BoolProperty(
             name="UV Map", default=True, update=_touched,
             description="Texture coordinates for image textures. Pelagic's own materials read rest_position instead: "
-                        "without the map a frame of a large mesh takes a fifth less time, and the mesh a quarter less memory"),
+                        "without the map a large mesh takes a quarter less memory, and Blender copies it faster"),
         "viewport_percentage": IntProperty(
             name="Viewport", default=100, min=1, max=100, subtype="PERCENTAGE", update=_touched,
             description="Vertices a side while you work, as a share of what a render has"),

@@ -46,6 +46,7 @@ def timeline():
 SIDES = {"modifier": lambda: played(lambda: blender_sides.Modifier(N)),
          "waves": lambda: played(lambda: blender_sides.AddOn(N, as_the_modifier=True)),
          "default": lambda: played(lambda: blender_sides.AddOn(N)),
+         "bare": lambda: played(lambda: blender_sides.AddOn(N, uv_map=False)),
          "timeline": timeline}
 
 
@@ -60,7 +61,7 @@ def main():
           "Blender's; each in its own process")
     modifier_mib, modifier_most_mib = in_own_process("modifier")
     print(f"  {'the modifier':28s} {modifier_mib:7.0f} MiB, at most {modifier_most_mib:.0f}")
-    for side, name in (("waves", "Pelagic, as many waves"), ("default", "Pelagic, default sea")):
+    for side, name in (("waves", "Pelagic, as many waves"), ("default", "Pelagic, default sea"), ("bare", "the same without a UV map")):
         mib, most_mib = in_own_process(side)
         print(f"  {name:28s} {mib:7.0f} MiB, at most {most_mib:.0f}   {mib / modifier_mib:.2f} of the modifier's, "
               f"≤ 1 {'met' if mib <= modifier_mib else 'missed'}", flush=True)
@@ -69,7 +70,7 @@ def main():
           f"{'met' if grown_mib <= FLAT_MIB else 'missed'}")
 
 
-if "--" in sys.argv:
+if sys.argv[-1] in SIDES:
     blender_sides.pelagic_ocean.register()
     print("MiB", SIDES[sys.argv[-1]]())
 else:

@@ -13,58 +13,19 @@ the threads that the machine has. "in new arrays": where evaluate() must make it
 """
 
 import os
-import statistics
 import sys
-import time
+from pathlib import Path
 
 import bpy
 import numpy as np
 import pelagic
 
-FPS, SIZE_M = 24, 400.0
+sys.path.insert(0, str(Path(__file__).parent))
+from blender_sides import FPS, FRAMES, SIZE_M, Modifier, interleaved_ms  # noqa: E402
+
 # N, target. The modifier's resolution r stands for r² × r² waves, and as many quads.
 ROWS = ((1024, 40.0), (256, 30.0))
-FRAMES = 3  # of each side in a turn
 PRODUCTS = ("position", "normal", "slope_variance", "coverage")
-
-
-class Modifier:
-    """An Ocean modifier that generates its geometry, played."""
-
-    def __init__(self, n):
-        self.object = bpy.data.objects.new("Ocean", bpy.data.meshes.new("Ocean"))
-        bpy.context.scene.collection.objects.link(self.object)
-        ocean = self.object.modifiers.new("Ocean", "OCEAN")
-        ocean.geometry_mode = "GENERATE"
-        ocean.resolution = ocean.viewport_resolution = round(n**0.5)
-        ocean.spatial_size = round(SIZE_M)
-        ocean.use_normals = ocean.use_foam = True
-        ocean.foam_layer_name = "foam"
-        for frame, seconds in ((0, 0.0), (FPS * 100, 100.0)):
-            ocean.time = seconds
-            self.object.keyframe_insert('modifiers["Ocean"].time', frame=frame)
-        for curve in self.object.animation_data.action.fcurves:
-            for key in curve.keyframe_points:
-                key.interpolation = "LINEAR"
-        self.frame = 0
-
-    def step(self):
-        self.frame += 1
-        bpy.context.scene.frame_set(self.frame)
-        return self.object.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-
-    def check(self, n):
-        """That it is what it says: that many vertices, moving, with foam."""
-        def heights():
-            mesh = self.step()
-            if len(mesh.vertices) != (n + 1) ** 2 or "foam" not in mesh.vertex_colors:
-                sys.exit(f"the modifier made {len(mesh.vertices)} vertices, layers {mesh.vertex_colors.keys()}")
-            values = np.empty(3 * len(mesh.vertices), np.float32)
-            mesh.vertices.foreach_get("co", values)
-            return values[2::3]
-        first, second = heights(), heights()
-        if np.array_equal(first, second) or not np.any(first):
-            sys.exit("the modifier's sea doesn't move")
 
 
 class Ours:
@@ -95,20 +56,6 @@ class Ours:
         self.frame.evaluate(self.rest, outputs=PRODUCTS)
 
 
-def interleaved_ms(works, turns):
-    """Medians of each work's calls: FRAMES in a row in each of the turns, as a timeline plays them; frame by frame in turn
-    each would find the caches and the threads as the other left them. One turn to warm up."""
-    spent = [[] for _ in works]
-    for turn in range(turns + 1):
-        for column, work in zip(spent, works):
-            for _ in range(FRAMES):
-                start = time.perf_counter()
-                work()
-                if turn > 0:
-                    column.append(1e3 * (time.perf_counter() - start))
-    return [statistics.median(column) for column in spent]
-
-
 def main():
     given = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     turns = int(given[0]) if given else 5
@@ -121,13 +68,12 @@ def main():
           f"{'× faster':>9s}")
     for n, target in ROWS:
         theirs, ours = Modifier(n), Ours(n)
-        theirs.check(n)
         modifier, whole, only_set, anew = interleaved_ms((theirs.step, ours.step, ours.set, ours.step_anew),
                                                          turns * 1024 // n)
         ratio = modifier / whole
         print(f"  {n:6d}²  {len(ours.rest):9d} {modifier:9.1f} {whole:8.2f} {only_set:10.2f} {anew:14.2f} {ratio:9.1f}  "
               f"≥ {target:g} {'met' if ratio >= target else 'missed'}", flush=True)
-        bpy.data.objects.remove(theirs.object)
+        theirs.remove()
 
 
 main()

@@ -87,14 +87,14 @@ class AddOn(Side):
     """The add-on's ocean, as Add Ocean makes it; with n its patch alone, SIZE_M wide, of n × n quads. as_the_modifier: one
     square of n × n waves on the patch's own grid; otherwise four cascades that repeat nowhere in the patch."""
 
-    def __init__(self, n=None, as_the_modifier=False):
+    def __init__(self, n=None, as_the_modifier=False, uv_map=True):
         super().__init__("pelagic")
         self.object = ocean.make("Pelagic", self.scene.collection)
         if n is None:
             self.step()
             return
         settings = self.object.pelagic
-        settings.horizon, settings.viewport_percentage = False, 100
+        settings.horizon, settings.viewport_percentage, settings.uv_map = False, 100, uv_map
         shot = pelagic.Scene()
         shot.surface.size_m, shot.surface.resolution = SIZE_M, n
         if as_the_modifier:
@@ -129,13 +129,14 @@ class Copy(Side):
 
 def interleaved_ms(works, turns):
     """Medians of each work's calls: FRAMES in a row in each of the turns, as a timeline plays them; frame by frame in turn
-    each would find the caches and the threads as the other left them. One turn to warm up."""
+    each would find the caches and the threads as the other left them. The first of a row isn't counted: while it runs,
+    what the side before it computes ahead comes to its end."""
     spent = [[] for _ in works]
-    for turn in range(turns + 1):
+    for _ in range(turns):
         for column, work in zip(spent, works):
-            for _ in range(FRAMES):
+            for frame in range(FRAMES + 1):
                 start = time.perf_counter()
                 work()
-                if turn > 0:
+                if frame > 0:
                     column.append(1e3 * (time.perf_counter() - start))
     return [statistics.median(column) for column in spent]

@@ -1,18 +1,18 @@
 #!/usr/bin/env bash
-# Builds the benchmarks and prints their tables, the numbers first. Some twenty minutes on two cores.
+# Builds the benchmarks and prints their tables, the numbers first. Some half an hour on two cores.
 #   tests/bench/run.sh [PROGRAM…]      default: all, the light last:
 #     frame ocean construction choices sampling query stages conservation trains crate bake optics whitecaps
-#     backoff preview fig10 light
+#     backoff preview fig10 light played memory picture
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
 [ $# -gt 0 ] || set -- frame ocean construction choices sampling query stages conservation trains crate bake \
-    optics whitecaps backoff preview fig10 light
+    optics whitecaps backoff preview fig10 light played memory picture
 targets=()
 for program in "$@"; do
     case $program in
-        ocean) targets+=(pelagic_python) ;;
+        ocean | played | memory | picture) targets+=(pelagic_python) ;;
         light) targets+=(pelagic pelagic_python) ;;
         *) targets+=("bench_$program") ;;
     esac
@@ -25,10 +25,10 @@ in_blender() {
         --python-exit-code 1 --python "$here/$1" -- "${@:2}" | grep -vE '^(Blender|Read prefs|Warning|Fra:|Saved| Time)|^$'
 }
 for program in "$@"; do
-    if [ "$program" = ocean ]; then
-        in_blender blender_ocean.py
-    elif [ "$program" = light ]; then
+    if [ "$program" = light ]; then
         in_blender blender_light.py "$PELAGIC_ROOT/build/release/pelagic"
+    elif [ -f "$here/blender_$program.py" ]; then
+        in_blender "blender_$program.py"
     elif [ "$program" = fig10 ]; then
         "$PELAGIC_ROOT/build/release/bench/bench_fig10" full plot="$PELAGIC_ROOT/build/release/fig10.png"
     else

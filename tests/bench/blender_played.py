@@ -2,7 +2,7 @@
 Blender makes anyway, what part of it is ours, and how long a moved slider takes.
 
     PYTHONPATH=build/release/python blender -b --factory-startup --python-exit-code 1 \\
-        --python tests/bench/blender_frame.py [-- TURNS]
+        --python tests/bench/blender_played.py [-- TURNS]
 
 One frame change: scene.frame_set() until the evaluated mesh is there, with foam and normals, of (N + 1)² vertices; each
 side in a scene of its own, in turn. The modifier: its time keyframed, its mesh generated anew. Pelagic: positions,
@@ -77,7 +77,8 @@ def verdict(value, limit, at_most):
 
 def frame_change(n, turns):
     modifier, bare = Modifier(n), Copy.bare(n)
-    oceans = {"as many waves": AddOn(n, as_the_modifier=True), "default sea": AddOn(n)}
+    oceans = {"as many waves": AddOn(n, as_the_modifier=True), "default sea": AddOn(n),
+              "the same without a UV map": AddOn(n, uv_map=False)}
     full = Copy(oceans["default sea"].object.data.copy())
     parts = {name: ([], []) for name in oceans}
 
@@ -110,6 +111,7 @@ def frame_change(n, turns):
 
 def slider():
     side = AddOn()
+
     def move(wind_mps):
         before = blender_sides.heights(side.object.data).copy()
         start = time.perf_counter()
@@ -138,7 +140,8 @@ def slider():
 def main():
     given = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
     turns = int(given[0]) if given else 5
-    print(f"One frame change in Blender {bpy.app.version_string}, medians of {turns} turns (four times as many at 256²)")
+    print(f"One frame change in Blender {bpy.app.version_string}, medians of {turns} turns (four times as many at 256²) "
+          f"of {blender_sides.FRAMES} frames")
     for n in SIZES:
         frame_change(n, turns * 1024 // n)
     print("A slider moved in the default sea, with its horizon, until the new sea is in the mesh")

@@ -20,6 +20,7 @@
 #include "core/lighting/tone.h"
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
+#include "core/scene/text.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "plugin/gpu/packed_frame.h"
@@ -107,7 +108,7 @@ class GpuSea {
   public:
     GpuSea(const Scene& scene, double finest_m)
         : finest_m_(finest_m),
-          made_from_(canonical(scene, kFeeds)),
+          made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(scene)),
           sea_(std::make_shared<const Sea<float>>(
@@ -117,7 +118,7 @@ class GpuSea {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
     }
 
-    bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from_; }
+    bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
 
     double finest_m() const { return finest_m_; }
     double finest_for(const View& view) const {
@@ -223,6 +224,11 @@ class GpuSea {
         return std::unique_lock(mutex_);
     }
 
+    // The clock only by the loop that it makes: set() is given the sea's time.
+    static std::string what_counts(const Scene& scene) {
+        return canonical(scene, kFeeds) + number_text(scene.shot.sea_loop_s());
+    }
+
     // A cell is several pixels wide.
     static Query query_of(const PreparedScene& prepared, double finest_m) {
         return view_query(prepared, {.products = {},
@@ -236,7 +242,7 @@ class GpuSea {
         return view;
     }
 
-    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Quality, Feed::Grid);
+    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Foam, Feed::Quality, Feed::Grid);
     // A side of a grid. Views along the surface from far behind, as orthographic ones are, would need millions.
     static constexpr int kMostCells = 1024;
     static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres

@@ -34,7 +34,6 @@ class Watch {
     Watch(const pybind11::object& progress, const pybind11::object& cancel);
 
     const std::atomic<bool>* flag() const { return cancel_.flag.get(); }
-    bool is_cancelled() const { return cancel_.flag->load(); }
 
     // Calls progress with these, then the callable `cancel`, whose answer counts as in an `if`. An exception of
     // either cancels the work, and is kept for rethrow().

@@ -104,6 +104,17 @@ class Seas(unittest.TestCase):
         self.assertFalse(self.sea.serves(scene))
         self.assertTrue(light.serves(scene))
 
+    def test_the_clock_matters_only_in_a_loop(self):
+        scene = small_scene()
+        scene.shot.time_scale, scene.shot.time_offset_s, scene.shot.fps = 0.5, 100.0, 25.0
+        self.assertTrue(self.sea.serves(scene))
+        scene.shot.loop_s = 2.0
+        looping = pelagic.GpuSea(scene, finest_m=1.0)
+        scene.shot.time_offset_s = 0.0
+        self.assertTrue(looping.serves(scene))
+        scene.shot.time_scale = 1.0
+        self.assertFalse(looping.serves(scene))
+
 
 class Grids(unittest.TestCase):
     def test_is_the_seas_projected_grid(self):

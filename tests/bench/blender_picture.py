@@ -41,7 +41,7 @@ FRAME = 25
 SAMPLES, TURNS = 16, 5
 FASTER = 20.0  # at least
 # The fan: pixels between rows and between columns, and the slope that the rows are spaced for.
-ROW_PX, COLUMN_PX, SLOPE = 4.0, 9.0, 0.4
+ROW_PX, COLUMN_PX, SLOPE = 4.0, 9.5, 0.4
 MARGIN, MARGIN_M = 1.06, 3.0  # of a view's sides, where waves move points into it
 NEAREST_M = 8.0
 

@@ -24,14 +24,13 @@ LEAST_ALPHA = 5e-4  # a third of what the sun's own width adds; below, Cycles ta
 # Blender's noise. Each octave has nearly as much slope as the one before, as the hidden waves have; with less roughness
 # ripples are blotches of one size. Mean and deviation: measured over 512² points of a square of 198 lattice cells, at nine
 # times between and on its lattice, red and green: 0.0459 … 0.0481 where z is off the lattice; on it, red falls by a
-# tenth at whole times, hence the 0.3. Its quantiles from 0.1 % to 99.9 % are a normal distribution's within 0.1 deviations.
+# tenth at whole times. Its quantiles from 0.1 % to 99.9 % are a normal distribution's within 0.1 deviations.
 NOISE = {"Detail": 6.0, "Roughness": 0.9}
-NOISE_Z = 0.3
 NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0472
 
 
 def add_facets(tree, ripples, ripple_length_m, detail_distance_m, wind_angle, time):
-    """Adds the group. Normal and Roughness of a sample's lobe; Fresnel: what it reflects; Reflection: that of it which no
+    """Adds the group. time: a vector, the ripples' place along z and w of their noise [s]. Normal and Roughness of a sample's lobe; Fresnel: what it reflects; Reflection: that of it which no
     wave blocks; Foam Ratio: how much more foam shows of itself than water (foam.glsl)."""
     return tree.call("Pelagic Facets", _facets, {"Ripples": ripples, "Ripple Length": ripple_length_m,
                                                  "Detail Distance": detail_distance_m, "Wind Angle": wind_angle,
@@ -177,8 +176,8 @@ def _dice(tree, asked):
 
     rest = along_wind(tree, asked["Wind Angle"]) * (1.0, 0.5, 1.0)  # half as frequent across the wind, as crests are
     scale = 1.0 / asked["Ripple Length"].at_least(1e-3)
-    cells = rest * scale + (0.0, 0.0, NOISE_Z)
-    noise = tree.add("ShaderNodeTexNoise", {"Vector": cells, "W": asked["Time"] * scale, "Scale": 1.0, **NOISE},
+    aside, time, _ = asked["Time"].parts()
+    noise = tree.add("ShaderNodeTexNoise", {"Vector": rest + tree.vector(0.0, 0.0, aside), "W": time, "Scale": scale, **NOISE},
                      "Color", noise_dimensions="4D")
     away = tree.add("ShaderNodeCameraData", output="View Distance") / asked["Detail Distance"]
     share = asked["Ripples"].clamped() / (1.0 + away * away)

@@ -10,7 +10,8 @@ from .properties import FIELDS
 
 # Of settings_of(): what light and materials depend on.
 PLACES = [place for place, field in enumerate(FIELDS)
-          if field.table in ("light", "water") or field.path == "sea.wind_direction_deg"]
+          if field.table in ("light", "water") or "clock" in field.key["feeds"]
+          or field.path in ("sea.wind_direction_deg", "shot.loop_s")]
 
 STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 
@@ -49,7 +50,7 @@ def _follow(bpy_scene, depsgraph):
         settings = ocean.settings_of(obj.evaluated_get(depsgraph))
         sea = play.simulation_of(obj).sea
         height_m = sea and sea.significant_height_m
-        key, wanted = (obj.name_full, bpy_scene.name), [height_m] + [settings[place] for place in PLACES]
+        key, wanted = (obj.name_full, bpy_scene.name), [height_m, ocean.frame_rate(bpy_scene)] + [settings[place] for place in PLACES]
         if _shown.get(key) == wanted:
             continue
         _shown[key] = wanted

@@ -30,20 +30,44 @@ def update_material(obj, scene, significant_height_m=None):
     if material is not None:
         _set(material, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
+        _drive(material, "Time", ripple_clock(scene.shot))
         if significant_height_m is not None:
             _set(material, "Wave Height", max(significant_height_m, 1e-3))
     return material
 
 
-def _set(material, name, value):
-    """Writes a node's value where the value that was last written isn't the same."""
+def _changed(material, name, value):
+    """The node to write a value to; None where that value was the last one written, or the node is gone."""
     key = f"{MARK} {name}"
     if material.get(key) == repr(value):
-        return
+        return None
     material[key] = repr(value)
-    node = material.node_tree.nodes.get(name)
+    return material.node_tree.nodes.get(name)
+
+
+def _set(material, name, value):
+    node = _changed(material, name, value)
     if node is not None:
         node.outputs[0].default_value = value
+
+
+def _drive(material, name, expressions):
+    """The same with expressions of the frame for the node's first inputs."""
+    node = _changed(material, name, expressions)
+    if node is not None:
+        for socket, expression in zip(node.inputs, expressions):
+            socket.driver_add("default_value").driver.expression = expression
+
+
+def ripple_clock(shot):
+    """Where ripples are in their noise, whose two last axes are times [s], as expressions of the frame: the sea's time
+    on one of them; in a loop a circle of the loop's length on both. So they repeat without a jump and never turn back."""
+    time = f"({shot.time_offset_s!r} + {shot.time_scale / shot.fps!r} * (frame - 1))"
+    loop_s = shot.time_scale * round(shot.loop_s * shot.fps) / shot.fps
+    if loop_s == 0:
+        return "0.1", time  # off the lattice, on which the noise is weaker
+    radius = loop_s / (2 * math.pi)
+    return tuple(f"{radius!r} * {function}({time} / {radius!r})" for function in ("cos", "sin"))
 
 
 def new_material():
@@ -63,9 +87,9 @@ def new_material():
     wind = labelled("ShaderNodeValue", "Wind Angle", 0.0)
     crest_light = labelled("ShaderNodeValue", "Crest Light", 2.0)
     wave_height = labelled("ShaderNodeValue", "Wave Height", 1e6)
-    time = labelled("ShaderNodeValue", "Time", 0.0)
-    # Ripples change over about a second.
-    time.socket.driver_add("default_value").driver.expression = "frame / 24"
+    clock = tree.node("ShaderNodeCombineXYZ")
+    clock.name = clock.label = "Time"
+    time = tree.value(clock, 0)
 
     part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
     foam = add_foam(tree, tree.attribute("whitecap_coverage", "Fac"), part["Foam Ratio"], size=1.0,

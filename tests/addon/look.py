@@ -12,7 +12,7 @@ import math
 
 import pelagic
 from mathutils import Matrix, Vector
-from pelagic_ocean import light, material
+from pelagic_ocean import light, material, ocean
 from pictures import LUMINANCE, cycles_exr
 
 SAMPLES = 64
@@ -128,6 +128,32 @@ with checking("settings reach light and material; an artist's own colour, world 
     bpy.ops.pelagic.add_light()
     bpy.ops.pelagic.add_material()
     assert light.own_sun(bpy_scene) and "Pelagic" in obj.data.materials[0].name
+
+with checking("the ripples' clock is the sea's, and loops with it"):
+    fresh_file()
+    bpy_scene = bpy.context.scene
+    obj = add_ocean(shot__time_scale=0.5, shot__time_offset_s=7.0)
+    bpy_scene.render.fps = 30
+
+    def clock(frame):
+        bpy_scene.frame_set(int(frame), subframe=frame % 1)
+        graph = bpy.context.evaluated_depsgraph_get()
+        inputs = obj.evaluated_get(graph).data.materials[0].node_tree.nodes["Time"].inputs
+        return np.array([inputs[axis].default_value for axis in range(2)])
+
+    bpy_scene.frame_set(2)
+    shot = ocean.scene_of(obj, bpy_scene).shot
+    for frame in (1, 16, 31.5):
+        assert math.isclose(clock(frame)[1], shot.time_s(frame), rel_tol=1e-6), (clock(frame), shot.time_s(frame))
+    change(obj, shot__loop_s=2.0)
+    assert np.allclose(clock(1), clock(61), atol=1e-4)
+    # A circle as long as the loop, and not there and back: a step is as long everywhere, up to its being straight.
+    places = np.array([clock(frame) for frame in range(1, 62)])
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert np.allclose(steps, shot.time_scale / shot.fps, rtol=2e-3), steps
+    assert not np.allclose(clock(11), clock(51), atol=1e-2)
+    curves = obj.data.materials[0].node_tree.animation_data.drivers
+    assert len(curves) == 2 and all(curve.driver.is_simple_expression for curve in curves)  # no scripts, which files may forbid
 
 with checking("the sky is kept in files"):
     with tempfile.TemporaryDirectory() as folder:

@@ -12,7 +12,9 @@ namespace py = pybind11;
 // As `pelagic explain` prints it.
 std::string explain_bake(const pelagic::Scene& scene) {
     pelagic::python::require_valid(scene);
-    return pelagic::explain(pelagic::plan_bake(scene));
+    const pelagic::Scene kept = scene;
+    const py::gil_scoped_release others_may_run;  // a plan looks at each frame's view
+    return pelagic::explain(pelagic::plan_bake(kept));
 }
 
 }  // namespace

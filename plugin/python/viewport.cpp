@@ -2,6 +2,7 @@
 // Arrays and text; no OpenGL.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -74,7 +75,7 @@ struct GpuLight {
 
 double checked_footprint(double finest_m) {
     if (!(finest_m >= 0.0 && finest_m < 1e6))
-        throw py::value_error("finest_m: accepted: a length [m] from 0 up");
+        throw py::value_error("finest_m: accepted: a length below 1e6 m, from 0 up");
     return finest_m;
 }
 
@@ -127,8 +128,11 @@ class GpuSea {
     void set(double t_s) {
         const py::gil_scoped_release others_may_run;
         const std::lock_guard writing(mutex_);
-        frame_.set(t_s);
-        packed_.pack(frame_);
+        // Without other tasks of the same TBB meanwhile: the host's own might ask this sea, and wait for themselves.
+        tbb::this_task_arena::isolate([&] {
+            frame_.set(t_s);
+            packed_.pack(frame_);
+        });
     }
 
     py::dict shaders(const GpuLight& light) const {
@@ -148,6 +152,7 @@ class GpuSea {
     // Views of the packed frame's memory, which `self` keeps alive.
     static py::dict textures(const py::object& self) {
         const auto& sea = self.cast<const GpuSea&>();
+        const auto reading = sea.locked();
         static constexpr std::array<const char*, 3> kNames{"cell_fields", "pixel_fields", "pixel_fields_2"};
         py::dict made;
         for (std::size_t p = 0; p < sea.packed_.planes().size(); ++p) {
@@ -165,7 +170,9 @@ class GpuSea {
 
     py::tuple at_origin(std::array<double, 2> origin_m) const {
         const glm::dvec2 origin(origin_m[0], origin_m[1]);
-        const std::lock_guard reading(mutex_);
+        if (!std::isfinite(origin.x) || !std::isfinite(origin.y))
+            throw py::value_error("origin_m: accepted: (x, y), finite [m]");
+        const auto reading = locked();
         const SeaLayout& layout = *packed_.layout();
         py::object cycles = py::none();
         if (layout.has_trains()) {
@@ -210,6 +217,12 @@ class GpuSea {
     }
 
   private:
+    // Waits without the interpreter: who sets meanwhile may take long.
+    std::unique_lock<std::mutex> locked() const {
+        const py::gil_scoped_release others_may_run;
+        return std::unique_lock(mutex_);
+    }
+
     // A cell is several pixels wide.
     static Query query_of(const PreparedScene& prepared, double finest_m) {
         return view_query(prepared, {.products = {},

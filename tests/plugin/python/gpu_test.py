@@ -49,6 +49,9 @@ class Seas(unittest.TestCase):
         self.assertEqual((here.dtype, here.size % 16), (np.uint8, 0))
         self.assertFalse(np.array_equal(here, self.sea.at_origin((1.0, 0.0))[0]))
         np.testing.assert_array_equal(here, self.sea.at_origin((0.0, 0.0))[0])
+        for nowhere in (np.nan, np.inf):
+            with self.assertRaisesRegex(ValueError, "finite"):
+                self.sea.at_origin((0.0, nowhere))
 
     def test_trains_have_a_table_and_phases_that_depend_on_time_and_place(self):
         sea = pelagic.GpuSea(small_scene(model="trochoid", cascades=[]))

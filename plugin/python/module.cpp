@@ -27,7 +27,8 @@ PYBIND11_MODULE(pelagic, module) {
         "    frame = pelagic.Frame(pelagic.Sea(scene))\n"
         "    frame.set(1.5)\n"
         "    position = frame.evaluate(rest, outputs=(\"position\",))[\"position\"]\n\n"
-        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north.";
+        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north. Threads that work in it must "
+        "be joined before the program ends: Python can't end under them.";
     module.attr("__version__") = PELAGIC_VERSION;
     py::register_exception<pelagic::ShotError>(module, "ShotError", PyExc_ValueError).doc() =
         "A shot that is refused: a line for each problem, FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: "

@@ -17,6 +17,15 @@ ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
               ("whitecap_coverage", "FLOAT", "value", "coverage"))
 
 
+def _sign(mesh, signature):
+    """Says which surface the mesh is. While Blender draws a window no script may write properties, in whatever thread it
+    runs; then nobody knows, and the surface is put there again at the next frame."""
+    try:
+        mesh[SIGNATURE] = signature
+    except AttributeError:
+        pass
+
+
 def holds(mesh, surface):
     return mesh.get(SIGNATURE) == surface.signature and len(mesh.vertices) == len(surface)
 
@@ -34,7 +43,7 @@ def put_surface(mesh, surface, uv_map=True):
     if uv_map:
         mesh.uv_layers.new(name=UV_MAP)
     move_rest(mesh, surface, rest)
-    mesh[SIGNATURE] = surface.signature
+    _sign(mesh, surface.signature)
 
 
 def move_rest(mesh, surface, rest=None):
@@ -101,8 +110,10 @@ def forget_rest(mesh):
 
 
 def restore(mesh):
-    """What capture() and put_frame() changed is as before."""
-    compat.set_positions(mesh, rest_of(mesh))
+    """What capture() and put_frame() changed is as before; without rest_position the vertices stay where they are."""
+    rest = rest_of(mesh)
+    if rest is not None:
+        compat.set_positions(mesh, rest)
     for name in (REST, *(row[0] for row in ATTRIBUTES)):
         if name in mesh.attributes:
             mesh.attributes.remove(mesh.attributes[name])

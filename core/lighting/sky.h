@@ -52,8 +52,8 @@ struct LatLong {
 Sky picture_sky(const LatLong& picture, int map_size = 512);
 
 // The sky as such a picture, width / 2 rows, without the sun's disc: each pixel the mean over its solid angle.
-// Below the horizon is what the sea reflects of the sky. Throws std::invalid_argument for a width that is odd or out of range, and
-// for a sky without a map.
+// Below the horizon is what the sea reflects of the sky. Throws std::invalid_argument for a width that is odd
+// or out of range, and for a sky without a map.
 inline constexpr int kLeastLatLong = 8, kLargestLatLong = 16384;
 LatLong lat_long(const Sky& sky, int width);
 

@@ -30,6 +30,10 @@ inline constexpr Range kFps{1e-3, 1e4};    // a frame a quarter of an hour … h
 inline constexpr Range kLoop_s{0.0, 1e7};  // four months
 inline constexpr Range kTimeScale{0.0, 1e3};
 inline constexpr Range kTimeOffset_s{-1e7, 1e7};
+inline constexpr Range kTime_s{-1e12,
+                               1e12};  // the sea's; a phase in cycles still has four digits after the point
+inline constexpr double kSlowestLoopScale =
+    1e-6;  // each wave goes round in a loop, however short that is for the sea
 inline constexpr double kLoopTolerance_frames =
     1e-4;  // a loop written with seven digits: 4 µs at 24 frames a second
 

@@ -211,6 +211,23 @@ void check_shot(Checker& check, const Shot& shot) {
                               " of one); nearest: " + number_text(whole / shot.fps)});
         }
     }
+    if (!check.is_good("shot.time_scale")) return;
+    if (check.is_good("shot.loop_s") && shot.loop_s > 0.0 && shot.time_scale > 0.0 &&
+        shot.time_scale < limits::kSlowestLoopScale) {
+        check.refuse({"shot.time_scale", number_text(shot.time_scale), "is too slow for a loop",
+                      "0, numbers from " + number_text(limits::kSlowestLoopScale) +
+                          " up, or any together with shot.loop_s = 0"});
+    }
+    if (check.is_good("shot.frames") && check.is_good("shot.fps") && check.is_good("shot.time_offset_s")) {
+        for (const int frame : {shot.first_frame, shot.last_frame}) {
+            if (limits::kTime_s.holds(shot.time_s(frame))) continue;
+            check.refuse(
+                {"shot.time_scale", number_text(shot.time_scale),
+                 "makes it " + number_text(shot.time_s(frame)) + " s at frame " + std::to_string(frame),
+                 "a sea's time of " + text_of(limits::kTime_s) + " s"});
+            break;
+        }
+    }
 }
 
 void check_measured(Checker& check, const MeasuredSpectrum& measured) {

@@ -9,6 +9,7 @@
 
 #include "core/base/buffer.h"
 #include "core/plan/grid_layout.h"
+#include "core/scene/limits.h"
 #include "core/waves/kernels.h"
 #include "core/waves/realisation.h"
 #include "core/waves/sea.h"
@@ -26,7 +27,7 @@ class Frame {
     // otherwise.
     void set(double t_s);
 
-    static constexpr double kLatest_s = 1e12;  // a phase in cycles then still has four digits after the point
+    static constexpr double kLatest_s = limits::kTime_s.high;
     bool is_set() const { return is_set_; }
     // Calls of set() since the frame was made: who keeps what it held knows by it that this has changed.
     long times_set() const { return times_set_; }

@@ -1,6 +1,7 @@
 #include "core/waves/sea.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <limits>
@@ -63,7 +64,9 @@ class Sea<T>::Progress {
         if (!watch_.progress) return;
         const std::lock_guard lock(mutex_);
         done_ += modes;
-        watch_.progress(static_cast<double>(done_) / static_cast<double>(all_));
+        // Where it waits for tasks of its own, this thread takes up none of ours: they would wait for this lock.
+        tbb::this_task_arena::isolate(
+            [&] { watch_.progress(static_cast<double>(done_) / static_cast<double>(all_)); });
     }
 
   private:

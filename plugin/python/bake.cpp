@@ -4,12 +4,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -128,6 +130,13 @@ class MapsOf final : public Maps {
           parts_(make_parts(frame_.sea().plan())) {}
 
     std::vector<Values> at(double t_s) override {
+        const std::lock_guard alone(mutex_);
+        return tbb::this_task_arena::isolate([&] { return made_at(t_s); });
+    }
+    const Plan& plan() const override { return frame_.sea().plan(); }
+
+  private:
+    std::vector<Values> made_at(double t_s) {
         frame_.set(t_s);
         std::vector<Values> values;
         for (const auto& part : parts_) {
@@ -137,15 +146,15 @@ class MapsOf final : public Maps {
         }
         return values;
     }
-    const Plan& plan() const override { return frame_.sea().plan(); }
 
-  private:
+    std::mutex mutex_;
     Frame<T> frame_;
     std::vector<std::unique_ptr<OutputPart>> parts_;
 };
 
 std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::string>& maps, bool tiles,
                                 const py::object& progress, const py::object& cancel) {
+    if (maps.empty()) throw py::value_error("maps: are none; accepted: names of output.maps");
     Scene asked = scene;
     asked.output.mesh = MeshFormat::None;
     asked.output.cascade_tiles = tiles;
@@ -229,8 +238,8 @@ void add_bake(py::module_& module) {
             "at", &maps_at, py::arg("t"),
             "(patch, tiles) at a time [s]: the patch's arrays, and a list of each cascade's, the largest first. "
             "Each is a dict of float32 (n, n, 3): displacement [m], normal, slope_variance, jacobian, and (n, n): "
-            "coverage. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. One call at "
-            "a time.");
+            "coverage. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. Any "
+            "thread may call; calls wait for each other.");
 }
 
 }  // namespace pelagic::python

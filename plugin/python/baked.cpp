@@ -79,7 +79,7 @@ void add_baked(py::module_& module) {
         "read_mesh", &read_mesh, py::arg("path"),
         "What a mesh file of a bake holds, DIR/mesh/NAME.####.usdc or .usda, NAME.topology.usdc: a "
         "dict of those that are there, float32 but for the faces.\n\n"
-        "position: (n, 3) [m]. normal: (n, 3). velocity: (n, 3) [m/s]. slope_variance: (n, 3), xx, yy, "
+        "position: (n, 3) [m]. normal: (n, 3). velocity: (n, 3) [m/s of the screen]. slope_variance: (n, 3), xx, yy, "
         "xy. coverage: (n,). st: (n, 2), 0 to 1.\n"
         "face_counts: int32 (f,), corners of each face. face_corners: int32, their points.\n\n"
         "A frame of a camera's grid has its own faces; of other surfaces they and st are in the "

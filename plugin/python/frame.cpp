@@ -91,7 +91,6 @@ class PythonFrame {
         const py::gil_scoped_release others_may_run;
         const std::unique_lock writing(mutex_);
         alone([&] { frame_.set(t_s); });
-        is_set_ = true;
     }
 
     py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given) const {
@@ -213,7 +212,7 @@ class PythonFrame {
     }
 
     void require_time() const {
-        if (!is_set_) throw std::invalid_argument("the frame has no time yet: call set(t) first");
+        if (!frame_.is_set()) throw std::invalid_argument("the frame has no time yet: call set(t) first");
     }
 
     static void require_on_the_sea(const Points<float>& points, const std::string& name) {
@@ -241,7 +240,6 @@ class PythonFrame {
 
     PythonSea sea_;
     Frame<float> frame_;
-    bool is_set_ = false;
     mutable std::shared_mutex mutex_;
 };
 
@@ -261,6 +259,7 @@ const std::string kEvaluateDoc =
     "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's ladder; default its "
     "first.\n" +
     product_lines() +
+    "Velocities are per second of the frame's time; shot.time_scale of those make a second of the screen.\n"
     "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
     "sea's products.\n\n"
     "Arrays are float32. Points may lie any multiple of 4 bytes apart, the components of one are adjacent; "

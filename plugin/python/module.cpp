@@ -12,7 +12,9 @@ namespace py = pybind11;
 // As `pelagic explain` prints it.
 std::string explain_bake(const pelagic::Scene& scene) {
     pelagic::python::require_valid(scene);
-    return pelagic::explain(pelagic::plan_bake(scene));
+    const pelagic::Scene kept = scene;
+    const py::gil_scoped_release others_may_run;  // a plan looks at each frame's view
+    return pelagic::explain(pelagic::plan_bake(kept));
 }
 
 }  // namespace
@@ -25,7 +27,8 @@ PYBIND11_MODULE(pelagic, module) {
         "    frame = pelagic.Frame(pelagic.Sea(scene))\n"
         "    frame.set(1.5)\n"
         "    position = frame.evaluate(rest, outputs=(\"position\",))[\"position\"]\n\n"
-        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north.";
+        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north. Threads that work in it must "
+        "be joined before the program ends: Python can't end under them.";
     module.attr("__version__") = PELAGIC_VERSION;
     py::register_exception<pelagic::ShotError>(module, "ShotError", PyExc_ValueError).doc() =
         "A shot that is refused: a line for each problem, FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: "

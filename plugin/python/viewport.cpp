@@ -2,6 +2,7 @@
 // Arrays and text; no OpenGL.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,7 @@
 #include "core/lighting/tone.h"
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
+#include "core/scene/text.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "plugin/gpu/packed_frame.h"
@@ -74,7 +76,7 @@ struct GpuLight {
 
 double checked_footprint(double finest_m) {
     if (!(finest_m >= 0.0 && finest_m < 1e6))
-        throw py::value_error("finest_m: accepted: a length [m] from 0 up");
+        throw py::value_error("finest_m: accepted: a length below 1e6 m, from 0 up");
     return finest_m;
 }
 
@@ -106,7 +108,7 @@ class GpuSea {
   public:
     GpuSea(const Scene& scene, double finest_m)
         : finest_m_(finest_m),
-          made_from_(canonical(scene, kFeeds)),
+          made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(scene)),
           sea_(std::make_shared<const Sea<float>>(
@@ -116,7 +118,7 @@ class GpuSea {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
     }
 
-    bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from_; }
+    bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
 
     double finest_m() const { return finest_m_; }
     double finest_for(const View& view) const {
@@ -127,8 +129,11 @@ class GpuSea {
     void set(double t_s) {
         const py::gil_scoped_release others_may_run;
         const std::lock_guard writing(mutex_);
-        frame_.set(t_s);
-        packed_.pack(frame_);
+        // Without other tasks of the same TBB meanwhile: the host's own might ask this sea, and wait for themselves.
+        tbb::this_task_arena::isolate([&] {
+            frame_.set(t_s);
+            packed_.pack(frame_);
+        });
     }
 
     py::dict shaders(const GpuLight& light) const {
@@ -148,6 +153,7 @@ class GpuSea {
     // Views of the packed frame's memory, which `self` keeps alive.
     static py::dict textures(const py::object& self) {
         const auto& sea = self.cast<const GpuSea&>();
+        const auto reading = sea.locked();
         static constexpr std::array<const char*, 3> kNames{"cell_fields", "pixel_fields", "pixel_fields_2"};
         py::dict made;
         for (std::size_t p = 0; p < sea.packed_.planes().size(); ++p) {
@@ -165,7 +171,9 @@ class GpuSea {
 
     py::tuple at_origin(std::array<double, 2> origin_m) const {
         const glm::dvec2 origin(origin_m[0], origin_m[1]);
-        const std::lock_guard reading(mutex_);
+        if (!std::isfinite(origin.x) || !std::isfinite(origin.y))
+            throw py::value_error("origin_m: accepted: (x, y), finite [m]");
+        const auto reading = locked();
         const SeaLayout& layout = *packed_.layout();
         py::object cycles = py::none();
         if (layout.has_trains()) {
@@ -210,6 +218,17 @@ class GpuSea {
     }
 
   private:
+    // Waits without the interpreter: who sets meanwhile may take long.
+    std::unique_lock<std::mutex> locked() const {
+        const py::gil_scoped_release others_may_run;
+        return std::unique_lock(mutex_);
+    }
+
+    // The clock only by the loop that it makes: set() is given the sea's time.
+    static std::string what_counts(const Scene& scene) {
+        return canonical(scene, kFeeds) + number_text(scene.shot.sea_loop_s());
+    }
+
     // A cell is several pixels wide.
     static Query query_of(const PreparedScene& prepared, double finest_m) {
         return view_query(prepared, {.products = {},
@@ -223,7 +242,7 @@ class GpuSea {
         return view;
     }
 
-    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Quality, Feed::Grid);
+    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Foam, Feed::Quality, Feed::Grid);
     // A side of a grid. Views along the surface from far behind, as orthographic ones are, would need millions.
     static constexpr int kMostCells = 1024;
     static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres

@@ -34,10 +34,9 @@ class Watch {
     Watch(const pybind11::object& progress, const pybind11::object& cancel);
 
     const std::atomic<bool>* flag() const { return cancel_.flag.get(); }
-    bool is_cancelled() const { return cancel_.flag->load(); }
 
-    // Calls progress with these, then the callable `cancel`. An exception of either cancels the work, and is kept
-    // for rethrow().
+    // Calls progress with these, then the callable `cancel`, whose answer counts as in an `if`. An exception of
+    // either cancels the work, and is kept for rethrow().
     template <class... Values>
     void tell(const Values&... values) {
         if (!asks_python_) return;
@@ -45,7 +44,7 @@ class Watch {
         if (failed_) return;
         try {
             if (!progress_.is_none()) progress_(values...);
-            if (!asked_.is_none() && asked_().template cast<bool>()) cancel_.flag->store(true);
+            if (!asked_.is_none() && pybind11::bool_(asked_())) cancel_.flag->store(true);
         } catch (...) {
             failed_ = std::current_exception();
             cancel_.flag->store(true);

@@ -234,7 +234,9 @@ MeshLayer read_crate(std::string_view file) {
             layer.frame = sample.time;
             value = sample.value;
         }
-        if (value) layer.arrays.push_back(read_array(file, *attribute, *value));
+        if (!value) continue;
+        refuse_twice(layer, name);
+        layer.arrays.push_back(read_array(file, *attribute, *value));
     }
     return layer;
 }

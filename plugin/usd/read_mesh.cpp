@@ -1,8 +1,6 @@
 // See read_mesh.h.
 #include "plugin/usd/read_mesh.h"
 
-#include <set>
-
 namespace pelagic::usd {
 
 namespace {
@@ -22,9 +20,6 @@ std::span<const Vector> vectors_of(const MeshLayer& layer, std::string_view name
 
 // By the writers' own rules.
 void check(const MeshLayer& layer) {
-    std::set<std::string_view> names;
-    for (const MeshArray& array : layer.arrays)
-        if (!names.insert(array.name).second) throw std::invalid_argument(array.name + " is there twice");
     const Faces faces{.counts = values_of<std::int32_t>(layer, "faceVertexCounts"),
                       .indices = values_of<std::int32_t>(layer, "faceVertexIndices"),
                       .st = vectors_of<glm::vec2>(layer, "primvars:st")};
@@ -50,6 +45,11 @@ std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::strin
         if (attribute.name == name && name != "extent" && array_type == std::string(attribute.type) + "[]")
             return attribute;
     return std::nullopt;
+}
+
+void refuse_twice(const MeshLayer& layer, std::string_view name) {
+    for (const MeshArray& array : layer.arrays)
+        if (array.name == name) throw ReadError("is damaged: " + array.name + " is there twice");
 }
 
 bool is_integer(const VaryingAttribute& attribute) {

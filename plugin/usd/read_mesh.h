@@ -44,5 +44,8 @@ MeshLayer read_text(std::string_view bytes);
 // The attribute of this name and type, as text declares it ("point3f[]"); nullopt for others and the extent.
 std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::string_view array_type);
 bool is_integer(const VaryingAttribute& attribute);
+// Throws ReadError if an array of this name is there already. Asked before another is read: a small file may refer to
+// a large array very often.
+void refuse_twice(const MeshLayer& layer, std::string_view name);
 
 }  // namespace pelagic::usd

@@ -68,6 +68,7 @@ MeshLayer read_text(std::string_view text) {
         } else {
             continue;  // declared without a value
         }
+        refuse_twice(layer, name);
         MeshArray array{.name = std::string(name), .components = attribute->components};
         if (is_integer(*attribute))
             array.values = parsed_array<std::int32_t>(line, array.components);

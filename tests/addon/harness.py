@@ -90,6 +90,15 @@ def refused(call, words):
     return False
 
 
+def _may_write():
+    """Whether scripts may write properties: not while Blender draws, also in another thread, as after a render."""
+    try:
+        bpy.data.window_managers[0]["harness"] = True
+    except AttributeError:
+        return False
+    return True
+
+
 def in_window(steps):
     """Runs steps(), a generator that yields functions: between two of its steps the window works until the function is
     true. Then Blender ends, with an error if a step failed."""
@@ -99,7 +108,7 @@ def in_window(steps):
     @bpy.app.handlers.persistent
     def go_on():
         try:
-            if waiting_for[0]():
+            if _may_write() and waiting_for[0]():
                 waiting_for[0] = next(running)
             return 0.1
         except StopIteration:

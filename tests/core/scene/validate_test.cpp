@@ -176,6 +176,36 @@ TEST(Validate, FramesSeedAndLoop) {
     expect_refused([](Scene& s) { s.shot.loop_s = kNan; }, {"shot.loop_s", "nan", "0 … 1e7"});
 }
 
+TEST(Validate, TheSeasTimeIsOneThatItCanHave) {
+    const auto far_frames = [](Scene& s) {
+        s.shot.first_frame = 99999999;
+        s.shot.last_frame = 100000000;
+        s.shot.fps = 1e-3;
+    };
+    expect_good(far_frames);
+    expect_refused(
+        [&](Scene& s) {
+            far_frames(s);
+            s.shot.time_scale = 1e3;
+        },
+        {"shot.time_scale", "1000", "1e12"});
+
+    // In a loop each wave goes round at least once, however short the loop is in the sea's time: infinitely fast,
+    // here.
+    const auto slow = [](Scene& s) { s.shot.time_scale = 1e-300; };
+    expect_good(slow);
+    expect_refused(
+        [&](Scene& s) {
+            slow(s);
+            s.shot.loop_s = 1.0;
+        },
+        {"shot.time_scale", "1e-300", "1e-6"});
+    expect_good([](Scene& s) {
+        s.shot.loop_s = 1.0;
+        s.shot.time_scale = 0.0;
+    });
+}
+
 MeasuredSpectrum measured() {
     return {{{0.1, 1.0, 0.5, 0.5, 0.2, 0.2, true}, {0.2, 2.0, 0.0, 0.0, 0.0, 0.0, false}}, "41010", "a time"};
 }

@@ -1,11 +1,15 @@
 // Building a Sea: the vectors' way against the plain one; what each part of it depends on; progress.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstring>
 #include <limits>
+#include <thread>
 
 #include "core/base/random.h"
 #include "core/waves/loop.h"
@@ -232,6 +236,23 @@ TEST(Construction, TellsHowFarItIsAndStops) {
     int calls = 0;
     const BuildWatch stopping{.progress = [&](double) { cancel = ++calls == 2; }, .cancel = &cancel};
     EXPECT_THROW(Sea<float>(plan, stopping), BuildCancelled);
+}
+
+// While it waits for tasks of its own, its thread takes up none of the sea's: it would wait for itself.
+TEST(Construction, WhoIsToldMayWorkOnAllThreads) {
+    int calls = 0;
+    const BuildWatch watch{.progress =
+                               [&](double) {
+                                   ++calls;
+                                   tbb::parallel_for(0, 32, [](int) {
+                                       std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                                   });
+                               },
+                           .cancel = nullptr};
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 4);
+    for (int i = 0; i < 20; ++i)
+        tbb::task_arena(4).execute([&] { Sea<float>(make_plan(windy(), {ladder()}), watch); });
+    EXPECT_GT(calls, 60);
 }
 
 }  // namespace

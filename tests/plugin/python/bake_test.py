@@ -1,5 +1,6 @@
 """Bakes, maps and pictures from Python: the command line's, to the bit."""
 
+import concurrent.futures
 import os
 import pathlib
 import subprocess
@@ -102,8 +103,10 @@ class Bake(InFolder):
         self.assertEqual((again.done, again.kept), (0, reports[0].done))
 
     def test_a_callable_may_cancel_and_may_fail(self):
-        report = pelagic.bake(shot((1, 4000)), self.path / "out", cancel=lambda: True)
-        self.assertTrue(report.cancelled)
+        for true in (True, ["any object"]):
+            report = pelagic.bake(shot((1, 4000)), self.path / "out", cancel=lambda: true)
+            self.assertTrue(report.cancelled)
+        self.assertFalse(pelagic.bake(shot((1, 1)), self.path / "out", cancel=lambda: []).cancelled)
 
         def fail(*now):
             raise LookupError("mine")
@@ -186,9 +189,19 @@ class Maps(unittest.TestCase):
         maps.at(2.0)
         np.testing.assert_array_equal(maps.at(1.0)[0]["normal"], first)
 
+    def test_times_from_several_threads(self):
+        maps = pelagic.Maps(shot(), ("displacement",))
+        times = (0.0, 1.0, 2.0, 3.0)
+        alone = [maps.at(t)[0]["displacement"] for t in times]
+        with concurrent.futures.ThreadPoolExecutor(len(times)) as threads:
+            together = list(threads.map(lambda t: maps.at(t)[0]["displacement"], times * 25))
+        np.testing.assert_array_equal(together, alone * 25)
+
     def test_names_are_the_keys(self):
         with self.assertRaisesRegex(pelagic.ShotError, "output.maps"):
             pelagic.Maps(shot(), ("slopes",))
+        with self.assertRaisesRegex(ValueError, "^maps: are none"):
+            pelagic.Maps(shot(), ())
         cancel = pelagic.Cancel()
         cancel.set()
         with self.assertRaises(pelagic.Cancelled):

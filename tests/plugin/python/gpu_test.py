@@ -49,6 +49,9 @@ class Seas(unittest.TestCase):
         self.assertEqual((here.dtype, here.size % 16), (np.uint8, 0))
         self.assertFalse(np.array_equal(here, self.sea.at_origin((1.0, 0.0))[0]))
         np.testing.assert_array_equal(here, self.sea.at_origin((0.0, 0.0))[0])
+        for nowhere in (np.nan, np.inf):
+            with self.assertRaisesRegex(ValueError, "finite"):
+                self.sea.at_origin((0.0, nowhere))
 
     def test_trains_have_a_table_and_phases_that_depend_on_time_and_place(self):
         sea = pelagic.GpuSea(small_scene(model="trochoid", cascades=[]))
@@ -100,6 +103,17 @@ class Seas(unittest.TestCase):
         scene.sea.wind_speed_mps = 3.0
         self.assertFalse(self.sea.serves(scene))
         self.assertTrue(light.serves(scene))
+
+    def test_the_clock_matters_only_in_a_loop(self):
+        scene = small_scene()
+        scene.shot.time_scale, scene.shot.time_offset_s, scene.shot.fps = 0.5, 100.0, 25.0
+        self.assertTrue(self.sea.serves(scene))
+        scene.shot.loop_s = 2.0
+        looping = pelagic.GpuSea(scene, finest_m=1.0)
+        scene.shot.time_offset_s = 0.0
+        self.assertTrue(looping.serves(scene))
+        scene.shot.time_scale = 1.0
+        self.assertFalse(looping.serves(scene))
 
 
 class Grids(unittest.TestCase):

@@ -154,6 +154,8 @@ TEST(UsdReadMesh, SaysWhatIsWrong) {
               "is damaged: USD: primvars:st has 6 values for 5 points; it must have as many");
     EXPECT_EQ(message(replaced(text, "(0, 0, 0.1)", "(0, 0, nan)")),
               "is damaged: USD: points[0] is nan, and only finite values can be written");
+    EXPECT_EQ(message(replaced(text, "normal3f[] normals", "point3f[] points")),
+              "is damaged: points is there twice");
     EXPECT_EQ(message(replaced(frame_crate(frame()), "Sea", "Cow")), "is not the layer of a sea's mesh");
 }
 

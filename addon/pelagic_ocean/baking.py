@@ -112,6 +112,12 @@ class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
+    def cancel(self, context):
+        """Its window was closed, or the add-on goes: nobody would look after the bake any more."""
+        _stop()
+        if context.workspace:
+            context.workspace.status_text_set(None)
+
     def modal(self, context, event):
         global _baking
         if event.type == "ESC" and event.value == "PRESS":

@@ -30,8 +30,9 @@ NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0472
 
 
 def add_facets(tree, ripples, ripple_length_m, detail_distance_m, wind_angle, time):
-    """Adds the group. time: a vector, the ripples' place along z and w of their noise [s]. Normal and Roughness of a sample's lobe; Fresnel: what it reflects; Reflection: that of it which no
-    wave blocks; Foam Ratio: how much more foam shows of itself than water (foam.glsl)."""
+    """Adds the group. time: a vector, the ripples' places along z and w of their noise [s]. Normal and Roughness of a
+    sample's lobe; Fresnel: what it reflects; Reflection: that of it which no wave blocks; Foam Ratio: how much more foam
+    shows of itself than water (foam.glsl)."""
     return tree.call("Pelagic Facets", _facets, {"Ripples": ripples, "Ripple Length": ripple_length_m,
                                                  "Detail Distance": detail_distance_m, "Wind Angle": wind_angle,
                                                  "Time": time})
@@ -97,8 +98,8 @@ def _facets(tree, asked):
     s_x, s_y = slope(x)
     upright = 1.0 / (1.0 + s_x * s_x).plus_product(s_y, s_y).sqrt()
     steep, flat = (k + x - own).at_least(0.0), (k + x + own).at_least(1e-3)
-    steep_part = steep * _fresnel(tree, (sigma * steep * upright).at_most(1.0))
-    flat_part = flat * _fresnel(tree, (sigma * flat * upright).at_most(1.0))
+    steep_part = steep * add_fresnel(tree, (sigma * steep * upright).at_most(1.0))
+    flat_part = flat * add_fresnel(tree, (sigma * flat * upright).at_most(1.0))
     fresnel = (steep_part + flat_part) / (steep + flat)
     x = x + own * ((flat_part - steep_part) / (flat_part + steep_part) - (flat - steep) / (flat + steep))
 
@@ -190,7 +191,7 @@ def along_wind(tree, wind_angle):
     return tree.add("ShaderNodeVectorRotate", {"Vector": tree.attribute("rest_position"), "Angle": -wind_angle})
 
 
-def _fresnel(tree, cosine):
+def add_fresnel(tree, cosine):
     """fresnel_exact() of fresnel.glsl."""
     def build(_, asked):
         c = asked["Cosine"]

@@ -34,6 +34,9 @@ def _changed(settings, _context):
 
 
 def _switched(settings, context):
+    if settings.enabled == settings.keeps_own:  # set to what it was: its delta transforms are the water's, or nobody's
+        return
+    settings.keeps_own = settings.enabled
     obj = settings.id_data
     for own, delta in OWN.items():
         if settings.enabled:
@@ -67,6 +70,7 @@ class PELAGIC_PG_float(bpy.types.PropertyGroup):
     drift: FloatProperty(name="Drift", default=1.0, min=0.0, soft_max=1.0, update=_changed,
                          description="How much it goes to and fro with the water: 0 keeps its place on the map, 1 goes "
                                      "as a cork does")
+    keeps_own: BoolProperty(options={"HIDDEN"})
     own_location: FloatVectorProperty(size=3, subtype="TRANSLATION", options={"HIDDEN"})
     own_rotation: FloatVectorProperty(size=3, subtype="EULER", options={"HIDDEN"})
     own_quaternion: FloatVectorProperty(size=4, subtype="QUATERNION", options={"HIDDEN"}, default=(1, 0, 0, 0))
@@ -166,7 +170,8 @@ def follow(bpy_scene, depsgraph):
     objects = floats(bpy_scene)
     first = first_ocean(bpy_scene) if objects else None
     for obj in objects:
-        sea = obj.pelagic_float.ocean or first
+        chosen = obj.pelagic_float.ocean
+        sea = chosen if ocean.is_ocean(chosen) and chosen.users_scene else first  # released or deleted, it is none
         if sea is None:
             continue
         if sea not in waters:

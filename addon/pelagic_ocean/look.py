@@ -50,7 +50,8 @@ def _follow(bpy_scene, depsgraph):
         settings = ocean.settings_of(obj.evaluated_get(depsgraph))
         sea = play.simulation_of(obj).sea
         height_m = sea and sea.significant_height_m
-        key, wanted = (obj.name_full, bpy_scene.name), [height_m, ocean.frame_rate(bpy_scene)] + [settings[place] for place in PLACES]
+        key = obj.name_full, bpy_scene.name
+        wanted = [height_m, ocean.frame_rate(bpy_scene), obj.pelagic.see_through] + [settings[place] for place in PLACES]
         if _shown.get(key) == wanted:
             continue
         _shown[key] = wanted

@@ -5,6 +5,7 @@ import math
 
 import bpy
 
+from . import depths
 from .facets import WATER_INDEX, add_facets, transformed
 from .foam import add_foam
 from .light import sky_of
@@ -31,6 +32,9 @@ def update_material(obj, scene, significant_height_m=None):
         _set(material, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
         _drive(material, "Time", ripple_clock(scene.shot))
+        for name, values in depths.node_inputs(scene).items():
+            _fill(material, name, values)
+        depths.connect(obj, material)
         if significant_height_m is not None:
             _set(material, "Wave Height", max(significant_height_m, 1e-3))
     return material
@@ -49,6 +53,14 @@ def _set(material, name, value):
     node = _changed(material, name, value)
     if node is not None:
         node.outputs[0].default_value = value
+
+
+def _fill(material, name, values):
+    """The same for a node's inputs, {name: value}."""
+    node = _changed(material, name, values)
+    if node is not None:
+        for socket, value in values.items():
+            node.inputs[socket].default_value = value
 
 
 def _drive(material, name, expressions):
@@ -92,7 +104,8 @@ def new_material():
     time = tree.value(clock, 0)
 
     part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
-    foam = add_foam(tree, tree.attribute("whitecap_coverage", "Fac"), part["Foam Ratio"], size=1.0,
+    coverage = tree.attribute("whitecap_coverage", "Fac")
+    foam = add_foam(tree, coverage, part["Foam Ratio"], size=1.0,
                     detail_distance_m=400.0, wind_angle=wind)
 
     mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],
@@ -111,6 +124,7 @@ def new_material():
                                                 "Normal": part["Foam Normal"]})
     tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeMixShader", {
         0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white})})
+    depths.add_depths(tree, part, coverage, mirror, foam["Foam"], white)
     return material
 
 

@@ -110,8 +110,10 @@ def forget_rest(mesh):
 
 
 def restore(mesh):
-    """What capture() and put_frame() changed is as before."""
-    compat.set_positions(mesh, rest_of(mesh))
+    """What capture() and put_frame() changed is as before; without rest_position the vertices stay where they are."""
+    rest = rest_of(mesh)
+    if rest is not None:
+        compat.set_positions(mesh, rest)
     for name in (REST, *(row[0] for row in ATTRIBUTES)):
         if name in mesh.attributes:
             mesh.attributes.remove(mesh.attributes[name])

@@ -98,6 +98,7 @@ def scene_of(obj, bpy_scene, depsgraph=None, settings=None):
 
 LOOK_AHEAD_M = 100.0  # where along its axis a camera's look_at_m is
 FOV_DEG = (1.0, 179.0)
+NARROWEST_TAN, WIDEST_TAN = (math.tan(math.radians(angle / 2)) for angle in FOV_DEG)
 
 
 @dataclass(frozen=True)
@@ -110,10 +111,15 @@ class Pinhole:
     forward: Vector
     tan_half_width: float
     resolution: tuple
+    shift: tuple = (0.0, 0.0)  # of the picture's centre to the right and up, in half pictures
 
     def view(self):
+        """A pelagic.View that shows all that is seen, with pixels as large. A View has no shift: it is the wider."""
+        across, along = (1 + abs(each) for each in self.shift)
+        columns, rows = self.resolution
         return pelagic.View(position_m=tuple(self.position_m), right=tuple(self.right), up=tuple(self.up),
-                            forward=tuple(self.forward), tan_half_width=self.tan_half_width, resolution=self.resolution)
+                            forward=tuple(self.forward), tan_half_width=min(self.tan_half_width * across, WIDEST_TAN),
+                            resolution=(round(columns * across), round(rows * along)))
 
     def put_in(self, scene):
         """Makes it the scene's camera. A camera that is rolled is one key, because only keys can be."""
@@ -146,12 +152,14 @@ def pinhole_of(obj, bpy_scene, depsgraph=None):
     forward = -pose.col[2].xyz.normalized()
     right = (pose.col[0].xyz - pose.col[0].xyz.dot(forward) * forward).normalized()
     corners = camera.data.view_frame(scene=bpy_scene)
-    tangent = (max(corner.x for corner in corners) - min(corner.x for corner in corners)) / (-2 * corners[0].z)
-    low, high = (math.tan(math.radians(angle / 2)) for angle in FOV_DEG)
+    (left, lower), (right_end, upper) = ([end(corner[axis] for corner in corners) for axis in (0, 1)] for end in (min, max))
+    tangent = (right_end - left) / (-2 * corners[0].z)
+    shift = (right_end + left) / (right_end - left), (upper + lower) / (upper - lower)
     render = bpy_scene.render
     resolution = tuple(max(1, int(side * render.resolution_percentage / 100))
                        for side in (render.resolution_x, render.resolution_y))
-    return Pinhole(pose.translation, right, right.cross(forward), forward, min(max(tangent, low), high), resolution)
+    tangent = min(max(tangent, NARROWEST_TAN), WIDEST_TAN)
+    return Pinhole(pose.translation, right, right.cross(forward), forward, tangent, resolution, shift)
 
 
 def set_from(obj, scene):

@@ -102,6 +102,9 @@ class PELAGIC_OT_use_mesh(GivesLook, bpy.types.Operator):
         if obj.data.library:
             self.report({"ERROR"}, f"{obj.name}'s mesh is linked from another file: make it local first")
             return {"CANCELLED"}
+        if obj.data.shape_keys:
+            self.report({"ERROR"}, f"{obj.name} has shape keys, which would put its vertices back: delete or apply them first")
+            return {"CANCELLED"}
         meshes.forget_rest(obj.data)
         meshes.capture(obj.data)
         obj.pelagic.own_mesh = True

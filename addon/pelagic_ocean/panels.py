@@ -113,6 +113,8 @@ class Sub:
             if settings.own_mesh:
                 return
         _draw_tables(layout, settings, self.tables, self.bl_label)
+        if self.bl_label == "Light":
+            layout.prop(settings, "see_through")
 
 
 def _draw_surface(layout, settings):

@@ -34,8 +34,8 @@ POLL_S = 0.02  # how often a window looks whether a sea is ready
 class Job(Worker):
     """Builds a sea beside everything else."""
 
-    def __init__(self, key, make):
-        self.key, self.made, self.problem = key, None, ""
+    def __init__(self, key, make, view=None):
+        self.key, self.view, self.made, self.problem = key, view, None, ""
         super().__init__(lambda: self._build(make))
 
     def _build(self, make):
@@ -122,9 +122,9 @@ class Simulation:
         if known is not None and known.serves(view):
             self._adopt(key, known)
         elif wait or self._job is None:
-            if self._job is None or self._job.key != key:
+            if self._job is None or (self._job.key, self._job.view) != (key, view):
                 scene, make_surface = self.scene, prepare()
-                self._job = Job(key, lambda: BuiltSea(scene, make_surface(), view))
+                self._job = Job(key, lambda: BuiltSea(scene, make_surface(), view), view)
             if wait:
                 self._job.join()
                 self.poll()
@@ -173,7 +173,7 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
         raise ValueError("The mesh is linked from another file, where Blender lets nobody write: append it, or make it local")
     if setting.own_mesh:
         signature = mesh.get(meshes.SIGNATURE, "")
-        if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))]:
+        if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))] or meshes.REST not in mesh.attributes:
             signature = meshes.capture(mesh)
 
         def read_mesh():
@@ -224,12 +224,12 @@ def simulation_of(obj):
     return _simulation(_driver_of(obj))
 
 
-def brought_up(obj, bpy_scene, depsgraph):
-    """The Simulation of an ocean, brought to its settings though nothing may show it; it has no sea while that is being
-    built."""
+def brought_up(obj, bpy_scene, depsgraph, wait=False):
+    """The Simulation of an ocean, brought to its settings though nothing may show it; without waiting in a window it has
+    its old sea, or none, while that is being built."""
     first = _driver_of(obj)
     simulation = _simulation(first)
-    simulation.follow(first, bpy_scene, depsgraph, bpy.app.background or bool(_rendering))
+    simulation.follow(first, bpy_scene, depsgraph, wait or bpy.app.background or bool(_rendering))
     return simulation
 
 
@@ -335,7 +335,7 @@ def _on_render_end(bpy_scene, _depsgraph=None):
 def _poll():
     """The timer while seas are being built: their objects are evaluated again once they are ready."""
     busy = False
-    for name, simulation in _simulations.items():
+    for name, simulation in list(_simulations.items()):  # a render's thread may add to them
         if simulation.poll():
             obj = next((obj for obj in oceans() if obj.name_full == name), None)
             if obj is not None:

@@ -266,6 +266,10 @@ def _ocean_annotations():
             name="UV Map", default=True, update=_touched,
             description="Texture coordinates for image textures. Pelagic's own materials read rest_position instead: "
                         "without the map a large mesh takes a quarter less memory, and Blender copies it faster"),
+        "see_through": BoolProperty(
+            name="See Through", default=False, update=_touched,
+            description="What is under the surface shows in Cycles, dimmed and coloured by the water: absorption and scattering "
+                        "as a volume, which takes longer to render. Off, the water is opaque, with the same light from below"),
         "viewport_percentage": IntProperty(
             name="Viewport", default=100, min=1, max=100, subtype="PERCENTAGE", update=_touched,
             description="Vertices a side while you work, as a share of what a render has"),

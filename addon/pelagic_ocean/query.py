@@ -16,10 +16,13 @@ class Water:
     """The sea of an ocean at one frame. Places are the ocean's own, in metres, with z = 0 at rest; `matrix` leads from
     them to the world."""
 
-    def __init__(self, obj, bpy_scene, depsgraph=None, frame=None):
+    def __init__(self, obj, bpy_scene, depsgraph=None, frame=None, wait=False):
         """frame: also between two; default the scene's. Without a depsgraph, which nobody may ask for while one is
-        being evaluated: as it plays just now. LookupError while the ocean has no sea."""
-        simulation = play.brought_up(obj, bpy_scene, depsgraph) if depsgraph else play.simulation_of(obj)
+        being evaluated: as it plays just now. wait: for the sea of today's settings, where an older one plays on.
+        LookupError while the ocean has no sea, and of what is no ocean."""
+        if not ocean.is_ocean(obj):
+            raise LookupError(f"{obj.name} is no ocean")
+        simulation = play.brought_up(obj, bpy_scene, depsgraph, wait) if depsgraph else play.simulation_of(obj)
         if simulation.sea is None:
             raise LookupError(f"{obj.name} has no sea: {simulation.problem or 'it is being built'}")
         frame = bpy_scene.frame_current_final if frame is None else frame

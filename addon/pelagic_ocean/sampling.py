@@ -51,20 +51,25 @@ class PELAGIC_OT_sample_heights(NeedsModule, bpy.types.Operator):
         elif not objects:
             self.report({"ERROR"}, "Nothing is selected beside the ocean")
         else:
-            return getattr(self, "_" + self.into.lower())(context, sea, objects)
+            try:
+                return getattr(self, "_" + self.into.lower())(context, sea, objects)
+            except LookupError as error:
+                self.report({"ERROR"}, str(error))
         return {"CANCELLED"}
 
     def _frames(self, context, sea, objects):
         """Of each frame its number, the objects as evaluated there, and the water's heights where they are."""
         bpy_scene = context.scene
         now = bpy_scene.frame_current, bpy_scene.frame_subframe
-        for frame in range(bpy_scene.frame_start, bpy_scene.frame_end + 1):
-            bpy_scene.frame_set(frame)
-            depsgraph = context.evaluated_depsgraph_get()
-            there = [obj.evaluated_get(depsgraph) for obj in objects]
-            places = [obj.matrix_world.translation.xy for obj in there]
-            yield frame, there, Water(sea, bpy_scene, depsgraph).world_heights(places)
-        bpy_scene.frame_set(now[0], subframe=now[1])
+        try:
+            for frame in range(bpy_scene.frame_start, bpy_scene.frame_end + 1):
+                bpy_scene.frame_set(frame)
+                depsgraph = context.evaluated_depsgraph_get()
+                there = [obj.evaluated_get(depsgraph) for obj in objects]
+                places = [obj.matrix_world.translation.xy for obj in there]
+                yield frame, there, Water(sea, bpy_scene, depsgraph, wait=True).world_heights(places)
+        finally:
+            bpy_scene.frame_set(now[0], subframe=now[1])
 
     def _keyframes(self, context, sea, objects):
         keys = []
@@ -82,7 +87,7 @@ class PELAGIC_OT_sample_heights(NeedsModule, bpy.types.Operator):
 
     def _attribute(self, context, sea, objects):
         depsgraph = context.evaluated_depsgraph_get()
-        water = Water(sea, context.scene, depsgraph)
+        water = Water(sea, context.scene, depsgraph, wait=True)
         for obj in objects:
             if obj.type != "MESH":
                 continue

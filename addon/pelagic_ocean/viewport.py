@@ -22,6 +22,7 @@ SHADINGS = {"SOLID", "MATERIAL"}  # views that draw the preview; the others need
 # How fine a view's pixels count as: waves that only finer ones could show roughen the surface, so that a frame is cheap
 # to make and to upload. How coarse: there, hardly anything is left to save.
 FINEST_M, COARSEST_M = 1 / 32, 2.0
+HIDDEN = "pelagic_hidden"  # on an ocean whose mesh is hidden by the preview: undo steps and autosaves keep both
 STILL_S = 0.25  # a view that hasn't moved for so long gets the fine grid
 POLL_S = 0.02
 
@@ -137,6 +138,7 @@ class Preview:
             if layer.objects.get(obj.name) == obj and not obj.hide_get(view_layer=layer):
                 self.hidden_in.setdefault(key, obj.select_get(view_layer=layer))
                 obj.hide_set(True, view_layer=layer)
+                obj[HIDDEN] = True
                 hidden = True
         return hidden
 
@@ -149,6 +151,7 @@ class Preview:
             if obj is not None and layer is not None and layer.objects.get(obj.name) == obj:
                 obj.hide_set(False, view_layer=layer)
                 obj.select_set(selected, view_layer=layer)
+                obj.pop(HIDDEN, None)
         self.hidden_in.clear()
 
     def is_shown_again(self):
@@ -262,9 +265,17 @@ def _after_save(*_):
 
 @persistent
 def _after_undo(*_):
-    """The mesh is as it was at that step: perhaps shown."""
-    if _preview is not None and _preview.obj() is not None and _preview.hidden_in:
-        _preview.hide()
+    """The mesh is as it was at that step, or in an autosave: perhaps shown, perhaps hidden by a preview that is off."""
+    if _preview is not None:
+        if _preview.obj() is not None and _preview.hidden_in:
+            _preview.hide()
+        return
+    for obj in ocean.oceans():
+        if HIDDEN in obj:
+            for _, layer in _layers():
+                if layer.objects.get(obj.name) == obj:
+                    obj.hide_set(False, view_layer=layer)
+            del obj[HIDDEN]
 
 
 @persistent
@@ -276,7 +287,7 @@ def _before_load(*_):
 
 
 HANDLERS = (("save_pre", _before_save), ("save_post", _after_save), ("undo_post", _after_undo),
-            ("redo_post", _after_undo), ("load_pre", _before_load))
+            ("redo_post", _after_undo), ("load_pre", _before_load), ("load_post", _after_undo))
 
 
 # ---- For the artist

@@ -50,6 +50,15 @@ def steps():
         assert len(frames()) == FRAMES
         kept = [file for file, when in first.items() if file.stat().st_mtime_ns == when]
         assert len(kept) >= len(first) - 1, (len(kept), len(first))
+    with checking("closing the window that it began in stops it"):
+        with bpy.context.temp_override(window=window):
+            scene.frame_end = 2 * FRAMES
+            bpy.ops.wm.window_new()
+        other = bpy.context.window_manager.windows[-1]
+        with bpy.context.temp_override(window=other):
+            bpy.ops.pelagic.bake("INVOKE_DEFAULT")
+            bpy.ops.wm.window_close()
+        assert baking._baking is None and len(frames()) < 2 * FRAMES
     with bpy.context.temp_override(window=window):
         scene.frame_end = 20 * FRAMES
         bpy.ops.pelagic.bake("INVOKE_DEFAULT")

@@ -24,9 +24,8 @@ def buoy(location, size=(1, 1, 1), **settings):
     bpy.ops.mesh.primitive_cube_add(size=1.0, location=location)
     obj = bpy.context.object
     obj.scale = size
-    for name, value in settings.items():
+    for name, value in {"enabled": True, **settings}.items():
         setattr(obj.pelagic_float, name, value)
-    obj.pelagic_float.enabled = True
     return obj
 
 

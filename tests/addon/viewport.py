@@ -278,6 +278,20 @@ def steps():
         assert not viewport.is_on() and not obj.hide_get()
         assert viewport._tend() is None
 
+    with checking("an undo step from when it was on doesn't hide the mesh"):
+        cube = bpy.data.objects["Cube"]
+        viewport.turn_on(obj)
+        settle()
+        with in_view():
+            cube.location.x = 4.0
+            bpy.ops.ed.undo_push(message="moved while it was on")
+            viewport.turn_off()
+            cube.location.x = 5.0
+            bpy.ops.ed.undo_push(message="moved after that")
+            bpy.ops.ed.undo()
+        obj = bpy.data.objects["The sea"]
+        assert bpy.data.objects["Cube"].location.x == 4.0 and not obj.hide_get()
+
     with checking("whoever shows the mesh again turns it off"):
         viewport.turn_on(obj)
         settle()

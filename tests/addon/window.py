@@ -69,6 +69,19 @@ def steps():
         yield lambda: height(obj) > 2 * before and not play.simulation_of(obj).is_building
         assert play.simulation_of(obj).scene.sea.wind_speed_mps == 28.0
 
+    with checking("samples of a hidden ocean are of the sea that is set, not of the one that still plays"):
+        obj.hide_set(True)
+        with bpy.context.temp_override(**here):
+            bpy.ops.mesh.primitive_grid_add(x_subdivisions=30, y_subdivisions=30, size=100)
+            grid = bpy.context.object
+            obj.pelagic.sea.wind_speed_mps = 3.0
+            bpy.ops.pelagic.sample_heights(into="ATTRIBUTE")
+            assert numbers(grid.data, "sea_height").std() < 0.1 * before
+            bpy.data.objects.remove(grid)
+        obj.pelagic.sea.wind_speed_mps = 28.0
+        obj.hide_set(False)
+        yield lambda: height(obj) > 2 * before and not play.simulation_of(obj).is_building
+
     with checking("undo in a window"):
         with bpy.context.temp_override(**here):
             bpy.ops.ed.undo_push(message="wind")

@@ -1,0 +1,99 @@
+"""Water that is seen through: what lies under a level sea, in Cycles."""
+
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from harness import *  # noqa: F403
+
+enable()
+import pelagic
+from pelagic_ocean import depths, light, material
+from pictures import cycles_exr
+
+SAMPLES = 24
+
+
+def square(name, half_m, z_m):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata([(x * half_m, y * half_m, z_m) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], [], [(0, 1, 2, 3)])
+    obj = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
+
+
+def level_sea(water="ocean"):
+    """A level sea seen through, from straight above; its scene and object."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy_scene = bpy.context.scene
+    obj = square("Sea", 3e3, 0.0)
+    scene = pelagic.Scene()
+    scene.light.sun_elevation_deg = 60.0
+    scene.water.type = water
+    light.ensure_light(bpy_scene, scene)
+    obj.pelagic.see_through = True
+    material.ensure_material(obj, scene)
+    data = bpy.data.cameras.new("Camera")
+    data.type, data.ortho_scale = "ORTHO", 1.0
+    bpy_scene.camera = bpy.data.objects.new("Camera", data)
+    bpy_scene.collection.objects.link(bpy_scene.camera)
+    bpy_scene.camera.location.z = 20.0
+    return scene, obj
+
+
+def seen():
+    with tempfile.TemporaryDirectory() as folder:
+        pixels = cycles_exr(Path(folder) / "picture.exr", (16, 16), SAMPLES)
+    assert np.isfinite(pixels).all()
+    return pixels[..., :3].mean((0, 1))
+
+
+def painted(white):
+    made = bpy.data.materials.new("Paint")
+    made.use_nodes = True
+    paint = made.node_tree.nodes["Principled BSDF"].inputs
+    paint["Base Color"].default_value, paint["Specular"].default_value = (white,) * 3 + (1.0,), 0.0
+    return made
+
+
+def of_plane(plane, z_m):
+    """What comes from a white plane so deep, without what the water over it scatters."""
+    plane.location.z = z_m
+    pictures = []
+    for paint in (painted(0.5), painted(0.0)):
+        plane.data.materials.clear()
+        plane.data.materials.append(paint)
+        pictures.append(seen())
+    return pictures[0] - pictures[1]
+
+
+with checking("a plane under a level sea is dimmed by the water over it, on the way in and out"):
+    for water in ("ocean", "turbid"):
+        scene, _ = level_sea(water)
+        bpy.context.scene.world = None  # the sun alone, whose way through the water is known
+        bpy.context.scene.cycles.diffuse_bounces = 0  # not what water lights the plane with
+        c = np.sum(depths.coefficients(scene), axis=0)
+        plane = square("Plane", 20.0, 0.0)
+        ratio = of_plane(plane, -2.5) / of_plane(plane, -0.5)
+        expected = np.exp(-2.0 * c * (1.0 + 1.0 / pelagic.Sky(scene).sun_direction[2]))
+        print("  ", water, ratio, expected)
+        assert np.allclose(ratio, expected, rtol=0.03)
+
+with checking("deep water is as bright as it is opaque"):
+    for water in ("ocean", "turbid"):
+        scene, obj = level_sea(water)
+        clear = seen()
+        obj.pelagic.see_through = False
+        material.update_material(obj, scene)
+        opaque = seen()
+        print("  ", water, clear / opaque)
+        assert np.allclose(clear, opaque, rtol=0.15)
+
+with checking("the switch of an ocean brings the floor and takes it away"):
+    fresh_file()
+    obj = add_ocean()
+    for is_on in (True, False, True):
+        obj.pelagic.see_through = is_on
+        bpy.context.view_layer.update()
+        assert len(obj.children) == is_on and (depths.OUTPUT in obj.data.materials[0].node_tree.nodes) == is_on

@@ -1,0 +1,138 @@
+"""What happens to artists: things done twice, taken away, or turned round."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+from bpy_extras.object_utils import world_to_camera_view
+from harness import *  # noqa: F403
+from mathutils import Vector
+
+enable()
+from pelagic_ocean import ocean, play
+from pelagic_ocean.query import Water
+
+
+def cube():
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    return bpy.context.object
+
+
+def grid():
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=40)
+    return bpy.context.object
+
+
+fresh_file()
+scene = bpy.context.scene
+sea = add_ocean()
+
+with checking("Float No More for what never floated leaves its own delta transforms alone"):
+    dry = cube()
+    dry.delta_location.z = 5.0
+    bpy.ops.pelagic.float(enabled=False)
+    assert dry.delta_location.z == 5.0
+
+with checking("Float, twice: the calm place stays where it was"):
+    raft = cube()
+    bpy.ops.pelagic.float()
+    scene.frame_set(40)
+    once = raft.delta_location.copy()
+    bpy.ops.pelagic.float()
+    scene.frame_set(41)
+    scene.frame_set(40)
+    assert raft.delta_location == once and once.length > 0.1
+    bpy.ops.pelagic.float(enabled=False)
+    assert raft.delta_location.length == 0.0
+
+with checking("its ocean is released or deleted: it floats in the scene's first"):
+    raft.pelagic_float.enabled = True
+    for take_away in (bpy.ops.pelagic.release_mesh, bpy.ops.object.delete):
+        other = add_ocean(sea__wind_speed_mps=25.0)
+        raft.pelagic_float.ocean = other
+        scene.frame_set(41)
+        scene.frame_set(40)
+        assert raft.delta_location != once
+        take_away()
+        scene.frame_set(41)
+        scene.frame_set(40)
+        assert raft.delta_location == once
+
+with checking("the height of the water in what is no ocean is 0 for drivers, and refused by Water"):
+    assert bpy.app.driver_namespace["pelagic_height"](0, 0, 1, raft.name) == 0.0
+    try:
+        Water(raft, scene)
+        raise AssertionError("a raft isn't an ocean")
+    except LookupError as error:
+        assert "no ocean" in str(error)
+
+with checking("samples of an ocean without a sea are refused in words, and the frame stays"):
+    dry_sea = add_ocean(sea__spectrum="file")
+    play._simulations.clear()
+    raft.select_set(True)
+    assert refused(lambda: bpy.ops.pelagic.sample_heights(into="TEXT"), "spectrum_file")
+    assert scene.frame_current == 40
+    bpy.data.objects.remove(dry_sea)
+
+with checking("the rest of an own mesh is deleted: it plays on from where it is, and can be released"):
+    obj = grid()
+    bpy.ops.pelagic.use_mesh()
+    for follows in (True, False):
+        obj.data.attributes.remove(obj.data.attributes["rest_position"])
+        if follows:
+            before = numbers(obj.data)
+            scene.frame_set(3)
+            assert not play.simulation_of(obj).problem and not np.array_equal(numbers(obj.data), before)
+    bpy.ops.pelagic.release_mesh()
+    assert not ocean.is_ocean(obj)
+
+with checking("a mesh with shape keys is refused: they would put its vertices back"):
+    obj = grid()
+    obj.shape_key_add(name="Basis")
+    assert refused(bpy.ops.pelagic.use_mesh, "shape keys") and not ocean.is_ocean(obj)
+
+fresh_file()
+scene = bpy.context.scene
+scene.render.resolution_x, scene.render.resolution_y = 160, 90
+camera = scene.camera
+camera.location, camera.rotation_euler = (0, 0, 9), (1.4, 0, 0)
+sea = add_ocean(surface__kind="projected-grid", sea__wind_speed_mps=3.0)
+
+with checking("a lens shift: the projected grid is where the picture is"):
+    for shift in ((0.4, 0.0), (-0.4, -0.3)):
+        camera.data.shift_x, camera.data.shift_y = shift
+        bpy.context.view_layer.update()
+        seen = np.array([world_to_camera_view(scene, camera, Vector(point)) for point in numbers(sea.data)[::3]])
+        seen = seen[seen[:, 2] > 0]
+        assert seen[:, 0].min() < 0.0 and seen[:, 0].max() > 1.0 and seen[:, 1].min() < 0.0, shift
+
+with checking("a sea that is being built for another view isn't taken for this one's"):
+    simulation = play.simulation_of(sea)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    bpy.app.handlers.depsgraph_update_post.remove(play._on_update)  # it would wait for each sea
+    sea.pelagic.shot.seed += 1
+    camera.location.z = 9000.0
+    depsgraph.update()
+    far = simulation.follow(sea, scene, depsgraph, wait=False)
+    camera.location.z = 9.0
+    depsgraph.update()
+    assert simulation.is_building
+    view = simulation.follow(sea, scene, depsgraph, wait=True)
+    assert view != far and simulation._built.serves(view)
+
+with checking("what an artist took out of the sky stays out, and the rest follows; Sun and Sky brings it back"):
+    fresh_file()
+    scene = bpy.context.scene
+    sea = add_ocean()
+    world = scene.world
+    lamp = next(obj for obj in scene.objects if "pelagic_light" in obj)
+    for gone in ("Pelagic Sun Disc", "Pelagic Sky"):
+        nodes, before = world.node_tree.nodes, lamp.matrix_world.copy()
+        nodes.remove(nodes[gone])
+        world.use_nodes = False
+        left = len(nodes)
+        change(sea, light__sun_elevation_deg=sea.pelagic.light.sun_elevation_deg + 10.0)
+        bpy.context.view_layer.update()
+        assert lamp.matrix_world != before and len(nodes) == left and not world.use_nodes, gone
+    bpy.ops.pelagic.add_light()
+    assert scene.world == world and world.use_nodes and {"Pelagic Sun Disc", "Pelagic Sky"} <= set(nodes.keys())

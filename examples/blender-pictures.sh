@@ -17,4 +17,4 @@ picture() {
 
 picture glassy-swell blender-calm
 picture north-sea-storm blender-storm
-picture first-shot blender-beside size=480x270 stops=-1.5 beside="$PELAGIC_ROOT/build/release/pelagic"
+picture trade-wind blender-beside size=480x270 beside="$PELAGIC_ROOT/build/release/pelagic"

@@ -31,6 +31,15 @@ def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
 
 
+def can_denoise():
+    """Whether Cycles has a denoiser. Debian's has none, and refuses to render while one is asked for."""
+    try:
+        import _cycles
+    except ImportError:
+        return True
+    return getattr(_cycles, "with_openimagedenoise", True)
+
+
 def curves(owner):
     """The curves that animate an object or its data: a collection with remove(), or an empty list."""
     animation = owner.animation_data

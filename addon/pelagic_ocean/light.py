@@ -31,6 +31,9 @@ def ensure_light(bpy_scene, scene, exposure=True):
         world = bpy.data.worlds.new("Pelagic Sky")
         world[MARK] = True
         bpy_scene.world = world
+    world.use_nodes = True
+    if not {PICTURE, DISC} <= set(world.node_tree.nodes.keys()):
+        _make_nodes(world)
     if own_sun(bpy_scene) is None:
         lamp = bpy.data.objects.new("Pelagic Sun", bpy.data.lights.new("Pelagic Sun", "SUN"))
         lamp[MARK] = True
@@ -72,15 +75,13 @@ def own_sun(bpy_scene):
 
 
 def _put_sky(world, sky):
-    world.use_nodes = True
-    nodes = world.node_tree.nodes
-    if PICTURE not in nodes:
-        _make_nodes(world)
-    picture, disc = nodes[PICTURE], nodes[DISC]
-    picture.image = _sky_image(picture.image, sky)
-    disc.inputs["Direction"].default_value = sky.sun_direction
-    disc.inputs["Radiance"].default_value = sky.sun_radiance
-    disc.inputs["Angular Radius"].default_value = sky.sun_angular_radius
+    picture, disc = (world.node_tree.nodes.get(name) for name in (PICTURE, DISC))
+    if picture is not None:
+        picture.image = _sky_image(picture.image, sky)
+    if disc is not None:
+        disc.inputs["Direction"].default_value = sky.sun_direction
+        disc.inputs["Radiance"].default_value = sky.sun_radiance
+        disc.inputs["Angular Radius"].default_value = sky.sun_angular_radius
 
 
 def _make_nodes(world):

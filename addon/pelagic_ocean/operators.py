@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
-from . import look, meshes, ocean, play
+from . import compat, look, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import BY_PATH
 
@@ -74,6 +74,8 @@ class PELAGIC_OT_add_ocean(GivesLook, bpy.types.Operator):
         context.view_layer.objects.active = obj
         if self.see_far:
             _see_far(context)
+        if hasattr(context.scene, "cycles") and not compat.can_denoise():
+            context.scene.cycles.use_denoising = False  # or the first render ends in an error
         self.give_look(context, obj)
         simulation = show_now(context, obj)
         if simulation.problem:

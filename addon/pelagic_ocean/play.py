@@ -41,7 +41,7 @@ class Job(Worker):
     def _build(self, make):
         try:
             self.made = make()
-        except (ValueError, RuntimeError, MemoryError) as error:
+        except Exception as error:  # nobody else would hear of it
             self.problem = str(error) or type(error).__name__
 
 

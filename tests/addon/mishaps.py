@@ -119,3 +119,20 @@ with checking("a sea that is being built for another view isn't taken for this o
     assert simulation.is_building
     view = simulation.follow(sea, scene, depsgraph, wait=True)
     assert view != far and simulation._built.serves(view)
+
+with checking("what an artist took out of the sky stays out, and the rest follows; Sun and Sky brings it back"):
+    fresh_file()
+    scene = bpy.context.scene
+    sea = add_ocean()
+    world = scene.world
+    lamp = next(obj for obj in scene.objects if "pelagic_light" in obj)
+    for gone in ("Pelagic Sun Disc", "Pelagic Sky"):
+        nodes, before = world.node_tree.nodes, lamp.matrix_world.copy()
+        nodes.remove(nodes[gone])
+        world.use_nodes = False
+        left = len(nodes)
+        change(sea, light__sun_elevation_deg=sea.pelagic.light.sun_elevation_deg + 10.0)
+        bpy.context.view_layer.update()
+        assert lamp.matrix_world != before and len(nodes) == left and not world.use_nodes, gone
+    bpy.ops.pelagic.add_light()
+    assert scene.world == world and world.use_nodes and {"Pelagic Sun Disc", "Pelagic Sky"} <= set(nodes.keys())

@@ -71,7 +71,8 @@ std::vector<Preset> named_seas() {
     trade.sea.spreading = SpreadingKind::Elfouhaily;
     trade.sea.swell = {{1.2, 9.5, 340.0}};
     trade.light = {.sun_elevation_deg = 48.0, .sun_azimuth_deg = 130.0};
-    out.push_back(named("trade-wind", "Trade wind", "a steady breeze over deep blue water, the sun high", trade));
+    out.push_back(
+        named("trade-wind", "Trade wind", "a steady breeze over deep blue water, the sun high", trade));
 
     Scene coast;
     coast.sea.wind_speed_mps = 7.0;

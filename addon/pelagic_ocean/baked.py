@@ -16,7 +16,7 @@ from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, IntProperty, PointerProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
-from . import light, material, meshes, ocean
+from . import handlers, light, material, meshes, ocean
 from .module import pelagic
 from .operators import NeedsModule
 from .query import first_ocean
@@ -208,10 +208,7 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
                 light.ensure_light(context.scene, bake.scene)
         except ValueError as error:
             self.report({"WARNING"}, str(error))
-        for other in context.selected_objects:
-            other.select_set(False)
-        obj.select_set(True)
-        context.view_layer.objects.active = obj
+        ocean.select_only(context, obj)
         return {"FINISHED"}
 
 
@@ -235,7 +232,7 @@ class PELAGIC_PT_baked(bpy.types.Panel):
 
 
 CLASSES = (PELAGIC_PG_baked, PELAGIC_OT_play_bake, PELAGIC_PT_baked)
-HANDLERS = {"frame_change_post": _on_frame, "load_post": _on_data, "undo_post": _on_data, "redo_post": _on_data}
+HANDLERS = (("frame_change_post", _on_frame), ("load_post", _on_data), ("undo_post", _on_data), ("redo_post", _on_data))
 
 
 def _menu(self, _context):
@@ -247,17 +244,13 @@ def register():
         bpy.utils.register_class(made)
     bpy.types.Object.pelagic_baked = PointerProperty(type=PELAGIC_PG_baked, name="Pelagic Bake")
     if pelagic is not None:
-        for name, handler in HANDLERS.items():
-            getattr(bpy.app.handlers, name).append(handler)
+        handlers.add(HANDLERS)
     bpy.types.TOPBAR_MT_file_import.append(_menu)
 
 
 def unregister():
     bpy.types.TOPBAR_MT_file_import.remove(_menu)
-    for name, handler in HANDLERS.items():
-        handlers = getattr(bpy.app.handlers, name)
-        if handler in handlers:
-            handlers.remove(handler)
+    handlers.remove(HANDLERS)
     del bpy.types.Object.pelagic_baked
     for made in reversed(CLASSES):
         bpy.utils.unregister_class(made)

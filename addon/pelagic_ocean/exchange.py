@@ -16,7 +16,6 @@ from .query import first_ocean
 
 OWN_MESH = ("a shot file can't say the object's own mesh as the surface yet; accepted: a patch or the camera's grid "
             "(Surface, Release Mesh)")
-SAME_DIRECTION = 1e-3  # radians
 
 # ---- Out
 
@@ -36,7 +35,7 @@ def shot_of(context, obj):
         remarks.append(f"{obj.name} is moved or turned: the shot's camera is as seen from it, the sun stays")
     lamp = light.own_sun(bpy_scene)
     if lamp is not None and lamp.matrix_world.col[2].xyz.angle(
-            Vector(pelagic.Sky(scene).sun_direction)) > SAME_DIRECTION:
+            Vector(pelagic.Sky(scene).sun_direction)) > camera.SAME_DIRECTION:
         remarks.append(f"{lamp.name} was turned: the shot's sun is where the ocean's settings have it")
     if obj.animation_data and obj.animation_data.action:
         remarks.append(f"{obj.name} is animated: the shot has its settings at frame {bpy_scene.frame_current}")
@@ -131,10 +130,7 @@ class PELAGIC_OT_import_shot(GivesLook, ImportHelper, bpy.types.Operator):
         if scene.light.sky != pelagic.Scene().light.sky:
             obj.pelagic.light.sky = str(Path(scene.light.sky).absolute())
         obj.pelagic.horizon = False  # the shot's surface and no more
-        for other in context.selected_objects:
-            other.select_set(False)
-        obj.select_set(True)
-        context.view_layer.objects.active = obj
+        ocean.select_only(context, obj)
         self.give_look(context, obj)
         simulation = show_now(context, obj)
         if simulation.problem:

@@ -15,7 +15,7 @@ from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, PointerProperty
 from mathutils import Euler, Matrix, Vector
 
-from . import ocean
+from . import handlers, ocean
 from .module import pelagic
 from .panels import PLACES
 from .query import Water, first_ocean
@@ -201,8 +201,8 @@ def follow_data(*_):
     follow(bpy.context.scene, bpy.context.evaluated_depsgraph_get())
 
 
-HANDLERS = {"frame_change_post": follow_frame, "depsgraph_update_post": follow_updates, "undo_post": follow_data,
-            "redo_post": follow_data, "load_post": follow_data}
+HANDLERS = (("frame_change_post", follow_frame), ("depsgraph_update_post", follow_updates), ("undo_post", follow_data),
+            ("redo_post", follow_data), ("load_post", follow_data))
 
 
 # ---- Operators and panels
@@ -268,15 +268,11 @@ def register():
         bpy.utils.register_class(made)
     bpy.types.Object.pelagic_float = PointerProperty(type=PELAGIC_PG_float, name="Floating")
     if pelagic is not None:
-        for name, handler in HANDLERS.items():
-            getattr(bpy.app.handlers, name).append(handler)
+        handlers.add(HANDLERS)
 
 
 def unregister():
-    for name, handler in HANDLERS.items():
-        handlers = getattr(bpy.app.handlers, name)
-        if handler in handlers:
-            handlers.remove(handler)
+    handlers.remove(HANDLERS)
     del bpy.types.Object.pelagic_float
     for made in reversed(CLASSES):
         bpy.utils.unregister_class(made)

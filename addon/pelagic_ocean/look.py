@@ -4,9 +4,10 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import light, material, ocean, play
+from . import handlers, light, material, ocean, play
 from .module import pelagic, problem
 from .properties import FIELDS
+from .query import first_ocean
 
 # Of settings_of(): what light and materials depend on.
 PLACES = [place for place, field in enumerate(FIELDS)
@@ -16,11 +17,6 @@ PLACES = [place for place, field in enumerate(FIELDS)
 STARTUP_GREY = 0.05087609  # of the world in Blender's start-up file
 
 _shown = {}  # an ocean's name, and the scene's: the settings that they were brought to last
-
-
-def _lights(obj, bpy_scene):
-    """Whether it is the ocean whose sun and sky the scene has."""
-    return next((other for other in ocean.oceans() if bpy_scene in other.users_scene), None) == obj
 
 
 def is_untouched(world):
@@ -38,7 +34,7 @@ def give(obj, bpy_scene, sun_and_sky):
     """An ocean's material; if wanted, sun and sky for a scene whose first ocean it is. ValueError if the sky can't be made."""
     scene = ocean.scene_of(obj, bpy_scene)
     material.ensure_material(obj, scene)
-    if sun_and_sky and _lights(obj, bpy_scene):
+    if sun_and_sky and first_ocean(bpy_scene) == obj:
         light.ensure_light(bpy_scene, scene)
 
 
@@ -58,7 +54,7 @@ def _follow(bpy_scene, depsgraph):
         try:
             scene = ocean.scene_of(obj, bpy_scene, settings=settings)
             material.update_material(obj, scene, height_m)
-            if _lights(obj, bpy_scene):
+            if first_ocean(bpy_scene) == obj:
                 light.update_light(bpy_scene, scene)
         except (ValueError, pelagic.ShotError) as error:
             print(f"{obj.name}: {error}")  # the panels say of each setting what is wrong with it
@@ -117,15 +113,11 @@ def register():
     for each in CLASSES:
         bpy.utils.register_class(each)
     if pelagic is not None:
-        for where, handler in HANDLERS:
-            getattr(bpy.app.handlers, where).append(handler)
+        handlers.add(HANDLERS)
 
 
 def unregister():
-    for where, handler in HANDLERS:
-        handlers = getattr(bpy.app.handlers, where)
-        if handler in handlers:
-            handlers.remove(handler)
+    handlers.remove(HANDLERS)
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)
     _shown.clear()

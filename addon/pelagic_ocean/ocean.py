@@ -190,6 +190,14 @@ def make(name, collection):
     return obj
 
 
+def select_only(context, obj):
+    """The object is the only one that is selected, and active."""
+    for other in context.selected_objects:
+        other.select_set(False)
+    obj.select_set(True)
+    context.view_layer.objects.active = obj
+
+
 def migrate(obj):
     """Brings settings of an older file to today's. There is one version so far: a file without a number is of it."""
     if obj.pelagic.version < VERSION:

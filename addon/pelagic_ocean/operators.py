@@ -68,10 +68,7 @@ class PELAGIC_OT_add_ocean(GivesLook, bpy.types.Operator):
                           description="Raise the clipping distance of the camera and of the views")
     def execute(self, context):
         obj = ocean.make("Ocean", context.collection)
-        for other in context.selected_objects:
-            other.select_set(False)
-        obj.select_set(True)
-        context.view_layer.objects.active = obj
+        ocean.select_only(context, obj)
         if self.see_far:
             _see_far(context)
         if hasattr(context.scene, "cycles") and not compat.can_denoise():

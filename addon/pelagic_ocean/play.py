@@ -16,7 +16,7 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import meshes, surfaces
+from . import handlers, meshes, surfaces
 from .module import pelagic
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of
 from .properties import FIELDS
@@ -352,15 +352,11 @@ HANDLERS = (("frame_change_post", _on_frame), ("depsgraph_update_post", _on_upda
 def register():
     if pelagic is None:
         return
-    for where, handler in HANDLERS:
-        getattr(bpy.app.handlers, where).append(handler)
+    handlers.add(HANDLERS)
 
 
 def unregister():
-    for where, handler in HANDLERS:
-        handlers = getattr(bpy.app.handlers, where)
-        if handler in handlers:
-            handlers.remove(handler)
+    handlers.remove(HANDLERS)
     if bpy.app.timers.is_registered(_poll):
         bpy.app.timers.unregister(_poll)
     _simulations.clear()

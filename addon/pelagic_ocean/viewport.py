@@ -13,7 +13,7 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, light, ocean, play
+from . import compat, handlers, light, ocean, play
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
@@ -366,16 +366,14 @@ def register():
         bpy.utils.register_class(made)
     bpy.types.WindowManager.pelagic_preview = PointerProperty(type=PELAGIC_PG_preview)
     bpy.types.VIEW3D_HT_header.append(_header)
-    for where, handler in HANDLERS:
-        getattr(bpy.app.handlers, where).append(handler)
+    handlers.add(HANDLERS)
 
 
 def unregister():
     turn_off()
     if bpy.app.timers.is_registered(_tend):
         bpy.app.timers.unregister(_tend)
-    for where, handler in HANDLERS:
-        getattr(bpy.app.handlers, where).remove(handler)
+    handlers.remove(HANDLERS)
     bpy.types.VIEW3D_HT_header.remove(_header)
     del bpy.types.WindowManager.pelagic_preview
     for made in reversed(CLASSES):

@@ -1,0 +1,109 @@
+"""What the campaigns share: many runs of the program, each judged, a case that can be run again, and a last line with
+the counts.
+
+A campaign is a script that draws its cases from a seed, so that a number names a case: `--only 17` runs that one again
+and keeps its files.
+"""
+
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import random
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+class Failure(Exception):
+    """What was wrong with a case, as a sentence."""
+
+
+class Run:
+    """A finished run of the program: status (negative: the signal that ended it), out, err, seconds."""
+
+    def __init__(self, arguments, status, out, err, seconds):
+        self.arguments, self.status, self.out, self.err, self.seconds = arguments, status, out, err, seconds
+
+    def words(self):
+        return f"{' '.join(map(str, self.arguments))}\nstatus {self.status}\n{self.out[-2000:]}{self.err[-2000:]}"
+
+
+class Campaign:
+    """Cases 0 … count − 1, each judged by judge(random, folder), which raises Failure where something is wrong."""
+
+    def __init__(self, description, count, arguments=None):
+        parser = argparse.ArgumentParser(description=description)
+        parser.add_argument("--count", type=int, default=count, help=f"cases (default {count})")
+        parser.add_argument("--seed", type=int, default=1, help="of the cases (default 1)")
+        parser.add_argument("--only", type=int, help="run this case alone, and keep its files")
+        parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="cases side by side (default: processors)")
+        parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build/release/pelagic")
+        if arguments:
+            arguments(parser)
+        self.options = parser.parse_args()
+        self.program = self.options.program.resolve()
+        if not self.program.exists():
+            parser.error(f"{self.program} isn't there: build it first, or say --program")
+
+    def run(self, *arguments, timeout=60, memory_gib=8, cwd=None, env=None, stdin=None):
+        """Runs the program. A run that takes longer than `timeout` seconds is a failure; one that wants more memory
+        is told so by the system."""
+
+        def limits():
+            resource.setrlimit(resource.RLIMIT_AS, (memory_gib << 30, memory_gib << 30))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+        command = [str(self.program), *map(str, arguments)]
+        start = time.monotonic()
+        try:
+            done = subprocess.run(command, capture_output=True, timeout=timeout, cwd=cwd, env=env, input=stdin,
+                                  preexec_fn=limits if memory_gib else None)
+        except subprocess.TimeoutExpired:
+            raise Failure(f"more than {timeout} s: {' '.join(command)}") from None
+        return Run(command, done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"),
+                   time.monotonic() - start)
+
+    def expect(self, true, sentence, run=None):
+        if not true:
+            raise Failure(sentence + (f"\n{run.words()}" if run else ""))
+
+    def ended_well(self, run, statuses=(0, 1, 2)):
+        """No signal, no sanitizer's report, no exception's bare text, and a message with every failure."""
+        self.expect(run.status in statuses, f"exit status {run.status}", run)
+        for bad in ("AddressSanitizer", "ThreadSanitizer", "runtime error:", "terminate called", "std::", "basic_string"):
+            self.expect(bad not in run.err, f"{bad!r} in its messages", run)
+        self.expect(run.status == 0 or run.err.strip(), "it failed without a word", run)
+
+    def go(self, judge):
+        """Judges the cases and ends the process: exit status 0 only if none failed."""
+        cases = [self.options.only] if self.options.only is not None else range(self.options.count)
+        failures, start = [], time.monotonic()
+
+        def case(number):
+            folder = pathlib.Path(tempfile.mkdtemp(prefix=f"pelagic-{number}-"))
+            try:
+                judge(random.Random(f"{self.options.seed}/{number}"), folder)
+            except Failure as failure:
+                return number, str(failure)
+            finally:
+                if self.options.only is None:
+                    shutil.rmtree(folder, ignore_errors=True)
+                else:
+                    print(f"case {number}: its files are in {folder}")
+            return None
+
+        with concurrent.futures.ThreadPoolExecutor(self.options.jobs) as pool:
+            for done, failed in enumerate(pool.map(case, cases), 1):
+                if failed:
+                    failures.append(failed)
+                    print(f"case {failed[0]}: {failed[1]}", flush=True)
+                if done % max(1, len(cases) // 10) == 0:
+                    print(f"{done} of {len(cases)}, {len(failures)} failed, {time.monotonic() - start:.0f} s", flush=True)
+        print(f"{pathlib.Path(sys.argv[0]).name}: {len(cases)} cases, {len(failures)} failed")
+        sys.exit(1 if failures else 0)

@@ -74,9 +74,10 @@ TEST_F(Cli, VersionSaysWhatItWasBuiltWith) {
     const Ended ended = cli({"--version"});
     EXPECT_EQ(ended.status, 0);
     EXPECT_TRUE(ended.out.starts_with("pelagic " PELAGIC_VERSION "\n")) << ended.out;
-    for (const char* part : {"built with ", "(", "parts: ", kHasPreview ? ": preview, " : ": no preview, ", " python",
-                             "sanitizer", "libraries: ", "FFTW 3.", "oneTBB 20", "OpenEXR 3.", "GLM ", "Highway ",
-                             "CLI11 ", "libpng ", "toml++ ", "instruction set on this machine: "})
+    for (const char* part :
+         {"built with ", "(", "parts: ", kHasPreview ? ": preview, " : ": no preview, ", " python",
+          "sanitizer", "libraries: ", "FFTW 3.", "oneTBB 20", "OpenEXR 3.", "GLM ", "Highway ", "CLI11 ",
+          "libpng ", "toml++ ", "instruction set on this machine: "})
         EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
 }
 

@@ -41,7 +41,7 @@ void scale_by(std::vector<glm::vec3>& velocities, double time_scale) {
 }
 
 struct MeshSlot final : OutputSlot {
-    Faces faces;       // where they vary
+    Faces faces;  // where they vary
     glm::dvec2 origin_m{0.0};
     std::string text;  // of a mesh in text; a crate needs none, its arrays are the values
 };

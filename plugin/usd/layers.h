@@ -59,7 +59,7 @@ struct AttributeSet {
     bool velocities = false;
     bool slope_variance = false;
     bool whitecap_coverage = false;
-    bool faces = false;  // faceVertexCounts, faceVertexIndices and primvars:st, all three
+    bool faces = false;   // faceVertexCounts, faceVertexIndices and primvars:st, all three
     bool origin = false;  // kOrigin
 };
 

@@ -41,8 +41,11 @@ void check(const MeshLayer& layer) {
 }  // namespace
 
 std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::string_view array_type) {
-    static const std::vector<VaryingAttribute> known = varying_attributes(
-        {.normals = true, .velocities = true, .slope_variance = true, .whitecap_coverage = true, .faces = true});
+    static const std::vector<VaryingAttribute> known = varying_attributes({.normals = true,
+                                                                           .velocities = true,
+                                                                           .slope_variance = true,
+                                                                           .whitecap_coverage = true,
+                                                                           .faces = true});
     for (const VaryingAttribute& attribute : known)
         if (attribute.name == name && name != "extent" && array_type == std::string(attribute.type) + "[]")
             return attribute;

@@ -166,7 +166,8 @@ TEST(UsdReadMesh, SaysWhatIsWrong) {
               "is damaged: USD: points[0] is nan, and only finite values can be written");
     EXPECT_EQ(message(replaced(text, "normal3f[] normals", "point3f[] points")),
               "is damaged: points is there twice");
-    EXPECT_EQ(message(replaced(text, "(10000000.1, ", "(inf, ")), "is damaged: USD: the points' origin must be finite");
+    EXPECT_EQ(message(replaced(text, "(10000000.1, ", "(inf, ")),
+              "is damaged: USD: the points' origin must be finite");
     EXPECT_EQ(message(replaced(text, "(10000000.1, ", "(")), "is not a mesh that Pelagic wrote");
     EXPECT_EQ(message(replaced(text, "double3 xformOp:translate.timeSamples = {\n        -5",
                                "double3 xformOp:translate.timeSamples = {\n        -4")),

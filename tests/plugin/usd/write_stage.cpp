@@ -269,7 +269,8 @@ constexpr const char* kMoving = "moving";
 
 // Where the points' origin is at a frame of the second stage: places that no float holds, and that move at once.
 glm::dvec3 moving_origin_m(int frame) {
-    return frame < 5 ? glm::dvec3(1e7 + 0.125, -1e9 - 3.0, 0.0) : glm::dvec3(1e7 + 4096.125, -1e9 + 4093.0, 1e-3);
+    return frame < 5 ? glm::dvec3(1e7 + 0.125, -1e9 - 3.0, 0.0)
+                     : glm::dvec3(1e7 + 4096.125, -1e9 + 4093.0, 1e-3);
 }
 
 // A matrix as USD writes it.

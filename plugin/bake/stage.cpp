@@ -130,7 +130,7 @@ struct StageLight {
 };
 
 // It takes a few tenths of a second, ten times as long as the start of a small bake. The last one is kept: hosts bake
-// again and again under the same light.
+// again and again under the same light, and a bake looks at it before it does anything else.
 std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     static std::mutex mutex;
     static std::string last_source;
@@ -191,6 +191,10 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
 }
 
 }  // namespace
+
+void prepare_light(const Scene& scene) {
+    light_of(scene);
+}
 
 void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink) {
     const Scene& scene = plan.from->scene;

@@ -305,6 +305,21 @@ TEST_F(StageLightTest, ABakeNeverWritesOverThePictureOfItsSky) {
     EXPECT_EQ(text_of(file), before);
 }
 
+TEST_F(StageLightTest, WhatIsNoSkyIsRefusedBeforeAnythingIsDone) {
+    files::write_atomically(folder_ / "a picture.exr", std::string("no picture"));
+    Scene scene = small_scene();
+    scene.light.sky = (folder_ / "a picture.exr").string();
+    int building = 0;
+    EXPECT_THROW(
+        bake(scene, {.out = folder_ / "out",
+                     .frames = {},
+                     .progress = [&](const BakeProgress& p) { building += p.stage != BakeStage::Planning; },
+                     .cancel = nullptr}),
+        std::invalid_argument);
+    EXPECT_EQ(building, 0);
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
 TEST_F(StageLightTest, AShotWithoutAMeshHasNoSky) {
     Scene scene = small_scene();
     scene.output.mesh = MeshFormat::None;

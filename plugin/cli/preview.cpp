@@ -74,7 +74,7 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
                 {.scene = scene, .options = options, .sky_content = sky_content(scene), .drawn_by_gpu = true})
                 .of(frame)};
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
-                                                             : encode_png(about, drawn.picture));
+                                                             : encode_png(about, drawn.picture, frame));
     if (!drawn.note.empty()) std::cerr << "pelagic: note: " << drawn.note << '\n';
     std::cout << "picture: " << file.string() << "\ndrawn by " << drawn.device << std::endl;
     return kDone;

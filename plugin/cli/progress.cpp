@@ -94,6 +94,11 @@ void Progress::show(const BakeProgress& progress) {
     switch (progress.stage) {
         case BakeStage::Planning:
             return;  // milliseconds
+        case BakeStage::Checking:
+            return show("checking the files that are there: " +
+                        std::to_string(std::lround(100.0 * progress.checked)) + " %");
+        case BakeStage::Waiting:
+            return show("waiting for another bake that writes into the same folder");
         case BakeStage::Building:
             return show_building(progress.built);
         case BakeStage::Frames:

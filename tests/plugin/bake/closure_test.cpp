@@ -75,7 +75,7 @@ Made render_into(const Scene& scene, const fs::path& folder) {
         const PictureContext context{
             .scene = scene, .options = options, .sky = renderer.sky(), .made_of = fingerprint.of(frame)};
         files::write_atomically(folder / picture_file(scene.shot, frame, "png"),
-                                encode_png(context, picture));
+                                encode_png(context, picture, frame));
         files::write_atomically(folder / picture_file(scene.shot, frame, "exr"),
                                 encode_exr(context, picture, frame));
     }

@@ -139,8 +139,8 @@ TEST(PictureFiles, AreWholeWithTheirFingerprintAndTheirEnd) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("pelagic-pictures-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
-    for (const auto& [name, bytes] :
-         {std::pair{"a.exr", encode_exr(context, picture, 1)}, {"a.png", encode_png(context, picture)}}) {
+    for (const auto& [name, bytes] : {std::pair{"sea.0001.exr", encode_exr(context, picture, 1)},
+                                      {"sea.0001.png", encode_png(context, picture, 1)}}) {
         const std::filesystem::path file = folder / name;
         const auto write = [&](const std::string& content) {
             std::ofstream(file, std::ios::binary).write(content.data(), std::ssize(content));
@@ -176,7 +176,7 @@ TEST(PictureFiles, ScreensShowTheSumWithTheExposure) {
     const Scene scene;
     const RenderOptions options;
     const Sky sky = some_sky(0.0f);
-    const auto png = [&](double stops) { return encode_png({scene, options, sky, "", stops}, picture); };
+    const auto png = [&](double stops) { return encode_png({scene, options, sky, "", stops}, picture, 1); };
     const std::string black = png(0.0);
     picture.layers[4].foam = glm::vec3(1.0f);
     const std::string foam = png(0.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <istream>
 #include <limits>
 #include <span>
@@ -142,6 +143,8 @@ class Bytes final : public std::streambuf {
     Bytes(files::FileReader& file, const RecordWatch& watch) : file_(file), watch_(watch) {}
 
     void begin_part() { left_ = kLargestPart; }
+    // A zero ends a text for the parser; in ours there is none.
+    bool had_zero() const { return had_zero_; }
     void end() {  // nothing more is read
         left_ = 0;
         setg(eback(), egptr(), egptr());
@@ -155,6 +158,7 @@ class Bytes final : public std::streambuf {
         const std::size_t got = file_.read(std::span(piece_).first(std::min(piece_.size(), left_)));
         if (got == 0) return traits_type::eof();
         left_ -= got;
+        had_zero_ = had_zero_ || std::memchr(piece_.data(), 0, got) != nullptr;
         setg(piece_.data(), piece_.data(), piece_.data() + got);
         return traits_type::to_int_type(piece_.front());
     }
@@ -163,6 +167,7 @@ class Bytes final : public std::streambuf {
     const RecordWatch& watch_;
     std::vector<char> piece_ = std::vector<char>(std::size_t{1} << 16);
     std::size_t left_ = kLargestPart;
+    bool had_zero_ = false;
 };
 
 // The object's lines without its own brackets, each after a line's end and `indent`.
@@ -185,7 +190,6 @@ RecordReading read_record(const std::filesystem::path& file,
         reading.problem = reader.problem();
         reading.is_missing = reader.is_missing();
         reading.is_blocked = !reading.is_missing;
-        reading.has_checksums = false;
         return reading;
     }
     Bytes bytes(reader, watch);
@@ -213,17 +217,19 @@ RecordReading read_record(const std::filesystem::path& file,
         return false;
     };
     Json shot;
+    bool is_read = false;
     try {
         std::istream stream(&bytes);
         shot = Json::parse(stream, at_event);
+        is_read = !bytes.had_zero();
     } catch (const Json::exception&) {
+    }
+    if (!is_read) {
         reading.problem = reader.problem().empty() ? "is damaged, or no record of a bake" : reader.problem();
-        reading.has_checksums = false;
         return reading;
     }
     if (!shot.is_object() || !shot.contains("checksum")) {
         reading.problem = "is no record of a bake, or an older version's";
-        reading.has_checksums = false;
         return reading;
     }
     shot.erase("frames");

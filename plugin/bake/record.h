@@ -65,7 +65,6 @@ struct RecordReading {
     bool is_missing = false;  // the problem is that there is none
     bool is_blocked =
         false;  // something is there that can't be read: a pipe, a folder, a file of another user
-    bool has_checksums = true;   // false: an older version's, or none of ours
     std::vector<int> altered{};  // frames whose entries aren't as they were written
 };
 

@@ -18,7 +18,7 @@ def shot_text(draw):
     if draw.random() < 0.3:
         lines += ['model = "trochoid"', f"trains = {draw.randint(5, 30)}"]
     else:
-        lines.append("cascades = [ { size_m = 90.0, resolution = 32 }, { size_m = 23.0, resolution = 32 } ]")
+        lines.append("cascades = [ { size_m = 90.0, resolution = 128 }, { size_m = 23.0, resolution = 32 } ]")
     lines += ["[surface]", 'kind = "projected-grid"\ncell_px = 40' if grid
               else f"size_m = 60\nresolution = {draw.choice([2, 5, 16])}",
               "[camera]", "resolution = [64, 36]", "[quality]", 'level = "draft"',

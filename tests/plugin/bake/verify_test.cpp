@@ -140,7 +140,9 @@ TEST_F(Verify, EveryDamageToEveryKindOfFileIsNamedAndMadeAgain) {
                 const std::vector<std::string> named = flaws();
                 EXPECT_TRUE(std::count(named.begin(), named.end(), "damaged " + path) == 1)
                     << path << ": " << ::testing::PrintToString(named);
-                if (!path.ends_with(".json")) EXPECT_EQ(named.size(), 1u) << path;
+                if (!path.ends_with(".json")) {
+                    EXPECT_EQ(named.size(), 1u) << path;
+                }
                 write(folder_ / path, whole.at(path));
             }
             // All at once but the record, which then knows what is wrong.
@@ -156,9 +158,12 @@ TEST_F(Verify, EveryDamageToEveryKindOfFileIsNamedAndMadeAgain) {
         for (const std::string& path : paths) {
             fs::remove(folder_ / path);
             const std::vector<std::string> named = flaws();
-            if (!path.ends_with(".json")) EXPECT_EQ(named, std::vector<std::string>{"missing " + path});
-            if (path.ends_with(".json"))
+            if (!path.ends_with(".json")) {
+                EXPECT_EQ(named, std::vector<std::string>{"missing " + path});
+            }
+            if (path.ends_with(".json")) {
                 EXPECT_EQ(named.size(), whole.size() - 1) << "nobody knows the others: all are foreign";
+            }
             write(folder_ / path, whole.at(path));
         }
         // Two frames swapped: of one size, and each whole in itself.
@@ -305,7 +310,9 @@ TEST_F(Verify, PipesAndFoldersInTheWayAreSaid) {
         for (const char* path : {"mesh/sea.0002.usdc", "maps/sea.normal.0001.exr", "sea.usda", "sea.json"}) {
             const fs::path kept = folder_ / "kept";
             fs::rename(folder_ / path, kept);
-            if (pipe) ASSERT_EQ(mkfifo((folder_ / path).c_str(), 0600), 0);
+            if (pipe) {
+                ASSERT_EQ(mkfifo((folder_ / path).c_str(), 0600), 0);
+            }
             if (!pipe) fs::create_directory(folder_ / path);
             const std::vector<Finding> found = verify(folder_).findings;
             const bool named = std::any_of(found.begin(), found.end(), [&](const Finding& finding) {

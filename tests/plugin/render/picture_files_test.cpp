@@ -194,7 +194,9 @@ TEST(PictureFiles, ShowEveryDamage) {
             EXPECT_NE(problem_of(bytes.substr(0, at)), "") << extension << " cut to " << at;
             std::string zeros = bytes;
             zeros.replace(at, 64, std::min<std::size_t>(64, bytes.size() - at), '\0');
-            if (zeros != bytes) EXPECT_NE(problem_of(zeros), "") << extension << ": zeros from " << at;
+            if (zeros != bytes) {
+                EXPECT_NE(problem_of(zeros), "") << extension << ": zeros from " << at;
+            }
         }
     }
     std::filesystem::remove_all(folder);

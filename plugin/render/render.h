@@ -83,8 +83,14 @@ class Renderer {
 
     // One frame of the shot at the camera's resolution, into a picture whose memory is used again. On all
     // threads of the calling arena; the same bits whatever their number and whichever frame came before.
-    // Every value is finite. False when it was cancelled: the picture is then only partly there.
+    // Every value is finite. False when it was cancelled: the picture is then only partly there. Throws
+    // std::invalid_argument for a camera under water (plugin/render/under_water.h).
     bool render(int frame, Picture& picture, const RenderWatch& watch = {});
+
+    // Throws what render() would throw for the first of these frames whose camera is under water, before hours
+    // are spent on the others. Frames whose camera is above the highest crest to be expected cost nothing, each
+    // other one its transforms. False when it was cancelled.
+    bool check_cameras(std::span<const int> frames, const RenderWatch& watch = {});
 
     const Plan& plan() const;
     const Sky& sky() const;

@@ -91,8 +91,7 @@ TEST_P(UnderWater, TheFirstOfTheFramesAskedForIsNamed) {
     const glm::dvec3 crest = surface_points(scene, 5, {}, 1).front();
     for (const auto& [frame, z_m] :
          {std::pair(1, 30.0), std::pair(4, 30.0), std::pair(5, crest.z - 0.02), std::pair(6, 30.0)})
-        scene.camera.keys.push_back(
-            {.frame = static_cast<double>(frame), .position_m = {crest.x, crest.y, z_m}});
+        scene.camera.keys.push_back({.frame = frame, .position_m = {crest.x, crest.y, z_m}});
     const std::vector<int> all{1, 2, 3, 4, 5, 6}, others{1, 2, 3, 4, 6};
     Renderer renderer(scene, render_options(scene), make_sky(scene), all);
     EXPECT_TRUE(renderer.check_cameras(others));
@@ -107,8 +106,8 @@ TEST_P(UnderWater, TheFirstOfTheFramesAskedForIsNamed) {
 // Only they are looked at: the others cost nothing.
 TEST_P(UnderWater, FramesWhoseCameraIsAboveEveryCrestArentLookedAt) {
     Scene scene = sea_of(GetParam());
-    scene.camera.keys = {{.frame = 1.0, .position_m = {0.0, 0.0, 30.0}},
-                         {.frame = 10.0, .position_m = {0.0, 0.0, 30.0}}};
+    scene.camera.keys = {{.frame = 1, .position_m = {0.0, 0.0, 30.0}},
+                         {.frame = 10, .position_m = {0.0, 0.0, 30.0}}};
     std::vector<int> frames{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
     Renderer renderer(scene, render_options(scene), make_sky(scene), frames);
     int looks = 0;

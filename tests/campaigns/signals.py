@@ -79,7 +79,7 @@ def disturb(campaign, draw, arguments, whole_s):
     asleep = False
     for _ in range(draw.choice((1, 1, 1, 2, 3))):
         # Often close to what went before: in the middle of its handling.
-        wait_s = draw.uniform(0.0, 1.1 * whole_s) if not sent or draw.random() < 0.5 else draw.uniform(0.0, 0.01)
+        wait_s = draw.uniform(0.0, 0.8 * whole_s) if not sent or draw.random() < 0.5 else draw.uniform(0.0, 0.01)
         time.sleep(wait_s)
         if process.poll() is not None:
             break

@@ -300,8 +300,9 @@ TEST_F(Pictures, ACameraUnderWaterIsRefusedForTheFramesAskedFor) {
         return text.insert(text.find(table) + table.size(), camera);
     };
     write_file(folder() / "below.toml", with_camera("position_m = [0, -60, -9]\n"));
-    write_file(folder() / "diving.toml", with_camera("keys = [ { frame = 1, position_m = [0, -60, 9] }, "
-                                                     "{ frame = 4, position_m = [0, -60, -9] } ]\n"));
+    write_file(folder() / "diving.toml",
+               with_camera("keys = [ { frame = 1, position_m = [0, -60, 9], look_at_m = [0, 0, 0] }, "
+                           "{ frame = 4, position_m = [0, -60, -9], look_at_m = [0, 0, 0] } ]\n"));
     refused({"render", "below.toml"}, 1,
             {"below.toml: camera.position_m: at frame 1 the camera is under water: it is at z = -9 m",
              "the surface there"});

@@ -1,5 +1,5 @@
-// The stage of a bake: the root layer that people open, and the camera's layer beside it. Both are of the
-// whole shot, whichever frames are baked.
+// The stage of a bake: the root layer that people open, the camera's layer and the sky's picture beside it. They are
+// of the whole shot, whichever frames are baked. Sun, sky and water are those that pictures of the shot are lit by.
 #pragma once
 
 #include "core/plan/plan.h"
@@ -7,7 +7,7 @@
 
 namespace pelagic {
 
-// Hands both to the sink, the root last. The plan must have a mesh.
+// Hands them to the sink, the root last. The plan must have a mesh. Throws as make_sky() does.
 void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink);
 
 }  // namespace pelagic

@@ -19,6 +19,7 @@
 #include "plugin/bake/output_part.h"
 #include "plugin/bake/record.h"
 #include "plugin/bake/sequence.h"
+#include "plugin/bake/stage.h"
 #include "plugin/files/files.h"
 #include "plugin/usd/layers.h"
 
@@ -163,6 +164,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     };
 
     report_progress(BakeStage::Planning);
+    if (scene.output.mesh != MeshFormat::None) prepare_light(scene);
     const Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
         throw std::invalid_argument("the shot asks for no output: accepted: output.mesh, output.maps");

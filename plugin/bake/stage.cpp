@@ -130,7 +130,7 @@ struct StageLight {
 };
 
 // It takes a few tenths of a second, ten times as long as the start of a small bake. The last one is kept: hosts bake
-// again and again under the same light.
+// again and again under the same light, and a bake looks at it before it does anything else.
 std::shared_ptr<const StageLight> light_of(const Scene& scene) {
     static std::mutex mutex;
     static std::string last_source;
@@ -171,7 +171,8 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
                         .velocities = products[index(Product::Velocity)],
                         .slope_variance = products[index(Product::SlopeVariance)],
                         .whitecap_coverage = products[index(Product::Coverage)],
-                        .faces = !plan.surface->is_constant()};
+                        .faces = !plan.surface->is_constant(),
+                        .origin = !plan.surface->is_constant()};
     stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));
     stage.material = material_of(plan);
     stage.has_camera = true;
@@ -190,6 +191,10 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
 }
 
 }  // namespace
+
+void prepare_light(const Scene& scene) {
+    light_of(scene);
+}
 
 void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink) {
     const Scene& scene = plan.from->scene;

@@ -3,9 +3,14 @@
 #pragma once
 
 #include "core/plan/plan.h"
+#include "core/scene/scene.h"
 #include "plugin/bake/output_part.h"
 
 namespace pelagic {
+
+// Finds the light that the stage will have, before anything else is done: a picture of a sky may be no such thing.
+// Throws as make_sky() does. write_stage() takes it from here.
+void prepare_light(const Scene& scene);
 
 // Hands them to the sink, the root last. The plan must have a mesh. Throws as make_sky() does.
 void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink);

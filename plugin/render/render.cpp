@@ -139,7 +139,8 @@ class RendererOf final : public Impl {
                            .rest_m = {rest_.data()},
                            .cell_m = {cell_m_.data()}},
                  results);
-        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kNear_m);
+        constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
+        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
         clip_.resize(count);
         for (std::size_t i = 0; i < count; ++i) clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
         const ProjectedGridSize size{grid_.columns, grid_.rows};

@@ -68,6 +68,9 @@ std::size_t remove_stale_temporaries(const std::filesystem::path& folder);
 // empty path is the working folder. Throws FileError.
 void ensure_folder(const std::filesystem::path& folder);
 
+// Whether it could, without making anything. Throws FileError where it is sure that it couldn't.
+void check_folder(const std::filesystem::path& folder);
+
 // Told how long a lock has been awaited [s], some times a second from the first second on. What it throws ends the
 // waiting.
 using LockWatch = std::function<void(double waited_s)>;

@@ -43,6 +43,7 @@ class PictureFingerprint {
     std::string of(int frame) const;  // 16 hexadecimal digits
 
   private:
+    Shot shot_;
     Camera camera_;
     std::string source_;
 };

@@ -125,7 +125,7 @@ std::vector<Finding> run_verify(const std::filesystem::path& folder, const py::o
     try {
         Verification found;
         {
-            const py::gil_scoped_release others_may_run;
+            const OthersMayRun others_may_run;
             found =
                 verify(folder, {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()});
         }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,20 +15,31 @@ namespace pelagic {
 
 // A shot file that is refused. what() has one line for each problem, in the order of the file:
 //   FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: WHAT IS
-// (FILE alone before the colon where the file itself can't be read). Lines count from 1, columns from 1 in
-// characters.
+// (FILE alone before the colon where the file itself can't be read; no KEY where the text goes beyond the bounds of
+// bounds.h or is no TOML). Lines count from 1, columns from 1 in characters. Of very many problems the first are
+// there and the number of the others.
 class ShotError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-// The scene that a shot file describes, a measured spectrum that it names included; it has passed validate().
-// All problems of the file are collected into one ShotError; of errors in the TOML itself the first.
-Scene load_shot(const std::filesystem::path& file);
+// What is wrong with a file that a key names: the end of a sentence, "is no …", and what would be right.
+struct FileFault {
+    std::string problem, accepted;
+};
+
+// Looks at the picture that light.sky names, of which this reader knows only that there is such a file; nothing: it
+// is a sky. plugin/light has the one that hosts pass.
+using SkyCheck = std::function<std::optional<FileFault>(const std::filesystem::path& file)>;
+
+// The scene that a shot file describes, a measured spectrum that it names included; it has passed validate(), and
+// the files that it names have been looked at. The file's first problems and the number of the others are collected
+// into one ShotError; of errors in the TOML itself the first.
+Scene load_shot(const std::filesystem::path& file, const SkyCheck& check_sky);
 
 // The same for a text that is already in memory: `file` is its name in messages, and the folder that it names
 // paths from.
-Scene parse_shot(std::string_view text, const std::filesystem::path& file);
+Scene parse_shot(std::string_view text, const std::filesystem::path& file, const SkyCheck& check_sky);
 
 // Help: every table and key, with its default, unit, what it accepts, what it does and what depends on it;
 // the words that the parser uses.

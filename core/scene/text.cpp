@@ -69,22 +69,27 @@ void append_hex(std::string& out, unsigned code, int digits) {
     for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) out += kHexDigits[code >> shift & 15];
 }
 
-// The text without commands; `before_x` is what stands before the "xe9" of a byte that isn't UTF-8.
-std::string escaped(std::string_view text, std::string_view to_escape, std::string_view before_x) {
+struct Escapes {
+    std::string_view before_x = "\\";      // of the "xe9" of a byte that isn't UTF-8
+    std::string_view characters = "";      // that get a backslash
+    bool commands = true;                  // as "\u001b"
+};
+
+std::string escaped(std::string_view text, const Escapes& escapes) {
     std::string out;
     out.reserve(text.size());
     while (!text.empty()) {
         const std::size_t bytes = character_bytes(text);
         const std::string_view character = text.substr(0, std::max<std::size_t>(bytes, 1));
         if (bytes == 0) {
-            out += before_x;
+            out += escapes.before_x;
             out += 'x';
             append_hex(out, static_cast<unsigned char>(text[0]), 2);
-        } else if (bytes < 4 && is_command(code_of(character))) {
+        } else if (escapes.commands && bytes < 4 && is_command(code_of(character))) {
             out += "\\u";
             append_hex(out, code_of(character), 4);
         } else {
-            if (bytes == 1 && to_escape.find(text[0]) != std::string_view::npos) out += '\\';
+            if (bytes == 1 && escapes.characters.find(text[0]) != std::string_view::npos) out += '\\';
             out += character;
         }
         text.remove_prefix(character.size());
@@ -95,11 +100,15 @@ std::string escaped(std::string_view text, std::string_view to_escape, std::stri
 }  // namespace
 
 std::string quoted_text(std::string_view text) {
-    return '"' + escaped(text, "\"\\", "\\\\") + '"';
+    return '"' + escaped(text, {.before_x = "\\\\", .characters = "\"\\"}) + '"';
 }
 
 std::string line_text(std::string_view text) {
-    return escaped(text, "", "\\");
+    return escaped(text, {});
+}
+
+std::string utf8_text(std::string_view text) {
+    return escaped(text, {.commands = false});
 }
 
 std::string shortened(std::string_view text, std::size_t most_bytes) {

@@ -63,23 +63,20 @@ bool is_file(const std::filesystem::path& file) {
     return file.native().find('\0') == std::string::npos && std::filesystem::is_regular_file(file, ignored);
 }
 
-// The picture of a sky is found here, and looked at by who knows its format.
-void find_sky(Reader& reader, const std::filesystem::path& folder, const SkyCheck& check_sky, Light& light) {
+// A picture of a sky is data of the hosts that make pictures: here only its place is found.
+void find_sky(Reader& reader, const std::filesystem::path& folder, Light& light) {
     if (light.sky == Light{}.sky || reader.has_failed("light.sky")) return;
     const std::filesystem::path file = folder / light.sky;
-    if (!is_file(file)) {
+    if (!is_file(file))
         reader.refuse({"light.sky", quoted_text(light.sky),
-                       "is no file in " + quoted_text(shortened(folder.empty() ? "." : folder.string(), 300)),
+                       "is no file in " + quoted_text(folder.empty() ? "." : folder.string()),
                        "\"daylight\", or the path of an .exr, from the shot file's folder"});
-    } else if (const std::optional<FileFault> fault = check_sky(file)) {
-        reader.refuse({"light.sky", quoted_text(light.sky), fault->problem, fault->accepted});
-    }
     light.sky = file.string();
 }
 
 }  // namespace
 
-Scene parse_shot(std::string_view text, const std::filesystem::path& file, const SkyCheck& check_sky) {
+Scene parse_shot(std::string_view text, const std::filesystem::path& file, const FilesCheck& check_files) {
     const std::string name = line_text(file.string());
     const auto place_text = [&](std::size_t line, std::size_t column) {
         return name + ':' + std::to_string(line) + ':' + std::to_string(column) + ": ";
@@ -99,13 +96,15 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     Scene scene;
     read_scene(reader, root, scene);
     load_measured(reader, file.parent_path(), scene.sea);
-    find_sky(reader, file.parent_path(), check_sky, scene.light);
+    find_sky(reader, file.parent_path(), scene.light);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
+    if (!reader.has_failed("light.sky"))
+        for (Problem& problem : check_files(scene)) reader.refuse_value(std::move(problem));
     if (reader.problem_count() > 0) throw ShotError(reader.report());
     return scene;
 }
 
-Scene load_shot(const std::filesystem::path& file, const SkyCheck& check_sky) {
+Scene load_shot(const std::filesystem::path& file, const FilesCheck& check_files) {
     std::string text;
     try {
         text = read_text_file(file, kMostBytes);
@@ -113,7 +112,7 @@ Scene load_shot(const std::filesystem::path& file, const SkyCheck& check_sky) {
         throw ShotError(line_text(shortened(file.string(), kMostOfPath)) + ": the shot file " + error.what() +
                         "; accepted: a TOML file of at most 16 MiB");
     }
-    return parse_shot(text, file, check_sky);
+    return parse_shot(text, file, check_files);
 }
 
 }  // namespace pelagic

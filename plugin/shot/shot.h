@@ -4,11 +4,12 @@
 
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "core/scene/problem.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
@@ -23,23 +24,18 @@ class ShotError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// What is wrong with a file that a key names: the end of a sentence, "is no …", and what would be right.
-struct FileFault {
-    std::string problem, accepted;
-};
-
-// Looks at the picture that light.sky names, of which this reader knows only that there is such a file; nothing: it
-// is a sky. plugin/light has the one that hosts pass.
-using SkyCheck = std::function<std::optional<FileFault>(const std::filesystem::path& file)>;
+// The problems of files that the scene names and whose formats this reader doesn't know: pictures of skies.
+// plugin/light has the check for hosts, check_sky().
+using FilesCheck = std::function<std::vector<Problem>(const Scene&)>;
 
 // The scene that a shot file describes, a measured spectrum that it names included; it has passed validate(), and
 // the files that it names have been looked at. The file's first problems and the number of the others are collected
 // into one ShotError; of errors in the TOML itself the first.
-Scene load_shot(const std::filesystem::path& file, const SkyCheck& check_sky);
+Scene load_shot(const std::filesystem::path& file, const FilesCheck& check_files);
 
 // The same for a text that is already in memory: `file` is its name in messages, and the folder that it names
 // paths from.
-Scene parse_shot(std::string_view text, const std::filesystem::path& file, const SkyCheck& check_sky);
+Scene parse_shot(std::string_view text, const std::filesystem::path& file, const FilesCheck& check_files);
 
 // Help: every table and key, with its default, unit, what it accepts, what it does and what depends on it;
 // the words that the parser uses.

@@ -4,7 +4,6 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
-#include <utility>
 
 #include "core/plan/fingerprint.h"
 #include "core/scene/text.h"
@@ -25,8 +24,9 @@ WaterKind kind_of(WaterType type) {
     throw std::invalid_argument("water of no type");
 }
 
-Problem sky_problem(const Scene& scene, std::string problem, std::string accepted) {
-    return {"light.sky", quoted_text(scene.light.sky), std::move(problem), std::move(accepted)};
+// `problem` may have names from the file in it.
+Problem sky_problem(const Scene& scene, const std::string& problem, const std::string& accepted) {
+    return {"light.sky", quoted_text(scene.light.sky), line_text(problem), accepted};
 }
 
 }  // namespace

@@ -476,8 +476,6 @@ TEST(Shot, ManyProblemsAreCountedAndTheFirstListed) {
                 "1:2: sea0 = { }: is an unknown table");
     const auto entry = [](const std::string& i) { return "{frame=" + i + ",fov_deg=1e9},"; };
     expect_some("[camera]\nkeys = [" + many(entry) + ']', "2:9: camera.keys[0]");
-    const auto gain = [](const std::string&) { return "{from_m=-1,to_m=-2,gain=-1},"; };
-    expect_some("[waves]\nband_gains = [" + many(gain) + ']', "2:1");
     // Lists that are too long are one problem.
     for (const char* list : {"sea.swell = [", "output.maps = [", "waves.cascades = ["})
         EXPECT_EQ(lines(refusal(list + many([](const std::string&) { return "'normale',"; }) + ']')), 1u) << list;

@@ -46,10 +46,10 @@ void check_values(std::span<const glm::vec3> radiance, std::size_t width, std::s
         for (int c = 0; c < 3; ++c) {
             const float value = radiance[i][c];
             if (value >= 0.0f && value <= kBrightest) continue;
-            throw std::invalid_argument(
-                std::string(1, "RGB"[c]) + " of the pixel in column " +
-                std::to_string(i % width) + ", row " + std::to_string(first_row + i / width) +
-                " from the top is " + std::to_string(value) + "; accepted: radiances from 0 to 1e30");
+            throw std::invalid_argument(std::string(1, "RGB"[c]) + " of the pixel in column " +
+                                        std::to_string(i % width) + ", row " +
+                                        std::to_string(first_row + i / width) + " from the top is " +
+                                        std::to_string(value) + "; accepted: radiances from 0 to 1e30");
         }
 }
 
@@ -189,9 +189,8 @@ std::size_t brightest_pixel(const Upper& picture) {
             of_row[from + row] = best;
         }
     });
-    return std::max_element(
-               of_row.begin(), of_row.end(),
-               [](const Brightest& a, const Brightest& b) { return a.luminance < b.luminance; })
+    return std::max_element(of_row.begin(), of_row.end(),
+                            [](const Brightest& a, const Brightest& b) { return a.luminance < b.luminance; })
         ->pixel;
 }
 
@@ -202,7 +201,8 @@ Sun find_sun(const Upper& picture) {
     const double pixel = std::max(picture.pixel_width(), picture.pixel_height());
     const double inner = std::max(kReach, 2.5 * pixel), outer = inner + std::max(kRingWidth, 1.5 * pixel);
     const glm::dvec3 middle = picture.direction(brightest);
-    const std::size_t row = brightest / width, reach = 2 + static_cast<std::size_t>(outer / picture.pixel_height());
+    const std::size_t row = brightest / width,
+                      reach = 2 + static_cast<std::size_t>(outer / picture.pixel_height());
     const std::size_t first = row - std::min(row, reach), end = std::min(picture.rows(), row + reach + 1);
     std::vector<glm::vec3> pixels((end - first) * width);
     struct Near {
@@ -304,7 +304,7 @@ class HeldRows {
     void prepare(std::size_t row, std::span<glm::dvec3> pixels) const {
         const std::size_t start = row * pixels.size();
         for (auto at = std::lower_bound(filled_.begin(), filled_.end(), start,
-                                        [](const Filled& f, std::size_t pixel) { return f.pixel < pixel; });
+                                        [](const Filled&f, std::size_t pixel) { return f.pixel < pixel; });
              at != filled_.end() && at->pixel < start + pixels.size(); ++at)
             pixels[at->pixel - start] = at->radiance;
         const auto [low, high] = picture_.edges(row);

@@ -50,7 +50,8 @@ struct LatLong {
 // Such a picture that is read in parts, since a large one takes gigabytes.
 struct LatLongRows {
     int width = 0, height = 0;
-    int rows_in_piece = 1;  // rows are stored in pieces of this many, from the top: a piece is read as a whole
+    int rows_in_piece =
+        1;  // rows are stored in pieces of this many, from the top: a piece is read as a whole
     // Rows from the first one on, as many as there are pixels for. Called from several threads.
     std::function<void(int first_row, std::span<glm::vec3> radiance)> read;
 };

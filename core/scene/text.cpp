@@ -70,9 +70,9 @@ void append_hex(std::string& out, unsigned code, int digits) {
 }
 
 struct Escapes {
-    std::string_view before_x = "\\";      // of the "xe9" of a byte that isn't UTF-8
-    std::string_view characters = "";      // that get a backslash
-    bool commands = true;                  // as "\u001b"
+    std::string_view before_x = "\\";  // of the "xe9" of a byte that isn't UTF-8
+    std::string_view characters = "";  // that get a backslash
+    bool commands = true;              // as "\u001b"
 };
 
 std::string escaped(std::string_view text, const Escapes& escapes) {

@@ -75,9 +75,8 @@ std::string channel_names(std::span<const exr_attr_chlist_entry_t> channels) {
 // Whether the picture is grey: Y alone, instead of red, green and blue.
 bool looks_grey(std::span<const exr_attr_chlist_entry_t> channels) {
     const auto find = [&](std::string_view name) {
-        return std::find_if(channels.begin(), channels.end(), [&](const exr_attr_chlist_entry_t& channel) {
-            return channel.name.str == name;
-        });
+        return std::find_if(channels.begin(), channels.end(),
+                            [&](const exr_attr_chlist_entry_t& channel) { return channel.name.str == name; });
     };
     const auto has = [&](std::string_view name) { return find(name) != channels.end(); };
     const bool is_grey = !(has("R") && has("G") && has("B"));
@@ -88,7 +87,8 @@ bool looks_grey(std::span<const exr_attr_chlist_entry_t> channels) {
         if (channel.pixel_type != EXR_PIXEL_HALF && channel.pixel_type != EXR_PIXEL_FLOAT)
             throw Refusal{"has integers in channel " + std::string(name), "half and float"};
         if (channel.x_sampling != 1 || channel.y_sampling != 1)
-            throw Refusal{"has fewer samples than pixels in channel " + std::string(name), "one sample a pixel"};
+            throw Refusal{"has fewer samples than pixels in channel " + std::string(name),
+                          "one sample a pixel"};
     }
     return is_grey;
 }

@@ -17,9 +17,9 @@
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
 #include "plugin/files/files.h"
+#include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/values.h"
-#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::python {
@@ -212,7 +212,9 @@ void add_scene(py::module_& module) {
     scene.def(py::init<>())
         .def_static(
             "from_file",
-            [](const std::filesystem::path& path) { return std::make_shared<Scene>(load_shot(path, check_sky)); },
+            [](const std::filesystem::path& path) {
+                return std::make_shared<Scene>(load_shot(path, check_sky));
+            },
             py::arg("path"),
             "The scene that a shot file describes. ShotError with every problem of the file.")
         .def_static(

@@ -97,7 +97,8 @@ class Scan {
             if (c == quote && (!is_long || text_.substr(at_, 3) == std::string(3, quote))) {
                 at_ += is_long ? 3 : 1;
                 // Up to two quotes before the closing three are the string's own.
-                for (int own = 0; is_long && own < 2 && at_ < text_.size() && text_[at_] == quote; ++own) ++at_;
+                for (int own = 0; is_long && own < 2 && at_ < text_.size() && text_[at_] == quote; ++own)
+                    ++at_;
                 break;
             }
             ++at_;

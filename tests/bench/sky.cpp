@@ -47,7 +47,8 @@ void write_picture(const std::filesystem::path& path, int width) {
             const int row = static_cast<int>(pixel / width), column = static_cast<int>(pixel % width);
             const float noise = static_cast<float>(pixel * 2654435761u % 1024u) / 16384.0f;
             const float height = 1.0f - 2.0f * static_cast<float>(row) / static_cast<float>(width);
-            const bool is_sun = std::abs(row - width / 8) < width / 1024 && std::abs(column - width / 4) < width / 1024;
+            const bool is_sun =
+                std::abs(row - width / 8) < width / 1024 && std::abs(column - width / 4) < width / 1024;
             for (std::size_t c = 0; c < 3; ++c)
                 rows[i][c] = is_sun ? 50000.0f : height * (0.5f + 0.25f * static_cast<float>(c)) + noise;
         }
@@ -84,9 +85,10 @@ void row(const std::filesystem::path& path, int width) {
 int main() {
     Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
     const std::filesystem::path path = std::filesystem::temp_directory_path() / "pelagic-bench-sky.exr";
-    std::printf("The sky of a picture (half, ZIP), ms, least of the repeats; MiB: the most so far\n"
-                "  %-13s %8s %10s %10s %10s %8s %8s\n",
-                "", "file MiB", "make_sky", "its hash", "plain read", "ratio", "peak MiB");
+    std::printf(
+        "The sky of a picture (half, ZIP), ms, least of the repeats; MiB: the most so far\n"
+        "  %-13s %8s %10s %10s %10s %8s %8s\n",
+        "", "file MiB", "make_sky", "its hash", "plain read", "ratio", "peak MiB");
     for (const int width : {2048, 4096, 8192, 16384}) pelagic::bench::row(path, width);
     std::filesystem::remove(path);
     return 0;

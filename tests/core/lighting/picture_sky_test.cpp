@@ -204,9 +204,11 @@ TEST(PictureSky, RowsAreReadInPartsAndTheLowerHalfIsNot) {
         const auto read = [&](int first, std::span<glm::vec3> radiance) {
             const int count = static_cast<int>(radiance.size() / 512);
             rows_read += count;
-            for (int now = lowest; now < first + count && !lowest.compare_exchange_weak(now, first + count);) {
+            for (int now = lowest;
+                 now < first + count && !lowest.compare_exchange_weak(now, first + count);) {
             }
-            std::copy_n(picture.radiance.begin() + std::ptrdiff_t{512} * first, radiance.size(), radiance.begin());
+            std::copy_n(picture.radiance.begin() + std::ptrdiff_t{512} * first, radiance.size(),
+                        radiance.begin());
         };
         const Sky parts =
             picture_sky({.width = 512, .height = 256, .rows_in_piece = rows_in_piece, .read = read}, 128);
@@ -228,7 +230,8 @@ TEST(PictureSky, ALargePictureIsHeldInRings) {
         }
     };
     const auto sky = [&](int rows_in_piece) {
-        return picture_sky({.width = kWidth, .height = kHeight, .rows_in_piece = rows_in_piece, .read = read}, 64);
+        return picture_sky({.width = kWidth, .height = kHeight, .rows_in_piece = rows_in_piece, .read = read},
+                           64);
     };
     const Sky rings = sky(16), whole = sky(kHeight);
     EXPECT_EQ(rings.map.level(0), whole.map.level(0));

@@ -22,8 +22,8 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "plugin/bake/sequence.h"
-#include "plugin/shot/ndbc.h"
 #include "plugin/light/light.h"
+#include "plugin/shot/ndbc.h"
 #include "plugin/shot/shot.h"
 
 namespace {

@@ -223,12 +223,12 @@ TEST_F(Pictures, ASkyThatIsNoneIsRefusedByEveryVerbWithItsPlace) {
     const std::string place = "small.toml:" + std::to_string(line) + ":7: light.sky = \"torn.exr\": ";
     for (const auto& [bytes, problem] : skies) {
         write_file(folder() / "torn.exr", bytes);
-        for (const std::vector<std::string>& verb : std::vector<std::vector<std::string>>{
-                 {"validate", "small.toml"},
-                 {"explain", "small.toml"},
-                 {"bake", "small.toml", "--out", "out"},
-                 {"render", "small.toml", "--out", "out"},
-                 {"preview", "small.toml", "--offscreen", "new/a.png"}})
+        for (const std::vector<std::string>& verb :
+             std::vector<std::vector<std::string>>{{"validate", "small.toml"},
+                                                   {"explain", "small.toml"},
+                                                   {"bake", "small.toml", "--out", "out"},
+                                                   {"render", "small.toml", "--out", "out"},
+                                                   {"preview", "small.toml", "--offscreen", "new/a.png"}})
             refused(verb, 1, {place + problem, "; accepted: a whole file"});
     }
     write_file(folder() / "torn.exr", whole);
@@ -253,16 +253,17 @@ TEST_F(Pictures, FoldersWhoseNamesAreNotUtf8) {
     const std::string odd = "caf\xe9\x80\n";
     fs::create_directories(folder() / odd / odd);
     write_sky(folder() / odd / odd / "sky.exr");
-    const std::string shot = "[surface]\nresolution = 8\n[output]\nmaps = [\"displacement\", \"whitecaps\"]\n"
-                             "map_resolution = 8\n[light]\nsky = \"sky.exr\"\n";
+    const std::string shot =
+        "[surface]\nresolution = 8\n[output]\nmaps = [\"displacement\", \"whitecaps\"]\n"
+        "map_resolution = 8\n[light]\nsky = \"sky.exr\"\n";
     write_file(folder() / odd / odd / "small.toml", small_shot() + shot);
     // The shot's folder; with the working folder above it, in it, and elsewhere.
     int number = 0;
-    for (const auto& [from, file] : std::vector<std::pair<fs::path, std::string>>{
-             {folder(), odd + '/' + odd + "/small.toml"},
-             {folder() / odd, odd + "/small.toml"},
-             {folder() / odd / odd, "small.toml"},
-             {"/", (folder() / odd / odd / "small.toml").string()}})
+    for (const auto& [from, file] :
+         std::vector<std::pair<fs::path, std::string>>{{folder(), odd + '/' + odd + "/small.toml"},
+                                                       {folder() / odd, odd + "/small.toml"},
+                                                       {folder() / odd / odd, "small.toml"},
+                                                       {"/", (folder() / odd / odd / "small.toml").string()}})
         for (const char* verb : {"bake", "render"}) {
             const std::string out = (folder() / odd / ("out\xff" + std::to_string(++number))).string();
             const Ended ended =

@@ -11,8 +11,8 @@
 #include "core/scene/shot_text.h"
 #include "core/scene/validate.h"
 #include "plugin/shot/shot.h"
-#include "tests/plugin/shot/no_check.h"
 #include "tests/core/scene/key_samples.h"
+#include "tests/plugin/shot/no_check.h"
 
 namespace pelagic {
 namespace {

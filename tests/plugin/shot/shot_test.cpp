@@ -335,7 +335,8 @@ TEST(Shot, APictureOfASkyIsFoundBesideTheShot) {
     temporary.write("noon.exr", "only its place matters here");
     const Scene scene = parse_shot("[light]\nsky = \"noon.exr\"\n", folder / "shot.toml", no_check);
     EXPECT_EQ(std::filesystem::path(scene.light.sky), folder / "noon.exr");
-    EXPECT_EQ(parse_shot("[light]\nsky = \"daylight\"\n", folder / "shot.toml", no_check).light.sky, "daylight");
+    EXPECT_EQ(parse_shot("[light]\nsky = \"daylight\"\n", folder / "shot.toml", no_check).light.sky,
+              "daylight");
     try {
         parse_shot("[light]\nsky = \"dusk.exr\"\n", folder / "shot.toml", no_check);
         FAIL() << "a missing picture was accepted";
@@ -365,7 +366,8 @@ TEST(Shot, WhatIsWrongInAPictureIsToldWithItsPlace) {
               file.string() + ":3:7: light.sky = " + quoted_text((temporary.path() / "noon.exr").string()) +
                   ": is no sky; accepted: a sky");
     // A path ends at its first NUL for the system: what is looked at would be another file.
-    EXPECT_NE(refused_with("[light]\nsky = \"noon.exr\\u0000.exr\"\n").find("is no file in"), std::string::npos);
+    EXPECT_NE(refused_with("[light]\nsky = \"noon.exr\\u0000.exr\"\n").find("is no file in"),
+              std::string::npos);
     EXPECT_EQ(lines(refused_with("[light]\nsky = \"dusk.exr\"\n")), 1u);
 }
 
@@ -428,20 +430,23 @@ TEST(Shot, DepthAndLengthAreBoundedBeforeParsing) {
     const char* parts = "the key has too many parts";
     const char* nested = "lists and tables are nested too deep";
     for (const std::size_t count : {std::size_t{17}, std::size_t{16000}, std::size_t{1000000}}) {
-        expect_refused("[sea]\n" + times(count, "a.") + "a = 1\n", std::string("2:32: ") + parts, "at most 16");
+        expect_refused("[sea]\n" + times(count, "a.") + "a = 1\n", std::string("2:32: ") + parts,
+                       "at most 16");
         expect_refused('[' + times(count, "a.") + "a]\n", std::string("1:33: ") + parts, "at most 16");
         expect_refused("[[" + times(count, "a . ") + "a]]\n", std::string("1:65: ") + parts, "at most 16");
         expect_refused(times(count, "\"ü\".") + "a = 1\n", std::string("1:64: ") + parts, "at most 16");
-        expect_refused("a = { " + times(count, "a.") + "a = 1 }\n", std::string("1:38: ") + parts, "at most 16");
+        expect_refused("a = { " + times(count, "a.") + "a = 1 }\n", std::string("1:38: ") + parts,
+                       "at most 16");
         expect_refused("# [[[\n'[' = " + times(count, "["), std::string("2:23: ") + nested, "at most 16");
         expect_refused("a = " + times(count, "[\n"), std::string("17:1: ") + nested, "at most 16");
         expect_refused("a = " + times(count, "{a="), std::string("1:53: ") + nested, "at most 16");
         // Brackets in strings don't count, those behind them do.
-        expect_refused("a = [\"[[[\\\"[\", '[\\', '''[''[''', \"\"\"[\\\"\"\"[\"\"\"\"\", " + times(count, "[{"),
-                       "1:56: " + std::string(nested), "at most 16");
+        expect_refused(
+            "a = [\"[[[\\\"[\", '[\\', '''[''[''', \"\"\"[\\\"\"\"[\"\"\"\"\", " + times(count, "[{"),
+            "1:65: " + std::string(nested), "at most 16");
     }
-    expect_refused("[sea]\nfetch_m = 1" + times(300, "0"),
-                   "2:11: a key or value without quotes is too long", "at most 256 bytes");
+    expect_refused("[sea]\nfetch_m = 1" + times(300, "0"), "2:11: a key or value without quotes is too long",
+                   "at most 256 bytes");
     expect_refused("[sea]\n" + times(257, "k") + " = 1", "2:1: a key or value", "at most 256 bytes");
     for (const std::string quote : {"\"", "'", "\"\"\"", "'''"})
         expect_refused("[shot]\nname = " + quote + times(8000000, "x") + quote, "2:8: a string is too long",
@@ -478,7 +483,8 @@ TEST(Shot, ManyProblemsAreCountedAndTheFirstListed) {
     expect_some("[camera]\nkeys = [" + many(entry) + ']', "2:9: camera.keys[0]");
     // Lists that are too long are one problem.
     for (const char* list : {"sea.swell = [", "output.maps = [", "waves.cascades = ["})
-        EXPECT_EQ(lines(refusal(list + many([](const std::string&) { return "'normale',"; }) + ']')), 1u) << list;
+        EXPECT_EQ(lines(refusal(list + many([](const std::string&) { return "'normale',"; }) + ']')), 1u)
+            << list;
 }
 
 TEST(Shot, MessagesAreShortAndMoveNoCursor) {

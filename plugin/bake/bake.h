@@ -1,6 +1,6 @@
 // Runs a bake: plan, sea, and then frame after frame into files that are whole or not there.
 //
-//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
+//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/NAME.sky.exr, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
 //
 // Files that a former run left whole, with the fingerprint that they would get now, are kept; everything else
 // that is asked for is done again.
@@ -12,7 +12,7 @@
 //   12 bytes a texel for each map and tile (whitecaps 16), and its file: as much again, with mip levels a
 //   third more
 // and while it is encoded once or twice more a map's texels with their mip levels. The faces of the mesh, 28
-// bytes a quad, are held while they are written, before the first frame.
+// bytes a quad, are held while they are written, before the first frame; so are 6 MB for the sky.
 #pragma once
 
 #include <atomic>

@@ -93,6 +93,10 @@ std::string camera_file(std::string_view shot_name) {
     return std::string(shot_name) + ".camera.usdc";
 }
 
+std::string sky_file(std::string_view shot_name) {
+    return std::string(shot_name) + ".sky.exr";
+}
+
 std::string topology_file(std::string_view shot_name, std::string_view extension) {
     return "mesh/" + std::string(shot_name) + ".topology." + std::string(extension);
 }

@@ -3,6 +3,7 @@
 // documentation, "Sequencable, Re-timeable Animated Value Clips").
 //
 //   DIR/NAME.usda                  the root: stage metadata, mesh with its clips, material, lights, camera
+//   DIR/NAME.sky.exr               the dome's image, which someone else writes
 //   DIR/NAME.camera.usdc           the camera's lens and its pose at each frame (camera.h)
 //   DIR/mesh/NAME.topology.EXT     faces and st, and declarations of the attributes that vary
 //   DIR/mesh/NAME.manifest.usda    names and types of the attributes that vary
@@ -100,14 +101,14 @@ struct Sun {
     double elevation_deg = 20.0;
     double azimuth_deg = 90.0;  // towards the sun, counter-clockwise from +x
     double angle_deg = 0.53;    // the disc's diameter as seen from the Earth
-    // Irradiance on a plane across its rays, for a disc of any size (inputs:normalize). A dome of intensity 1
-    // gives π; in a clear sky the sun gives about five times as much as the sky.
-    double intensity = 15.0;
+    // Irradiance on a plane across its rays, for a disc of any size: UsdLux divides a distant light's emission
+    // by π sin²(angle/2) where inputs:normalize is set.
+    double intensity = 1.0;
     glm::vec3 color{1.0f, 1.0f, 1.0f};  // linear
 };
 
 struct Sky {
-    double intensity = 1.0;
+    double intensity = 1.0;             // times the image: radiance, in the sun's unit per steradian
     glm::vec3 color{1.0f, 1.0f, 1.0f};  // linear
     // An asset path, "" for none. The image's middle column is +x, azimuth grows to the left, and the top row
     // is the zenith.
@@ -116,11 +117,11 @@ struct Sky {
 
 // How the water looks in a renderer that has no material of its own for it.
 struct Material {
-    double ior = 1.34;                           // sea water
-    double roughness = 0.1;                      // √α, as UsdPreviewSurface has it
-    double opacity = 1.0;                        // 0 … 1
-    glm::vec3 color{0.004f, 0.016f, 0.024f};     // light coming back out of deep water, linear
-    glm::vec3 whitecap_color{0.6f, 0.6f, 0.6f};  // foam, linear
+    double ior = 1.34;               // sea water
+    double roughness = 0.1;          // √α, as UsdPreviewSurface has it
+    double opacity = 1.0;            // 0 … 1
+    glm::vec3 color{0.0f};           // albedo of the water below the surface, linear
+    glm::vec3 whitecap_color{1.0f};  // albedo of foam, linear
 };
 
 // A value of the root's customLayerData. Infinity is allowed (deep water), NaN is refused.
@@ -151,6 +152,7 @@ std::string prim_name(std::string_view shot_name);
 // Paths relative to the root layer's folder, without "./".
 std::string root_file(std::string_view shot_name);
 std::string camera_file(std::string_view shot_name);
+std::string sky_file(std::string_view shot_name);
 std::string topology_file(std::string_view shot_name, std::string_view extension);
 std::string manifest_file(std::string_view shot_name);
 // A frame's number as USD expands "####": at least four characters with zeros in front, and a minus sign is

@@ -262,7 +262,7 @@ def Xform "a_b"
             def Shader "Preview"
             {
                 uniform token info:id = "UsdPreviewSurface"
-                color3f inputs:diffuseColor = (0.004, 0.016, 0.024)
+                color3f inputs:diffuseColor = (0, 0, 0)
                 float inputs:ior = 1.34
                 float inputs:metallic = 0
                 float inputs:opacity = 1
@@ -274,7 +274,7 @@ def Xform "a_b"
             {
                 uniform token info:id = "ND_standard_surface_surfaceshader"
                 float inputs:base = 1
-                color3f inputs:base_color = (0.004, 0.016, 0.024)
+                color3f inputs:base_color = (0, 0, 0)
                 float inputs:specular = 1
                 float inputs:specular_IOR = 1.34
                 float inputs:specular_roughness = 0.1

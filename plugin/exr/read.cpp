@@ -198,6 +198,14 @@ void RgbFile::read(int first_row, std::span<float> rgb) const {
         for (std::size_t i = 0; i < rgb.size(); i += 3) rgb[i + 1] = rgb[i + 2] = rgb[i];
 }
 
+RgbPixels read_rgb(const std::filesystem::path& path) {
+    const RgbFile file(path);
+    RgbPixels out{file.width(), file.height(), {}};
+    out.pixels.resize(static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height));
+    file.read(0, {out.pixels.data()->data(), 3 * out.pixels.size()});
+    return out;
+}
+
 bool ends_whole(const std::filesystem::path& file) {
     try {
         Imf::InputFile input(file.c_str());

@@ -3,10 +3,13 @@
 // Knows the format and no physics: values are returned as they are in the file, including NaN and infinity.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace pelagic::exr {
 
@@ -50,6 +53,13 @@ class RgbFile {
     int width_ = 0, height_ = 0, rows_in_piece_ = 1;
     bool is_grey_ = false;
 };
+
+// All of such a file at once.
+struct RgbPixels {
+    int width = 0, height = 0;
+    std::vector<std::array<float, 3>> pixels;  // rows from the top, x fastest
+};
+RgbPixels read_rgb(const std::filesystem::path& path);
 
 // Whether the file is an image in scan lines whose last one is there: false for a file that was cut short, that is
 // missing, or that can't be read.

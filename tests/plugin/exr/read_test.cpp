@@ -34,19 +34,6 @@ std::array<float, 3> pixel(int x, int y) {
     return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(x * y % 64) / 8.0f};
 }
 
-struct RgbPixels {
-    int width = 0, height = 0;
-    std::vector<std::array<float, 3>> pixels;
-};
-
-RgbPixels read_rgb(const std::filesystem::path& path) {
-    const RgbFile file(path);
-    RgbPixels out{file.width(), file.height(), {}};
-    out.pixels.resize(static_cast<std::size_t>(out.width) * out.height);
-    file.read(0, {out.pixels.data()->data(), 3 * out.pixels.size()});
-    return out;
-}
-
 class ReadRgb : public ::testing::Test {
   protected:
     void SetUp() override {

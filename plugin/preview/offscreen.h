@@ -33,7 +33,7 @@ struct OffscreenPicture {
 
 // The scene at `frame` through its camera, in `size` pixels (0: the camera's resolution), one sample per
 // pixel. Needs a current context. The GPU computes in single precision; a note says so if quality.level asks
-// for double.
+// for double. Throws std::invalid_argument for a camera under water (plugin/render/under_water.h).
 OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame,
                                   glm::ivec2 size = glm::ivec2(0));
 

@@ -6,6 +6,7 @@
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
 #include "plugin/preview/offscreen.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 
@@ -15,6 +16,8 @@ OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame,
     const auto sea = std::make_shared<const Sea<float>>(picture_plan(seen, std::array{frame}));
     Frame<float> state(sea);
     state.set(seen.shot.time_s(frame));
+    const ProjectedGridOptions options = projected_grid_options(*sea->plan().from);
+    refuse_under_water(state, seen, frame, options);
     PackedFrame packed(sea, 0);
     packed.pack(state);
 
@@ -22,7 +25,6 @@ OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame,
     renderer.set_sky(sky, make_water(seen));
     renderer.upload(packed);
     const View view = view_at(seen.camera, frame);
-    const ProjectedGridOptions options = projected_grid_options(*sea->plan().from);
     ProjectedGrid grid = projected_grid(view, options);
     if (sea->plan().queries.front().query.pixel_m.size() > 1)
         keep_to_rungs(grid, projected_grid_needs(view, options));

@@ -43,7 +43,7 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     auto picture = std::make_unique<Picture>();
     bool is_whole = false;
     try {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         const std::array frames{frame};
         // Half of the way is the sea's: the first frame is about as long in the making.
         Renderer renderer(kept, options, make_sky(kept), frames,

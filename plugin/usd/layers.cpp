@@ -168,6 +168,10 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
         check_finite(attribute.name, values, attribute.components);
     }
     if (sample.faces) check_faces(faces, {"a point", sample.points.size()});
+    if (sample.origin_m)
+        for (int i = 0; i < 3; ++i)
+            if (!std::isfinite((*sample.origin_m)[i]))
+                throw std::invalid_argument("USD: the points' origin must be finite");
     return result;
 }
 

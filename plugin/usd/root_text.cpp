@@ -109,6 +109,11 @@ void write_mesh(Page& page, const Stage& stage, const std::string& material_path
     page.line({"double templateStride = 1"});
     page.close("}");
     page.close("}");
+    if (stage.attributes.origin)
+        page.line(
+            {"doc = \"Points are relative to ", kOrigin,
+             ", which follows the camera in steps: far from the world's origin floats are too coarse for places. ",
+             "A step is no motion; velocities leave it out.\""});
     page.line({"prepend references = @./", topology_file(stage.name, stage.topology_extension), "@"});
     page.close(")");
     page.open({"{"});

@@ -241,7 +241,7 @@ TEST_F(Pictures, ASkyThatIsNoRadianceIsRefusedBeforeAnythingIsWritten) {
     for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), -1.0f}) {
         write_sky(folder() / "odd.exr", wrong);
         const std::vector<std::string> says{
-            "small.toml: light.sky = \"odd.exr\": R of the pixel in column 5, row 3 from the top is ",
+            "light.sky = \"odd.exr\": R of the pixel in column 5, row 3 from the top is ",
             "; accepted: radiances from 0 to 1e30"};
         refused({"render", "small.toml", "--out", "out"}, 1, says);
         refused({"preview", "small.toml", "--offscreen", "new/a.png"}, 1, says);

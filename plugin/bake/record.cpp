@@ -16,6 +16,7 @@
 #include "core/plan/mode_lattice.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/text.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/viscous_cutoff.h"
 #include "core/waves/whitecaps.h"
@@ -36,6 +37,7 @@ Json number(double value) {
 struct ToJson {
     Json operator()(std::monostate) const { return nullptr; }
     Json operator()(double value) const { return number(value); }
+    Json operator()(const std::string& text) const { return utf8_text(text); }  // a path may be anything
     Json operator()(const std::vector<KeyEntry>& entries) const {
         Json list = Json::array();
         for (const KeyEntry& entry : entries) {

@@ -17,6 +17,7 @@
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
+#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
@@ -81,7 +82,7 @@ int stopped(const BakeReport& report, const std::string& out, int signal) {
 }
 
 int run(const Arguments& arguments) {
-    const Scene scene = load_shot(arguments.shot);
+    const Scene scene = load_shot(arguments.shot, check_sky);
     BakeOptions options;
     if (arguments.frames) {
         try {

@@ -83,7 +83,7 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
 }
 
 int run(const Arguments& arguments) {
-    Scene scene = load_shot(arguments.shot);
+    Scene scene = load_shot(arguments.shot, check_sky);
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
         if (!level)

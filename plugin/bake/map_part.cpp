@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -123,6 +124,16 @@ class MapPart final : public OutputPart {
         std::span<const glm::vec3> texels;
     };
 
+    // A channel of the file: one of the three values, or the same everywhere.
+    struct ChannelOf {
+        const char* name;
+        std::optional<int> component;  // none: 1 in every texel
+        exr::PixelType type;
+    };
+    static std::vector<ChannelOf> red_green_blue(exr::PixelType type) {
+        return {{"R", 0, type}, {"G", 1, type}, {"B", 2, type}};
+    }
+
     std::string encoded(const MapSlot& slot, int frame) const {
         const std::string made_of = fingerprint(frame);
         switch (kind_) {
@@ -130,7 +141,7 @@ class MapPart final : public OutputPart {
                 const std::vector<glm::vec3>& texels = slot.values.vectors(Product::Displacement);
                 const exr::Header header = header_of(made_of, frame, {"displacement", "m", texels});
                 return exr::encode_scanline(header,
-                                            image({n_, texels}, {"R", "G", "B"}, exr::PixelType::Float));
+                                            image({n_, texels}, red_green_blue(exr::PixelType::Float)));
             }
             case MapKind::Normal: {
                 const std::vector<glm::vec3>& texels = slot.values.vectors(Product::Normal);
@@ -138,11 +149,11 @@ class MapPart final : public OutputPart {
                 const auto below = normal_mips({.n = n_, .texels = texels, .periodic = periodic_});
                 std::vector<Level> levels{{n_, texels}};
                 for (const MipLevel<glm::vec3>& level : below) levels.push_back({level.n, level.texels});
-                return encode_levels(header, levels, {"R", "G", "B"}, exr::PixelType::Half);
+                return encode_levels(header, levels, red_green_blue(exr::PixelType::Half));
             }
             case MapKind::SlopeVariance: {
                 exr::Header header = header_of(made_of, frame,
-                                               {"slope variance of the waves that a texel hides", "1",
+                                               {"xx, yy and xy of the slope variance that a texel hides", "1",
                                                 slot.values.vectors(Product::SlopeVariance)});
                 // The same all over a level: packed, nearly nothing.
                 header.compression = exr::Compression::Zip;
@@ -154,7 +165,7 @@ class MapPart final : public OutputPart {
                     texels.emplace_back(static_cast<std::size_t>(n) * n, hidden);
                     levels.push_back({n, texels.back()});
                 }
-                return encode_levels(header, levels, {"xx", "yy", "xy"}, exr::PixelType::Float);
+                return encode_levels(header, levels, red_green_blue(exr::PixelType::Float));
             }
             case MapKind::Whitecaps:
                 return encoded_whitecaps(slot, frame);
@@ -186,25 +197,42 @@ class MapPart final : public OutputPart {
         for (std::size_t i = 0; i < texels.size(); ++i)
             levels.push_back({exr::mip_level_size(n_, n_, static_cast<int>(i)).first, texels[i]});
         const exr::Header header = header_of(
-            made_of, frame, {"whitecap coverage, mean and variance of the Jacobian", "1", texels[0]});
-        return encode_levels(header, levels, {"coverage", "mean", "variance"}, exr::PixelType::Float);
+            made_of, frame, {"whitecap coverage; mean and variance of the Jacobian", "1", texels[0]});
+        // Grey, so that every program shows coverage. No layers and an alpha of 1: tried in Blender 3.4, a channel
+        // whose name has a dot makes the file a multi-layer image without pixels of its own, and Cycles takes
+        // whatever comes fourth for alpha.
+        using enum exr::PixelType;
+        return encode_levels(header, levels,
+                             {{"R", 0, Half},
+                              {"G", 0, Half},
+                              {"B", 0, Half},
+                              {"A", {}, Half},
+                              {"jacobianMean", 1, Float},
+                              {"jacobianVariance", 2, Float}});
     }
 
-    static exr::Image image(const Level& level, const std::array<const char*, 3>& names,
-                            exr::PixelType type) {
+    static exr::Image image(const Level& level, const std::vector<ChannelOf>& channels) {
+        static constexpr float kOne = 1.0f;
         exr::Image image{.width = level.n, .height = level.n, .channels = {}};
-        for (int c = 0; c < 3; ++c)
-            image.channels.push_back({.name = names[c],
-                                      .data = &level.texels.data()->x + c,
-                                      .pixel_stride_bytes = sizeof(glm::vec3),
-                                      .type = type});
+        for (const ChannelOf& channel : channels)
+            if (channel.component)
+                image.channels.push_back({.name = channel.name,
+                                          .data = &level.texels.data()->x + *channel.component,
+                                          .pixel_stride_bytes = sizeof(glm::vec3),
+                                          .type = channel.type});
+            else
+                image.channels.push_back(
+                    {.name = channel.name,
+                     .data = &kOne,
+                     .pixel_stride_bytes = 0,  // and so of a row: the same sample everywhere
+                     .type = channel.type});
         return image;
     }
 
     static std::string encode_levels(const exr::Header& header, const std::vector<Level>& levels,
-                                     const std::array<const char*, 3>& names, exr::PixelType type) {
+                                     const std::vector<ChannelOf>& channels) {
         std::vector<exr::Image> images;
-        for (const Level& level : levels) images.push_back(image(level, names, type));
+        for (const Level& level : levels) images.push_back(image(level, channels));
         return exr::encode_mipmapped(header, images);
     }
 

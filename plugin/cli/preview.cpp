@@ -17,6 +17,7 @@
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/files/files.h"
+#include "plugin/light/light.h"
 #include "plugin/preview/offscreen.h"
 #include "plugin/preview/window.h"
 #include "plugin/render/picture_files.h"

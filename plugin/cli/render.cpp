@@ -1,5 +1,6 @@
 // pelagic render SHOT.toml
 #include "plugin/render/render.h"
+#include "plugin/light/light.h"
 
 #include <algorithm>
 #include <array>

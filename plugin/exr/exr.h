@@ -30,7 +30,7 @@ enum class PixelType {
 // data + i · pixel_stride_bytes + j · row_stride_bytes. For a component of interleaved vectors, `data` points
 // at that component of the first vector and the pixel stride is the vector's size.
 struct Channel {
-    std::string name;  // "R", "xx", "coverage", …: unique in the image, 1 … 255 bytes
+    std::string name;  // "R", "sun.G", "jacobianMean", …: unique in the image, 1 … 255 bytes
     const float* data = nullptr;
     std::ptrdiff_t pixel_stride_bytes = sizeof(float);
     std::ptrdiff_t row_stride_bytes = 0;  // 0: rows without gaps, width · pixel_stride_bytes

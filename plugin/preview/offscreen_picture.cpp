@@ -4,6 +4,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "plugin/light/light.h"
 #include "plugin/preview/offscreen.h"
 
 namespace pelagic {

@@ -1,5 +1,6 @@
 // The preview's window. See window.h.
 #include "plugin/preview/window.h"
+#include "plugin/light/light.h"
 
 // Included before GLFW, which then leaves OpenGL's declarations to it.
 #include <epoxy/gl.h>

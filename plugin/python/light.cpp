@@ -1,4 +1,5 @@
 // The lighting on arrays: pelagic.Sky, pelagic.WaterBody and pelagic.shade.
+#include "plugin/light/light.h"
 #include "plugin/python/light.h"
 
 #include <pybind11/numpy.h>

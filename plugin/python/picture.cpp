@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "plugin/light/light.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/light.h"

@@ -27,6 +27,7 @@
 #include "plugin/gpu/shader_variants.h"
 #include "plugin/gpu/sky_atlas.h"
 #include "plugin/gpu/uniforms.h"
+#include "plugin/light/light.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/render/render.h"

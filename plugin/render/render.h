@@ -22,7 +22,6 @@
 
 #include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
-#include "core/lighting/water.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/waves/sea.h"
@@ -64,15 +63,6 @@ void check_render(const Scene& scene, const RenderOptions& options);
 // The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike,
 // whose ladder is as fine as these frames need it. They decide nothing about any frame's bits.
 Plan picture_plan(const Scene& scene, std::span<const int> frames);
-
-// The shot's light: its daylight, or the picture that light.sky is the path of. Throws std::invalid_argument,
-// naming the file, for a picture that can't be read or isn't one of a sky.
-Sky make_sky(const Scene& scene);
-// What make_sky() reads besides the scene, as text for fingerprints: a hash of the picture's bytes; empty for
-// daylight. Throws std::invalid_argument for a file that can't be read.
-std::string sky_content(const Scene& scene);
-// What is in the shot's water.
-WaterBody make_water(const Scene& scene);
 
 // A large picture takes long: both are looked at after each part of it.
 struct RenderWatch {

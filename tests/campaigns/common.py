@@ -6,6 +6,7 @@ and keeps its files.
 """
 
 import argparse
+import collections
 import concurrent.futures
 import os
 import pathlib
@@ -15,6 +16,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -35,7 +37,8 @@ class Run:
 
 
 class Campaign:
-    """Cases 0 … count − 1, each judged by judge(random, folder), which raises Failure where something is wrong."""
+    """Cases 0 … count − 1, each judged by judge(random, folder), which raises Failure where something is wrong.
+    random.case is the case's number."""
 
     def __init__(self, description, count, arguments=None):
         parser = argparse.ArgumentParser(description=description)
@@ -48,6 +51,7 @@ class Campaign:
             arguments(parser)
         self.options = parser.parse_args()
         self.program = self.options.program.resolve()
+        self._counts, self._lock = collections.Counter(), threading.Lock()
         if not self.program.exists():
             parser.error(f"{self.program} isn't there: build it first, or say --program")
 
@@ -69,6 +73,11 @@ class Campaign:
         return Run(command, done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"),
                    time.monotonic() - start)
 
+    def count(self, what):
+        """One more of these: the last line says how many there were."""
+        with self._lock:
+            self._counts[what] += 1
+
     def expect(self, true, sentence, run=None):
         if not true:
             raise Failure(sentence + (f"\n{run.words()}" if run else ""))
@@ -87,8 +96,10 @@ class Campaign:
 
         def case(number):
             folder = pathlib.Path(tempfile.mkdtemp(prefix=f"pelagic-{number}-"))
+            draw = random.Random(f"{self.options.seed}/{number}")
+            draw.case = number
             try:
-                judge(random.Random(f"{self.options.seed}/{number}"), folder)
+                judge(draw, folder)
             except Failure as failure:
                 return number, str(failure)
             finally:
@@ -105,5 +116,6 @@ class Campaign:
                     print(f"case {failed[0]}: {failed[1]}", flush=True)
                 if done % max(1, len(cases) // 10) == 0:
                     print(f"{done} of {len(cases)}, {len(failures)} failed, {time.monotonic() - start:.0f} s", flush=True)
-        print(f"{pathlib.Path(sys.argv[0]).name}: {len(cases)} cases, {len(failures)} failed")
+        counts = "".join(f", {number} {what}" for what, number in sorted(self._counts.items()))
+        print(f"{pathlib.Path(sys.argv[0]).name}: {len(cases)} cases, {len(failures)} failed{counts}")
         sys.exit(1 if failures else 0)

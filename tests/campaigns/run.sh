@@ -17,7 +17,7 @@ done
 if [ ${#names[@]} -eq 0 ]; then
     for script in "$here"/*.py; do
         name=$(basename "$script" .py)
-        [ "$name" = common ] || names+=("$name")
+        [[ $name = common* ]] || names+=("$name")
     done
 fi
 status=0

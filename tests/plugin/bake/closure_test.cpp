@@ -24,6 +24,7 @@
 #include "plugin/bake/bake.h"
 #include "plugin/exr/exr.h"
 #include "plugin/files/files.h"
+#include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
 #include "tests/plugin/bake/closure_shots.h"
 

@@ -31,6 +31,7 @@
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
 #include "plugin/files/files.h"
+#include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
 #include "tests/plugin/bake/closure_shots.h"
 

@@ -2,14 +2,18 @@
 
 #include "plugin/bake/maps.h"
 
+#include <ImfMultiPartInputFile.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <string>
 
 #include <glm/geometric.hpp>
 #include "core/evaluate/evaluate.h"
+#include "core/scene/names.h"
 #include "plugin/bake/bake.h"
 #include "tests/plugin/bake/read_exr.h"
 
@@ -76,10 +80,11 @@ TEST_F(BakedMaps, LieAsAMapWithNorthOnTop) {
 
 TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
     const fs::path file = bake_map(MapKind::Whitecaps, "maps/sea.whitecaps.0001.exr");
-    const auto mean = test::read_level(file, "mean", 0), variance = test::read_level(file, "variance", 0);
-    const auto coarse_mean = test::read_level(file, "mean", 1),
-               coarse_variance = test::read_level(file, "variance", 1);
-    const auto coarse_coverage = test::read_level(file, "coverage", 1);
+    const auto mean = test::read_level(file, "jacobianMean", 0),
+               variance = test::read_level(file, "jacobianVariance", 0);
+    const auto coarse_mean = test::read_level(file, "jacobianMean", 1),
+               coarse_variance = test::read_level(file, "jacobianVariance", 1);
+    const auto coarse_coverage = test::read_level(file, "R", 1);
     ASSERT_EQ(coarse_mean.n, 64);
     // A periodic map: the tent round column 2i has ¼, ½, ¼.
     const auto tent = [&](int x, int y, auto&& value) {
@@ -103,15 +108,37 @@ TEST_F(BakedMaps, WhitecapLevelsComeFromMoments) {
     // The last level is the whole patch: its coverage is that of the sea, not 0 or 1, and near the mean of
     // level 0.
     double fine_coverage = 0.0;
-    const auto coverage = test::read_level(file, "coverage", 0);
+    const auto coverage = test::read_level(file, "R", 0);
     for (const float w : coverage.values)
         fine_coverage += static_cast<double>(w) / static_cast<double>(coverage.values.size());
-    const double whole = static_cast<double>(test::read_level(file, "coverage", 7).at(0, 0));
+    const double whole = static_cast<double>(test::read_level(file, "R", 7).at(0, 0));
     // One Pearson curve for the whole against one per texel: they agree to some ten percent of a coverage of
     // 2 %.
     EXPECT_NEAR(whole / fine_coverage, 1.0, 0.25);
     // And it is not the average of level 0, which a filter of thresholded coverage would give.
     EXPECT_GT(std::abs(whole / fine_coverage - 1.0), 1e-4);
+}
+
+// What Blender, Cycles and OpenImageIO show of a file, found in the real ones by tests/addon/maps.py: red, green and
+// blue, if no channel is in a layer, and the fourth channel as alpha.
+TEST_F(BakedMaps, AreAPictureToEveryProgram) {
+    for (const Word<MapKind>& kind : words_of(MapKind{})) {
+        SCOPED_TRACE(kind.word);
+        const fs::path path =
+            bake_map(kind.value, ("maps/sea." + std::string(kind.word) + ".0001.exr").c_str());
+        Imf::MultiPartInputFile parts(path.c_str());
+        EXPECT_EQ(parts.parts(), 1);
+        const Imf::ChannelList& channels = parts.header(0).channels();
+        std::set<std::string> layers;
+        channels.layers(layers);
+        EXPECT_TRUE(layers.empty());
+        int count = 0;
+        for (auto at = channels.begin(); at != channels.end(); ++at) ++count;
+        for (const char* name : {"R", "G", "B"}) EXPECT_NE(channels.findChannel(name), nullptr) << name;
+        if (count == 3) continue;
+        ASSERT_NE(channels.findChannel("A"), nullptr);
+        for (const float alpha : test::read_level(path, "A", 0).values) ASSERT_EQ(alpha, 1.0f);
+    }
 }
 
 TEST_F(BakedMaps, SlopeVarianceOfACoarserLevelHidesMore) {
@@ -121,7 +148,7 @@ TEST_F(BakedMaps, SlopeVarianceOfACoarserLevelHidesMore) {
     const Sea<float> sea(plan);
     double before = 0.0;
     for (int level = 0; level <= 7; ++level) {
-        const double xx = static_cast<double>(test::read_level(file, "xx", level).at(0, 0));
+        const double xx = static_cast<double>(test::read_level(file, "R", level).at(0, 0));
         EXPECT_GE(xx, before);
         before = xx;
     }

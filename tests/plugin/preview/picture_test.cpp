@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "plugin/light/light.h"
 #include "plugin/preview/offscreen.h"
 #include "plugin/render/render.h"
 #include "tests/plugin/preview/compare.h"

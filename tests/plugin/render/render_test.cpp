@@ -1,5 +1,6 @@
 // Whole pictures, of seas for which something is known. Small ones: a few thousand pixels.
 #include "plugin/render/render.h"
+#include "plugin/light/light.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

@@ -1,11 +1,11 @@
-// The light of a shot, and its water. See render.h.
+#include "plugin/light/light.h"
+
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
 
 #include "core/plan/fingerprint.h"
 #include "plugin/exr/read.h"
-#include "plugin/render/render.h"
 
 namespace pelagic {
 namespace {

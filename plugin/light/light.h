@@ -1,0 +1,21 @@
+// The light of a shot, and its water, as every room that lights the sea takes them.
+#pragma once
+
+#include <string>
+
+#include "core/lighting/sky.h"
+#include "core/lighting/water.h"
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// The shot's light: its daylight, or the picture that light.sky is the path of. Throws std::invalid_argument,
+// naming the file, for a picture that can't be read or isn't one of a sky.
+Sky make_sky(const Scene& scene);
+// What make_sky() reads besides the scene, as text for fingerprints: a hash of the picture's bytes; empty for
+// daylight. Throws std::invalid_argument for a file that can't be read.
+std::string sky_content(const Scene& scene);
+// What is in the shot's water.
+WaterBody make_water(const Scene& scene);
+
+}  // namespace pelagic

@@ -1,5 +1,7 @@
 #include "plugin/bake/bake.h"
 
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -19,6 +21,7 @@
 #include "plugin/bake/record.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/files/files.h"
+#include "plugin/machine/memory.h"
 
 namespace pelagic {
 namespace {
@@ -147,6 +150,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     const Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
         throw std::invalid_argument("the shot asks for no output: accepted: output.mesh, output.maps");
+    require_memory(bake_memory(plan, frames.size(), tbb::this_task_arena::max_concurrency()),
+                   machine::memory_limit_or(options.max_memory_bytes), "this bake");
     const Parts parts = make_parts(plan);
     prepare_folders(options.out, parts);
 

@@ -10,6 +10,7 @@
 #include "core/plan/plan.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/memory.h"
 #include "plugin/cli/progress.h"
 #include "plugin/cli/stop.h"
 #include "plugin/cli/text.h"
@@ -24,7 +25,7 @@ struct Arguments {
     std::string shot;
     std::optional<std::string> out;
     std::optional<std::string> frames;
-    std::string threads;
+    std::string threads, max_memory;
 };
 
 void print_done(const BakeReport& report, const std::string& out) {
@@ -85,6 +86,7 @@ int run(const Arguments& arguments) {
         return kWrongUsage;
     }
     options.out = arguments.out.value_or(scene.shot.name);
+    options.max_memory_bytes = memory_of(arguments.max_memory);
 
     StopSignals stop;
     Progress progress;
@@ -102,6 +104,9 @@ int run(const Arguments& arguments) {
         progress.clear();
         std::cerr << out_of_memory(scene);
         return kRefused;
+    } catch (const NotEnoughMemory& error) {
+        progress.clear();
+        return refuse_memory(arguments.shot, error);
     } catch (const std::invalid_argument& error) {
         // load_shot() has looked at every value with its line: what is refused here is what it can't see.
         progress.clear();
@@ -126,6 +131,7 @@ Verb add_bake(CLI::App& program) {
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
     add_threads(*command, arguments->threads, help::kThreads);
+    add_max_memory(*command, arguments->max_memory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

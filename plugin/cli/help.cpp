@@ -52,6 +52,10 @@ const char* const kThreads =
     "How many threads, 1 to 256; the files don't depend on it.\n"
     "Default: one for each core that the process may use";
 
+const char* const kMaxMemory =
+    "Refuse a shot that would take more memory than this, before any work: 8G, 512M.\n"
+    "Default: what the machine has, or less where a container or ulimit allows less";
+
 const char* const kRender =
     "Render pictures of a shot through its camera: OpenEXR with layers, and PNG.\n"
     "The same sea as in the preview, computed on the CPU. Each frame gives DIR/NAME.####.png\n"

@@ -11,7 +11,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/setup.sh"
 out=${1:-$PELAGIC_ROOT/baked/first-shot}
 
-install_packages
+install_packages program
 build release pelagic
 "$PELAGIC_ROOT/build/release/pelagic" bake "$here/first-shot.toml" --out "$out"
 

@@ -14,7 +14,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=setup.sh
 source "$here/setup.sh"
 
-install_packages
+install_packages program python blender
 build release addon-zip
 zip=$(ls "$PELAGIC_ROOT"/build/release/pelagic_ocean-*.zip)
 

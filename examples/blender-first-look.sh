@@ -16,10 +16,10 @@ module=$PELAGIC_ROOT/build/release/python
 
 if ! compgen -G "$module/pelagic.*.so" >/dev/null; then
     echo "The Python module isn't built yet: installing what is missing, and building it into $module"
-    install_packages
+    install_packages program python
     build release pelagic_python
 fi
-command -v blender >/dev/null || install_packages
+command -v blender >/dev/null || install_packages blender
 
 # If an option is given twice, the caller's counts: it is the later one. Blender needs --python-exit-code to
 # report a script's failure.

@@ -5,7 +5,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=setup.sh
 source "$here/setup.sh"
-install_packages
+install_packages program python blender
 build release pelagic pelagic_python >/dev/null
 samples=${1:-256}
 

@@ -11,7 +11,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 out=${1:-$here/gallery}
 # shellcheck source=setup.sh
 source "$here/setup.sh"
-install_packages
+install_packages program blender
 build release pelagic >/dev/null
 mkdir -p "$out"
 scratch=$(mktemp -d)

@@ -3,19 +3,25 @@
 
 PELAGIC_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
+# missing_packages [SECTION…]: those of the list's sections that aren't installed; of all without an argument.
 missing_packages() {
-    local line package command
+    local section="" line package command
     sed 's/#.*//' "$PELAGIC_ROOT/examples/packages.txt" | while read -r line; do
-        [ -n "$line" ] || continue
+        case $line in
+        "") continue ;;
+        "["*) section=${line//[][]/} && continue ;;
+        esac
+        [ $# -eq 0 ] || [[ " $* " == *" $section "* ]] || continue
         package=${line%%:*} command=${line#*:}
         [ "$command" != "$line" ] && command -v "$command" >/dev/null 2>&1 && continue
         dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || echo "$package"
     done
 }
 
+# install_packages [SECTION…]
 install_packages() {
     local missing
-    missing=$(missing_packages)
+    missing=$(missing_packages "$@")
     [ -n "$missing" ] || return 0
     local as_root=()
     if [ "$(id -u)" -ne 0 ]; then
@@ -31,11 +37,20 @@ install_packages() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
 }
 
-# build PRESET [TARGET…]: configures and builds build/PRESET.
+# installed SECTION: ON or OFF, for an option of the build.
+installed() {
+    [ -z "$(missing_packages "$1")" ] && echo ON || echo OFF
+}
+
+# build PRESET [TARGET…]: configures and builds build/PRESET. What is built follows from what is installed, each time
+# anew: so a script with a short list neither needs the rest nor takes it out of a folder that had it.
 build() {
     local preset=$1
     shift
     local targets=()
     [ $# -eq 0 ] || targets=(--target "$@")
-    (cd "$PELAGIC_ROOT" && cmake --preset "$preset" && cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}")
+    (cd "$PELAGIC_ROOT" &&
+        cmake --preset "$preset" -DPELAGIC_PREVIEW="$(installed preview)" -DPELAGIC_PYTHON="$(installed python)" \
+            -DPELAGIC_TESTS="$(installed tests)" -DPELAGIC_BLENDER_TESTS="$(installed blender)" &&
+        cmake --build --preset "$preset" --parallel "$(nproc)" "${targets[@]}")
 }

@@ -1,8 +1,7 @@
 // All help texts of the command line. See help.h.
 #include "plugin/cli/help.h"
 
-#include <oneapi/tbb/version.h>
-#include <CLI/CLI.hpp>
+#include "core/base/instruction_set.h"
 
 namespace pelagic::cli::help {
 
@@ -117,6 +116,10 @@ const char* const kPreviewThreads =
     "How many threads compute the sea, 1 to 256.\n"
     "Default: one for each core that the process may use";
 
+const char* const kNoPreview =
+    "This build has no preview; configure with -DPELAGIC_PREVIEW=ON for one.\n"
+    "Without a window: pelagic render SHOT.toml --frames 1 --size 640x360 --samples 1";
+
 const char* const kExplain =
     "Print what a bake will compute, and why.\n"
     "Each output and what it needs, the transforms and their sizes, and the memory. Bakes nothing.";
@@ -160,8 +163,9 @@ std::string version_text() {
     const std::string compiler = "g++ " __VERSION__;
 #endif
     return "pelagic " PELAGIC_VERSION "\nbuilt with " + compiler +
-           " for " PELAGIC_PROCESSOR " (" PELAGIC_BUILD_TYPE "), oneTBB " TBB_VERSION_STRING
-           ", CLI11 " CLI11_VERSION;
+           " for " PELAGIC_PROCESSOR " (" PELAGIC_BUILD_TYPE ")\nparts: " PELAGIC_PARTS
+           "\nlibraries: " PELAGIC_LIBRARIES "\ninstruction set on this machine: " +
+           instruction_set();
 }
 
 }  // namespace pelagic::cli::help

@@ -38,6 +38,8 @@ extern const char* const kScreenshot;
 extern const char* const kAfter;
 extern const char* const kPreviewThreads;
 
+extern const char* const kNoPreview;
+
 extern const char* const kExplain;
 extern const char* const kExplainFooter;
 extern const char* const kMeasure;

@@ -17,7 +17,7 @@ for program in "$@"; do
         *) targets+=("bench_$program") ;;
     esac
 done
-install_packages
+install_packages program preview python blender bench
 build release "${targets[@]}" >/dev/null
 in_blender() {
     # Without --python-exit-code Blender hides a script's failure.

@@ -89,8 +89,9 @@ class Campaign:
             self.expect(bad not in run.err, f"{bad!r} in its messages", run)
         self.expect(run.status == 0 or run.err.strip(), "it failed without a word", run)
 
-    def go(self, judge):
-        """Judges the cases and ends the process: exit status 0 only if none failed."""
+    def go(self, judge, all_together=None):
+        """Judges the cases and ends the process: exit status 0 only if none failed. all_together() is asked after them:
+        a sentence if what it gathered is wrong."""
         cases = [self.options.only] if self.options.only is not None else range(self.options.count)
         failures, start = [], time.monotonic()
 
@@ -116,6 +117,9 @@ class Campaign:
                     print(f"case {failed[0]}: {failed[1]}", flush=True)
                 if done % max(1, len(cases) // 10) == 0:
                     print(f"{done} of {len(cases)}, {len(failures)} failed, {time.monotonic() - start:.0f} s", flush=True)
+        if all_together and (wrong := all_together()):
+            failures.append((None, wrong))
+            print(wrong)
         counts = "".join(f", {number} {what}" for what, number in sorted(self._counts.items()))
         print(f"{pathlib.Path(sys.argv[0]).name}: {len(cases)} cases, {len(failures)} failed{counts}")
         sys.exit(1 if failures else 0)

@@ -42,6 +42,9 @@ struct Ended {
     double seconds = 0.0;
 };
 
+// The preview can be left out of a build; the verb then says so, whatever it is asked.
+inline constexpr bool kHasPreview = PELAGIC_HAS_PREVIEW;
+
 // A started program; terminated with this object at the latest.
 class Running {
   public:

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Edits of every key: a folder holds a shot's files, one key is changed, and the program is run again. The shot's files
+are then those of an empty folder, byte for byte; and so they are when the key is put back."""
+
+import math
+
+from common import Campaign
+import common_files
+import common_shots
+
+campaign = Campaign(__doc__.splitlines()[0], 500)
+pelagic = common_files.module(campaign.program)
+ROWS = common_shots.learn(pelagic)
+DEFAULTS = {row["path"]: row["default"] for row in ROWS}
+
+SMALL = {
+    "shot.frames": [1, 2], "waves.cascades": [{"size_m": 80.0, "resolution": 64}, {"size_m": 24.0, "resolution": 32}],
+    "sea.swell": [{"height_m": 1.0, "period_s": 9.0, "direction_deg": 40.0}], "surface.size_m": 80.0,
+    "surface.resolution": 8, "camera.resolution": [64, 36], "output.map_resolution": 8, "quality.level": "preview",
+}
+DESCENDS = {
+    "shot.frames": [2, 4], "camera.resolution": [160, 90],
+    "camera.keys": [{"frame": 1, "position_m": [0.0, -60.0, 40.0], "look_at_m": [0.0, 20.0, 0.0]},
+                    {"frame": 10, "position_m": [0.0, -40.0, 9.0], "look_at_m": [0.0, 20.0, 0.0]}],
+}
+ALL_MAPS = {"output.maps": ["displacement", "normal", "slope-variance", "whitecaps"], "output.cascade_tiles": True}
+BASES = [
+    ("bake", {**SMALL, **ALL_MAPS}),
+    ("bake", {**SMALL, **ALL_MAPS, "waves.model": "trochoid", "waves.trains": 12, "output.mesh": "usda",
+              "waves.cascades": [{"size_m": 20.0, "resolution": 32}]}),
+    ("bake", {**SMALL, **DESCENDS, "surface.kind": "projected-grid", "output.maps": ["slope-variance"]}),
+    ("bake", {**SMALL, "sea.spectrum": "file", "sea.spectrum_file": "buoy-1w2024.txt", "output.maps": ["normal"],
+              "sea.spectrum_time": "2024-10-03T06:00:00Z"}),
+    ("render", {**SMALL, "camera.resolution": [24, 14], "quality.level": "draft"}),
+    ("render", {**SMALL, **DESCENDS, "camera.resolution": [24, 14], "quality.level": "draft", "light.sky": "sky.exr"}),
+]
+# What is drawn of keys whose values lie in files, and of one that goes by another.
+CHOICES = {
+    "shot.loop_s": [1.0, 2.0],
+    "light.sky": ["daylight", "sky.exr", "other.exr"],
+    "sea.spectrum_file": ["buoy-1w2024.txt", "other-1w2024.txt"],
+    "sea.spectrum_time": ["2024-10-03T06:00:00Z", "2024-10-03T07:00:00Z"],
+}
+CASES = [(verb, keys, row) for row in ROWS for verb, keys in BASES]
+STRIDE = next(step for step in range(101, 1000) if math.gcd(step, len(CASES)) == 1)  # few cases are spread over all
+
+
+def lay_out(draw, folder):
+    """The files that shots name."""
+    common_shots.write_sky(folder / "sky.exr")
+    common_shots.write_sky(folder / "other.exr", draw)
+    for kind in "wdijk":
+        source = common_shots.BUOY.with_name(common_shots.BUOY.name.replace("99002w", f"99002{kind}"))
+        if source.exists():
+            text = source.read_text(encoding="utf-8")
+            (folder / f"buoy-1{kind}2024.txt").write_text(text, encoding="utf-8")
+            # Another swell, the same columns.
+            (folder / f"other-1{kind}2024.txt").write_text(text.replace("13.16", "18.16").replace("9.54", "4.54"),
+                                                     encoding="utf-8")
+
+
+def run(verb, shot, keys, out):
+    shot.write_text(common_shots.shot_text(keys), encoding="utf-8")
+    done = campaign.run(verb, shot, "--out", out, *(("--samples", "1") if verb == "render" else ()), timeout=300)
+    campaign.ended_well(done, (0, 1))
+    return done
+
+
+def judge(draw, folder):
+    verb, keys, row = CASES[draw.case * STRIDE % len(CASES)]
+    path = row["path"]
+    lay_out(draw, folder)
+    shot, out, fresh = folder / "shot.toml", folder / "out", folder / "fresh"
+    done = run(verb, shot, keys, out)
+    campaign.expect(done.status == 0, f"{verb}: its own shot is refused", done)
+    before = common_files.bytes_below(out)
+
+    for _ in range(12):
+        other = draw.choice(CHOICES[path]) if path in CHOICES else common_shots.value(draw, row)
+        if other is None or other == keys.get(path, DEFAULTS[path]):
+            continue
+        edited = {**keys, path: other}
+        done = run(verb, shot, edited, fresh)
+        if done.status == 0:
+            break
+        campaign.expect(not fresh.exists(), f"{path}: refused, and something was written", done)
+        run(verb, shot, edited, out)
+        campaign.expect(not (wrong := common_files.differences(before, common_files.bytes_below(out))),
+                        f"{path} = {other!r}: refused, and the folder is another: {wrong}", done)
+    else:
+        campaign.count(f"without another value that fits {path}")
+        return
+    campaign.count(f"edited and {'baked' if verb == 'bake' else 'rendered'}")
+    expected = common_files.bytes_below(fresh)
+    campaign.expect(run(verb, shot, edited, out).status == 0, f"{path} = {other!r}: refused where files lie")
+    found = common_files.bytes_below(out)
+    left = {name for name in found if name not in expected}
+    campaign.expect(left <= before.keys(), f"{path} = {other!r}: files that neither shot has: {left - before.keys()}")
+    wrong = common_files.differences(expected, {name: data for name, data in found.items() if name in expected})
+    campaign.expect(not wrong, f"{path} = {other!r}, {verb}: not as in an empty folder: {wrong}")
+
+    campaign.expect(run(verb, shot, keys, out).status == 0, f"{path}: refused when put back")
+    again = {name: data for name, data in common_files.bytes_below(out).items() if name in before}
+    campaign.expect(not (wrong := common_files.differences(before, again)),
+                    f"{path} = {other!r}, {verb}: put back, and not as it was: {wrong}")
+
+
+campaign.go(judge)

@@ -1,0 +1,84 @@
+"""Installs the build, moves the prefix, and uses it as others do: by CMake, by pkg-config, with their compilers and flags.
+
+    package.py CMAKE BUILD-FOLDER FOLDER [python]      FOLDER is made anew; python: the build has the module
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+CONSUMER = SOURCE / "tests/package/consumer"
+cmake, build, folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+prefix = folder / "moved/elsewhere"
+OWN_FLAGS = ("-Werror", "-Wconversion", "-march=", "-fsanitize", "GLM_FORCE", "PELAGIC_VERSION")
+
+
+def run(*command, **more):
+    done = subprocess.run([str(c) for c in command], text=True, capture_output=True, **more)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\nended with {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def expect(truth, what):
+    if not truth:
+        sys.exit(what)
+
+
+def by_cmake(name, *options):
+    run(cmake, "-S", CONSUMER, "-B", folder / name, "-G", "Ninja", *options)
+    return folder / name
+
+
+# Staged by DESTDIR, as packagers do, and then moved: nothing in it may know where it was.
+shutil.rmtree(folder, ignore_errors=True)
+run(cmake, "--install", build, "--prefix", "/opt/pelagic", env={**os.environ, "DESTDIR": str(folder / "stage")})
+prefix.parent.mkdir(parents=True)
+(folder / "stage/opt/pelagic").rename(prefix)
+expect(not list((folder / "stage").rglob("*.*")), "something was installed outside the prefix")
+for text in [*prefix.rglob("*.cmake"), *prefix.rglob("*.pc")]:
+    said = text.read_text()
+    for word in (*OWN_FLAGS, str(SOURCE), str(build), "/opt/pelagic"):
+        expect(word not in said, f"{text} says {word}")
+
+# The program, the module, and the headers, each of which compiles by itself, without a warning of its own.
+expect(run(prefix / "bin/pelagic", "--version").startswith("pelagic "), "the program doesn't run")
+expect((prefix / "share/doc/pelagic/LICENSE").is_file(), "no licence")
+if "python" in sys.argv[4:]:
+    expect(run("/usr/bin/python3", "-c", "import pelagic; print(pelagic.__file__)", cwd="/",
+               env={**os.environ, "PYTHONPATH": str(prefix / "lib/python3/dist-packages")}).startswith(str(prefix)),
+           "the module isn't the installed one")
+headers = sorted(p.relative_to(prefix / "include/pelagic") for p in prefix.rglob("*.h"))
+expect({p.relative_to(SOURCE) for p in SOURCE.glob("core/**/*.h") if not p.name.endswith("-inl.h")} == set(headers),
+       "the headers aren't those of core")
+pc = {**os.environ, "PKG_CONFIG_PATH": str(next(prefix.rglob("pkgconfig")))}
+cflags = run("pkg-config", "--cflags", "pelagic-core", env=pc).split()
+libs = run("pkg-config", "--libs", "pelagic-core", env=pc).split()
+expect(str(prefix) in " ".join(cflags), f"pkg-config doesn't say where it was moved to: {cflags}")
+all_of_them = folder / "all.cpp"
+all_of_them.write_text("".join(f'#include "{header}"\n' for header in headers))
+run("g++", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", *cflags, all_of_them)
+
+# Three users, with their own compilers and flags, get the bits that our own build gets.
+own = run(build / "tests/package_consumer")
+expect(len(own.splitlines()) == 9, f"the consumer says\n{own}")
+run("clang++", "-Wall", "-Wextra", "-Werror", "-O1", *cflags, CONSUMER / "consumer.cpp", "-o", folder / "by_pkg_config", *libs)
+expect(run(folder / "by_pkg_config") == own, "other bits by clang++ and pkg-config")
+found = by_cmake("found", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release",
+                 "-DCMAKE_CXX_COMPILER=g++", "-DCMAKE_CXX_FLAGS=-march=native -Wall -Wextra -Wpedantic -Werror")
+run(cmake, "--build", found)
+expect(run(found / "consumer") == own, "other bits by g++ -march=native and find_package")
+
+# As a part of another build: the core alone is wanted, so no window, Python, tests or rules of ours.
+part = by_cmake("part", f"-DPELAGIC_SOURCE={SOURCE}", "-DCMAKE_BUILD_TYPE=Release")
+cache = (part / "CMakeCache.txt").read_text()
+for option in ("PREVIEW", "PYTHON", "TESTS", "BLENDER_TESTS", "BENCH", "INSTALL"):
+    expect(f"PELAGIC_{option}:BOOL=OFF" in cache, f"PELAGIC_{option} is on inside another project")
+commands = json.loads((part / "compile_commands.json").read_text())
+(theirs,) = [c["command"] for c in commands if c["file"].endswith("consumer.cpp")]
+expect("-ffp-contract=off" in theirs and not any(flag in theirs for flag in OWN_FLAGS), f"our rules in their build: {theirs}")
+print(f"{len(headers)} headers, {prefix}: by CMake, pkg-config and as a part, the same bits")

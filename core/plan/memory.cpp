@@ -22,8 +22,8 @@ std::string bytes_text(std::size_t bytes) {
 
 void MemoryNeed::add(const std::string& what, std::size_t bytes, const std::string& remedy) {
     if (bytes == 0) return;
-    const auto same = std::find_if(parts_.begin(), parts_.end(),
-                                   [&](const MemoryPart& part) { return part.what == what; });
+    const auto same =
+        std::find_if(parts_.begin(), parts_.end(), [&](const MemoryPart& part) { return part.what == what; });
     if (same != parts_.end())
         same->bytes += bytes;
     else

@@ -15,7 +15,7 @@ std::string bytes_text(std::size_t bytes);
 
 // Bytes that are held at the same time as the others of a need.
 struct MemoryPart {
-    std::string what;    // "the frame's grids"
+    std::string what;  // "the frame's grids"
     std::size_t bytes = 0;
     std::string remedy;  // what to change so that they become fewer: "lower output.map_resolution"
 };

@@ -268,7 +268,7 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
     if (is_narrow(at)) {
         const double most = kBeside * at.diagonal / cell_angle + kSpare;
         const double first = core.last - kFine * at.diagonal;  // of those that stay small
-        near_cells = first > core.first    ? before + (first - core.first) / cell_angle
+        near_cells = first > core.first     ? before + (first - core.first) / cell_angle
                      : first > angles.first ? (first - angles.first) / (kMargin * cell_angle)
                                             : 0.0;
         near_rows = std::min(near_cells, most);

@@ -72,8 +72,9 @@ class MapPart final : public OutputPart {
         return {.once = texels * 2 * scalar,
                 .slot = texels * file,
                 .encoding = texels * work,
-                .remedy = output_.cascade ? "lower the resolutions in waves.cascades, or leave cascade_tiles out"
-                                          : "lower output.map_resolution, or ask for fewer output.maps"};
+                .remedy = output_.cascade
+                              ? "lower the resolutions in waves.cascades, or leave cascade_tiles out"
+                              : "lower output.map_resolution, or ask for fewer output.maps"};
     }
 
     void encode(int frame, OutputSlot& any_slot) const override {

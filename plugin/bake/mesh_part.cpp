@@ -66,7 +66,8 @@ class MeshPart final : public OutputPart {
     OutputMemory memory() const override {
         const std::size_t points = query().points;
         const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
-        constexpr std::size_t kFace = 5 * sizeof(std::int32_t) + sizeof(glm::vec2);  // a quad's count, corners, st
+        constexpr std::size_t kFace =
+            5 * sizeof(std::int32_t) + sizeof(glm::vec2);  // a quad's count, corners, st
         OutputMemory memory{.once = points * 2 * scalar, .remedy = {}};
         if (plan_.surface->is_constant()) {
             memory.fixed = points * kFace;
@@ -79,7 +80,8 @@ class MeshPart final : public OutputPart {
         }
         if (is_text()) {
             memory.slot += points * kText * numbers();
-            memory.encoding = points * kText * numbers() / 2;  // the string moves to a larger place as it grows
+            memory.encoding =
+                points * kText * numbers() / 2;  // the string moves to a larger place as it grows
             if (memory.fixed > 0) memory.fixed += points * kFace;
             memory.remedy += "; output.mesh = \"usdc\" needs a third";
         }

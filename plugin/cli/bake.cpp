@@ -48,18 +48,11 @@ void print_done(const BakeReport& report, const std::string& out) {
     }
 }
 
-// What was planned, so that people see what is large.
-std::string out_of_memory(const Scene& scene) {
-    const Plan plan = plan_bake(scene);
-    long vertices = 0, texels = 0;
-    for (const PlannedOutput& output : plan.outputs)
-        (output.map ? texels : vertices) += static_cast<long>(plan.queries[output.query].query.points);
-    return "pelagic: out of memory; planned: " + bytes_text(plan.sea_bytes()) + " for the sea, " +
-           bytes_text(plan.frame_bytes()) + " for a frame of it, and the values at " +
-           count_text(vertices, "vertex", "vertices") + " and " + count_text(texels, "texel", "texels") +
-           " with their files; lower surface.resolution, output.map_resolution or the cascades' resolutions, "
-           "or ask "
-           "for fewer attributes; files already written are whole\n";
+// The system gave less than the bake was allowed: what it holds, so that people see what is large.
+std::string out_of_memory(const Scene& scene, int threads) {
+    const MemoryNeed need = bake_memory(plan_bake(scene), kFramesInFlight, threads);
+    return "pelagic: out of memory; this bake holds " + memory_text(need) + "; to need less, " +
+           need.parts().front().remedy + "; files already written are whole\n";
 }
 
 int stopped(const BakeReport& report, const std::string& out, int signal) {
@@ -102,7 +95,7 @@ int run(const Arguments& arguments) {
         report = threads.execute([&] { return bake(scene, options); });
     } catch (const std::bad_alloc&) {
         progress.clear();
-        std::cerr << out_of_memory(scene);
+        std::cerr << out_of_memory(scene, threads.count());
         return kRefused;
     } catch (const NotEnoughMemory& error) {
         progress.clear();

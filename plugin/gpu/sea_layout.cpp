@@ -37,7 +37,8 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, La
     pixels = ladder_of(plan, planned.query.pixel_m, planned.pixel_levels);
     const glm::ivec2 cell_size = place(plan, cells), pixel_size = place(plan, pixels);
     if (plan.dropped[index(Field::Dx)])
-        return {{true, 1, {Field::Height}, cell_size}, {false, 2, {Field::SlopeX, Field::SlopeY}, pixel_size}};
+        return {{true, 1, {Field::Height}, cell_size},
+                {false, 2, {Field::SlopeX, Field::SlopeY}, pixel_size}};
     return {{true, 4, {Field::Height, Field::Dx, Field::Dy}, cell_size},
             {false, 4, {Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy}, pixel_size},
             {false, 1, {Field::Dxy}, pixel_size}};
@@ -82,8 +83,8 @@ SeaLayout::Ladder SeaLayout::ladder_of(const Plan& plan, const std::vector<doubl
     return ladder;
 }
 
-// Packs tiles in shelves, the largest first, into the texture of the fewest texels that no driver is too small for:
-// as wide as one of the tiles, as two side by side, and so on.
+// Packs tiles in shelves, the largest first, into the texture of the fewest texels that most drivers have: as wide
+// as one of the tiles, as two side by side, and so on.
 glm::ivec2 SeaLayout::place(const Plan& plan, Ladder& ladder) {
     const int skirt = plan.knobs.spline_taps - 1;
     std::map<std::pair<int, int>, std::vector<Tile*>> by_grid;  // several rungs may share a grid
@@ -111,14 +112,17 @@ glm::ivec2 SeaLayout::place(const Plan& plan, Ladder& ladder) {
         }
         return size;
     };
-    constexpr int kEveryDriverHas = 8192;  // OpenGL 3.3 itself asks for 1024 only
-    const auto texels = [&](glm::ivec2 size) { return static_cast<double>(size.x) * size.y; };
-    std::optional<std::pair<bool, double>> best;
+    // How many of the sizes that drivers stop at it is larger than, and then its texels.
+    const auto judge = [&](glm::ivec2 size) {
+        const int side = std::max(size.x, size.y);
+        return std::pair((side > 4096) + (side > 8192) + (side > 16384),
+                         static_cast<double>(size.x) * size.y);
+    };
+    std::optional<std::pair<int, double>> best;
     int best_width = 0, width = 0;
     for (const auto& tiles : grids) {
         width += tiles.front()->n + skirt;
-        const glm::ivec2 size = shelves(width, [](const auto&, glm::ivec2) {});
-        const std::pair judged(std::max(size.x, size.y) > kEveryDriverHas, texels(size));
+        const auto judged = judge(shelves(width, [](const auto&, glm::ivec2) {}));
         if (best && !(judged < *best)) continue;
         best = judged;
         best_width = width;

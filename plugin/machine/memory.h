@@ -10,8 +10,8 @@ namespace pelagic::machine {
 
 // Where the system says it; other places for tests.
 struct Sources {
-    std::filesystem::path process = "/proc/self";       // whose "cgroup" names its control groups
-    std::filesystem::path groups = "/sys/fs/cgroup";    // where they are mounted, of version 1 or 2
+    std::filesystem::path process = "/proc/self";     // whose "cgroup" names its control groups
+    std::filesystem::path groups = "/sys/fs/cgroup";  // where they are mounted, of version 1 or 2
 };
 
 // The least of the machine's memory, what the process's control groups (containers) allow, and what its own limit

@@ -9,8 +9,8 @@
 
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
-#include "core/scene/validate.h"
 #include "core/scene/text.h"
+#include "core/scene/validate.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/preview/live.h"
 
@@ -26,7 +26,8 @@ MemoryNeed live_memory(const Plan& plan) {
     for (const SeaLayout::Plane& plane : SeaLayout::planes_of(plan, 0))
         packed += static_cast<std::size_t>(plane.size.x) * static_cast<std::size_t>(plane.size.y) *
                   static_cast<std::size_t>(plane.channels) * sizeof(float);
-    need.add("the frame's grids as textures", 6 * packed, "lower the resolutions in waves.cascades, or quality.level");
+    need.add("the frame's grids as textures", 6 * packed,
+             "lower the resolutions in waves.cascades, or quality.level");
     return need;
 }
 
@@ -60,14 +61,14 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
         if (rung_m == 0.0) continue;
         plan = plan_from(rung_m);
         const std::size_t needed = live_memory(whole).bytes();
-        made.note = (needed > limits.memory.bytes
-                         ? "the sea needs about " + bytes_text(needed) + ", and " + limits.memory.whose + " " +
-                               bytes_text(limits.memory.bytes)
-                         : "the sea's grids need larger textures than the driver's, " +
-                               std::to_string(limits.texture) + " a side") +
-                    "; waves below " + number_text(plan.filter.n_min * rung_m) +
-                    " m are left out of the picture. To see them, lower the resolutions in waves.cascades, or "
-                    "quality.level";
+        made.note =
+            (needed > limits.memory.bytes ? "the sea needs about " + bytes_text(needed) + ", and " +
+                                                limits.memory.whose + " " + bytes_text(limits.memory.bytes)
+                                          : "the sea's grids need larger textures than the driver's, " +
+                                                std::to_string(limits.texture) + " a side") +
+            "; waves below " + number_text(plan.filter.n_min * rung_m) +
+            " m are left out of the picture. To see them, lower the resolutions in waves.cascades, or "
+            "quality.level";
     }
     if (!fits(plan, limits)) require_memory(live_memory(plan), limits.memory, "this sea");
     made.sea = std::make_shared<const Sea<float>>(std::move(plan));

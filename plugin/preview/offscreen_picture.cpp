@@ -60,13 +60,14 @@ std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea
 
 // The finest footprint of a pixel that shows the sea, or more than any where none does: the least of all triangles
 // that reach into the picture.
-double finest_pixel_in_view(const View& view, const ProjectedGrid& grid, std::span<const glm::vec3> positions) {
+double finest_pixel_in_view(const View& view, const ProjectedGrid& grid,
+                            std::span<const glm::vec3> positions) {
     const glm::dmat4 clip_from = view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m);
     constexpr int kPlanes = 5;
     std::vector<std::uint8_t> outside(positions.size());  // of which planes, a bit each
     for (std::size_t i = 0; i < positions.size(); ++i) {
         const glm::dvec4 p = clip_from * glm::dvec4(positions[i], 1.0);
-        const std::array<bool, kPlanes> beyond{p.x > p.w, p.x < -p.w, p.y > p.w, p.y < -p.w, p.z < -p.w};
+        const std::array<bool, kPlanes> beyond{p.x > p.w, p.x<-p.w, p.y> p.w, p.y < -p.w, p.z < -p.w};
         for (int plane = 0; plane < kPlanes; ++plane)
             outside[i] |= static_cast<std::uint8_t>(beyond[plane] ? 1 << plane : 0);
     }

@@ -25,7 +25,7 @@ class Rasteriser {
   public:
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     static constexpr int kBandRows = 16;
-    static constexpr int kLargestSide = 1 << 18;  // [pixels] limit of the integers
+    static constexpr int kLargestSide = 1 << 18;                          // [pixels] limit of the integers
     static constexpr std::size_t kPieceBytes = 7 * sizeof(std::int32_t);  // held for each triangle in view
 
     // clip: OpenGL's clip coordinates by vertex, finite. indices: three per triangle. Both must stay alive

@@ -368,8 +368,8 @@ constexpr std::size_t kPointBytes = 2 * (sizeof(glm::vec2) + 2 * sizeof(float)) 
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
-                                     3 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) + 7 * sizeof(float) +
-                                     (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
+                                     3 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) +
+                                     7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
 
 }  // namespace
 
@@ -383,15 +383,16 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the camera's grid of points", plan.queries[0].query.points * kPointBytes<T>,
                  "raise surface.cell_px, or ask for a smaller picture (--size)");
         const glm::ivec2 samples = sampled.camera.resolution;
-        const auto rows = static_cast<std::size_t>(
-            std::min(rows_of_batch(samples.x, options.samples), samples.y));
+        const auto rows =
+            static_cast<std::size_t>(std::min(rows_of_batch(samples.x, options.samples), samples.y));
         need.add("the pixels at hand", rows * static_cast<std::size_t>(samples.x) * kSampleBytes<T>,
                  "ask for a smaller picture (--size) or fewer --samples");
     });
     const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
                         static_cast<std::size_t>(scene.camera.resolution.y);
     need.add("pictures",
-             pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (kPictureBytes + kFileBytes) + kEncodingBytes
+             pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (kPictureBytes + kFileBytes) +
+                                       kEncodingBytes
                                  : kPictureBytes),
              "ask for a smaller picture (--size)");
     return need;

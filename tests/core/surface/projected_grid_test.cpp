@@ -170,8 +170,7 @@ TEST(ProjectedGrid, PointsAreInProportionToThePicturesCells) {
             for (const double pitch_deg : {-90.0, -30.0, 0.0, 3.0})
                 for (const double wave_m : {0.0, 0.3, 10.0})
                     for (const double cell_px : {1.0, 8.0})
-                        for (const glm::ivec2 resolution :
-                             {glm::ivec2{32, 18}, glm::ivec2{20, 400}}) {
+                        for (const glm::ivec2 resolution : {glm::ivec2{32, 18}, glm::ivec2{20, 400}}) {
                             const Shot shot{.height_m = height_m,
                                             .pitch_deg = pitch_deg,
                                             .fov_deg = fov_deg,
@@ -180,11 +179,9 @@ TEST(ProjectedGrid, PointsAreInProportionToThePicturesCells) {
                                 .cell_px = cell_px,
                                 .bounds = {.height_m = 1.3 * wave_m, .reach_m = wave_m},
                                 .significant_height_m = wave_m};
-                            const ProjectedGridSize size =
-                                projected_grid_needs(view_of(shot), options).size;
+                            const ProjectedGridSize size = projected_grid_needs(view_of(shot), options).size;
                             const double across = std::hypot(resolution.x, resolution.y) / cell_px;
-                            EXPECT_LE(static_cast<double>(points_of(size)),
-                                      60.0 * across * across + 40e3)
+                            EXPECT_LE(static_cast<double>(points_of(size)), 60.0 * across * across + 40e3)
                                 << text_of(shot) << " waves " << wave_m << " cells " << cell_px << ": "
                                 << size.columns << " × " << size.rows;
                         }

@@ -6,6 +6,10 @@ PELAGIC_ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # missing_packages [SECTION…]: those of the list's sections that aren't installed; of all without an argument.
 missing_packages() {
     local section="" line package command
+    for section; do
+        grep -qx "\[$section\]" "$PELAGIC_ROOT/examples/packages.txt" ||
+            { echo "setup.sh: packages.txt has no section [$section]" >&2 && return 1; }
+    done
     sed 's/#.*//' "$PELAGIC_ROOT/examples/packages.txt" | while read -r line; do
         case $line in
         "") continue ;;
@@ -39,7 +43,9 @@ install_packages() {
 
 # installed SECTION: ON or OFF, for an option of the build.
 installed() {
-    [ -z "$(missing_packages "$1")" ] && echo ON || echo OFF
+    local missing
+    missing=$(missing_packages "$1")
+    [ -z "$missing" ] && echo ON || echo OFF
 }
 
 # build PRESET [TARGET…]: configures and builds build/PRESET. What is built follows from what is installed, each time

@@ -51,6 +51,9 @@ class Campaign:
             arguments(parser)
         self.options = parser.parse_args()
         self.program = self.options.program.resolve()
+        program = self.program.read_bytes()
+        # Sanitizers reserve terabytes of addresses.
+        self._limits_memory = not any(name in program for name in (b"__asan_init", b"__tsan_init"))
         self._counts, self._lock = collections.Counter(), threading.Lock()
         if not self.program.exists():
             parser.error(f"{self.program} isn't there: build it first, or say --program")
@@ -67,7 +70,7 @@ class Campaign:
         start = time.monotonic()
         try:
             done = subprocess.run(command, capture_output=True, timeout=timeout, cwd=cwd, env=env, input=stdin,
-                                  preexec_fn=limits if memory_gib else None)
+                                  preexec_fn=limits if memory_gib and self._limits_memory else None)
         except subprocess.TimeoutExpired:
             raise Failure(f"more than {timeout} s: {' '.join(command)}") from None
         return Run(command, done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"),

@@ -40,11 +40,6 @@ def read_exr(path):
         raise Failure(f"{path} isn't whole: {error!r}") from None
 
 
-def exr_header(path):
-    """The attributes of a file: their bytes, by name."""
-    return _header(pathlib.Path(path).read_bytes())[0]
-
-
 def _header(data):
     magic, version = struct.unpack_from("<II", data)
     if magic != 20000630 or version & 0xff != 2 or version & 0x1800:
@@ -148,8 +143,8 @@ def write_exr(path, channels):
 
 
 def read_png(path):
-    """(height, width, channels) of an 8-bit picture without a palette, unfiltered rows left as they are: only what
-    says that the file is whole, check sums included, and how much it varies."""
+    """(height, width, channels) of an 8-bit picture without a palette. Failure where a check sum is wrong or it isn't
+    whole."""
     data = pathlib.Path(path).read_bytes()
     if data[:8] != b"\x89PNG\r\n\x1a\n":
         raise Failure(f"{path} isn't a PNG")
@@ -166,15 +161,36 @@ def read_png(path):
         elif kind == b"IDAT":
             packed += value
         at += 12 + size
-    width, height, depth, colour = header[:4]
-    channels = {0: 1, 2: 3, 4: 2, 6: 4}[colour]
-    if kind != b"IEND" or at != len(data) or depth != 8:
-        raise Failure(f"{path}: ends in {kind}, {len(data) - at} bytes after it, {depth} bits")
+    if kind != b"IEND" or at != len(data) or header is None or header[2] != 8:
+        raise Failure(f"{path}: ends in {kind}, with {len(data) - at} bytes after it")
+    width, height = header[:2]
+    channels = {0: 1, 2: 3, 4: 2, 6: 4}[header[3]]
     raw = zlib.decompress(packed)
     if len(raw) != height * (1 + width * channels):
         raise Failure(f"{path}: {len(raw)} bytes of pixels for {width} x {height}")
     rows = np.frombuffer(raw, np.uint8).reshape(height, 1 + width * channels)
-    return rows[:, 1:].reshape(height, width, channels)
+    return _unfiltered(rows[:, 0], rows[:, 1:].astype(np.int64), channels).reshape(height, width, channels)
+
+
+def _unfiltered(filters, rows, channels):
+    """The bytes that a PNG's rows stand for: each is the difference from what its row's filter foretells from its
+    neighbours a (left), b (above) and c (above left)."""
+    above = np.zeros(rows.shape[1], np.int64)
+    for kind, row in zip(filters, rows):
+        if kind == 2:
+            row += above
+        elif kind:
+            for i in range(len(row)):
+                a, c = (row[i - channels] & 0xff, above[i - channels]) if i >= channels else (0, 0)
+                b = above[i]
+                if kind == 4:
+                    guess = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+                else:
+                    guess = a if kind == 1 else (a + b) // 2
+                row[i] += guess
+        row &= 0xff
+        above = row
+    return rows.astype(np.uint8)
 
 
 def _finite(path, name, values):

@@ -70,8 +70,7 @@ def judge(draw, folder):
     else:
         campaign.count("pictures")
         held = common_files.check_folder(pelagic, out)
-        right, up = axes(ahead, roll)
-        judge_picture(words, scene, held, eye, rays(ahead, right, up, field))
+        judge_picture(words, scene, held, eye, rays(ahead, *axes(ahead, roll), field))
 
     out = folder / "mesh"
     done = campaign.run("bake", shot, "--out", out, timeout=300)
@@ -83,7 +82,7 @@ def judge(draw, folder):
         campaign.count("grids")
         held = common_files.check_folder(pelagic, out)
         mesh = next(value for name, value in held.items() if name.startswith("mesh/") and "0003" in name)
-        judge_grid(words, sea, mesh)
+        judge_grid(words, sea, mesh, eye, np.stack([*axes(ahead, roll), ahead]), math.tan(math.radians(field / 2)))
 
 
 def axes(ahead, roll_deg):
@@ -112,31 +111,36 @@ def judge_picture(words, scene, held, eye, corners):
     total = np.stack([picture[c] for c in "RGB"], axis=-1)
     campaign.expect((total.max(axis=-1) > 0).all(), f"{words}: a black pixel in daylight")
     campaign.expect(np.ptp(total) > 0 and np.ptp(total) > 1e-4 * total.max(), f"{words}: all of one colour")
-    campaign.expect(png.max() > 4 and png.min() < 255, f"{words}: the PNG is {png.min()} … {png.max()}")
+    # Straight down into clear water it is dark.
+    bright = 20 if corners[..., 2].max() > 0 else 4
+    campaign.expect(png.max() > bright and png.min() < 255, f"{words}: the PNG is {png.min()} … {png.max()}")
 
     # Over the crests the horizon is level: no ray that rises meets water, and each that falls does.
+    slopes = corners[..., 2]
+    around = np.stack([slopes[:-1, :-1], slopes[1:, :-1], slopes[:-1, 1:], slopes[1:, 1:]])
+    sky, sea = around.min(axis=0) > 1e-3, around.max(axis=0) < -1e-3
     if eye[2] > 2 * scene.significant_height_m() + 0.2:
-        slopes = corners[..., 2]
-        around = np.stack([slopes[:-1, :-1], slopes[1:, :-1], slopes[:-1, 1:], slopes[1:, 1:]])
-        sky, sea = around.min(axis=0) > 1e-3, around.max(axis=0) < -1e-3
         for layer in ("sea", "foam"):
             campaign.expect(not layers[layer][sky].any(), f"{words}: {layer} in {(layers[layer][sky] > 0).sum()} "
                             "samples above the horizon")
         # The water's own light, where air doesn't hide it.
         near = sea & (eye[2] / np.maximum(-around.max(axis=0), 1e-9) < 2e4)
         campaign.expect((layers["sea"][near].max(axis=-1) > 0).all(), f"{words}: pixels below the horizon without sea")
-    # Light that can be: mirrors are no brighter than what they show, and what scatters shares what comes in.
+    # Light that can be: mirrors are no brighter than what they show, and what scatters shares what comes in. Above the
+    # horizon the sky has the sun's disc.
     light = pelagic.Sky(scene)
     brightest = light.image(256)[:128].reshape(-1, 3).max(axis=0)
     incoming = np.asarray(light.sun_irradiance) + np.asarray(light.sky_irradiance)
     for layer, bound in (("sky", 1.5 * brightest), ("sea", incoming / math.pi), ("foam", incoming / math.pi),
                          ("sun", np.asarray(light.sun_radiance) * 1.01)):
-        campaign.expect((layers[layer] <= bound * 1.01 + 1e-9).all(),
-                        f"{words}: {layer} up to {layers[layer].reshape(-1, 3).max(axis=0)}, it may {bound}")
+        values = layers[layer][sea]
+        campaign.expect((values <= bound * 1.01 + 1e-9).all(),
+                        f"{words}: {layer} up to {values.max(axis=0, initial=0)}, it may {bound}")
 
 
-def judge_grid(words, sea, mesh):
-    points = mesh["position"].astype("f8")
+def judge_grid(words, sea, mesh, eye, camera, half_width):
+    """camera: right, up and ahead."""
+    points = mesh["position"].astype("f8") + mesh.get("origin_m", 0.0) - eye
     if not len(mesh["face_corners"]):
         campaign.count("grids of nothing")
         return
@@ -146,7 +150,11 @@ def judge_grid(words, sea, mesh):
     size = np.linalg.norm(area, axis=-1)
     campaign.expect((size > 0).all(), f"{words}: {(size == 0).sum()} of {len(size)} quads have no area")
     if sea in UNFOLDED:
-        campaign.expect((area[:, 2] > 0).all(), f"{words}: {(area[:, 2] <= 0).sum()} of {len(size)} quads lie face down")
+        # In the picture: round the nadir and in the margins, rows of other widths meet.
+        across, along, depth = camera @ quads.mean(axis=1).T
+        seen = (depth > 0) & (abs(across) < half_width * depth) & (abs(along) < half_width * HEIGHT / WIDTH * depth)
+        down = seen & (area[:, 2] <= 0)
+        campaign.expect(not down.any(), f"{words}: {down.sum()} of {seen.sum()} quads in the picture lie face down")
 
 
 campaign.go(judge)

@@ -43,7 +43,7 @@ long peak_kib_of(int frames, const std::filesystem::path& shot) {
 }
 
 TEST(BakeMemory, OfAThousandFramesIsThatOfTen) {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "the sanitizer keeps freed memory";
 #endif
     const TempFolder folder;

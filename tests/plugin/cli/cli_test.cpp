@@ -195,7 +195,8 @@ TEST_F(Cli, ExplainPrintsThePlanAndWritesNothing) {
     // allocated. The address space is limited below one such buffer (8193² positions, 800 MB).
     write_file(folder() / "large.toml",
                "[surface]\nresolution = 8192\n[output]\nmaps = [\"normal\"]\nmap_resolution = 8192\n");
-#if !defined(__SANITIZE_ADDRESS__)  // its shadow memory takes terabytes of addresses
+#if !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)  // its shadow memory takes terabytes of addresses
     const Ended large = run({.arguments = {"explain", "large.toml"},
                              .folder = folder(),
                              .most_address_space = std::size_t{600} << 20});
@@ -276,8 +277,8 @@ TEST_F(Cli, AShotThatAsksForNothingIsRefused) {
 }
 
 TEST_F(Cli, OutOfMemoryIsSaidAndIsNoCrash) {
-#if defined(__SANITIZE_ADDRESS__)
-    GTEST_SKIP() << "the address sanitizer takes terabytes of addresses itself";
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers take terabytes of addresses themselves";
 #endif
     write_file(folder() / "large.toml", "[surface]\nresolution = 8192\n");
     // Somebody who allows more than there is gets as far as that goes.

@@ -174,8 +174,8 @@ TEST_F(Explain, RefusesToMeasureWhatDoesNotFit) {
 }
 
 TEST_F(Explain, RefusesWhereThisProcessGetsNoMemory) {
-#if defined(__SANITIZE_ADDRESS__)
-    GTEST_SKIP() << "the address sanitizer takes terabytes of addresses itself";
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers take terabytes of addresses themselves";
 #endif
     write_file(folder() / "shot.toml", "[surface]\nresolution = 4096\n");
     const Ended ended = run({.arguments = {"explain", "shot.toml", "--measure", "--threads", "1"},

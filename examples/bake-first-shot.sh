@@ -19,6 +19,7 @@ cat <<EOF
 
 The sea is in $out
   first-shot.usda    the stage: open it in a program that reads OpenUSD (usdview; Blender 3.5 or later, File > Import > USD)
+  first-shot.sky.exr the sky of the stage's dome light; its sun is in the stage
   mesh/              a layer a frame: positions, normals, velocities, slope variances, whitecap coverage
   maps/              displacement and whitecaps as OpenEXR, for a shader on a flat plane
   first-shot.json    what was baked, and each frame's statistics

@@ -13,8 +13,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 from bpy.app.handlers import persistent
-from bpy.props import BoolProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, FloatVectorProperty, IntProperty, PointerProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
+from mathutils import Vector
 
 from . import handlers, light, material, meshes, ocean
 from .module import pelagic
@@ -24,6 +25,9 @@ from .surfaces import Surface
 
 ENTRIES = {key["path"]: getattr(pelagic, key["entry"]) for key in pelagic.keys() if key["entry"]} if pelagic else {}
 UV_M = 100.0  # of a camera's grid: the length that is 1 in its UV map
+# Far out rest positions begin again after this length, so that they stay fine: a multiple of UV_M and of the longest step
+# of a mesh's origin.
+WRAP_M = 102400.0
 ACCEPTED = "accepted: a bake's folder, or NAME.json or NAME.usda in it"
 
 
@@ -80,7 +84,9 @@ class Bake:
         starts = np.concatenate([[0], np.cumsum(told["face_counts"])[:-1]]).astype(np.int32)
         signature = f"baked {len(told['st'])} {zlib.crc32(corners):08x} {zlib.crc32(starts):08x}"
         if told is arrays:  # a camera's grid: a frame has its own faces, and where its points rest nobody knows
-            return Surface(signature, arrays["position"][:, :2], 1.0, lambda: (corners, starts), uv_m=UV_M, moves=True)
+            origin_m = arrays["origin_m"][:2]
+            rest = arrays["position"][:, :2] + (origin_m - WRAP_M * np.round(origin_m / WRAP_M)).astype(np.float32)
+            return Surface(signature, rest, 1.0, lambda: (corners, starts), uv_m=UV_M, moves=True)
         size_m = np.float32(self.scene.surface.size_m)
         return Surface(signature, (told["st"] - np.float32(0.5)) * size_m, 1.0, lambda: (corners, starts), uv_m=size_m)
 
@@ -122,11 +128,27 @@ def bake_of(obj):
         raise ValueError(f"{error.filename}: is not there; {ACCEPTED}") from None
 
 
+def _move(obj, origin_m):
+    """Puts the object where its points' origin is, by a delta transform: its location stays its user's. Returns what must
+    be added to its points, since it couldn't be moved, or None."""
+    turned = obj.matrix_basis.to_3x3()
+    step = turned @ Vector(origin_m) - Vector(obj.pelagic_baked.origin_m)
+    if not step.length:
+        return None
+    try:
+        obj.pelagic_baked.origin_m = Vector(obj.pelagic_baked.origin_m) + step
+        obj.delta_location = obj.delta_location + step
+    except AttributeError:  # while Blender draws a window no script may write properties: meshes._sign()
+        return np.array(turned.inverted_safe() @ step, np.float32)
+    return None
+
+
 problems = {}  # object's name → why it doesn't show the frame
 
 
 def show(obj, frame):
-    """Puts the bake's mesh of a Blender frame into the object. What is wrong is in problems afterwards."""
+    """Puts the bake's mesh of a Blender frame into the object. Returns its origin; None, and what is wrong in problems, if
+    it couldn't."""
     problems.pop(obj.name_full, None)
     try:
         bake = bake_of(obj)
@@ -141,9 +163,12 @@ def show(obj, frame):
             meshes.put_surface(obj.data, surface)
         elif surface.moves:
             meshes.move_rest(obj.data, surface)
-        meshes.put_frame(obj.data, arrays)
+        left_m = _move(obj, arrays["origin_m"])
+        meshes.put_frame(obj.data, arrays if left_m is None else {**arrays, "position": arrays["position"] + left_m})
+        return arrays["origin_m"]
     except (OSError, ValueError) as error:
         problems[obj.name_full] = str(error)
+        return None
 
 
 @persistent
@@ -154,11 +179,15 @@ def _on_data(*_):
 
 @persistent
 def _on_frame(bpy_scene, _depsgraph=None):
-    shown = set()
+    frame = round(bpy_scene.frame_current_final)  # a shutter's ends are half a frame away: the same mesh
+    origins_m = {}
     for obj in bpy_scene.objects:
-        if obj.pelagic_baked.path and obj.type == "MESH" and obj.data not in shown:
-            shown.add(obj.data)
-            show(obj, round(bpy_scene.frame_current_final))  # a shutter's ends are half a frame away: the same mesh
+        if not obj.pelagic_baked.path or obj.type != "MESH":
+            continue
+        if obj.data not in origins_m:
+            origins_m[obj.data] = show(obj, frame)
+        elif origins_m[obj.data] is not None:
+            _move(obj, origins_m[obj.data])
 
 
 def _changed(settings, context):
@@ -171,6 +200,7 @@ class PELAGIC_PG_baked(bpy.types.PropertyGroup):
                          description="NAME.json in the folder of the bake that this object plays")
     offset: IntProperty(name="Offset", update=_changed,
                         description="Frames by which it is later than in the bake")
+    origin_m: FloatVectorProperty(size=3, subtype="TRANSLATION", options={"HIDDEN"})  # its part of the delta location
 
 
 class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):

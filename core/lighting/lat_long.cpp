@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/base/constants.h"
 #include "core/lighting/background.h"
@@ -25,21 +28,28 @@ LatLong lat_long(const Sky& sky, int width) {
     // Samples at most a texel of the map apart, where those are narrowest: at the horizon.
     const double texel = 2.0 * static_cast<double>(kSkyMapExtent) / sky.map.size();
     const int n = static_cast<int>(std::ceil(pixel / texel));
+    std::vector<glm::dvec2> headings(static_cast<std::size_t>(width) * n);  // of the samples in a row
+    for (int column = 0; column < width; ++column)
+        for (int i = 0; i < n; ++i) {
+            const double azimuth = kPi - pixel * (column + (i + 0.5) / n);
+            headings[static_cast<std::size_t>(column) * n + i] = {std::cos(azimuth), std::sin(azimuth)};
+        }
     tbb::parallel_for(0, picture.height, [&](int row) {
+        std::vector<glm::dvec2> elevations;  // cosine and sine
+        for (int j = 0; j < n; ++j) {
+            const double elevation = 0.5 * kPi - pixel * (row + (j + 0.5) / n);
+            elevations.emplace_back(std::cos(elevation), std::sin(elevation));
+        }
         for (int column = 0; column < width; ++column) {
             glm::vec3 sum(0.0f);
             double weights = 0.0;
-            for (int j = 0; j < n; ++j) {
-                const double elevation = 0.5 * kPi - pixel * (row + (j + 0.5) / n);
+            for (const glm::dvec2& elevation : elevations)
                 for (int i = 0; i < n; ++i) {
-                    const double azimuth = kPi - pixel * (column + (i + 0.5) / n);
-                    const glm::vec3 direction(std::cos(elevation) * std::cos(azimuth),
-                                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-                    const double weight = std::cos(elevation);  // of equal steps in angle
-                    sum += static_cast<float>(weight) * background(sky, direction, 1.0f).sky;
-                    weights += weight;
+                    const glm::dvec2 heading = headings[static_cast<std::size_t>(column) * n + i];
+                    const glm::vec3 direction(elevation.x * heading.x, elevation.x * heading.y, elevation.y);
+                    sum += static_cast<float>(elevation.x) * background(sky, direction, 1.0f).sky;
+                    weights += elevation.x;  // of equal steps in angle
                 }
-            }
             picture.radiance[static_cast<std::size_t>(row) * width + column] =
                 sum / static_cast<float>(weights);
         }

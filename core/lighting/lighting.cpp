@@ -40,6 +40,16 @@ struct Shading {
     // clang-format on
 };
 
+SeaAlbedo albedo(const WaterBody& water) {
+    const SkyMap none;
+    Shading<LightingChoice{}> shading(none);
+    // Of irradiance π the radiance is the albedo.
+    return {
+        .water = shading.water_radiance({0.0f, 0.0f, 1.0f}, vec3(0.0f), vec3(shading.kPi), water.reflectance),
+        .foam = shading.foam_reflectance(water.reflectance),
+        .water_index = shading.kWaterIndex};
+}
+
 using Batch = void (*)(const Sky&, const WaterBody&, std::span<const SeaPoint>, std::span<SeaRadiance>);
 
 template <LightingChoice kChoice>
@@ -90,6 +100,10 @@ constexpr std::array<Batch, kVariants> batches(std::index_sequence<kNumbers...>)
 constexpr std::array<Batch, kVariants> kBatches = batches(std::make_index_sequence<kVariants>());
 
 }  // namespace shading
+
+SeaAlbedo sea_albedo(const WaterBody& water) {
+    return shading::albedo(water);
+}
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                std::span<const SeaPoint> points, std::span<SeaRadiance> radiance) {

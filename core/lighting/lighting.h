@@ -45,6 +45,17 @@ struct SeaPoint {
     float coverage = 0.0f;               // of whitecaps, 0 … 1
 };
 
+// The sea as a diffuse surface, linear Rec. 709, for hosts that bring their own optics: the share of the
+// irradiance of a diffuse sky that leaves again, ideally diffuse.
+struct SeaAlbedo {
+    // Through the surface, into the water and up to the surface again (water.glsl). The factor (1 − F) of the
+    // way out, which depends on the eye, is the host's, and so is what the surface itself reflects.
+    glm::vec3 water{0.0f};
+    glm::vec3 foam{0.0f};      // of covered area (foam.glsl)
+    float water_index = 1.0f;  // of refraction, for that surface
+};
+SeaAlbedo sea_albedo(const WaterBody& water);
+
 // Writes radiance[i] for points[i], on the calling thread. Each depends on its point and the arguments alone,
 // and is finite for finite points. Throws std::invalid_argument if the spans differ in length, or if
 // choice.sky is on and the sky has no map.

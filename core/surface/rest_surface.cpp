@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/common.hpp>
 #include <limits>
 #include <stdexcept>
 
@@ -146,6 +147,15 @@ constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
 });
 
 }  // namespace
+
+glm::dvec2 local_origin(glm::dvec2 place_m, double finest_cell_m) {
+    constexpr double kLongest_m = 4096.0;
+    // A place is at most half a step away from the origin along each axis. Floats err by 2^−26 steps there, or by 2^−25
+    // just beyond: by 2^−7 cells where a step is 2^18 of them.
+    constexpr double kCells = 1 << 18;
+    const double step_m = std::min(rung_below_m(finest_cell_m) * kCells, kLongest_m);
+    return glm::round(place_m / step_m) * step_m + 0.0;  // −0 is 0
+}
 
 void set_grid_faces(int columns, int rows, Faces& faces) {
     constexpr std::int64_t kMostQuads = std::numeric_limits<std::int32_t>::max() / 4;

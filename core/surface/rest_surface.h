@@ -49,6 +49,12 @@ struct RestPoints {
     std::vector<T> cell_m{}, pixel_m{};  // empty: the query's own
 };
 
+// Where a mesh that floats hold has its origin: the world's own for points round a place near that, and otherwise a
+// point near the place, which moves in steps as the place does. It depends on these two alone. The steps are powers of
+// two, at most 4096 m: so long that the origin seldom moves, and so short that the finest cell, seen from the origin,
+// is rounded by no more than a hundredth of itself. finest_cell_m > 0.
+glm::dvec2 local_origin(glm::dvec2 place_m, double finest_cell_m);
+
 // Polygons over the points: counts[i] corners each, counter-clockwise seen from above.
 struct Faces {
     std::vector<std::int32_t> counts, indices;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "core/plan/plan.h"
@@ -20,8 +21,10 @@
 #include "plugin/bake/output_part.h"
 #include "plugin/bake/record.h"
 #include "plugin/bake/sequence.h"
+#include "plugin/bake/stage.h"
 #include "plugin/files/files.h"
 #include "plugin/machine/memory.h"
+#include "plugin/usd/layers.h"
 
 namespace pelagic {
 namespace {
@@ -42,6 +45,18 @@ void refuse_invalid(const Scene& scene, const std::vector<int>& frames) {
             (i > 0 && frames[i] <= frames[i - 1]))
             throw std::invalid_argument("frame " + std::to_string(frames[i]) +
                                         ": frames must rise and lie within the shot's range");
+}
+
+// The stage's sky must not replace the picture that it is made of.
+void refuse_own_sky(const Scene& scene, const std::filesystem::path& out) {
+    if (scene.output.mesh == MeshFormat::None || scene.light.sky == Light{}.sky) return;
+    const std::filesystem::path ours = out / usd::sky_file(scene.shot.name);
+    std::error_code error;
+    if (std::filesystem::equivalent(ours, scene.light.sky, error))
+        throw std::invalid_argument(
+            "light.sky = \"" + scene.light.sky +
+            "\" is the file that this bake writes its stage's sky to: give the picture "
+            "another name, or bake into another folder");
 }
 
 using Parts = std::vector<std::unique_ptr<OutputPart>>;
@@ -131,6 +146,7 @@ bool holds(const std::filesystem::path& path, const FileContent& content) {
 BakeReport bake(const Scene& scene, const BakeOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     refuse_invalid(scene, options.frames);
+    refuse_own_sky(scene, options.out);
     std::vector<int> frames = options.frames;
     for (int frame = scene.shot.first_frame; options.frames.empty() && frame <= scene.shot.last_frame;
          ++frame)
@@ -147,6 +163,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     };
 
     report_progress(BakeStage::Planning);
+    if (scene.output.mesh != MeshFormat::None) prepare_light(scene);
     const Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
         throw std::invalid_argument("the shot asks for no output: accepted: output.mesh, output.maps");

@@ -1,6 +1,6 @@
 // Runs a bake: plan, sea, and then frame after frame into files that are whole or not there.
 //
-//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
+//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/NAME.sky.exr, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
 //
 // Files that a former run left whole, with the fingerprint that they would get now, are kept; everything else
 // that is asked for is done again.

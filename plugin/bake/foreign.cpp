@@ -77,10 +77,11 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
             const std::string name = entry.path().filename().string(), path = below + name;
             const std::string extension = entry.path().extension().string();
             // Pictures and whatever people keep beside their bakes are none of a bake's business.
-            const bool is_bakes = *below != '\0' ? extension == ".usda" || extension == ".usdc" ||
-                                                       extension == ".exr" || extension == ".vdb"
-                                                 : extension == ".usda" || extension == ".json" ||
-                                                       name.ends_with(".camera.usdc");
+            const bool is_bakes = *below != '\0'
+                                      ? extension == ".usda" || extension == ".usdc" || extension == ".exr" ||
+                                            extension == ".vdb"
+                                      : extension == ".usda" || extension == ".json" ||
+                                            name.ends_with(".camera.usdc") || name.ends_with(".sky.exr");
             if (!is_bakes || name.starts_with('.')) continue;
             if (std::find(static_files.begin(), static_files.end(), path) != static_files.end()) continue;
             std::string reason = "of another shot";

@@ -21,13 +21,17 @@ double significant_height_of(const std::vector<glm::vec3>& points) {
     return 4.0 * std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-// Positions relative to an origin, put into the world.
-void move_by(std::vector<glm::vec3>& positions, glm::dvec2 origin_m) {
-    if (origin_m == glm::dvec2(0.0)) return;
+void move_by(std::vector<glm::vec3>& positions, glm::dvec2 offset_m) {
+    if (offset_m == glm::dvec2(0.0)) return;
     for (glm::vec3& p : positions) {
-        p.x = static_cast<float>(origin_m.x + static_cast<double>(p.x));
-        p.y = static_cast<float>(origin_m.y + static_cast<double>(p.y));
+        p.x = static_cast<float>(offset_m.x + static_cast<double>(p.x));
+        p.y = static_cast<float>(offset_m.y + static_cast<double>(p.y));
     }
+}
+
+template <class T>
+double finest_of(const std::vector<T>& cell_m) {
+    return static_cast<double>(*std::min_element(cell_m.begin(), cell_m.end()));
 }
 
 // A file's velocities are per second of the screen.
@@ -37,7 +41,8 @@ void scale_by(std::vector<glm::vec3>& velocities, double time_scale) {
 }
 
 struct MeshSlot final : OutputSlot {
-    Faces faces;       // where they vary
+    Faces faces;  // where they vary
+    glm::dvec2 origin_m{0.0};
     std::string text;  // of a mesh in text; a crate needs none, its arrays are the values
 };
 
@@ -49,7 +54,8 @@ class MeshPart final : public OutputPart {
                       .velocities = asks(Product::Velocity),
                       .slope_variance = asks(Product::SlopeVariance),
                       .whitecap_coverage = asks(Product::Coverage),
-                      .faces = !plan.surface->is_constant()} {}
+                      .faces = !plan.surface->is_constant(),
+                      .origin = !plan.surface->is_constant()} {}
 
     FilePattern pattern() const override {
         return {"mesh/" + scene().shot.name + '.', '.' + std::string(word_of(scene().output.mesh))};
@@ -168,7 +174,8 @@ class MeshPart final : public OutputPart {
         if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};
         if (!at.pixel_m.empty()) points.pixel_m = {at.pixel_m.data()};
         state.runner.run(sea, output_.query, points, slot.values);
-        move_by(slot.values.vectors(Product::Position), at.origin_m);
+        if (attributes_.origin) slot.origin_m = local_origin(at.origin_m, finest_of(at.cell_m));
+        move_by(slot.values.vectors(Product::Position), at.origin_m - slot.origin_m);
         scale_by(slot.values.vectors(Product::Velocity), scene().shot.time_scale);
     }
 
@@ -181,6 +188,7 @@ class MeshPart final : public OutputPart {
                                .velocities = slot.values.vectors(Product::Velocity),
                                .slope_variance = slot.values.vectors(Product::SlopeVariance),
                                .whitecap_coverage = slot.values.numbers(Product::Coverage)};
+        if (attributes_.origin) sample.origin_m = glm::dvec3(slot.origin_m, 0.0);
         if (attributes_.faces)
             sample.faces =
                 usd::Faces{.counts = slot.faces.counts, .indices = slot.faces.indices, .st = slot.faces.st};

@@ -3,14 +3,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 
+#include "core/base/constants.h"
+#include "core/lighting/lighting.h"
 #include "core/plan/hidden_slopes.h"
+#include "core/scene/canonical.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/surface/view.h"
+#include "plugin/exr/exr.h"
+#include "plugin/light/light.h"
 #include "plugin/usd/camera.h"
 #include "plugin/usd/text.h"
 
@@ -52,7 +62,103 @@ usd::Camera camera_of(const Scene& scene) {
         .resolution = scene.camera.resolution};
 }
 
-usd::Stage stage_of(const Plan& plan, const OutputPart& mesh) {
+// A third of a degree a pixel: as fine as the texels of the sky's map near the horizon, where they are finest.
+constexpr int kDomeWidth = 1024;
+
+constexpr double kDegrees = 180.0 / kPi;
+
+// What a half holds to a thousandth wherever the picture isn't black beside its brightest part. Nights are darker, and
+// pictures of skies may have any unit.
+bool fits_halves(const LatLong& picture) {
+    float largest = 0.0f;
+    for (const glm::vec3& radiance : picture.radiance)
+        largest = std::max({largest, radiance.x, radiance.y, radiance.z});
+    return largest > 0.1f && largest < 65504.0f;
+}
+
+// The sky without the sun's disc, as a lat-long picture.
+std::string dome_file(const Scene& scene, const Sky& sky) {
+    const LatLong picture = lat_long(sky, kDomeWidth);
+    exr::Image image{.width = picture.width, .height = picture.height, .channels = {}};
+    // The encoder's rows rise: they begin with the last one.
+    const glm::vec3* bottom =
+        &picture.radiance[picture.radiance.size() - static_cast<std::size_t>(picture.width)];
+    constexpr std::array kNames{"R", "G", "B"};
+    for (int c = 0; c < 3; ++c)
+        image.channels.push_back(
+            {.name = kNames[c],
+             .data = &bottom->x + c,
+             .pixel_stride_bytes = sizeof(glm::vec3),
+             .row_stride_bytes = -picture.width * std::ptrdiff_t{sizeof(glm::vec3)},
+             .type = fits_halves(picture) ? exr::PixelType::Half : exr::PixelType::Float});
+    exr::Header header{
+        .attributes = {{"content", std::string("radiance of the sky without the sun's disc")},
+                       {"unit", radiance_unit(scene)},
+                       {"projection",
+                        std::string("lat-long: the middle column is +x, azimuth grows to the left, "
+                                    "the top row is +z; below the horizon what the sea reflects")},
+                       {"software", std::string("pelagic " PELAGIC_VERSION)}},
+        .compression = exr::Compression::Zip};
+    for (const DescribedKey& key : described(portable(scene), feeds(Feed::Light)))
+        std::visit(
+            [&](const auto& value) {
+                header.attributes.push_back({"pelagic." + key.path, value});
+            },
+            key.number_or_text());
+    return exr::encode_scanline(header, image);
+}
+
+// None after sunset, and where a picture of a sky has none.
+std::optional<usd::Sun> sun_of(const Sky& sky) {
+    const double radius = static_cast<double>(sky.sun_angular_radius);
+    const glm::dvec3 irradiance = glm::dvec3(sky.sun_radiance) * (kPi * radius * radius);  // across its rays
+    // As colours are shown and edited: from 0 to 1.
+    const double brightest = std::max({irradiance.x, irradiance.y, irradiance.z});
+    if (!(brightest > 0.0)) return {};
+    const glm::dvec3 towards(sky.sun_direction);
+    return usd::Sun{.elevation_deg = std::atan2(towards.z, std::hypot(towards.x, towards.y)) * kDegrees,
+                    .azimuth_deg = std::atan2(towards.y, towards.x) * kDegrees,
+                    .angle_deg = 2.0 * radius * kDegrees,
+                    .intensity = brightest,
+                    .color = glm::vec3(irradiance / brightest)};
+}
+
+// What the light leaves in a bake.
+struct StageLight {
+    std::string dome;  // the file
+    std::optional<usd::Sun> sun;
+};
+
+// It takes a few tenths of a second, ten times as long as the start of a small bake. The last one is kept: hosts bake
+// again and again under the same light, and a bake looks at it before it does anything else.
+std::shared_ptr<const StageLight> light_of(const Scene& scene) {
+    static std::mutex mutex;
+    static std::string last_source;
+    static std::shared_ptr<const StageLight> last;
+    const std::string source = canonical(scene, feeds(Feed::Light)) + sky_content(scene);
+    {
+        const std::lock_guard lock(mutex);
+        if (last && last_source == source) return last;
+    }
+    // Without the lock: a thread that waits inside for the others may be given another bake's work.
+    const Sky sky = make_sky(scene);
+    const auto light = std::make_shared<const StageLight>(StageLight{dome_file(scene, sky), sun_of(sky)});
+    const std::lock_guard lock(mutex);
+    last_source = source;
+    last = light;
+    return light;
+}
+
+usd::Material material_of(const Plan& plan) {
+    const SeaAlbedo albedo = sea_albedo(make_water(plan.from->scene));
+    // As decimals: the float 1.34 isn't.
+    return {.ior = std::round(static_cast<double>(albedo.water_index) * 1e6) / 1e6,
+            .roughness = roughness(plan),
+            .color = albedo.water,
+            .whitecap_color = albedo.foam};
+}
+
+usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optional<usd::Sun>& sun) {
     const Scene& scene = plan.from->scene;
     const Shot& shot = scene.shot;
     const ProductSet& products = mesh.query().products;
@@ -65,18 +171,18 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh) {
                         .velocities = products[index(Product::Velocity)],
                         .slope_variance = products[index(Product::SlopeVariance)],
                         .whitecap_coverage = products[index(Product::Coverage)],
-                        .faces = !plan.surface->is_constant()};
+                        .faces = !plan.surface->is_constant(),
+                        .origin = !plan.surface->is_constant()};
     stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));
-    stage.material.roughness = roughness(plan);
+    stage.material = material_of(plan);
     stage.has_camera = true;
-    // Its upper edge sets half a degree after its centre has.
-    if (constexpr double kDiscRadius_deg = 0.27; scene.light.sun_elevation_deg > -kDiscRadius_deg)
-        stage.sun = usd::Sun{.elevation_deg = scene.light.sun_elevation_deg,
-                             .azimuth_deg = scene.light.sun_azimuth_deg};
-    stage.sky = usd::Sky{};
+    stage.sun = sun;
+    stage.sky = usd::Sky{.lat_long_file = "./" + usd::sky_file(shot.name)};
     stage.custom_data = {
         {"version", std::string(PELAGIC_VERSION)},
         {"fingerprint", mesh.fingerprint()},
+        // The sun's intensity times its colour is its irradiance across its rays: the same unit times steradian.
+        {"sky_unit", radiance_unit(scene)},
         {"significant_height_m", 4.0 * std::sqrt(plan.from->spectrum.m0())},
     };
     for (const DescribedKey& key : described(scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam)))
@@ -86,13 +192,22 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh) {
 
 }  // namespace
 
+void prepare_light(const Scene& scene) {
+    light_of(scene);
+}
+
 void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink) {
-    const std::string& name = plan.from->scene.shot.name;
+    const Scene& scene = plan.from->scene;
+    const std::string& name = scene.shot.name;
+    const std::shared_ptr<const StageLight> light = light_of(scene);
+    sink({.path = usd::sky_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
+              take(light->dome);
+          }});
     sink({.path = usd::camera_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
-              usd::write_camera_crate(camera_of(plan.from->scene), take);
+              usd::write_camera_crate(camera_of(scene), take);
           }});
     sink({.path = usd::root_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
-              take(usd::root_text(stage_of(plan, mesh)));
+              take(usd::root_text(stage_of(plan, mesh, light->sun)));
           }});
 }
 

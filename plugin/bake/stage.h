@@ -1,13 +1,18 @@
-// The stage of a bake: the root layer that people open, and the camera's layer beside it. Both are of the
-// whole shot, whichever frames are baked.
+// The stage of a bake: the root layer that people open, the camera's layer and the sky's picture beside it. They are
+// of the whole shot, whichever frames are baked. Sun, sky and water are those that pictures of the shot are lit by.
 #pragma once
 
 #include "core/plan/plan.h"
+#include "core/scene/scene.h"
 #include "plugin/bake/output_part.h"
 
 namespace pelagic {
 
-// Hands both to the sink, the root last. The plan must have a mesh.
+// Finds the light that the stage will have, before anything else is done: a picture of a sky may be no such thing.
+// Throws as make_sky() does. write_stage() takes it from here.
+void prepare_light(const Scene& scene);
+
+// Hands them to the sink, the root last. The plan must have a mesh. Throws as make_sky() does.
 void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink);
 
 }  // namespace pelagic

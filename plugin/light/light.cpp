@@ -1,5 +1,6 @@
 #include "plugin/light/light.h"
 
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
@@ -62,6 +63,16 @@ std::string sky_content(const Scene& scene) {
     if (!stream.eof())
         throw std::invalid_argument(scene.light.sky + ": can't be read; accepted: a picture in OpenEXR");
     return hash.text();
+}
+
+Scene portable(Scene scene) {
+    if (scene.light.sky != Light{}.sky)
+        scene.light.sky = std::filesystem::path(scene.light.sky).filename().string();
+    return scene;
+}
+
+std::string radiance_unit(const Scene& scene) {
+    return scene.light.sky == Light{}.sky ? "kcd/m2, linear Rec. 709" : "the sky picture's own, linear";
 }
 
 WaterBody make_water(const Scene& scene) {

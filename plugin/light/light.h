@@ -15,6 +15,10 @@ Sky make_sky(const Scene& scene);
 // What make_sky() reads besides the scene, as text for fingerprints: a hash of the picture's bytes; empty for
 // daylight. Throws std::invalid_argument for a file that can't be read.
 std::string sky_content(const Scene& scene);
+// The scene as files describe it, wherever they are made: the picture by its name without its folder.
+Scene portable(Scene scene);
+// The unit of the sky's radiance, as files say it.
+std::string radiance_unit(const Scene& scene);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
 

@@ -66,6 +66,10 @@ py::dict read_mesh(const std::filesystem::path& path) {
         layer = read_layer(path);
     }
     py::dict arrays;
+    if (layer.frame) {
+        const glm::dvec3 at = layer.origin_m.value_or(glm::dvec3(0.0));
+        arrays["origin_m"] = array_of<double>(std::vector{at.x, at.y, at.z});
+    }
     for (usd::MeshArray& array : layer.arrays)
         for (const auto& [name, key] : kNames)
             if (name == array.name) arrays[py::str(std::string(key))] = as_array(array);
@@ -78,7 +82,9 @@ void add_baked(py::module_& module) {
     module.def(
         "read_mesh", &read_mesh, py::arg("path"),
         "What a mesh file of a bake holds, DIR/mesh/NAME.####.usdc or .usda, NAME.topology.usdc: a "
-        "dict of those that are there, float32 but for the faces.\n\n"
+        "dict of those that are there, float32 but for the origin and the faces.\n\n"
+        "origin_m: float64 (3,), of each frame: where in the world the positions' origin is [m]. origin_m + position "
+        "are the places. (0, 0, 0) but for a camera's grid far from the world's origin.\n"
         "position: (n, 3) [m]. normal: (n, 3). velocity: (n, 3) [m/s of the screen]. slope_variance: (n, 3), xx, yy, "
         "xy. coverage: (n,). st: (n, 2), 0 to 1.\n"
         "face_counts: int32 (f,), corners of each face. face_corners: int32, their points.\n\n"

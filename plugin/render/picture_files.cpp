@@ -17,6 +17,7 @@
 #include "plugin/exr/exr.h"
 #include "plugin/exr/read.h"
 #include "plugin/files/files.h"
+#include "plugin/light/light.h"
 #include "plugin/png/png.h"
 
 namespace pelagic {
@@ -52,20 +53,12 @@ std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-// The scene as it is described in files, wherever they are made: a sky picture by its name without its folder.
-Scene portable(Scene scene) {
-    if (scene.light.sky != Light{}.sky)
-        scene.light.sky = std::filesystem::path(scene.light.sky).filename().string();
-    return scene;
-}
-
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
     const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
     std::vector<exr::Attribute> attributes{
         {"content", std::string("radiance; the layers add up to R, G, B")},
-        {"unit", std::string(scene.light.sky == Light{}.sky ? "kcd/m2, linear Rec. 709"
-                                                            : "the sky picture's own, linear")},
+        {"unit", radiance_unit(scene)},
         {"time", scene.shot.time_s(frame)},
         {"fps", scene.shot.fps},
         {"frame", frame},

@@ -1,6 +1,8 @@
 // The mesh's layers as crates. See crate.h; the format is in crate_file.h.
 #include "plugin/usd/crate.h"
 
+#include <array>
+
 #include "plugin/usd/crate_file.h"
 
 namespace pelagic::usd {
@@ -40,6 +42,13 @@ Crate topology_layer(const Topology& topology) {
         attributes.push_back({.name = varying.name,
                               .type = array_type(varying),
                               .more = varying.interpolates ? per_vertex : Crate::Fields{}});
+    }
+    if (topology.attributes.origin) {
+        attributes.push_back({.name = kOrigin, .type = std::string(kOriginType)});
+        attributes.push_back({.name = "xformOpOrder",
+                              .type = "token[]",
+                              .variability = Variability::Uniform,
+                              .more = {{"default", crate.token_array(std::array{kOrigin})}}});
     }
     if (!topology.st.empty()) {
         Crate::Fields fields = per_vertex;
@@ -83,6 +92,12 @@ Crate frame_layer(const MeshSample& sample, const Extent& extent) {
         attributes.push_back({.name = varying.attribute.name,
                               .type = array_type(varying.attribute),
                               .more = {{"timeSamples", crate.time_samples(sample.frame, array)}}});
+    }
+    if (sample.origin_m) {
+        const CrateValue origin = crate.stored(ValueType::Vec3d, *sample.origin_m);
+        attributes.push_back({.name = kOrigin,
+                              .type = std::string(kOriginType),
+                              .more = {{"timeSamples", crate.time_samples(sample.frame, origin)}}});
     }
     crate.add_prim(kMeshName, {{"specifier", crate.specifier(Specifier::Over)}}, attributes);
     crate.finish();

@@ -93,6 +93,10 @@ std::string camera_file(std::string_view shot_name) {
     return std::string(shot_name) + ".camera.usdc";
 }
 
+std::string sky_file(std::string_view shot_name) {
+    return std::string(shot_name) + ".sky.exr";
+}
+
 std::string topology_file(std::string_view shot_name, std::string_view extension) {
     return "mesh/" + std::string(shot_name) + ".topology." + std::string(extension);
 }
@@ -164,6 +168,10 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
         check_finite(attribute.name, values, attribute.components);
     }
     if (sample.faces) check_faces(faces, {"a point", sample.points.size()});
+    if (sample.origin_m)
+        for (int i = 0; i < 3; ++i)
+            if (!std::isfinite((*sample.origin_m)[i]))
+                throw std::invalid_argument("USD: the points' origin must be finite");
     return result;
 }
 

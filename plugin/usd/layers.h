@@ -3,13 +3,21 @@
 // documentation, "Sequencable, Re-timeable Animated Value Clips").
 //
 //   DIR/NAME.usda                  the root: stage metadata, mesh with its clips, material, lights, camera
+//   DIR/NAME.sky.exr               the dome's image, which someone else writes
 //   DIR/NAME.camera.usdc           the camera's lens and its pose at each frame (camera.h)
 //   DIR/mesh/NAME.topology.EXT     faces and st, and declarations of the attributes that vary
 //   DIR/mesh/NAME.manifest.usda    names and types of the attributes that vary
 //   DIR/mesh/NAME.####.EXT         one frame's values, as time samples at the frame's number
 //
 // Where the faces vary from frame to frame, they and st are in the frames' layers, and the topology only
-// declares them. Between two frames with different numbers of points USD holds the first one's mesh.
+// declares them. Between two frames with different numbers of points USD holds the first one's mesh; between
+// others it mixes both.
+//
+// A float holds a place to a 16 millionth of its distance from the origin. A mesh that follows a camera has
+// therefore an origin of its own: its points, and its extent with them, are relative to xformOp:translate. That is
+// a double3 and a sample of the frame's own layer, so that it comes with the points, and is mixed where they are.
+// It moves in long steps. Who blurs motion by velocities takes it at the frame itself, as the points: what lies
+// between two frames of which the second has another origin is no motion.
 //
 // Space is right-handed, z up, in metres. A time code is a frame number. The structs here refer to the
 // caller's arrays, which must live until the writer returns.
@@ -35,6 +43,8 @@ using Sink = std::function<void(std::string_view)>;
 
 // The mesh prim: "/Sea" in topology, manifest and frames, "/ROOT/Sea" in the stage.
 inline constexpr std::string_view kMeshName = "Sea";
+// The mesh's attribute that holds where its points' origin is, and that attribute's type.
+inline constexpr std::string_view kOrigin = "xformOp:translate", kOriginType = "double3";
 // The camera prim: "/Camera" in its layer, "/ROOT/Camera" in the stage.
 inline constexpr std::string_view kCameraName = "Camera";
 
@@ -50,7 +60,8 @@ struct AttributeSet {
     bool velocities = false;
     bool slope_variance = false;
     bool whitecap_coverage = false;
-    bool faces = false;  // faceVertexCounts, faceVertexIndices and primvars:st, all three
+    bool faces = false;   // faceVertexCounts, faceVertexIndices and primvars:st, all three
+    bool origin = false;  // kOrigin
 };
 
 // The faces of a mesh, by reference.
@@ -65,8 +76,9 @@ struct MeshSample {
     int frame = 1;
     double fps = 24.0;                        // > 0
     std::optional<Faces> faces{};             // only where they vary from frame to frame
+    std::optional<glm::dvec3> origin_m{};     // in the world; absent: the world's own
     std::string_view fingerprint{};           // letters and digits; in customLayerData, empty: not written
-    std::span<const glm::vec3> points{};      // [m]
+    std::span<const glm::vec3> points{};      // relative to the origin [m]
     std::span<const glm::vec3> normals{};     // unit
     std::span<const glm::vec3> velocities{};  // [m/s]
     std::span<const glm::vec3> slope_variance{};  // (σxx, σyy, σxy) of what the mesh does not resolve
@@ -77,7 +89,8 @@ struct MeshSample {
                 .velocities = !velocities.empty(),
                 .slope_variance = !slope_variance.empty(),
                 .whitecap_coverage = !whitecap_coverage.empty(),
-                .faces = faces.has_value()};
+                .faces = faces.has_value(),
+                .origin = origin_m.has_value()};
     }
 };
 
@@ -100,14 +113,14 @@ struct Sun {
     double elevation_deg = 20.0;
     double azimuth_deg = 90.0;  // towards the sun, counter-clockwise from +x
     double angle_deg = 0.53;    // the disc's diameter as seen from the Earth
-    // Irradiance on a plane across its rays, for a disc of any size (inputs:normalize). A dome of intensity 1
-    // gives π; in a clear sky the sun gives about five times as much as the sky.
-    double intensity = 15.0;
+    // Irradiance on a plane across its rays, for a disc of any size: UsdLux divides a distant light's emission
+    // by π sin²(angle/2) where inputs:normalize is set.
+    double intensity = 1.0;
     glm::vec3 color{1.0f, 1.0f, 1.0f};  // linear
 };
 
 struct Sky {
-    double intensity = 1.0;
+    double intensity = 1.0;             // times the image: radiance, in the sun's unit per steradian
     glm::vec3 color{1.0f, 1.0f, 1.0f};  // linear
     // An asset path, "" for none. The image's middle column is +x, azimuth grows to the left, and the top row
     // is the zenith.
@@ -116,11 +129,11 @@ struct Sky {
 
 // How the water looks in a renderer that has no material of its own for it.
 struct Material {
-    double ior = 1.34;                           // sea water
-    double roughness = 0.1;                      // √α, as UsdPreviewSurface has it
-    double opacity = 1.0;                        // 0 … 1
-    glm::vec3 color{0.004f, 0.016f, 0.024f};     // light coming back out of deep water, linear
-    glm::vec3 whitecap_color{0.6f, 0.6f, 0.6f};  // foam, linear
+    double ior = 1.34;               // sea water
+    double roughness = 0.1;          // √α, as UsdPreviewSurface has it
+    double opacity = 1.0;            // 0 … 1
+    glm::vec3 color{0.0f};           // albedo of the water below the surface, linear
+    glm::vec3 whitecap_color{1.0f};  // albedo of foam, linear
 };
 
 // A value of the root's customLayerData. Infinity is allowed (deep water), NaN is refused.
@@ -151,6 +164,7 @@ std::string prim_name(std::string_view shot_name);
 // Paths relative to the root layer's folder, without "./".
 std::string root_file(std::string_view shot_name);
 std::string camera_file(std::string_view shot_name);
+std::string sky_file(std::string_view shot_name);
 std::string topology_file(std::string_view shot_name, std::string_view extension);
 std::string manifest_file(std::string_view shot_name);
 // A frame's number as USD expands "####": at least four characters with zeros in front, and a minus sign is
@@ -160,7 +174,7 @@ std::string frame_file(std::string_view shot_name, int frame, std::string_view e
 // frame_file with "####" for the number.
 std::string frame_file_template(std::string_view shot_name, std::string_view extension);
 
-// How a varying attribute is declared. The attribute is an array; `type` is its element's.
+// How a varying attribute is declared, but for the origin. The attribute is an array; `type` is its element's.
 struct VaryingAttribute {
     std::string_view name;
     std::string_view type;
@@ -189,7 +203,7 @@ std::vector<VaryingAttribute> varying_attributes(const AttributeSet& attributes)
 
 // The same with a frame's values. They refer to `sample` and `extent`, which must outlive the result.
 // Throws std::invalid_argument, naming the attribute, if the length of a vertices' array isn't that of
-// points, if an array holds a NaN or an infinity, and if the faces don't fit: see check(const Topology&).
+// points, if an array or the origin holds a NaN or an infinity, and if the faces don't fit: see check(const Topology&).
 std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent& extent);
 
 // The `interpolation` metadata of an attribute with a value for each vertex: "vertex", or "varying" on a

@@ -185,6 +185,11 @@ MeshArray read_array(std::string_view file, const VaryingAttribute& attribute, C
     return array;
 }
 
+glm::dvec3 read_origin(std::string_view file, CrateValue value) {
+    Cursor from(file, place_of(value, kind_of(ValueType::Vec3d)));
+    return from.number<glm::dvec3>();
+}
+
 struct Sample {
     double time;
     CrateValue value;
@@ -227,7 +232,7 @@ MeshLayer read_crate(std::string_view file) {
             if (key == "timeSamples") samples = held;
         }
         const std::optional<VaryingAttribute> attribute = mesh_attribute(name, type);
-        if (!attribute) continue;
+        if (!attribute && !is_origin(name, type)) continue;
         if (samples) {
             const Sample sample = read_sample(file, *samples);
             if (layer.frame.value_or(sample.time) != sample.time) refuse_foreign();
@@ -236,6 +241,10 @@ MeshLayer read_crate(std::string_view file) {
         }
         if (!value) continue;
         refuse_twice(layer, name);
+        if (!attribute) {
+            layer.origin_m = read_origin(file, *value);
+            continue;
+        }
         layer.arrays.push_back(read_array(file, *attribute, *value));
     }
     return layer;

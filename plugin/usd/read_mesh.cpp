@@ -28,7 +28,8 @@ void check(const MeshLayer& layer) {
             .face_vertex_counts = faces.counts, .face_vertex_indices = faces.indices, .st = faces.st});
         return;
     }
-    MeshSample sample{.points = vectors_of<glm::vec3>(layer, "points"),
+    MeshSample sample{.origin_m = layer.origin_m,
+                      .points = vectors_of<glm::vec3>(layer, "points"),
                       .normals = vectors_of<glm::vec3>(layer, "normals"),
                       .velocities = vectors_of<glm::vec3>(layer, "velocities"),
                       .slope_variance = vectors_of<glm::vec3>(layer, "primvars:slopeVariance"),
@@ -40,7 +41,11 @@ void check(const MeshLayer& layer) {
 }  // namespace
 
 std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::string_view array_type) {
-    static const std::vector<VaryingAttribute> known = varying_attributes({true, true, true, true, true});
+    static const std::vector<VaryingAttribute> known = varying_attributes({.normals = true,
+                                                                           .velocities = true,
+                                                                           .slope_variance = true,
+                                                                           .whitecap_coverage = true,
+                                                                           .faces = true});
     for (const VaryingAttribute& attribute : known)
         if (attribute.name == name && name != "extent" && array_type == std::string(attribute.type) + "[]")
             return attribute;
@@ -50,6 +55,8 @@ std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::strin
 void refuse_twice(const MeshLayer& layer, std::string_view name) {
     for (const MeshArray& array : layer.arrays)
         if (array.name == name) throw ReadError("is damaged: " + array.name + " is there twice");
+    if (layer.origin_m && name == kOrigin)
+        throw ReadError("is damaged: " + std::string(name) + " is there twice");
 }
 
 bool is_integer(const VaryingAttribute& attribute) {

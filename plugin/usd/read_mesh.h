@@ -28,6 +28,7 @@ struct MeshArray {
 
 struct MeshLayer {
     std::optional<double> frame{};  // when its samples are; none: its values don't vary
+    std::optional<glm::dvec3> origin_m{};
     std::vector<MeshArray> arrays{};
 };
 
@@ -41,10 +42,14 @@ inline constexpr std::string_view kCrateMagic = "PXR-USDC", kTextMagic = "#usda 
 MeshLayer read_crate(std::string_view bytes);
 MeshLayer read_text(std::string_view bytes);
 
+// Whether it is the one that holds the points' origin.
+inline bool is_origin(std::string_view name, std::string_view type) {
+    return name == kOrigin && type == kOriginType;
+}
 // The attribute of this name and type, as text declares it ("point3f[]"); nullopt for others and the extent.
 std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::string_view array_type);
 bool is_integer(const VaryingAttribute& attribute);
-// Throws ReadError if an array of this name is there already. Asked before another is read: a small file may refer to
+// Throws ReadError if an array of this name, or the origin, is there already. Asked before another is read: a small file may refer to
 // a large array very often.
 void refuse_twice(const MeshLayer& layer, std::string_view name);
 

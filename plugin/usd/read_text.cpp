@@ -41,6 +41,18 @@ std::vector<T> parsed_array(std::string_view text, int components) {
     return values;
 }
 
+// "(x, y, z),"
+glm::dvec3 parsed_origin(std::string_view text) {
+    glm::dvec3 origin_m;
+    for (int i = 0; i < 3; ++i) {
+        const std::string_view before = i == 0 ? "(" : ", ";
+        if (!text.starts_with(before)) throw ReadError("is not a mesh that Pelagic wrote");
+        text.remove_prefix(before.size());
+        origin_m[i] = parsed<double>(text);
+    }
+    return origin_m;
+}
+
 }  // namespace
 
 MeshLayer read_text(std::string_view text) {
@@ -54,7 +66,7 @@ MeshLayer read_text(std::string_view text) {
         const std::string_view type = taken_until(line, " ");
         const std::string_view name = line.substr(0, line.find_first_of(". ="));
         const std::optional<VaryingAttribute> attribute = mesh_attribute(name, type);
-        if (!attribute) continue;
+        if (!attribute && !is_origin(name, type)) continue;
         line.remove_prefix(name.size());
         if (line == ".timeSamples = {") {
             line = taken_until(text, "\n");
@@ -69,6 +81,10 @@ MeshLayer read_text(std::string_view text) {
             continue;  // declared without a value
         }
         refuse_twice(layer, name);
+        if (!attribute) {
+            layer.origin_m = parsed_origin(line);
+            continue;
+        }
         MeshArray array{.name = std::string(name), .components = attribute->components};
         if (is_integer(*attribute))
             array.values = parsed_array<std::int32_t>(line, array.components);

@@ -1,6 +1,12 @@
 // The root layer as text. See text.h.
+#include <array>
 #include <cmath>
+#include <initializer_list>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "plugin/usd/page.h"
 #include "plugin/usd/text.h"
@@ -103,6 +109,11 @@ void write_mesh(Page& page, const Stage& stage, const std::string& material_path
     page.line({"double templateStride = 1"});
     page.close("}");
     page.close("}");
+    if (stage.attributes.origin)
+        page.line(
+            {"doc = \"Points are relative to ", kOrigin,
+             ", which follows the camera in steps: far from the world's origin floats are too coarse for places. ",
+             "A step is no motion; velocities leave it out.\""});
     page.line({"prepend references = @./", topology_file(stage.name, stage.topology_extension), "@"});
     page.close(")");
     page.open({"{"});
@@ -110,20 +121,63 @@ void write_mesh(Page& page, const Stage& stage, const std::string& material_path
     page.close("}");
 }
 
-// A node of the material's network. Its result is its output "out".
-void open_node(Page& page, std::string_view name, std::string_view id) {
-    page.prim("def Shader", name);
-    page.line({"uniform token info:id = \"", id, "\""});
-}
+// An input of a node: a value as USD writes it, or the name of the node whose output "out" it takes.
+struct NodeInput {
+    std::string_view type, name, value;
+    bool is_node = false;
+};
 
-void close_node(Page& page, std::string_view output_type) {
-    page.line({output_type, " outputs:out"});
-    page.close("}");
-}
+// The nodes of a material. Each has one output, "out".
+class Network {
+  public:
+    Network(Page& page, const std::string& material_path) : page_(page), path_(material_path) {}
+
+    void node(std::string_view name, std::string_view id, std::string_view output_type,
+              std::span<const NodeInput> inputs) {
+        page_.prim("def Shader", name);
+        page_.line({"uniform token info:id = \"", id, "\""});
+        for (const NodeInput& input : inputs) {
+            if (input.is_node) {
+                page_.line({input.type, " inputs:", input.name, ".connect = <", path_, "/", input.value,
+                            ".outputs:out>"});
+            } else {
+                page_.line({input.type, " inputs:", input.name, " = ", input.value});
+            }
+        }
+        page_.line({output_type, " outputs:out"});
+        page_.close("}");
+    }
+
+    void node(std::string_view name, std::string_view id, std::string_view output_type,
+              std::initializer_list<NodeInput> inputs) {
+        node(name, id, output_type, std::span(inputs.begin(), inputs.size()));
+    }
+
+    // MaterialX's arithmetic with floats: of one node, of a node and a constant, and of two nodes.
+    void of(std::string_view name, std::string_view operation, std::string_view node_in) {
+        node(name, id_of(operation), "float", {{"float", "in", node_in, true}});
+    }
+    void with(std::string_view name, std::string_view operation, std::string_view node_in,
+              std::string_view constant) {
+        node(name, id_of(operation), "float", {{"float", "in1", node_in, true}, {"float", "in2", constant}});
+    }
+    void both(std::string_view name, std::string_view operation, std::string_view node_1,
+              std::string_view node_2) {
+        node(name, id_of(operation), "float",
+             {{"float", "in1", node_1, true}, {"float", "in2", node_2, true}});
+    }
+
+  private:
+    static std::string id_of(std::string_view operation) { return "ND_" + std::string(operation) + "_float"; }
+
+    Page& page_;
+    const std::string& path_;
+};
 
 // UsdPreviewSurface has no node that mixes two colours, so it shows water without whitecaps.
 void write_preview_surface(Page& page, const Material& material) {
-    open_node(page, "Preview", "UsdPreviewSurface");
+    page.prim("def Shader", "Preview");
+    page.line({"uniform token info:id = \"UsdPreviewSurface\""});
     page.line({"color3f inputs:diffuseColor = ", color("the water's colour", material.color)});
     page.line({"float inputs:ior = ", real32("the water's ior", material.ior)});
     page.line({"float inputs:metallic = 0"});
@@ -133,59 +187,107 @@ void write_preview_surface(Page& page, const Material& material) {
     page.close("}");
 }
 
-// MaterialX's standard_surface. It takes whitecaps and roughness from the mesh's primvars where the mesh has
-// them.
+// Roughness, anisotropy and tangent from the tensor of slope variance (σxx, σyy, σxy).
+//
+// Its eigenvalues are λ± = m ± d, with m = (σxx + σyy)/2 and d = |(h, σxy)|, h = (σxx − σyy)/2. Microfacets have
+// α² = 2λ along each axis. MaterialX's roughness_anisotropy, which standard_surface uses, makes of roughness r and
+// anisotropy a
+//     α along the tangent = r²/√(1 − a),    α across it = r² √(1 − a),    with a ≤ 0.98.
+// So a = 1 − √(λ₋/λ₊) and r = (4 λ₊ λ₋)^⅛. λ₋ is at least 0.02² λ₊, which is where a ends: α along the tangent then
+// stays right.
+//
+// The tangent is along λ₊'s axis, which stands at the angle φ from x with (cos 2φ, sin 2φ) = (h, σxy)/d. Half-angle
+// formulas need no atan2, whose inputs have other names in MaterialX 1.39 than in 1.38. specular_rotation would turn
+// the mesh's own tangent, which hosts make in different ways, and not all of them to the same side.
+// A calm sea has no axis: the least d and λ₊ keep everything finite. They are not smaller, since OpenUSD's Storm
+// writes constants with six decimals. The tangent is in the axes of the mesh: whoever turns the whole stage turns the
+// tangent with it.
+void write_microfacets(Network& network) {
+    network.node("SlopeVariance", "ND_geompropvalue_vector3", "float3",
+                 {{"string", "geomprop", "\"slopeVariance\""}});
+    const auto dot = [&](std::string_view name, std::string_view with) {
+        network.node(name, "ND_dotproduct_vector3", "float",
+                     {{"float3", "in1", "SlopeVariance", true}, {"float3", "in2", with}});
+    };
+    dot("Mean", "(0.5, 0.5, 0)");
+    dot("HalfDifference", "(0.5, -0.5, 0)");
+    dot("Covariance", "(0, 0, 1)");
+    network.node("DoubleAngle", "ND_combine3_vector3", "float3",
+                 {{"float", "in1", "HalfDifference", true},
+                  {"float", "in2", "Covariance", true},
+                  {"float", "in3", "0"}});
+    network.node("Spread", "ND_magnitude_vector3", "float", {{"float3", "in", "DoubleAngle", true}});
+
+    network.both("Sum", "add", "Mean", "Spread");
+    network.with("Along", "max", "Sum", "0.000001");
+    network.both("Difference", "subtract", "Mean", "Spread");
+    network.with("LeastAcross", "multiply", "Along", "0.0004");
+    network.both("Across", "max", "Difference", "LeastAcross");
+    network.both("Product", "multiply", "Along", "Across");
+    network.with("Alpha8", "multiply", "Product", "4");
+    network.with("Roughness", "power", "Alpha8", "0.125");
+    network.both("Ratio", "divide", "Across", "Along");
+    network.of("Aspect", "sqrt", "Ratio");
+    network.node("Anisotropy", "ND_subtract_float", "float",
+                 {{"float", "in1", "1"}, {"float", "in2", "Aspect", true}});
+
+    network.with("LeastSpread", "max", "Spread", "0.000001");
+    network.both("Cosine", "divide", "HalfDifference", "LeastSpread");
+    network.with("Cosine2", "multiply", "Cosine", "0.5");
+    network.node("East2", "ND_add_float", "float",
+                 {{"float", "in1", "Cosine2", true}, {"float", "in2", "0.5"}});
+    network.node("North2", "ND_subtract_float", "float",
+                 {{"float", "in1", "0.5"}, {"float", "in2", "Cosine2", true}});
+    for (const auto& [squared, positive, name] : {std::array{"East2", "PositiveEast2", "East"},
+                                                  std::array{"North2", "PositiveNorth2", "AbsoluteNorth"}}) {
+        network.with(positive, "max", squared, "0");  // rounding
+        network.of(name, "sqrt", positive);
+    }
+    // The covariance's sign, where that of 0 is 1.
+    network.of("Sign", "sign", "Covariance");
+    network.with("NonzeroSign", "add", "Sign", "0.5");
+    network.of("Side", "sign", "NonzeroSign");
+    network.both("North", "multiply", "AbsoluteNorth", "Side");
+    network.node("Tangent", "ND_combine3_vector3", "float3",
+                 {{"float", "in1", "East", true}, {"float", "in2", "North", true}, {"float", "in3", "0"}});
+}
+
+// MaterialX's standard_surface. It takes whitecaps, roughness and its axes from the mesh's primvars where the mesh
+// has them. Its reflection lies over its diffuse base and takes its share away, as the sea's surface does. Foam has
+// no surface over it.
 void write_materialx_surface(Page& page, const Stage& stage, const std::string& path) {
     const Material& material = stage.material;
-    const std::string water = color("the water's colour", material.color);
-    const std::string foam = color("the whitecaps' colour", material.whitecap_color);
-    open_node(page, "Surface", "ND_standard_surface_surfaceshader");
-    page.line({"float inputs:base = 1"});
-    if (stage.attributes.whitecap_coverage) {
-        page.line({"color3f inputs:base_color.connect = <", path, "/BaseColor.outputs:out>"});
-        page.line({"float inputs:specular.connect = <", path, "/Specular.outputs:out>"});
-    } else {
-        page.line({"color3f inputs:base_color = ", water});
-        page.line({"float inputs:specular = 1"});
+    const bool foam = stage.attributes.whitecap_coverage, slopes = stage.attributes.slope_variance;
+    const std::string water_color = color("the water's colour", material.color);
+    const std::string foam_color = color("the whitecaps' colour", material.whitecap_color);
+    const std::string roughness = real32("the water's roughness", material.roughness);
+    const std::string ior = real32("the water's ior", material.ior);
+    Network network(page, path);
+    std::vector<NodeInput> inputs{
+        {"float", "base", "1"},
+        foam ? NodeInput{"color3f", "base_color", "BaseColor", true}
+             : NodeInput{"color3f", "base_color", water_color},
+        foam ? NodeInput{"float", "specular", "Specular", true} : NodeInput{"float", "specular", "1"},
+        {"float", "specular_IOR", ior},
+        slopes ? NodeInput{"float", "specular_roughness", "Roughness", true}
+               : NodeInput{"float", "specular_roughness", roughness}};
+    if (slopes) {
+        inputs.push_back({"float", "specular_anisotropy", "Anisotropy", true});
+        inputs.push_back({"float3", "tangent", "Tangent", true});
     }
-    page.line({"float inputs:specular_IOR = ", real32("the water's ior", material.ior)});
-    if (stage.attributes.slope_variance) {
-        page.line({"float inputs:specular_roughness.connect = <", path, "/Roughness.outputs:out>"});
-    } else {
-        page.line(
-            {"float inputs:specular_roughness = ", real32("the water's roughness", material.roughness)});
-    }
-    close_node(page, "token");
+    network.node("Surface", "ND_standard_surface_surfaceshader", "token", inputs);
 
-    if (stage.attributes.whitecap_coverage) {
-        open_node(page, "Coverage", "ND_geompropvalue_float");
-        page.line({"string inputs:geomprop = \"whitecapCoverage\""});
-        close_node(page, "float");
-        open_node(page, "BaseColor", "ND_mix_color3");
-        page.line({"color3f inputs:bg = ", water});
-        page.line({"color3f inputs:fg = ", foam});
-        page.line({"float inputs:mix.connect = <", path, "/Coverage.outputs:out>"});
-        close_node(page, "color3f");
-        open_node(page, "Specular", "ND_mix_float");
-        page.line({"float inputs:bg = 1"});
-        page.line({"float inputs:fg = 0"});
-        page.line({"float inputs:mix.connect = <", path, "/Coverage.outputs:out>"});
-        close_node(page, "float");
+    if (foam) {
+        network.node("Coverage", "ND_geompropvalue_float", "float",
+                     {{"string", "geomprop", "\"whitecapCoverage\""}});
+        network.node("BaseColor", "ND_mix_color3", "color3f",
+                     {{"color3f", "bg", water_color},
+                      {"color3f", "fg", foam_color},
+                      {"float", "mix", "Coverage", true}});
+        network.node("Specular", "ND_mix_float", "float",
+                     {{"float", "bg", "1"}, {"float", "fg", "0"}, {"float", "mix", "Coverage", true}});
     }
-    if (stage.attributes.slope_variance) {
-        // roughness = √α and α² = 2σ², where σ² is the mean of σxx and σyy: roughness = (σxx + σyy)^¼.
-        open_node(page, "SlopeVariance", "ND_geompropvalue_vector3");
-        page.line({"string inputs:geomprop = \"slopeVariance\""});
-        close_node(page, "float3");
-        open_node(page, "Alpha2", "ND_dotproduct_vector3");
-        page.line({"float3 inputs:in1.connect = <", path, "/SlopeVariance.outputs:out>"});
-        page.line({"float3 inputs:in2 = (1, 1, 0)"});
-        close_node(page, "float");
-        open_node(page, "Roughness", "ND_power_float");
-        page.line({"float inputs:in1.connect = <", path, "/Alpha2.outputs:out>"});
-        page.line({"float inputs:in2 = 0.25"});
-        close_node(page, "float");
-    }
+    if (slopes) write_microfacets(network);
 }
 
 void write_material(Page& page, const Stage& stage, const std::string& path) {
@@ -211,9 +313,10 @@ void write_sun(Page& page, const Sun& sun) {
     page.close("}");
 }
 
-// A dome's image has +z in its middle, +x a quarter of the width further left, and +y at the top (OpenEXR's
-// lat-long map). The rotation takes x to y, y to z and z to x: +x is then in the middle, +y a quarter to the
-// left, and +z at the top.
+// In a DomeLight's own axes, whatever the stage's up axis, the image has +z in its middle, +x a quarter of the width
+// further left, and +y at the top: UsdLux takes OpenEXR's lat-long map. (DomeLight_1, which has a poleAxis, is newer
+// than most hosts.) The rotation takes x to y, y to z and z to x: +x is then in the middle, +y a quarter to the left,
+// and +z at the top.
 void write_sky(Page& page, const Sky& sky) {
     page.prim("def DomeLight", "Sky");
     page.line({"color3f inputs:color = ", color("the sky's colour", sky.color)});

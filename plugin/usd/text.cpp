@@ -84,6 +84,7 @@ std::string manifest_text(const Manifest& manifest) {
     for (const VaryingAttribute& attribute : varying_attributes(manifest.attributes)) {
         page.line({attribute.type, "[] ", attribute.name});
     }
+    if (manifest.attributes.origin) page.line({kOriginType, " ", kOrigin});
     page.close("}");
     return page.text();
 }
@@ -102,6 +103,10 @@ void write_topology_text(const Topology& topology, const Sink& sink) {
     for (const VaryingAttribute& attribute : varying_attributes(topology.attributes)) {
         page.line({attribute.type, "[] ", attribute.name,
                    attribute.interpolates ? metadata(topology.scheme) : std::string()});
+    }
+    if (topology.attributes.origin) {
+        page.line({kOriginType, " ", kOrigin});
+        page.line({"uniform token[] xformOpOrder = [\"", kOrigin, "\"]"});
     }
 
     ArrayWriter writer(sink);
@@ -154,6 +159,12 @@ void write_frame_text(const MeshSample& sample, const Sink& sink) {
         std::visit([&](const auto& values) { writer.array(values, varying.attribute.components); },
                    varying.values);
         writer.text(",\n    }\n");
+    }
+    if (sample.origin_m) {
+        const glm::dvec3& at = *sample.origin_m;
+        writer.text("    " + std::string(kOriginType) + " " + std::string(kOrigin) +
+                    ".timeSamples = {\n        " + number(sample.frame) + ": (" + number(at.x) + ", " +
+                    number(at.y) + ", " + number(at.z) + "),\n    }\n");
     }
     writer.text("}\n");
     writer.flush();

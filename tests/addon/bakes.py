@@ -3,6 +3,7 @@
     bakes.py -- PELAGIC_PROGRAM
 """
 
+import math
 import shutil
 import subprocess
 import sys
@@ -98,6 +99,49 @@ with checking("a camera's grid has other faces in each frame"):
     assert len(counts) > 1, counts
     assert from_disk.data.materials[0] is not None
     assert any(obj.type == "LIGHT" and obj.data.type == "SUN" for obj in bpy.context.scene.objects)
+
+def places(obj, told):
+    """float64: where the evaluated object has its points, and where the bake has them [m]."""
+    matrix = np.array(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world, np.float64)
+    return numbers(obj.data) @ matrix[:3, :3].T + matrix[:3, 3], told["position"] + told["origin_m"]
+
+
+with checking("far out the object is where its points' origin is, and stays where it is put"):
+    fresh_file()
+    far = bake(shot_file("far", """[surface]
+kind = "projected-grid"
+cell_px = 16.0
+[camera]
+resolution = [320, 180]
+keys = [ { frame = 1, position_m = [1e7, -3e6, 4.0], look_at_m = [1e7, -2.99e6, 0.0] },
+         { frame = 6, position_m = [1.0004e7, -3e6, 4.0], look_at_m = [1.0004e7, -2.99e6, 0.0] } ]
+"""))
+    from_disk = played(far)
+    twin = from_disk.copy()
+    bpy.context.collection.objects.link(twin)
+    twin.location = -1e7, 3e6, 0.0
+    scene, origins = bpy.context.scene, set()
+    for frame in (1, 6, 3, 6, 1):
+        scene.frame_set(frame)
+        told = pelagic.read_mesh(far / "mesh" / f"far.{frame:04}.usdc")
+        origins.add(tuple(told["origin_m"]))
+        assert np.array_equal(numbers(from_disk.data), told["position"])
+        assert np.array_equal(*places(from_disk, told))
+        ours, theirs = places(twin, told)
+        assert np.array_equal(ours, theirs - [1e7, -3e6, 0.0])  # home, to the bit
+        rest = numbers(from_disk.data, "rest_position")
+        assert np.abs(rest - numbers(from_disk.data)).max() < 1e5 and tuple(from_disk.location) == (0, 0, 0)
+    assert len(origins) == 2, origins
+    twin.rotation_euler.z = math.pi / 2
+    scene.frame_set(6)
+    scene.frame_set(1)
+    told = pelagic.read_mesh(far / "mesh" / "far.0001.usdc")
+    ours, (x, y, z) = places(twin, told)[0], places(twin, told)[1].T
+    # Blender's own turn is a float's: 1e7 m times 1e-7.
+    assert np.allclose(ours, np.stack([-1e7 - y, 3e6 + x, z], axis=-1), atol=3.0)
+    from_disk.pelagic_baked.path = str(there / "grid.json")
+    scene.frame_set(1)
+    assert tuple(from_disk.delta_location) == (0, 0, 0)
 
 with checking("missing frames are named, and the one before is shown"):
     for frame in (3, 4, 6):

@@ -244,6 +244,9 @@ class Closure : public ::testing::Test {
             const bool was_there = base_files_.contains(path);
             const bool kept = was_there && fs::equivalent(base_ / path, again / path);
             happened[output].insert(kept ? 'k' : was_there ? 'R' : 'n');
+            if (output == "sky" && was_there) {
+                EXPECT_EQ(kept, (key_of(edit.key).feeds & feeds(Feed::Light)).none()) << path;
+            }
             const auto carries = made.fingerprints.find(path);
             if (carries == made.fingerprints.end()) continue;
             const std::string content = without_fingerprint(bytes, carries->second, path.ends_with("png"));

@@ -115,9 +115,9 @@ TEST_F(BakeResume, FramesOfAnotherVersionThatWereNotAskedForAreNamed) {
 TEST_F(BakeResume, OneFrameAloneOnOneThreadIsTheSameBitsAsInARunOnTwo) {
     ASSERT_EQ(bake({"--frames", "1-8", "--threads", "2"}, "run").status, 0);
     ASSERT_EQ(bake({"--frames", "7", "--threads", "1"}, "alone").status, 0);
-    for (const char* file :
-         {"mesh/small.0007.usda", "maps/small.displacement.0007.exr", "maps/small.whitecaps.0007.exr",
-          "small.usda", "small.camera.usdc", "mesh/small.topology.usda", "mesh/small.manifest.usda"}) {
+    for (const char* file : {"mesh/small.0007.usda", "maps/small.displacement.0007.exr",
+                             "maps/small.whitecaps.0007.exr", "small.usda", "small.camera.usdc",
+                             "small.sky.exr", "mesh/small.topology.usda", "mesh/small.manifest.usda"}) {
         ASSERT_TRUE(fs::exists(folder() / "alone" / file)) << file;
         EXPECT_EQ(read_file(folder() / "alone" / file), read_file(folder() / "run" / file)) << file;
     }

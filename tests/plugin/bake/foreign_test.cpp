@@ -70,7 +70,7 @@ TEST_F(ForeignFiles, AreThoseOfAnotherFormatAndOfOutputsThatAreGone) {
                      "mesh/sea.topology.usdc:" + gone, "tiles/sea.displacement.0.####.exr: 3 files" + gone}));
     scene_.output.mesh = MeshFormat::None;
     scene_.output.cascade_tiles = false;
-    EXPECT_EQ(foreign(scene_).size(), 10u) << "the stage, too";
+    EXPECT_EQ(foreign(scene_).size(), 11u) << "the stage and its sky, too";
 }
 
 TEST_F(ForeignFiles, AreThoseOfAnotherName) {
@@ -79,9 +79,10 @@ TEST_F(ForeignFiles, AreThoseOfAnotherName) {
     // A name that begins like the other one.
     scene_.shot.name = "sea-2";
     const std::string other = " of another shot";
-    EXPECT_EQ(foreign(scene_), (Lines{"mesh/sea.####.usda: 3 files" + other,
-                                      "mesh/sea.manifest.usda:" + other, "mesh/sea.topology.usda:" + other,
-                                      "sea.camera.usdc:" + other, "sea.json:" + other, "sea.usda:" + other}));
+    EXPECT_EQ(foreign(scene_),
+              (Lines{"mesh/sea.####.usda: 3 files" + other, "mesh/sea.manifest.usda:" + other,
+                     "mesh/sea.topology.usda:" + other, "sea.camera.usdc:" + other, "sea.json:" + other,
+                     "sea.sky.exr:" + other, "sea.usda:" + other}));
 }
 
 TEST_F(ForeignFiles, AreNotWhatPeopleAndRendersKeepBesideThem) {

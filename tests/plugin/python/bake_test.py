@@ -135,7 +135,9 @@ class Meshes(InFolder):
         return pelagic.read_mesh(self.path / "mesh" / f"bay.{frame:04}.usdc")
 
     def compare(self, ours, theirs, origin_m=(0.0, 0.0)):
-        ours["position"] = np.float32(np.float64(ours["position"]) + [*origin_m, 0.0])
+        self.assertEqual((theirs["origin_m"].dtype, theirs["origin_m"].shape), (np.float64, (3,)))
+        offset_m = np.array([*origin_m, 0.0]) - theirs["origin_m"]
+        ours["position"] = np.float32(np.float64(ours["position"]) + offset_m)
         for name in ("position", "normal", "velocity", "slope_variance", "coverage"):
             np.testing.assert_array_equal(ours[name], theirs[name], name)
 
@@ -149,16 +151,18 @@ class Meshes(InFolder):
     def test_a_projected_grid(self):
         scene = shot()
         scene.surface.kind = "projected-grid"
-        scene.camera.position_m, scene.camera.look_at_m = (1234.5, 2.25, 4.0), (1234.5, 60.0, 2.0)
         scene.output.maps, scene.output.cascade_tiles = (), False
-        view = pelagic.View.of_scene(scene, 2)
-        sea = pelagic.Sea(scene, views=[view])
-        frame, grid = pelagic.Frame(sea), sea.projected_grid(view)
-        frame.set(scene.shot.time_s(2))
-        baked = self.baked(scene, 2)
-        self.compare(frame.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m), baked,
-                     grid.origin_m)
-        np.testing.assert_array_equal(grid.quads.ravel(), baked["face_corners"])
+        for x_m, origin_m in ((1234.5, [0, 0, 0]), (-1e7 + 0.5, [-9998336, 0, 0])):
+            scene.camera.position_m, scene.camera.look_at_m = (x_m, 2.25, 4.0), (x_m, 60.0, 2.0)
+            view = pelagic.View.of_scene(scene, 2)
+            sea = pelagic.Sea(scene, views=[view])
+            frame, grid = pelagic.Frame(sea), sea.projected_grid(view)
+            frame.set(scene.shot.time_s(2))
+            baked = self.baked(scene, 2)
+            self.assertEqual(baked["origin_m"].tolist(), origin_m)
+            self.compare(frame.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m), baked,
+                         grid.origin_m)
+            np.testing.assert_array_equal(grid.quads.ravel(), baked["face_corners"])
 
 
 class Maps(unittest.TestCase):

@@ -164,6 +164,30 @@ TEST(Render, AgitatedSeaHasNoHoles) {
     }
 }
 
+// Tiles of 200 m and 50 m repeat after 200 m: from any number of these away a camera sees the same sea. Places are
+// singles relative to the camera's nadir, and phases doubles of which 1e9 m leave 1e-7 m.
+TEST(Render, FarFromTheOriginThePictureIsTheSame) {
+    Scene scene = small_scene();
+    scene.waves.cascades = {{.size_m = 200.0, .resolution = 128}, {.size_m = 50.0, .resolution = 128}};
+    for (const double height_m : {1.5, 40.0}) {
+        const auto from = [&](glm::dvec2 place_m) {
+            scene.camera.position_m = glm::dvec3(place_m + glm::dvec2(3.5, -60.25), height_m);
+            scene.camera.look_at_m = scene.camera.position_m + glm::dvec3(20.0, 60.0, -0.1 * height_m);
+            return picture_of(scene);
+        };
+        const Picture here = from({0.0, 0.0});
+        for (const glm::dvec2 away_m :
+             {glm::dvec2(1e6, -1e6), glm::dvec2(-1e7, 1e7), glm::dvec2(1e8), glm::dvec2(-9.999e8, 9.999e8)}) {
+            SCOPED_TRACE(std::to_string(height_m) + " m high, at " + std::to_string(away_m.x));
+            const Picture there = from(away_m);
+            expect_finite(there);
+            // Measured: 3e-6.
+            EXPECT_LE(largest_difference(here, there), 2e-5 * static_cast<double>(kSkyRadiance));
+            EXPECT_EQ(here.sea, there.sea);
+        }
+    }
+}
+
 TEST(Render, SameBitsForAnyNumberOfThreadsAndOrderOfFrames) {
     Scene scene = small_scene();
     scene.camera.resolution = {150, 90};  // more than a band

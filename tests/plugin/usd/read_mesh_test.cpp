@@ -19,6 +19,8 @@ const std::vector<glm::vec3> kNormals(6, {0, 0, 1}), kVelocities(6, {1, 2, 3}),
 const std::vector<float> kCoverage{0, 0.25f, 0.5f, 0.75f, 1, 0};
 const std::vector<std::int32_t> kCounts{4, 4}, kCorners{0, 1, 2, 3, 1, 4, 5, 2};
 const std::vector<glm::vec2> kSt{{0, 0}, {0.5f, 0}, {0.5f, 1}, {0, 1}, {1, 0}, {1, 1}};
+// Of a mesh with faces of its own; no float holds it.
+constexpr glm::dvec3 kOrigin_m{1e7 + 0.1, -1e9 - 1e-6, 0.0};
 constexpr Faces faces() {
     return {.counts = kCounts, .indices = kCorners, .st = kSt};
 }
@@ -27,6 +29,7 @@ MeshSample frame(std::optional<Faces> its_faces = {}) {
     return {.frame = -5,
             .fps = 24.0,
             .faces = its_faces,
+            .origin_m = its_faces ? std::optional(kOrigin_m) : std::nullopt,
             .fingerprint = "0123abcd",
             .points = kPoints,
             .normals = kNormals,
@@ -93,11 +96,13 @@ TEST(UsdReadMesh, FramesComeBackBitForBit) {
         const MeshLayer layer = read_mesh_layer(bytes);
         expect_frame(layer);
         EXPECT_EQ(layer.arrays.size(), 5u);
+        EXPECT_EQ(layer.origin_m, std::nullopt);
     }
     for (const std::string& bytes : {frame_crate(frame(faces())), frame_text(frame(faces()))}) {
         const MeshLayer layer = read_mesh_layer(bytes);
         expect_frame(layer);
         expect_faces(layer);
+        EXPECT_EQ(layer.origin_m, kOrigin_m);
     }
 }
 
@@ -107,6 +112,11 @@ TEST(UsdReadMesh, TopologiesComeBack) {
         EXPECT_EQ(layer.frame, std::nullopt);
         EXPECT_EQ(layer.arrays.size(), 3u);
         expect_faces(layer);
+    }
+    const Topology moves{.attributes = {.faces = true, .origin = true}};
+    for (const std::string& bytes : {topology_crate(moves), topology_text(moves)}) {
+        EXPECT_TRUE(read_mesh_layer(bytes).arrays.empty());
+        EXPECT_EQ(read_mesh_layer(bytes).origin_m, std::nullopt);
     }
 }
 
@@ -156,6 +166,12 @@ TEST(UsdReadMesh, SaysWhatIsWrong) {
               "is damaged: USD: points[0] is nan, and only finite values can be written");
     EXPECT_EQ(message(replaced(text, "normal3f[] normals", "point3f[] points")),
               "is damaged: points is there twice");
+    EXPECT_EQ(message(replaced(text, "(10000000.1, ", "(inf, ")),
+              "is damaged: USD: the points' origin must be finite");
+    EXPECT_EQ(message(replaced(text, "(10000000.1, ", "(")), "is not a mesh that Pelagic wrote");
+    EXPECT_EQ(message(replaced(text, "double3 xformOp:translate.timeSamples = {\n        -5",
+                               "double3 xformOp:translate.timeSamples = {\n        -4")),
+              "has samples of several frames");
     EXPECT_EQ(message(replaced(frame_crate(frame()), "Sea", "Cow")), "is not the layer of a sea's mesh");
 }
 

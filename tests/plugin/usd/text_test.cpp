@@ -111,11 +111,14 @@ TEST(UsdText, TopologyIsThisPage) {
 )");
 }
 
-TEST(UsdText, FacesThatVaryStandInTheFrames) {
+TEST(UsdText, FacesAndOriginThatVaryStandInTheFrames) {
     const std::vector<std::int32_t> counts{3}, indices{0, 1, 2};
     const std::vector<glm::vec2> st{{0, 0}, {1, 0}, {0, 0.5f}};
     const std::vector<glm::vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    const MeshSample sample{.frame = 7, .faces = Faces{counts, indices, st}, .points = points};
+    const MeshSample sample{.frame = 7,
+                            .faces = Faces{counts, indices, st},
+                            .origin_m = glm::dvec3(10002432.0, -1e9 - 0.1, 0.0),
+                            .points = points};
     const std::string frame = frame_text(sample);
     EXPECT_EQ(frame.substr(frame.find("over")), R"(over "Sea"
 {
@@ -134,6 +137,9 @@ TEST(UsdText, FacesThatVaryStandInTheFrames) {
     texCoord2f[] primvars:st.timeSamples = {
         7: [(0, 0), (1, 0), (0, 0.5)],
     }
+    double3 xformOp:translate.timeSamples = {
+        7: (10002432, -1000000000.1, 0),
+    }
 }
 )");
     const std::string topology = topology_text({.attributes = sample.attributes()});
@@ -147,11 +153,14 @@ TEST(UsdText, FacesThatVaryStandInTheFrames) {
     int[] faceVertexCounts
     int[] faceVertexIndices
     texCoord2f[] primvars:st (interpolation = "vertex")
+    double3 xformOp:translate
+    uniform token[] xformOpOrder = ["xformOp:translate"]
 }
 )");
     const std::string manifest = manifest_text({.attributes = sample.attributes()});
     EXPECT_NE(manifest.find(
-                  "    int[] faceVertexCounts\n    int[] faceVertexIndices\n    texCoord2f[] primvars:st\n"),
+                  "    int[] faceVertexCounts\n    int[] faceVertexIndices\n    texCoord2f[] primvars:st\n"
+                  "    double3 xformOp:translate\n"),
               std::string::npos);
 }
 
@@ -262,7 +271,7 @@ def Xform "a_b"
             def Shader "Preview"
             {
                 uniform token info:id = "UsdPreviewSurface"
-                color3f inputs:diffuseColor = (0.004, 0.016, 0.024)
+                color3f inputs:diffuseColor = (0, 0, 0)
                 float inputs:ior = 1.34
                 float inputs:metallic = 0
                 float inputs:opacity = 1
@@ -274,7 +283,7 @@ def Xform "a_b"
             {
                 uniform token info:id = "ND_standard_surface_surfaceshader"
                 float inputs:base = 1
-                color3f inputs:base_color = (0.004, 0.016, 0.024)
+                color3f inputs:base_color = (0, 0, 0)
                 float inputs:specular = 1
                 float inputs:specular_IOR = 1.34
                 float inputs:specular_roughness = 0.1

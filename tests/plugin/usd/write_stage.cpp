@@ -238,6 +238,10 @@ void write_hard_layers(Layers& layers) {
     const std::string fingerprint(10000, 'f');
     layers.frame("hard/only-points.12345", {.frame = 12345, .fps = 1000.0 / 1001.0, .points = points});
     layers.frame("hard/no-points.0000", {.frame = 0});
+    layers.frame("hard/far-out.0001", {.origin_m = glm::dvec3(0.1, std::numeric_limits<double>::lowest(),
+                                                              std::numeric_limits<double>::denorm_min()),
+                                       .points = points});
+    layers.topology("hard/moves", {.attributes = {.faces = true, .origin = true}});
     layers.frame("hard/last.2147483647", {.frame = std::numeric_limits<int>::max(),
                                           .fingerprint = "0123456789abcdef",
                                           .points = points,
@@ -262,6 +266,18 @@ pelagic::Faces moving_faces(int frame) {
 }
 
 constexpr const char* kMoving = "moving";
+
+// Where the points' origin is at a frame of the second stage: places that no float holds, and that move at once.
+glm::dvec3 moving_origin_m(int frame) {
+    return frame < 5 ? glm::dvec3(1e7 + 0.125, -1e9 - 3.0, 0.0)
+                     : glm::dvec3(1e7 + 4096.125, -1e9 + 4093.0, 1e-3);
+}
+
+// A matrix as USD writes it.
+std::string json_translation(const glm::dvec3& by) {
+    const double numbers[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, by.x, by.y, by.z, 1};
+    return json_array(std::span<const double>(numbers));
+}
 
 struct CameraState {
     glm::dvec3 position_m;
@@ -353,10 +369,12 @@ void write_moving_stage(const std::filesystem::path& dir, const std::string& ext
     Layers layers(dir, extension == "usdc");
     std::map<double, std::string> expected;
     usd::AttributeSet attributes;
+    std::vector<glm::vec3> points, normals, points_before, normals_before;
     for (int frame = 1; frame <= kLast; ++frame) {
         const pelagic::Faces faces = moving_faces(frame);
         Numbers numbers(static_cast<std::uint64_t>(frame));
-        std::vector<glm::vec3> points, normals;
+        points_before = std::exchange(points, {});
+        normals_before = std::exchange(normals, {});
         for (std::size_t i = 0; i < faces.st.size(); ++i) {
             points.emplace_back(numbers.next(), numbers.next(), numbers.next());
             normals.emplace_back(numbers.next(), numbers.next(), numbers.next());
@@ -364,14 +382,27 @@ void write_moving_stage(const std::filesystem::path& dir, const std::string& ext
         const usd::MeshSample sample{
             .frame = frame,
             .faces = usd::Faces{.counts = faces.counts, .indices = faces.indices, .st = faces.st},
+            .origin_m = moving_origin_m(frame),
             .points = points,
             .normals = normals};
         attributes = sample.attributes();
         layers.frame(without_extension(usd::frame_file(kMoving, frame, extension)), sample);
-        // Arrays of different lengths hold their value until the next frame.
+        // Between two frames arrays of one length are mixed, as the points' origin is: places are mixed as they were
+        // without it. Those of different lengths hold their value until the next frame.
+        if (frame == 5) {
+            const auto mixed = [](const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+                std::vector<glm::vec3> mean(a.size());
+                for (std::size_t i = 0; i < a.size(); ++i) mean[i] = 0.5f * a[i] + 0.5f * b[i];
+                return json_array(mean);
+            };
+            expected[4.5] = "\"/moving/Sea\": {\"points\": " + mixed(points_before, points) +
+                            ", \"normals\": " + mixed(normals_before, normals) + ", \"transform\": " +
+                            json_translation(0.5 * (moving_origin_m(4) + moving_origin_m(5))) + "}";
+        }
         for (const double time : {frame + 0.0, frame + 0.5}) {
-            if (time > kLast || time == 4.5) continue;  // at 4.5 points of other faces are mixed
+            if (time > kLast || time == 4.5) continue;
             expected[time] = "\"/moving/Sea\": {\"points\": " + json_array(points) +
+                             ", \"transform\": " + json_translation(moving_origin_m(frame)) +
                              ", \"normals\": " + json_array(normals) + ", \"st\": " +
                              json_array(std::span<const float>(&faces.st[0].x, 2 * faces.st.size())) +
                              ", \"indices\": " + json_triangles(faces) + "}";
@@ -423,7 +454,9 @@ over "moving" {
                   ", \"/moving/Camera/Probe\": {\"transform\": " + json_matrix(pose_of(moving_camera(time))) +
                   "}}";
     }
+    // The transforms above are floats; the text has all digits.
     save(dir / "moving.json", R"({"prims": {"/moving/Camera": "Camera", "/moving/Sea": "Mesh"},
+"flattened": ["4: (10000000.125, -1000000003, 0),", "5: (10004096.125, -999995907, 0.001),"],
 "sameLayers": )" + layers.twins() +
                                   ",\n\"frames\": {" + frames + "}}\n");
 }

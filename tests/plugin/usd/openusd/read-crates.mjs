@@ -61,7 +61,7 @@ function readText(text) {
             const field = /^ {4}(\w+) = (.*)$/.exec(line);
             if (field) layer[field[1]] = scalarOf(field[2]);
         } else if (sampled) {
-            const sample = /^ {8}(-?\d+): (\[.*\]),$/.exec(line);
+            const sample = /^ {8}(-?\d+): ([[(].*[\])]),$/.exec(line);
             if (sample) sampled.samples = { time: Number(sample[1]), numbers: numbersOf(sample[2]) };
             else sampled = null;
         } else {
@@ -72,6 +72,7 @@ function readText(text) {
             const [, variability, type, name, samples, value, interpolation] = found;
             attributes[name] = { variability: variability ?? '', type, interpolation };
             if (samples) sampled = attributes[name];
+            else if (value?.startsWith('["')) attributes[name].value = JSON.parse(value);
             else if (value?.startsWith('[')) attributes[name].numbers = numbersOf(value);
             else if (value !== undefined) attributes[name].value = scalarOf(value);
         }
@@ -107,7 +108,7 @@ function readCrate(USDCParser, file) {
                 }
                 attribute.samples = { time: timeSamples.times[0], numbers: timeSamples.values[0] };
             }
-            if (isArray(value)) attribute.numbers = value;
+            if (isArray(value) && typeName !== 'token[]') attribute.numbers = value;
             else if (value !== undefined) attribute.value = typeof value === 'boolean' ? Number(value) : value;
             read.attributes[name] = attribute;
         } else {
@@ -134,7 +135,8 @@ function differences(text, crate, count) {
     const sameNumbers = (what, type, wanted, got) => {
         if ((wanted === undefined) !== (got === undefined)) found.push(`${what}: in one of the two only`);
         if (wanted === undefined || got === undefined) return;
-        const Type = type === 'int[]' ? Int32Array : Float32Array;
+        // three.js gives a single vector as a plain array.
+        const Type = { 'int[]': Int32Array, double3: Array }[type] ?? Float32Array;
         if (got.length > 0 && !(got instanceof Type)) found.push(`${what} is a ${got.constructor.name}`);
         same(`${what}: length`, wanted.length, got.length);
         const rounded = Type.from(wanted);

@@ -1,0 +1,300 @@
+// Meshes wherever the camera is: places near it are as exact a million or a hundred million metres from the world's
+// origin as they are there. A file's points are floats, relative to the origin that the file names.
+//
+// Only what follows the camera can lie far out. A patch is centred on the world's origin and has at most 8192 quads a
+// side, so that its finest place is a 16384th of its largest, and a float holds that place a thousand times as finely
+// (APatchIsAsExactAtItsEdge).
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <glm/geometric.hpp>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/evaluate/evaluate.h"
+#include "core/scene/keys.h"
+#include "core/scene/limits.h"
+#include "core/scene/names.h"
+#include "plugin/bake/bake.h"
+#include "plugin/usd/layers.h"
+#include "plugin/usd/read_mesh.h"
+
+namespace {
+
+using namespace pelagic;
+namespace fs = std::filesystem;
+
+struct Mesh {
+    glm::dvec3 origin_m{0.0};
+    std::vector<glm::vec3> points, normals, velocities;
+    std::vector<std::int32_t> corners;  // four a face
+
+    glm::dvec3 place_m(std::int32_t i) const {
+        return origin_m + glm::dvec3(points[static_cast<std::size_t>(i)]);
+    }
+};
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<glm::vec3> vectors(const usd::MeshArray& array) {
+    const auto& numbers = std::get<std::vector<float>>(array.values);
+    std::vector<glm::vec3> all;
+    for (std::size_t i = 0; i < numbers.size(); i += 3)
+        all.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+    return all;
+}
+
+void add_layer(const fs::path& file, Mesh& mesh) {
+    const usd::MeshLayer layer = usd::read_mesh_layer(bytes_of(file));
+    if (layer.origin_m) mesh.origin_m = *layer.origin_m;
+    for (const usd::MeshArray& array : layer.arrays) {
+        if (array.name == "points") mesh.points = vectors(array);
+        if (array.name == "normals") mesh.normals = vectors(array);
+        if (array.name == "velocities") mesh.velocities = vectors(array);
+        if (array.name == "faceVertexIndices")
+            mesh.corners = std::get<std::vector<std::int32_t>>(array.values);
+    }
+}
+
+// How finely floats of this size, and the sums that made them, hold a place.
+double resolution_m(const glm::vec3& point) {
+    constexpr double kRounding = 0x1p-23;
+    return kRounding *
+           std::max(std::abs(static_cast<double>(point.x)), std::abs(static_cast<double>(point.y)));
+}
+
+// What a frame's vertices are in double precision, seen from the world's origin.
+struct Reference {
+    std::vector<glm::dvec3> places_m, velocities;
+    double significant_height_m = 0.0;
+};
+
+Reference reference_of(const Scene& scene, int frame) {
+    const auto plan = std::make_shared<Plan>(plan_bake(prepare(scene), std::vector{frame}));
+    Frame<double> sea(std::make_shared<const Sea<double>>(*plan));
+    sea.set(scene.shot.time_s(frame));
+    RestPoints<double> at;
+    plan->surface->points_at(frame, at);
+    Reference reference{.places_m = std::vector<glm::dvec3>(at.rest_m.size()),
+                        .velocities = std::vector<glm::dvec3>(at.rest_m.size()),
+                        .significant_height_m = 4.0 * std::sqrt(plan->from->spectrum.m0())};
+    Results<double> results;
+    results.set(Product::Position, {reference.places_m.data()});
+    results.set(Product::Velocity, {reference.velocities.data()});
+    Points<double> points{.origin_m = at.origin_m, .count = at.rest_m.size(), .rest_m = {at.rest_m.data()}};
+    if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};
+    if (!at.pixel_m.empty()) points.pixel_m = {at.pixel_m.data()};
+    evaluate(sea, 0, points, results);
+    for (glm::dvec3& place : reference.places_m) place += glm::dvec3(at.origin_m, 0.0);
+    return reference;
+}
+
+// Twice the area of a quad, as a vector along its normal.
+glm::dvec3 doubled_area(const Mesh& mesh, std::size_t quad) {
+    const std::int32_t* c = &mesh.corners[4 * quad];
+    return glm::cross(mesh.place_m(c[2]) - mesh.place_m(c[0]), mesh.place_m(c[3]) - mesh.place_m(c[1]));
+}
+
+struct Quality {
+    std::size_t quads = 0, without_area = 0;
+    double off_normal =
+        0.0;  // root mean square of 1 − cosine between a face's own normal and those at its corners
+};
+
+Quality quality_of(const Mesh& mesh) {
+    Quality quality{.quads = mesh.corners.size() / 4};
+    for (std::size_t quad = 0; quad < quality.quads; ++quad) {
+        const glm::dvec3 area = doubled_area(mesh, quad);
+        if (!(glm::length(area) > 0.0)) {
+            ++quality.without_area;
+            continue;
+        }
+        glm::dvec3 normal(0.0);
+        for (std::size_t i = 0; i < 4; ++i)
+            normal += glm::dvec3(mesh.normals[static_cast<std::size_t>(mesh.corners[4 * quad + i])]);
+        const double off = 1.0 - glm::dot(glm::normalize(area), glm::normalize(normal));
+        quality.off_normal += off * off;
+    }
+    quality.off_normal = std::sqrt(quality.off_normal / static_cast<double>(quality.quads));
+    return quality;
+}
+
+class FarOut : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("pelagic-far-" + std::to_string(getpid()));
+        fs::remove_all(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    Mesh baked(const Scene& scene, int frame) const {
+        fs::remove_all(folder_);
+        bake(scene, {.out = folder_, .frames = {frame}, .progress = {}, .cancel = nullptr});
+        return read(scene, frame);
+    }
+    Mesh read(const Scene& scene, int frame) const {
+        const std::string extension(word_of(scene.output.mesh));
+        Mesh mesh;
+        add_layer(folder_ / usd::topology_file(scene.shot.name, extension), mesh);
+        add_layer(folder_ / usd::frame_file(scene.shot.name, frame, extension), mesh);
+        return mesh;
+    }
+
+    fs::path folder_;
+};
+
+// Words of a key that can be made.
+std::vector<std::string> built_words(const std::string& path) {
+    std::vector<std::string> words;
+    for (const KeyChoice& choice : key_of(path).choices)
+        if (choice.is_built) words.push_back(choice.word);
+    return words;
+}
+
+Scene scene_at(glm::dvec2 place_m, double height_m = 4.0) {
+    Scene scene;
+    scene.shot.last_frame = 4;
+    scene.sea.wind_speed_mps = 12.0;
+    scene.waves.cascades = {{.size_m = 200.0, .resolution = 128}, {.size_m = 31.0, .resolution = 64}};
+    scene.surface = {.size_m = 100.0, .resolution = 32, .cell_px = 6.0};
+    scene.camera.resolution = {192, 108};
+    scene.camera.position_m = glm::dvec3(place_m, height_m);
+    scene.camera.look_at_m = glm::dvec3(place_m + glm::dvec2(10.0, 40.0), height_m - 3.0);
+    scene.quality.level = QualityLevel::Preview;
+    return scene;
+}
+
+// From the world's origin to the last place that a camera may have.
+const std::vector<glm::dvec2> kPlaces_m{
+    {0.0, 0.0},  {-1e4, 1e4},          {1e6, 1e6},  {-1e6, 1234.567},
+    {1e7, -1e7}, {-9.87654321e6, 1e7}, {1e8, -1e8}, {-1e9 + 0.3, 1e9 - 50.0}};
+
+void expect_exact(const Mesh& mesh, const Reference& reference, double time_scale = 1.0) {
+    ASSERT_EQ(mesh.points.size(), reference.places_m.size());
+    double worst = 0.0, velocity = 0.0;
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        const glm::dvec3 off = mesh.place_m(static_cast<std::int32_t>(i)) - reference.places_m[i];
+        // The reference is a double and rounds as well: to 1e-7 m at 1e9 m.
+        const double allowed = 1e-5 * reference.significant_height_m + resolution_m(mesh.points[i]) +
+                               0x1p-52 * glm::length(glm::dvec2(reference.places_m[i]));
+        worst = std::max(worst, glm::length(off) / allowed);
+        velocity = std::max(
+            velocity, glm::length(glm::dvec3(mesh.velocities[i]) - time_scale * reference.velocities[i]));
+    }
+    EXPECT_LE(worst, 1.0);
+    EXPECT_LE(velocity, 1e-5 * reference.significant_height_m);
+}
+
+TEST_F(FarOut, EverySurfaceInEveryFormatIsAsExactAsAtTheOrigin) {
+    for (const std::string& kind : built_words("surface.kind"))
+        for (const std::string& format : built_words("output.mesh")) {
+            if (format == "none") continue;
+            Quality near;
+            for (const glm::dvec2 place_m : kPlaces_m) {
+                SCOPED_TRACE(kind + " as " + format + ", camera at " + std::to_string(place_m.x) + ", " +
+                             std::to_string(place_m.y));
+                Scene scene = scene_at(place_m);
+                ASSERT_FALSE(set_value(scene, key_of("surface.kind"), kind));
+                ASSERT_FALSE(set_value(scene, key_of("output.mesh"), format));
+                const Mesh mesh = baked(scene, 3);
+                const Quality quality = quality_of(mesh);
+                ASSERT_GT(quality.quads, 500u);
+                EXPECT_EQ(quality.without_area, 0u);
+                if (place_m == glm::dvec2(0.0)) near = quality;
+                // Of other waves of the same sea: 1 … 1.15, measured.
+                EXPECT_LT(quality.off_normal, 1.5 * near.off_normal);
+                expect_exact(mesh, reference_of(scene, 3));
+            }
+        }
+}
+
+// From a hand above the water to the stratosphere, straight down, through any lens, with fine cells: where one step for
+// the origins of all cameras would be too long.
+TEST_F(FarOut, NoCameraTearsItsGrid) {
+    for (const auto& [height_m, fov_deg] : {std::pair(0.1, 10.0), {3.0, 1.0}, {20e3, 120.0}})
+        for (const glm::dvec2 place_m : {glm::dvec2(2047.0, -2047.0), glm::dvec2(1e7, -1e7)}) {
+            SCOPED_TRACE(std::to_string(height_m) + " m high, " + std::to_string(fov_deg) + "°, at " +
+                         std::to_string(place_m.x));
+            Scene scene = scene_at(place_m, height_m);
+            scene.surface.kind = SurfaceKind::ProjectedGrid;
+            scene.surface.cell_px = 1.0;
+            scene.sea.wind_speed_mps = 0.0;
+            scene.camera.fov_deg = fov_deg;
+            scene.camera.resolution = {300, 16};
+            scene.camera.look_at_m = scene.camera.position_m + glm::dvec3(0.0, 0.1, -1.0);
+            const Mesh mesh = baked(scene, 1);
+            EXPECT_EQ(quality_of(mesh).without_area, 0u);
+            expect_exact(mesh, reference_of(scene, 1));
+        }
+}
+
+// A camera that crosses from one origin to the next in the middle of the shot.
+TEST_F(FarOut, AStepOfTheOriginMovesNothing) {
+    constexpr double kStep_m = 4096.0;
+    Scene scene = scene_at({});
+    scene.shot.time_scale = 0.5;
+    scene.surface.kind = SurfaceKind::ProjectedGrid;
+    scene.camera.keys.clear();
+    const glm::dvec2 edge_m{(244.0 + 0.5) * kStep_m, 3e6};
+    for (const int frame : {1, 4}) {
+        const glm::dvec2 place_m = edge_m + glm::dvec2((frame - 2.5) * 80.0, frame);
+        scene.camera.keys.push_back({.frame = frame,
+                                     .position_m = glm::dvec3(place_m, 9.0),
+                                     .look_at_m = glm::dvec3(place_m + glm::dvec2(30.0, 50.0), 0.0)});
+    }
+    bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
+    std::vector<glm::dvec3> origins_m;
+    std::map<int, std::string> bytes;
+    for (int frame = 1; frame <= 4; ++frame) {
+        SCOPED_TRACE(frame);
+        const Mesh mesh = read(scene, frame);
+        origins_m.push_back(mesh.origin_m);
+        expect_exact(mesh, reference_of(scene, frame), scene.shot.time_scale);
+        bytes[frame] = bytes_of(folder_ / usd::frame_file(scene.shot.name, frame, "usdc"));
+    }
+    EXPECT_EQ(origins_m[0], origins_m[1]);
+    EXPECT_EQ(origins_m[2] - origins_m[1], glm::dvec3(kStep_m, 0.0, 0.0));
+    EXPECT_EQ(origins_m[2], origins_m[3]);
+    EXPECT_EQ(glm::mod(origins_m[0], glm::dvec3(kStep_m)), glm::dvec3(0.0));
+
+    // Alone, each is the same; and for a camera that is elsewhere, each is made again.
+    baked(scene, 3);
+    EXPECT_EQ(bytes_of(folder_ / usd::frame_file(scene.shot.name, 3, "usdc")), bytes[3]);
+    for (CameraKey& key : scene.camera.keys) {
+        key.position_m.x += kStep_m;
+        key.look_at_m.x += kStep_m;
+    }
+    const BakeReport report = bake(scene, {.out = folder_, .frames = {3}, .progress = {}, .cancel = nullptr});
+    EXPECT_EQ(report.done, 1);
+    EXPECT_EQ(read(scene, 3).origin_m, origins_m[3] + glm::dvec3(kStep_m, 0.0, 0.0));
+}
+
+// Where a float holds the world's places finely enough, the world's origin is the mesh's.
+TEST_F(FarOut, NearTheWorldsOriginTheMeshHasThatOne) {
+    for (const glm::dvec2 place_m : {glm::dvec2(0.0), glm::dvec2(-2000.0, 2000.0)}) {
+        Scene scene = scene_at(place_m);
+        scene.surface.kind = SurfaceKind::ProjectedGrid;
+        EXPECT_EQ(baked(scene, 1).origin_m, glm::dvec3(0.0));
+    }
+}
+
+TEST(FarOutSurface, APatchIsAsExactAtItsEdge) {
+    const double finest = 1.0 / limits::kSurfaceResolution.high;
+    for (const double size_m : {limits::kSurfaceSize_m.low, 200.0, limits::kSurfaceSize_m.high}) {
+        const auto edge_m = static_cast<float>(0.5 * size_m);
+        EXPECT_LT(edge_m - std::nextafter(edge_m, 0.0f), 1e-3 * finest * size_m);
+    }
+}
+
+}  // namespace

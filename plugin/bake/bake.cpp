@@ -69,6 +69,10 @@ void prepare_folders(const std::filesystem::path& out, const Parts& parts) {
         files::ensure_folder(folder);
         files::remove_stale_temporaries(folder);
     }
+    // A killed bake of another shot may have left some in folders that this one doesn't use.
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(out, ignored))
+        if (entry.is_directory(ignored)) files::remove_stale_temporaries(entry.path());
 }
 
 // What is to be done of one frame.

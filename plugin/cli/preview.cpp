@@ -61,10 +61,12 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
     const OffscreenContext context;
+    files::check_folder(file.parent_path());
     const OffscreenPlan planned = plan_offscreen(scene, frame, {}, memory_of(arguments.max_memory));
-    const Sky sky = make_sky(scene);  // before the folder is made: an error leaves none behind
-    files::ensure_folder(file.parent_path());
+    const Sky sky = make_sky(scene);
     const OffscreenPicture drawn = render_offscreen(planned, sky);
+    files::ensure_folder(file.parent_path());  // an error before has left none behind
+    files::remove_stale_temporaries(file.has_parent_path() ? file.parent_path() : ".");
     RenderOptions options = render_options(scene);
     options.samples = 1;
     const PictureContext about{
@@ -106,6 +108,9 @@ int run(const Arguments& arguments) {
             return threads.execute([&] { return draw_offscreen(scene, *arguments.offscreen, arguments); });
         } catch (const NotEnoughMemory& error) {
             return refuse_memory(arguments.shot, error);
+        } catch (const std::invalid_argument& error) {
+            std::cerr << arguments.shot << ": " << error.what() << '\n';
+            return kRefused;
         }
     }
     WindowOptions options{.folder = fs::path(arguments.shot).parent_path(),

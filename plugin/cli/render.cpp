@@ -165,9 +165,8 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
                    machine::memory_limit_or(job.max_memory_bytes), "this picture");
     now.stage = BakeStage::Building;
     progress.show(now);
-    Sky sky = make_sky(job.scene);  // what is wrong with it leaves no folder behind
-    files::ensure_folder(job.out);
-    files::remove_stale_temporaries(job.out);
+    files::check_folder(job.out);
+    Sky sky = make_sky(job.scene);
     const BuildWatch building{.progress =
                                   [&](double built) {
                                       now.built = built;
@@ -189,6 +188,19 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
                               .made_of = fingerprint.of(frame),
                               .exposure_stops = job.exposure_stops};
     };
+    if (!renderer.check_cameras(frames, {.progress =
+                                             [&](double part) {
+                                                 progress.show("looking where the camera is above water: " +
+                                                               std::to_string(std::lround(100.0 * part)) +
+                                                               " %");
+                                             },
+                                         .cancel = &stop.cancelled()})) {
+        done.cancelled = true;
+        return done;
+    }
+    // Whatever is refused has left no folder behind.
+    files::ensure_folder(job.out);
+    files::remove_stale_temporaries(job.out);
     stop.files_begin();
     now.stage = BakeStage::Frames;
     const Clock::time_point first_frame = Clock::now();

@@ -280,6 +280,16 @@ void ensure_folder(const std::filesystem::path& asked) {
     if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
 }
 
+void check_folder(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    fs::path there = folder;
+    while (!there.empty() && !fs::exists(there, ignored) && there != there.parent_path())
+        there = there.parent_path();
+    if (there.empty()) there = ".";
+    if (!fs::is_directory(there, ignored)) fail_to_make_folder(folder, ENOTDIR);
+    if (faccessat(AT_FDCWD, there.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
+}
+
 bool carries(const std::filesystem::path& path, std::string_view text) {
     constexpr std::streamoff kEnd = 8192;
     std::ifstream stream(path, std::ios::binary | std::ios::ate);

@@ -58,6 +58,9 @@ std::size_t remove_stale_temporaries(const std::filesystem::path& folder);
 // empty path is the working folder. Throws FileError.
 void ensure_folder(const std::filesystem::path& folder);
 
+// Whether it could, without making anything. Throws FileError where it is sure that it couldn't.
+void check_folder(const std::filesystem::path& folder);
+
 // Locks the folder for this process during the object's lifetime, and waits for other holders: for files that
 // several runs read, change and write again. No effect on file systems without locks.
 class FolderLock {

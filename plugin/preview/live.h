@@ -16,6 +16,7 @@
 #include "core/plan/memory.h"
 #include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
 #include "core/waves/sea.h"
 #include "plugin/preview/live_worker.h"
 #include "plugin/preview/sea_renderer.h"
@@ -77,10 +78,13 @@ class LiveSea {
     // current sea between two frames. During a build only the latest request is kept.
     void ask(const Scene& scene);
     // Requests a frame at this time [s], finite, of the latest sea that is ready; the latest request wins.
-    // Must be called for every picture drawn: this call swaps in a sea that is ready.
-    void show(double time_s);
+    // Must be called for every picture drawn: this call swaps in a sea that is ready. `eye`: a camera among the
+    // waves (is_among_waves()), of which water_over_eye() will tell.
+    void show(double time_s, const std::optional<View>& eye = {});
     // The latest finished frame; null before the first. Unchanged until the next call.
     const LiveFrame* newest();
+    // The height z [m] of the surface above the eye, in the latest frame computed; nullopt for one in the air.
+    std::optional<double> water_over_eye() const;
     LiveStatus status() const;
 
   private:
@@ -95,6 +99,8 @@ class LiveSea {
     std::condition_variable wake_;
     std::shared_ptr<const LiveBuild> build_;  // for the next frame
     std::optional<double> time_s_;            // for the next frame
+    std::optional<View> eye_;
+    std::optional<double> water_over_eye_m_;
     std::string frame_error_;
     long seas_ = 0, frames_ = 0;
     bool stopping_ = false;

@@ -55,7 +55,8 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size = gl
 MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads);
 
 // One sample per pixel. Needs a current context. The GPU computes in single precision; a note says so if
-// quality.level asks for double.
+// quality.level asks for double. Throws std::invalid_argument for a camera under water
+// (plugin/render/under_water.h).
 OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky);
 
 }  // namespace pelagic

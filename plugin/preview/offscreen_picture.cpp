@@ -20,6 +20,7 @@
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/preview/offscreen.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -176,6 +177,8 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky) 
         {
             Frame<float> state(sea);
             state.set(planned.scene.shot.time_s(planned.frame));
+            refuse_under_water(state, planned.scene, planned.frame,
+                               projected_grid_options(*planned.plan.from));
             packed.pack(state);
         }
         renderer.upload_once(packed);

@@ -78,7 +78,7 @@ BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::pat
                         .cancel = watch.flag()};
     BakeReport report;
     {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         report = bake(kept, options);
     }
     watch.rethrow();
@@ -164,7 +164,7 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     Watch watch(progress, cancel);
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
     try {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         Plan plan = plan_bake(asked);
         return with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
             return std::make_unique<MapsOf<T>>(std::move(plan), building);
@@ -194,7 +194,7 @@ void add_arrays(py::dict& arrays, Values& values) {
 py::tuple maps_at(Maps& self, double t_s) {
     std::vector<Values> values;
     {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         values = self.at(t_s);
     }
     py::dict patch;

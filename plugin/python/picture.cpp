@@ -46,7 +46,7 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     auto picture = std::make_unique<Picture>();
     bool is_whole = false;
     try {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         const std::array frames{frame};
         require_memory(
             render_memory(kept, options, frames, std::nullopt, tbb::this_task_arena::max_concurrency()),

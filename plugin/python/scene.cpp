@@ -18,6 +18,7 @@
 #include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/values.h"
+#include "plugin/python/watch.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::python {
@@ -172,7 +173,7 @@ std::string text_of_shot(const Scene& scene) {
 double significant_height_of(const Scene& scene) {
     require_valid(scene);
     const Scene kept = scene;
-    const py::gil_scoped_release others_may_run;
+    const OthersMayRun others_may_run;
     return prepare(kept)->extent.significant_height_m;
 }
 

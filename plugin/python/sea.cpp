@@ -98,7 +98,7 @@ PythonSea build_sea(const Scene& scene, const SeaRequest& request, Watch& watch)
     const Scene kept = scene;  // other threads may change the caller's meanwhile
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
     try {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         const auto prepared = prepare(kept);
         Query query = plain ? *plain : query_of_views(*prepared, request, held);
         query.name = "python";

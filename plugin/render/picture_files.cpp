@@ -89,7 +89,8 @@ std::string picture_file(const Shot& shot, int frame, const char* extension) {
     return shot.name + "." + number.data() + "." + extension;
 }
 
-PictureFingerprint::PictureFingerprint(const PictureSource& source) : camera_(source.scene.camera) {
+PictureFingerprint::PictureFingerprint(const PictureSource& source)
+    : shot_(source.scene.shot), camera_(source.scene.camera) {
     const LightingChoice& lighting = source.options.lighting;
     const auto digit = [](auto value) { return std::to_string(static_cast<int>(value)); };
     // What the plan says of a view is the same whichever frames it is for.
@@ -108,11 +109,11 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source) : camera_(so
 }
 
 std::string PictureFingerprint::of(int frame) const {
-    return Fingerprint()
-        .add(source_)
-        .add("frame " + std::to_string(frame))
-        .add(pose_text(view_at(camera_, frame)))
-        .text();
+    Fingerprint hash;
+    hash.add(source_).add("frame " + std::to_string(frame)).add(pose_text(view_at(camera_, frame)));
+    // Which time of a loop a frame shows isn't in any key.
+    if (shot_.loop_s > 0.0) hash.add("time " + number_text(shot_.time_s(frame)));
+    return hash.text();
 }
 
 bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of) {

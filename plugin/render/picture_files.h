@@ -24,7 +24,7 @@ struct PictureContext {
 
 // Raised by hand when pictures of the same source get other bits; then none that is there counts as whole.
 // tests/plugin/bake/golden_test.cpp notices bits that change without it.
-inline constexpr int kPictureRevision = 2;
+inline constexpr int kPictureRevision = 3;
 
 // What the two files of a frame are made of: the keys that feed pictures, the camera's pose, the resolved
 // plan, the sky's picture, the samples, terms and lookups of the light, and the exposure. Pictures with the
@@ -42,6 +42,7 @@ class PictureFingerprint {
     std::string of(int frame) const;  // 16 hexadecimal digits
 
   private:
+    Shot shot_;
     Camera camera_;
     std::string source_;
 };

@@ -22,6 +22,7 @@
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
 #include "plugin/render/raster.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -62,6 +63,7 @@ class Renderer::Impl {
   public:
     virtual ~Impl() = default;
     virtual bool render(int frame, Picture& picture, const RenderWatch& watch) = 0;
+    virtual bool check_cameras(std::span<const int> frames, const RenderWatch& watch) = 0;
     virtual const Plan& plan() const = 0;
     virtual const Sky& sky() const = 0;
 };
@@ -94,6 +96,7 @@ class RendererOf final : public Impl {
 
     bool render(int frame, Picture& picture, const RenderWatch& watch) override {
         frame_.set(scene_.shot.time_s(frame));
+        refuse_under_water(frame_, scene_, frame, grid_options_);
         view_ = view_at(scene_.camera, frame);
         lay_out_grid();
         picture.resolution = scene_.camera.resolution / options_.samples;
@@ -108,6 +111,18 @@ class RendererOf final : public Impl {
             light_sea(row);
             average(row, rows, picture);
             if (watch.progress) watch.progress(static_cast<double>(row + rows) / view_.resolution.y);
+            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
+        }
+        return true;
+    }
+
+    bool check_cameras(std::span<const int> frames, const RenderWatch& watch) override {
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            if (!is_among_waves(view_at(scene_.camera, frames[i]), grid_options_)) continue;
+            frame_.set(scene_.shot.time_s(frames[i]));
+            refuse_under_water(frame_, scene_, frames[i], grid_options_);
+            if (watch.progress)
+                watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
             if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
         }
         return true;
@@ -134,7 +149,8 @@ class RendererOf final : public Impl {
                            .rest_m = {rest_.data()},
                            .cell_m = {cell_m_.data()}},
                  results);
-        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kNear_m);
+        constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
+        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
         clip_.resize(count);
         for (std::size_t i = 0; i < count; ++i) clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
         const ProjectedGridSize size{grid_.columns, grid_.rows};
@@ -411,6 +427,9 @@ Renderer::~Renderer() = default;
 
 bool Renderer::render(int frame, Picture& picture, const RenderWatch& watch) {
     return impl_->render(frame, picture, watch);
+}
+bool Renderer::check_cameras(std::span<const int> frames, const RenderWatch& watch) {
+    return impl_->check_cameras(frames, watch);
 }
 const Plan& Renderer::plan() const {
     return impl_->plan();

@@ -30,8 +30,8 @@
 
 namespace pelagic {
 
-// Where the pictures' view volume begins [m]: nearer than any lens focuses on a sea, and far enough for the
-// depth buffers of GPUs.
+// Where the preview's view volume begins [m]: far enough for the depth buffers of GPUs. A rendered picture's begins at
+// the eye: wide lenses close to the water see much of it at less than this depth.
 inline constexpr double kNear_m = 0.05;
 
 // One frame, HDR, rows from the top, x fastest; in the sky's units. The layers add up to the picture:
@@ -93,8 +93,14 @@ class Renderer {
 
     // One frame of the shot at the camera's resolution, into a picture whose memory is used again. On all
     // threads of the calling arena; the same bits whatever their number and whichever frame came before.
-    // Every value is finite. False when it was cancelled: the picture is then only partly there.
+    // Every value is finite. False when it was cancelled: the picture is then only partly there. Throws
+    // std::invalid_argument for a camera under water (plugin/render/under_water.h).
     bool render(int frame, Picture& picture, const RenderWatch& watch = {});
+
+    // Throws what render() would throw for the first of these frames whose camera is under water, before hours
+    // are spent on the others. Frames whose camera is above the highest crest to be expected cost nothing, each
+    // other one its transforms. False when it was cancelled.
+    bool check_cameras(std::span<const int> frames, const RenderWatch& watch = {});
 
     const Plan& plan() const;
     const Sky& sky() const;

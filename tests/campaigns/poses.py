@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Poses times seas: cameras from a hand above the water to 300 km up, near and a million metres out, looking anywhere,
+"""Poses times seas: cameras from a hand above the water to 300 km up, near and ten million metres out, looking anywhere,
 over seas from glass to hurricane. Pictures have the horizon where it must be and only light that can be, and the
 projected grid of the same camera is a whole mesh."""
 
@@ -29,7 +29,7 @@ SEAS = {
 }
 UNFOLDED = ("calm", "swell alone")
 # Height and distance from the origin.
-PLACES = [(0.3, 0.0), (2.0, 0.0), (10.0, 0.0), (1e3, 0.0), (2e4, 0.0), (3e5, 0.0), (10.0, 1e6), (1e3, 1e6)]
+PLACES = [(0.3, 0.0), (2.0, 0.0), (10.0, 0.0), (1e3, 0.0), (2e4, 0.0), (3e5, 0.0), (10.0, 1e7), (1e3, 1e6)]
 # Elevation of the line of sight.
 LOOKS = {"straight down": -90.0, "down": -30.0, "at the horizon": 0.0, "up": 30.0, "straight up": 90.0}
 ROLLS = [0.0, 0.0, 7.0, 90.0, 180.0, -135.0]

@@ -297,5 +297,34 @@ TEST_F(Pictures, AnInterruptedRenderLeavesWholeFilesAndSaysHowMany) {
     EXPECT_EQ(torn_files(folder() / "out"), "");
 }
 
+TEST_F(Pictures, ACameraUnderWaterIsRefusedForTheFramesAskedFor) {
+    const auto with_camera = [](const std::string& camera) {
+        std::string text = small_shot();
+        const std::string table = "[camera]\n";
+        return text.insert(text.find(table) + table.size(), camera);
+    };
+    write_file(folder() / "below.toml", with_camera("position_m = [0, -60, -9]\n"));
+    write_file(folder() / "diving.toml",
+               with_camera("keys = [ { frame = 1, position_m = [0, -60, 9], look_at_m = [0, 0, 0] }, "
+                           "{ frame = 4, position_m = [0, -60, -9], look_at_m = [0, 0, 0] } ]\n"));
+    refused({"render", "below.toml"}, 1,
+            {"below.toml: camera.position_m: at frame 1 the camera is under water: it is at z = -9 m",
+             "the surface there"});
+    refused({"render", "diving.toml"}, 1, {"diving.toml: camera.keys: at frame ", "raise the camera"});
+    refused({"render", "diving.toml", "--frames", "4"}, 1,
+            {"at frame 4 the camera is under water: it is at z = -9 m"});
+    EXPECT_EQ(cli({"render", "diving.toml", "--frames", "1"}).status, 0);
+    EXPECT_EQ(cli({"bake", "below.toml"}).status, 0);
+}
+
+TEST_F(Pictures, PreviewDrawsNothingUnderWater) {
+    std::string text = small_shot();
+    const std::string table = "[camera]\n";
+    write_file(folder() / "below.toml",
+               text.insert(text.find(table) + table.size(), "position_m = [0, -60, -9]\n"));
+    refused({"preview", "below.toml", "--offscreen", "new/x.png"}, 1,
+            {"below.toml: camera.position_m: at frame 1 the camera is under water"});
+}
+
 }  // namespace
 }  // namespace pelagic::test

@@ -350,5 +350,16 @@ TEST_F(Files, OnlyTheLeftoversOfTheDeadAreCleared) {
     EXPECT_EQ(remove_stale_temporaries(folder_ / "nowhere"), 0u);
 }
 
+TEST_F(Files, CheckFolderRefusesWhatEnsureFolderWouldAndMakesNothing) {
+    check_folder(folder_);
+    check_folder(folder_ / "new/and/below");
+    check_folder("");
+    check_folder("new");
+    EXPECT_TRUE(fs::is_empty(folder_));
+    write_atomically(folder_ / "file", std::string_view("kept"));
+    EXPECT_THROW(check_folder(folder_ / "file"), FileError);
+    EXPECT_THROW(check_folder(folder_ / "file/below"), FileError);
+}
+
 }  // namespace
 }  // namespace pelagic::files

@@ -22,6 +22,7 @@
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
+#include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/render/render.h"
 #include "plugin/shot/shot.h"
@@ -133,7 +134,7 @@ Verb add_explain(CLI::App& program) {
     CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
     return {command, [arguments] {
-                const Scene scene = load_shot(arguments->shot);
+                const Scene scene = load_shot(arguments->shot, check_sky);
                 const Plan plan = plan_bake(scene);
                 std::cout << explain(plan);
                 print_memory(scene, plan);

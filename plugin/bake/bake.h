@@ -2,8 +2,8 @@
 //
 //   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/NAME.sky.exr, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
 //
-// Files that a former run left whole, with the fingerprint that they would get now, are kept; everything else
-// that is asked for is done again.
+// Files that a former run left, with the fingerprint that they would get now and with the bytes that were written
+// (each is read, and its checksum compared), are kept; everything else that is asked for is done again.
 //
 // One frame is computed while others are encoded and written, kFramesInFlight at most together. Beside the
 // plan's sea and frame, each of these holds, whatever the shot's length,
@@ -30,7 +30,8 @@ namespace pelagic {
 // One being computed, one encoded, one written.
 inline constexpr int kFramesInFlight = 3;
 
-enum class BakeStage { Planning, Building, Frames };
+// Checking: the files that are there. Waiting: for another process that holds the folder's lock.
+enum class BakeStage { Planning, Checking, Building, Frames, Waiting };
 
 struct BakeProgress {
     BakeStage stage = BakeStage::Planning;
@@ -40,16 +41,19 @@ struct BakeProgress {
     int total = 0;         // frames asked for: done + kept + what is left
     double seconds = 0.0;  // since the first frame was begun
     double built = 0.0;    // share of the sea, while it is built
+    double checked = 0.0;  // share of the files that are there, while they are read
 };
 
 struct BakeOptions {
     std::filesystem::path out;  // DIR, made where it is missing
     std::vector<int> frames;    // rising, within the shot's range; empty: the whole shot
-    // One call at a time, while the sea is built from any thread, else from the baking one; may be empty.
+    // One call at a time, from any thread; may be empty.
     std::function<void(const BakeProgress&)> progress;
     // Set from elsewhere (a signal handler, another thread): the bake stops as soon as the file at hand is
     // whole, the frame at hand is computed and the maps at hand are encoded.
     const std::atomic<bool>* cancel = nullptr;
+    // Files of the recorded size that are no newer than the record count as whole, unread.
+    bool trust_times = false;
 };
 
 struct BakeReport {
@@ -63,6 +67,8 @@ struct BakeReport {
     // touched.
     std::vector<int> stale;
     std::vector<std::string> foreign;  // files in DIR that aren't this shot's (plugin/bake/foreign.h)
+    // What wasn't as it was recorded, and was made again, a line each: "mesh/sea.0007.usdc holds other bytes …".
+    std::vector<std::string> damaged;
 };
 
 // Throws files::FileError where a file can't be written (what was finished is kept and recorded),
@@ -78,5 +84,8 @@ std::string time_text(const BakeReport& report);
 // "--frames": "1-48", "7", "1-48x5" (every fifth), with negative numbers as in "-3--1": any part of the
 // shot's range. Throws std::invalid_argument saying what is accepted.
 std::vector<int> parse_frames(const std::string& text, const Shot& shot);
+
+// "1-6, 9", of rising frames.
+std::string frames_text(const std::vector<int>& frames);
 
 }  // namespace pelagic

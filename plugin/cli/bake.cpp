@@ -1,11 +1,13 @@
 // pelagic bake SHOT.toml
 #include "plugin/bake/bake.h"
 
+#include <algorithm>
 #include <iostream>
 #include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/plan/plan.h"
 #include "plugin/cli/exit_status.h"
@@ -15,6 +17,7 @@
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
+#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
@@ -25,7 +28,16 @@ struct Arguments {
     std::optional<std::string> out;
     std::optional<std::string> frames;
     std::string threads;
+    bool trust_times = false;
 };
+
+void print_damaged(const std::vector<std::string>& damaged, const std::string& out) {
+    constexpr std::size_t kMost = 10;
+    for (std::size_t i = 0; i < std::min(damaged.size(), kMost); ++i)
+        std::cerr << "pelagic: in " << out << ' ' << damaged[i] << "; made again\n";
+    if (damaged.size() > kMost)
+        std::cerr << "pelagic: and so " << damaged.size() - kMost << " more; made again\n";
+}
 
 void print_done(const BakeReport& report, const std::string& out) {
     if (!report.root.empty()) std::cout << "stage:  " << report.root.string() << '\n';
@@ -37,6 +49,7 @@ void print_done(const BakeReport& report, const std::string& out) {
     std::cout << '\n';
     if (const std::string times = time_text(report); !times.empty()) std::cout << times << '\n';
     std::cout << std::flush;
+    print_damaged(report.damaged, out);
     for (const std::string& line : report.foreign)
         std::cerr << "pelagic: in " << out << " lies " << line << "; nothing was deleted\n";
     if (!report.stale.empty()) {
@@ -69,7 +82,7 @@ int stopped(const BakeReport& report, const std::string& out, int signal) {
 }
 
 int run(const Arguments& arguments) {
-    const Scene scene = load_shot(arguments.shot);
+    const Scene scene = load_shot(arguments.shot, check_sky);
     BakeOptions options;
     if (arguments.frames) {
         try {
@@ -85,6 +98,7 @@ int run(const Arguments& arguments) {
         return kWrongUsage;
     }
     options.out = arguments.out.value_or(scene.shot.name);
+    options.trust_times = arguments.trust_times;
 
     StopSignals stop;
     Progress progress;
@@ -125,6 +139,7 @@ Verb add_bake(CLI::App& program) {
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
+    command->add_flag("--trust-times", arguments->trust_times, help::kTrustTimes);
     add_threads(*command, arguments->threads, help::kThreads);
     return {command, [arguments] { return run(*arguments); }};
 }

@@ -19,6 +19,7 @@
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
+#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
@@ -123,7 +124,7 @@ Verb add_explain(CLI::App& program) {
     CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
     return {command, [arguments] {
-                const Scene scene = load_shot(arguments->shot);
+                const Scene scene = load_shot(arguments->shot, check_sky);
                 std::cout << explain(plan_bake(scene)) << std::flush;
                 return arguments->measure ? print_prices(scene, *arguments) : int{kDone};
             }};

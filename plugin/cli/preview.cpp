@@ -76,14 +76,14 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
                 {.scene = scene, .options = options, .sky_content = sky_content(scene), .drawn_by_gpu = true})
                 .of(frame)};
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
-                                                             : encode_png(about, drawn.picture));
+                                                             : encode_png(about, drawn.picture, frame));
     if (!drawn.note.empty()) std::cerr << "pelagic: note: " << drawn.note << '\n';
     std::cout << "picture: " << file.string() << "\ndrawn by " << drawn.device << std::endl;
     return kDone;
 }
 
 int run(const Arguments& arguments) {
-    Scene scene = load_shot(arguments.shot);
+    Scene scene = load_shot(arguments.shot, check_sky);
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
         if (!level)

@@ -46,6 +46,7 @@ struct Arguments {
     std::optional<int> samples;
     double exposure_stops = 0.0;
     std::string size, threads;
+    bool trust_times = false;
 };
 
 struct WrongUsage : std::runtime_error {
@@ -83,10 +84,11 @@ struct Job {
     std::vector<int> frames;
     std::filesystem::path out;
     double exposure_stops = 0.0;
+    bool trust_times = false;
 };
 
 Job job_of(const Arguments& arguments) {
-    Job job{.scene = load_shot(arguments.shot), .options = {}, .frames = {}, .out = {}};
+    Job job{.scene = load_shot(arguments.shot, check_sky), .options = {}, .frames = {}, .out = {}};
     const Shot& shot = job.scene.shot;
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) job.scene.camera.resolution = size;
     job.options = render_options(job.scene);
@@ -100,6 +102,7 @@ Job job_of(const Arguments& arguments) {
         throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
                          number_text(-kMostStops) + " to " + number_text(kMostStops));
     job.exposure_stops = arguments.exposure_stops;
+    job.trust_times = arguments.trust_times;
     try {
         const std::string whole_shot =
             std::to_string(shot.first_frame) + "-" + std::to_string(shot.last_frame);
@@ -142,13 +145,22 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
                                           .options = job.options,
                                           .sky_content = sky_content(job.scene),
                                           .exposure_stops = job.exposure_stops});
-    const std::vector<int> frames = unfinished_pictures(job.out, shot, fingerprint, job.frames);
+    const std::vector<int> frames = unfinished_pictures(job.out, shot, fingerprint, job.frames,
+                                                        {.trust = job.trust_times,
+                                                         .watch = {.progress =
+                                                                       [&](double checked) {
+                                                                           now.stage = BakeStage::Checking;
+                                                                           now.checked = checked;
+                                                                           progress.show(now);
+                                                                       },
+                                                                   .cancel = &stop.cancelled()}});
     Done done;
     done.kept = static_cast<int>(job.frames.size() - frames.size());
     for (const int frame : frames_in(job.out, {shot.name + '.', ".png"}))
         if (frame >= shot.first_frame && frame <= shot.last_frame &&
             !std::binary_search(job.frames.begin(), job.frames.end(), frame) &&
-            !is_whole_picture(job.out / picture_file(shot, frame, "png"), fingerprint.of(frame)))
+            !is_whole_picture(job.out / picture_file(shot, frame, "png"), fingerprint.of(frame),
+                              {.trust = true}))
             done.stale.push_back(frame);
     now.kept = done.kept;
     if (frames.empty()) {
@@ -217,7 +229,7 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
     stages.encode = [&](int item, int place) {
         Place& at = places[place];
         const PictureContext context = context_of(frames[item]);
-        at.png = encode_png(context, at.picture);
+        at.png = encode_png(context, at.picture, frames[item]);
         at.exr = encode_exr(context, at.picture, frames[item]);
     };
     stages.write = [&](int item, int place) {
@@ -301,6 +313,7 @@ Verb add_render(CLI::App& program) {
     command->add_option("--samples", arguments->samples, help::kSamples)->type_name("N");
     command->add_option("--sky-quality", arguments->sky_quality, help::kSkyQuality)->type_name("QUALITY");
     command->add_option("--terms", arguments->terms, help::kTerms)->type_name("TERMS");
+    command->add_flag("--trust-times", arguments->trust_times, help::kTrustPictures);
     add_threads(*command, arguments->threads, help::kThreads);
     return {command, [arguments] { return run(*arguments); }};
 }

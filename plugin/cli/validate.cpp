@@ -10,6 +10,7 @@
 #include "plugin/cli/help.h"
 #include "plugin/cli/text.h"
 #include "plugin/cli/verb.h"
+#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
@@ -48,7 +49,7 @@ Verb add_validate(CLI::App& program) {
                 int status = kDone;
                 for (const std::string& file : *files) {
                     try {
-                        const Scene scene = load_shot(file);
+                        const Scene scene = load_shot(file, check_sky);
                         const Plan plan = plan_bake(scene);
                         std::cout << file << ": fine\n    " << summary(scene, plan) << std::endl;
                     } catch (const ShotError& error) {

@@ -210,16 +210,19 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     require_valid(asked);
     Watch watch(progress, cancel);
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
+    std::unique_ptr<Maps> made;
     try {
         const OthersMayRun others_may_run;
         Plan plan = plan_bake(asked);
-        return with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
+        made = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
             return std::make_unique<MapsOf<T>>(std::move(plan), building);
         });
     } catch (const BuildCancelled& cancelled) {
         watch.rethrow();
         throw Cancelled(cancelled.what());
     }
+    watch.rethrow();  // a small sea is there before it looks at the flag
+    return made;
 }
 
 // The arrays of one output, n × n texels, by product.

@@ -147,7 +147,7 @@ TEST_F(BakeResume, VerifySaysWhatIsWrongAndItsStatus) {
     };
     Ended ended = verify({"out"});
     EXPECT_EQ(ended.status, 0) << ended.out;
-    EXPECT_NE(ended.out.find("out: 1 shot, 28 files, "), std::string::npos) << ended.out;
+    EXPECT_NE(ended.out.find("out: 1 shot, 29 files, "), std::string::npos) << ended.out;
     EXPECT_NE(ended.out.find(": all whole"), std::string::npos) << ended.out;
     std::string mesh = read_file(folder() / "out/mesh/small.0003.usda");
     mesh[mesh.size() / 2] ^= 1;

@@ -120,6 +120,7 @@ class Cancelling(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for work in (lambda: pelagic.bake(small_scene(), folder, progress=fails, cancel=cancel),
                          lambda: pelagic.Sea(small_scene(), progress=fails, cancel=cancel),
+                         lambda: pelagic.Maps(small_scene(), progress=fails, cancel=cancel),
                          lambda: pelagic.render(small_scene(), 1, progress=fails, cancel=cancel)):
                 with self.assertRaisesRegex(RuntimeError, "a mistake of the caller's"):
                     work()

@@ -50,6 +50,10 @@ class Baking(threading.Thread):
             self.text = f"Bake: {done + kept} of {total} frames"
         elif stage == "building":
             self.text = f"Bake: the sea, {100 * built:.0f} %"
+        elif stage == "checking":
+            self.text = f"Bake: reading what is there, {100 * built:.0f} %"
+        elif stage == "waiting":
+            self.text = "Bake: waiting for another one in this folder"
 
     def outcome(self):
         """The kind of a report, and its words."""

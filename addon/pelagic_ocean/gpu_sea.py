@@ -124,6 +124,7 @@ class Drawing:
         self._compiled = {}  # text → shader: a sea that is a bit different needs no new one
         self._time_s = None
         self._sky_batch = None
+        self.is_under_water = False  # the view that was drawn last, which then stayed empty
 
     def take(self, sea, light):
         """Another pelagic.GpuSea or GpuLight, or both, from the next picture on."""
@@ -147,6 +148,9 @@ class Drawing:
         is. region: what tells views apart. cell_px: the side of the cells, larger while the view moves."""
         self._cell_px = cell_px
         self._prepare(time_s)
+        self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
+        if self.is_under_water:
+            return
         light = {**self.light.uniforms, **camera.uniforms(), "exposure": self.light.exposure(exposure_stops)}
         depth_test, blend = gpu.state.depth_test_get(), gpu.state.blend_get()
         depth_mask = gpu.state.depth_mask_get()

@@ -349,6 +349,8 @@ class PELAGIC_PT_preview(bpy.types.Panel):
             draw_words(layout.box(), problem)
         elif is_on() and _preview.wants_mesh():
             draw_words(layout.box(), "Waiting: a view in Rendered or Wireframe shows the mesh")
+        elif is_on() and _preview.drawing.is_under_water:
+            draw_words(layout.box(), "The view is under water, which can't be drawn: raise it")
         elif is_on() and _preview.is_building:
             layout.label(text="Building the sea…", icon="SORTTIME")
 

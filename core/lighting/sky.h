@@ -5,7 +5,9 @@
 // klx. Those of a picture are in the picture's own units.
 #pragma once
 
+#include <functional>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,10 +47,23 @@ struct LatLong {
     std::vector<glm::vec3> radiance;
 };
 
+// Such a picture that is read in parts, since a large one takes gigabytes.
+struct LatLongRows {
+    int width = 0, height = 0;
+    int rows_in_piece =
+        1;  // rows are stored in pieces of this many, from the top: a piece is read as a whole
+    // Rows from the first one on, as many as there are pixels for. Called from several threads.
+    std::function<void(int first_row, std::span<glm::vec3> radiance)> read;
+};
+
 // Removes the picture's sun from the map and makes it the disc, so that it counts once; sun_irradiance is
 // what was removed. Where nothing stands out (overcast) there is no sun: sun_radiance is 0. The lower half of
-// the picture is not used. Throws std::invalid_argument for a picture without pixels, and for values that are
-// NaN, negative or above 1e30, naming the first of them.
+// the picture is not used, nor read. Throws std::invalid_argument for a picture without pixels, and for values that
+// are NaN, negative or above 1e30, naming the first of them; and what read() throws.
+//
+// Each row is read twice, those near the sun three times. Some hundred rows are held at a time.
+Sky picture_sky(const LatLongRows& picture, int map_size = 512);
+// The same of a picture in memory; values of its lower half are looked at, too.
 Sky picture_sky(const LatLong& picture, int map_size = 512);
 
 // The sky as such a picture, width / 2 rows, without the sun's disc: each pixel the mean over its solid angle.

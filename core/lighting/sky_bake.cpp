@@ -66,6 +66,28 @@ Texel sampled(const SkyDome& dome, glm::dvec2 corner, double side) {
     return texel;
 }
 
+// Texels whose middles lie in a ring round the zenith, and between which angles from it [rad] they reach.
+struct Ring {
+    std::vector<std::size_t> texels;
+    double from_zenith = kPi, to_zenith = 0.0;
+};
+
+template <class Corner>
+std::vector<Ring> rings_of(std::size_t texels, double side, double height, const Corner& corner) {
+    std::vector<Ring> rings;
+    for (std::size_t i = 0; i < texels; ++i) {
+        const double distance = glm::length(corner(i) + 0.5 * side), reach = side * std::sqrt(0.5);
+        // A place u of the stereographic projection is 2 arctan |u| from the zenith.
+        const auto number = static_cast<std::size_t>(2.0 * std::atan(distance) / height);
+        if (rings.size() <= number) rings.resize(number + 1);
+        Ring& ring = rings[number];
+        ring.texels.push_back(i);
+        ring.from_zenith = std::min(ring.from_zenith, 2.0 * std::atan(std::max(0.0, distance - reach)));
+        ring.to_zenith = std::max(ring.to_zenith, 2.0 * std::atan(distance + reach));
+    }
+    return rings;
+}
+
 }  // namespace
 
 float diffuse_fresnel() {
@@ -78,16 +100,18 @@ BakedSky bake_sky_map(int size, const SkyDome& dome) {
     const auto n = static_cast<std::size_t>(size);
     const double side = 2.0 * kSkyMapExtent / size;
     std::vector<Texel> texels(n * n);
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, n), [&](const tbb::blocked_range<std::size_t>& rows) {
-            for (std::size_t j = rows.begin(); j < rows.end(); ++j)
-                for (std::size_t i = 0; i < n; ++i)
-                    texels[j * n + i] =
-                        sampled(dome,
-                                glm::dvec2(static_cast<double>(i), static_cast<double>(j)) * side -
-                                    static_cast<double>(kSkyMapExtent),
-                                side);
-        });
+    const auto corner = [&](std::size_t texel) {
+        return glm::dvec2(static_cast<double>(texel % n), static_cast<double>(texel / n)) * side -
+               static_cast<double>(kSkyMapExtent);
+    };
+    for (const Ring& ring : rings_of(n * n, side, dome.ring, corner)) {
+        dome.prepare(ring.from_zenith, ring.to_zenith);
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, ring.texels.size()),
+                          [&](const tbb::blocked_range<std::size_t>& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i)
+                                  texels[ring.texels[i]] = sampled(dome, corner(ring.texels[i]), side);
+                          });
+    }
 
     glm::dvec3 irradiance(0.0);
     for (const Texel& texel : texels) irradiance += texel.irradiance;

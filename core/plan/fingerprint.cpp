@@ -90,6 +90,9 @@ std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, con
                               int frame) {
     Fingerprint hash;
     hash.add(whole).add("frame " + std::to_string(frame));
+    // Which time of a loop a frame shows isn't in any key.
+    const Shot& shot = plan.from->scene.shot;
+    if (shot.loop_s > 0.0) hash.add("time " + number_text(shot.time_s(frame)));
     if (output.has_surface)
         if (const auto view = plan.surface->shaped_by(frame)) hash.add(pose_text(*view));
     return hash.text();

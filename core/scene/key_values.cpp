@@ -249,6 +249,7 @@ std::vector<DescribedKey> described(const Scene& scene, FeedSet parts) {
         const auto* entries = std::get_if<std::vector<KeyEntry>>(&value);
         const bool is_word = entries && entries->empty() && !key.empty_word.empty();
         std::string text = is_word ? key.empty_word : value_text(key, value);
+        if (auto* path = std::get_if<std::string>(&value)) *path = utf8_text(*path);
         out.push_back({key.path, std::move(value), std::move(text)});
     }
     return out;

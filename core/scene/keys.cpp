@@ -30,7 +30,7 @@ void add_shot(Built& out) {
         key_of_member<std::array<int, 2>>(
             {.name = "frames",
              .help = "both included; frame f shows t = time_offset_s + time_scale (f - 1)/fps, "
-                     "whatever the range",
+                     "whatever the range, in a loop t of its first round",
              .range = limits::kFrame,
              .form = "[first, last], two integers of ",
              .feeds = feeds(Feed::Range)}),

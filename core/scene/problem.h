@@ -13,7 +13,8 @@ struct Problem {
     std::string accepted;  // what would be right: "0 … 80"
 };
 
-// "sea.wind_speed_mps = -3: is outside the range; accepted: 0 … 80"
+// "sea.wind_speed_mps = -3: is outside the range; accepted: 0 … 80". Keys and values that would fill a page are
+// shortened.
 std::string text_of(const Problem& problem);
 
 }  // namespace pelagic

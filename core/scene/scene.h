@@ -40,8 +40,17 @@ struct Shot {
     double time_scale = 1.0;     // seconds of the sea in a second on the screen, ≥ 0: 1/2 is slow motion
     double time_offset_s = 0.0;  // the sea's time at frame 1
 
-    // The sea's time that a frame shows, also between two of them: t = offset + scale (f − 1)/fps.
-    double time_s(double frame) const { return time_offset_s + time_scale * ((frame - 1.0) / fps); }
+    // The sea's time that a frame shows, also between two of them: t = offset + scale (f − 1)/fps. In a loop the
+    // time in its first round: counted in whole frames, so that frames a loop apart show the same to the bit.
+    double time_s(double frame) const {
+        const double round_frames = std::round(loop_s * fps);
+        double frames = frame - 1.0;
+        if (round_frames > 0.0) {
+            frames = std::fmod(frames, round_frames);  // exact
+            if (frames < 0.0) frames += round_frames;
+        }
+        return time_offset_s + time_scale * (frames / fps);
+    }
     // loop_s as the whole number of frames that it is to within rounding; 0: no loop.
     double exact_loop_s() const { return std::round(loop_s * fps) / fps; }
     // The sea's own period: what it goes through in a loop. 0: no loop, or a sea that stands still.

@@ -452,7 +452,9 @@ std::string text_of(Range range) {
 }
 
 std::string text_of(const Problem& problem) {
-    return problem.key + " = " + problem.value + ": " + problem.problem + "; accepted: " + problem.accepted;
+    constexpr std::size_t kMostOfValue = 300, kMostOfProblem = 1000;  // bytes: room for most files' paths
+    return line_text(shortened(problem.key, kMostOfValue)) + " = " + shortened(problem.value, kMostOfValue) +
+           ": " + shortened(problem.problem, kMostOfProblem) + "; accepted: " + problem.accepted;
 }
 
 std::vector<Problem> validate(const Scene& scene) {

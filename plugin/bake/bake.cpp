@@ -1,26 +1,31 @@
 #include "plugin/bake/bake.h"
 
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "core/plan/plan.h"
 #include "core/scene/validate.h"
+#include "plugin/bake/check.h"
 #include "plugin/bake/foreign.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/bake/record.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/bake/stage.h"
 #include "plugin/files/files.h"
+#include "plugin/machine/memory.h"
 #include "plugin/usd/layers.h"
 
 namespace pelagic {
@@ -66,6 +71,10 @@ void prepare_folders(const std::filesystem::path& out, const Parts& parts) {
         files::ensure_folder(folder);
         files::remove_stale_temporaries(folder);
     }
+    // A killed bake of another shot may have left some in folders that this one doesn't use.
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(out, ignored))
+        if (entry.is_directory(ignored)) files::remove_stale_temporaries(entry.path());
 }
 
 // What is to be done of one frame.
@@ -87,14 +96,16 @@ bool is_stale(int frame, const FrameRecord& recorded, const Parts& parts) {
     });
 }
 
+// `is_whole`: by path, of the files that were looked at.
 std::optional<FrameJob> job_of(int frame, const Parts& parts, const FrameRecord* recorded,
-                               const std::filesystem::path& folder) {
+                               const std::map<std::string, bool>& is_whole) {
     FrameJob job{.frame = frame, .wanted = std::vector<bool>(parts.size(), true), .kept = {}};
     if (!recorded) return job;
     bool all_whole = true;
     for (std::size_t p = 0; p < parts.size(); ++p) {
         const std::string file = parts[p]->file(frame);
-        if (is_whole(*recorded, file, parts[p]->fingerprint(frame), folder)) {
+        const auto found = is_whole.find(file);
+        if (found != is_whole.end() && found->second) {
             job.wanted[p] = false;
             job.kept.files[file] = recorded->files.at(file);
         } else {
@@ -113,6 +124,22 @@ std::optional<FrameJob> job_of(int frame, const Parts& parts, const FrameRecord*
     return job;
 }
 
+// The recorded files of the frames that were made of what they would be made of now.
+std::vector<FileCheck> files_to_check(std::span<const int> frames, const std::map<int, FrameRecord>& recorded,
+                                      const Parts& parts) {
+    std::vector<FileCheck> checks;
+    for (const int frame : frames) {
+        const auto entry = recorded.find(frame);
+        if (entry == recorded.end()) continue;
+        for (const auto& part : parts) {
+            const auto file = entry->second.files.find(part->file(frame));
+            if (file != entry->second.files.end() && file->second.fingerprint == part->fingerprint(frame))
+                checks.push_back({.path = file->first, .recorded = file->second});
+        }
+    }
+    return checks;
+}
+
 // Adds the files that were kept to the frame's record, and the mean coverage and the mesh's height, each from the
 // first output that has it.
 void complete(FrameRecord& record, const FrameJob& job, const Parts& parts) {
@@ -124,18 +151,22 @@ void complete(FrameRecord& record, const FrameJob& job, const Parts& parts) {
     }
 }
 
-// Whether the file has exactly these bytes.
-bool holds(const std::filesystem::path& path, const FileContent& content) {
-    std::ifstream stream(path, std::ios::binary);
-    bool same = stream.is_open();
-    std::string there;
-    content([&](std::string_view piece) {
-        if (!same) return;
-        there.resize(piece.size());
-        stream.read(there.data(), static_cast<std::streamsize>(piece.size()));
-        same = stream.gcount() == static_cast<std::streamsize>(piece.size()) && there == piece;
-    });
-    return same && stream.peek() == std::ifstream::traits_type::eof();
+// The frames that the record holds as they were written; what is wrong with it goes to the report. Throws
+// files::FileError where something is in the record's place that isn't one and can't be replaced.
+std::map<int, FrameRecord> recorded_frames(BakeReport& report, const RecordWatch& watch) {
+    std::map<int, FrameRecord> frames;
+    const RecordReading reading = read_record(
+        report.record, [&](int frame, FrameRecord record) { frames[frame] = std::move(record); }, watch);
+    if (reading.is_blocked)
+        throw files::FileError("the record '" + report.record.string() + "' " + reading.problem +
+                                   ": move it away or choose another --out",
+                               report.record, std::make_error_code(std::errc::file_exists));
+    const std::string name = report.record.filename().string();
+    if (!reading.problem.empty() && !reading.is_missing)
+        report.damaged.push_back(name + ' ' + reading.problem);
+    for (const int frame : reading.altered)
+        report.damaged.push_back(name + " was altered in what it says about frame " + std::to_string(frame));
+    return frames;
 }
 
 }  // namespace
@@ -151,7 +182,9 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
 
     BakeProgress progress;
     progress.total = static_cast<int>(frames.size());
+    std::mutex telling;
     const auto report_progress = [&](BakeStage stage) {
+        const std::lock_guard lock(telling);
         progress.stage = stage;
         if (options.progress) options.progress(progress);
     };
@@ -164,6 +197,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     const Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
         throw std::invalid_argument("the shot asks for no output: accepted: output.mesh, output.maps");
+    require_memory(bake_memory(plan, frames.size(), tbb::this_task_arena::max_concurrency()),
+                   machine::memory_limit_or(options.max_memory_bytes), "this bake");
     const Parts parts = make_parts(plan);
     prepare_folders(options.out, parts);
 
@@ -171,28 +206,59 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     report.total = progress.total;
     report.record = options.out / (scene.shot.name + ".json");
     std::vector<FrameJob> jobs, records;  // frames to bake, and records to mend
-    {
-        const std::map<int, FrameRecord> recorded = recorded_frames(report.record);
+    try {
+        const std::map<int, FrameRecord> recorded = recorded_frames(report, stop_if_cancelled);
+        std::vector<FileCheck> checks = files_to_check(frames, recorded, parts);
+        if (options.trust_times)
+            check_times(options.out, checks, report.record);
+        else
+            check_files(options.out, checks,
+                        {.progress =
+                             [&](double checked) {
+                                 progress.checked = checked;
+                                 report_progress(BakeStage::Checking);
+                             },
+                         .cancel = options.cancel});
+        std::map<std::string, bool> whole;
+        for (const FileCheck& check : checks) {
+            whole[check.path] = check.problem.empty();
+            if (!check.problem.empty() && !check.is_missing)
+                report.damaged.push_back(check.path + ' ' + check.problem);
+        }
         for (const int frame : frames) {
             const auto found = recorded.find(frame);
-            if (auto job =
-                    job_of(frame, parts, found == recorded.end() ? nullptr : &found->second, options.out))
+            if (auto job = job_of(frame, parts, found == recorded.end() ? nullptr : &found->second, whole))
                 (job->is_whole ? records : jobs).push_back(std::move(*job));
         }
         for (const auto& [frame, entry] : recorded)
             if (frame >= scene.shot.first_frame && frame <= scene.shot.last_frame &&
                 !std::binary_search(frames.begin(), frames.end(), frame) && is_stale(frame, entry, parts))
                 report.stale.push_back(frame);
+    } catch (const Cancelled&) {
+        report.cancelled = true;
+    } catch (const CheckCancelled&) {
+        report.cancelled = true;
+    }
+    if (report.cancelled) {
+        report.seconds = seconds_since(start);
+        return report;
     }
     progress.kept = report.kept = static_cast<int>(frames.size() - jobs.size());
 
     report_progress(BakeStage::Building);
+    Record record;
     std::vector<std::string> static_files{report.record.filename().string()};
     const auto write_static = [&](const FileJob& file) {
         stop_if_cancelled();
         static_files.push_back(file.path);
-        if (!holds(options.out / file.path, file.content))
-            files::write_atomically(options.out / file.path, file.content);
+        record.set(file.path, files::write_if_different(options.out / file.path, file.content));
+    };
+    // A frame's lock is soon free again; whoever holds it for longer is named, and needn't be awaited.
+    const auto save = [&] {
+        record.save(report.record, [&](double) {
+            stop_if_cancelled();
+            report_progress(BakeStage::Waiting);
+        });
     };
     try {
         stop_if_cancelled();
@@ -204,8 +270,9 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
                                .cancel = options.cancel};
         const std::unique_ptr<Sequence> sequence = make_sequence(plan, watch);
         report_progress(BakeStage::Frames);
-        Record record;
         record.describe(plan, sequence->total(), sequence->whitecap_threshold());
+        record.mark_stale(
+            [&](int frame, const FrameRecord& recorded) { return is_stale(frame, recorded, parts); });
         sequence->write_static(write_static);
         for (const FrameJob& job : records) {
             FrameRecord mended = job.kept;
@@ -214,7 +281,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         }
         if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");
         if (!scene.output.maps.empty()) report.maps = options.out / "maps";
-        record.save(report.record);
+        save();
         const auto first_frame = std::chrono::steady_clock::now();
         std::array<FrameSlot, kFramesInFlight> slots;
         double last_save_s = 0.0, save_cost_s = 0.0;
@@ -233,8 +300,11 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             FrameRecord& whole = slots[place].record;
             sequence->write(slots[place], [&](const FileJob& file) {
                 stop_if_cancelled();
-                whole.files.at(file.path).bytes =
+                const files::FileState written =
                     files::write_atomically(options.out / file.path, file.content);
+                FileRecord& recorded = whole.files.at(file.path);
+                recorded.bytes = written.bytes;
+                recorded.checksum = written.checksum;
             });
             complete(whole, jobs[item], parts);
             record.set(jobs[item].frame, whole);
@@ -242,17 +312,20 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             // killed process had not recorded yet are baked again.
             const double now_s = seconds_since(first_frame);
             if (now_s - last_save_s >= 20.0 * save_cost_s) {
-                record.save(report.record);
+                save();
                 last_save_s = seconds_since(first_frame);
                 save_cost_s = last_save_s - now_s;
             }
         };
         stages.written = [&](int item) {
-            progress.frame = jobs[item].frame;
-            ++(jobs[item].makes_files() ? report.done : report.kept);
-            progress.done = report.done;
-            progress.kept = report.kept;
-            progress.seconds = seconds_since(first_frame);
+            {
+                const std::lock_guard lock(telling);
+                progress.frame = jobs[item].frame;
+                ++(jobs[item].makes_files() ? report.done : report.kept);
+                progress.done = report.done;
+                progress.kept = report.kept;
+                progress.seconds = seconds_since(first_frame);
+            }
             report_progress(BakeStage::Frames);
         };
         try {
@@ -261,12 +334,12 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             // What was finished stays recorded; if even that can't be done, the first reason is the one to
             // tell.
             try {
-                record.save(report.record);
+                save();
             } catch (...) {
             }
             throw;
         }
-        record.save(report.record);
+        save();
         report.foreign = foreign_files(options.out, scene.shot, parts, static_files);
     } catch (const Cancelled&) {
         report.cancelled = true;

@@ -2,17 +2,12 @@
 //
 //   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/NAME.sky.exr, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
 //
-// Files that a former run left whole, with the fingerprint that they would get now, are kept; everything else
-// that is asked for is done again.
+// Files that a former run left, with the fingerprint that they would get now and with the bytes that were written
+// (each is read, and its checksum compared), are kept; everything else that is asked for is done again.
 //
-// One frame is computed while others are encoded and written, kFramesInFlight at most together. Beside the
-// plan's sea and frame, each of these holds, whatever the shot's length,
-//   12 bytes a vertex for positions, normals, velocities and slope variances each, 4 for whitecaps, and with
-//      a mesh in text up to twice 18 bytes more for each of their numbers
-//   12 bytes a texel for each map and tile (whitecaps 16), and its file: as much again, with mip levels a
-//   third more
-// and while it is encoded once or twice more a map's texels with their mip levels. The faces of the mesh, 28
-// bytes a quad, are held while they are written, before the first frame; so are 6 MB for the sky.
+// One frame is computed while others are encoded and written, kFramesInFlight at most together. Whatever the
+// shot's length, that and the sea is all that is held: bake_memory() says how much, and a bake that needs more than
+// there is is refused before it begins.
 #pragma once
 
 #include <atomic>
@@ -22,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "core/plan/memory.h"
 #include "core/scene/scene.h"
 #include "plugin/bake/pipeline.h"
 
@@ -30,7 +26,8 @@ namespace pelagic {
 // One being computed, one encoded, one written.
 inline constexpr int kFramesInFlight = 3;
 
-enum class BakeStage { Planning, Building, Frames };
+// Checking: the files that are there. Waiting: for another process that holds the folder's lock.
+enum class BakeStage { Planning, Checking, Building, Frames, Waiting };
 
 struct BakeProgress {
     BakeStage stage = BakeStage::Planning;
@@ -40,16 +37,21 @@ struct BakeProgress {
     int total = 0;         // frames asked for: done + kept + what is left
     double seconds = 0.0;  // since the first frame was begun
     double built = 0.0;    // share of the sea, while it is built
+    double checked = 0.0;  // share of the files that are there, while they are read
 };
 
 struct BakeOptions {
     std::filesystem::path out;  // DIR, made where it is missing
     std::vector<int> frames;    // rising, within the shot's range; empty: the whole shot
-    // One call at a time, while the sea is built from any thread, else from the baking one; may be empty.
+    // One call at a time, from any thread; may be empty.
     std::function<void(const BakeProgress&)> progress;
+    // What it may hold in memory; 0: what the system gives this process (plugin/machine).
+    std::size_t max_memory_bytes = 0;
     // Set from elsewhere (a signal handler, another thread): the bake stops as soon as the file at hand is
     // whole, the frame at hand is computed and the maps at hand are encoded.
     const std::atomic<bool>* cancel = nullptr;
+    // Files of the recorded size that are no newer than the record count as whole, unread.
+    bool trust_times = false;
 };
 
 struct BakeReport {
@@ -63,9 +65,14 @@ struct BakeReport {
     // touched.
     std::vector<int> stale;
     std::vector<std::string> foreign;  // files in DIR that aren't this shot's (plugin/bake/foreign.h)
+    // What wasn't as it was recorded, and was made again, a line each: "mesh/sea.0007.usdc holds other bytes …".
+    std::vector<std::string> damaged;
 };
 
-// Throws files::FileError where a file can't be written (what was finished is kept and recorded),
+// What a bake of so many frames of the plan (plan_bake) holds at most, on so many threads.
+MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads);
+
+// Throws NotEnoughMemory before anything is written, files::FileError where a file can't be written (what was finished is kept and recorded),
 // std::invalid_argument for frames outside the shot's range or a scene that validate() refuses or that asks
 // for nothing.
 BakeReport bake(const Scene& scene, const BakeOptions& options);
@@ -78,5 +85,8 @@ std::string time_text(const BakeReport& report);
 // "--frames": "1-48", "7", "1-48x5" (every fifth), with negative numbers as in "-3--1": any part of the
 // shot's range. Throws std::invalid_argument saying what is accepted.
 std::vector<int> parse_frames(const std::string& text, const Shot& shot);
+
+// "1-6, 9", of rising frames.
+std::string frames_text(const std::vector<int>& frames);
 
 }  // namespace pelagic

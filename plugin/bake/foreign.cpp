@@ -8,26 +8,13 @@
 #include <string_view>
 #include <system_error>
 
+#include "plugin/files/files.h"
 #include "plugin/usd/layers.h"
 
 namespace pelagic {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The frame's number, if the name is one that a file of this pattern has.
-std::optional<int> frame_of(std::string_view path, const FilePattern& pattern) {
-    if (path.size() <= pattern.prefix.size() + pattern.suffix.size() || !path.starts_with(pattern.prefix) ||
-        !path.ends_with(pattern.suffix))
-        return {};
-    path.remove_prefix(pattern.prefix.size());
-    path.remove_suffix(pattern.suffix.size());
-    int frame = 0;
-    const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), frame);
-    if (error != std::errc() || end != path.data() + path.size() || usd::frame_number(frame) != path)
-        return {};
-    return frame;
-}
 
 // The name with its frame's number, the last part between dots that is one, as "####".
 std::string without_number(const std::string& path) {
@@ -62,19 +49,13 @@ std::vector<std::string> lines_of(const Groups& groups) {
 
 }  // namespace
 
-std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
-                                       const std::vector<std::unique_ptr<OutputPart>>& parts,
-                                       const std::vector<std::string>& static_files) {
-    std::vector<FilePattern> patterns;
-    for (const auto& part : parts) patterns.push_back(part->pattern());
-
-    Groups groups;
+void for_each_bake_file(const fs::path& folder, const std::function<void(const std::string& path)>& take) {
     constexpr std::array kFolders{"", "mesh/", "maps/", "tiles/", "volumes/"};
     for (const char* below : kFolders) {
         std::error_code error;
         for (const fs::directory_entry& entry : fs::directory_iterator(folder / below, error)) {
-            if (!entry.is_regular_file(error)) continue;
-            const std::string name = entry.path().filename().string(), path = below + name;
+            if (entry.is_directory(error)) continue;
+            const std::string name = entry.path().filename().string();
             const std::string extension = entry.path().extension().string();
             // Pictures and whatever people keep beside their bakes are none of a bake's business.
             const bool is_bakes = *below != '\0'
@@ -82,20 +63,59 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
                                             extension == ".vdb"
                                       : extension == ".usda" || extension == ".json" ||
                                             name.ends_with(".camera.usdc") || name.ends_with(".sky.exr");
-            if (!is_bakes || name.starts_with('.')) continue;
-            if (std::find(static_files.begin(), static_files.end(), path) != static_files.end()) continue;
-            std::string reason = "of another shot";
-            if (name.starts_with(shot.name + '.')) reason = "of an output that the shot doesn't have";
-            bool is_ours = false;
-            for (const FilePattern& pattern : patterns)
-                if (const auto frame = frame_of(path, pattern)) {
-                    is_ours = *frame >= shot.first_frame && *frame <= shot.last_frame;
-                    reason = "outside the shot's frames";
-                }
-            if (is_ours) continue;
-            add(groups, path, reason);
+            if (is_bakes && !name.starts_with('.')) take(below + name);
         }
     }
+}
+
+std::string shot_of(const std::string& path) {
+    const std::string name = path.substr(path.rfind('/') + 1);  // all, without a folder
+    return name.substr(0, name.find('.'));
+}
+
+std::optional<int> frame_of(std::string_view path, const FilePattern& pattern) {
+    if (path.size() <= pattern.prefix.size() + pattern.suffix.size() || !path.starts_with(pattern.prefix) ||
+        !path.ends_with(pattern.suffix))
+        return {};
+    path.remove_prefix(pattern.prefix.size());
+    path.remove_suffix(pattern.suffix.size());
+    int frame = 0;
+    const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), frame);
+    if (error != std::errc() || end != path.data() + path.size() || usd::frame_number(frame) != path)
+        return {};
+    return frame;
+}
+
+std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
+                                       const std::vector<std::unique_ptr<OutputPart>>& parts,
+                                       const std::vector<std::string>& static_files) {
+    std::vector<FilePattern> patterns;
+    for (const auto& part : parts) patterns.push_back(part->pattern());
+
+    // Whether the shot of that name has a record of its own here.
+    std::map<std::string, bool> others;
+    const auto has_record = [&](const std::string& name) {
+        const auto [known, is_new] = others.try_emplace(name, false);
+        if (is_new && name != shot.name)
+            known->second = files::carries(folder / (name + ".json"), "\"pelagic\":");
+        return known->second;
+    };
+
+    Groups groups;
+    for_each_bake_file(folder, [&](const std::string& path) {
+        if (std::find(static_files.begin(), static_files.end(), path) != static_files.end()) return;
+        const std::string name = shot_of(path);
+        if (has_record(name)) return;
+        std::string reason = "of another shot";
+        if (name == shot.name) reason = "of an output that the shot doesn't have";
+        bool is_ours = false;
+        for (const FilePattern& pattern : patterns)
+            if (const auto frame = frame_of(path, pattern)) {
+                is_ours = *frame >= shot.first_frame && *frame <= shot.last_frame;
+                reason = "outside the shot's frames";
+            }
+        if (!is_ours) add(groups, path, reason);
+    });
     return lines_of(groups);
 }
 

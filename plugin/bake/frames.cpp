@@ -47,4 +47,17 @@ std::vector<int> parse_frames(const std::string& text, const Shot& shot) {
     return frames;
 }
 
+std::string frames_text(const std::vector<int>& frames) {
+    std::string text;
+    for (std::size_t i = 0; i < frames.size();) {
+        std::size_t last = i;
+        while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+        if (!text.empty()) text += ", ";
+        text += std::to_string(frames[i]);
+        if (last > i) text += '-' + std::to_string(frames[last]);
+        i = last + 1;
+    }
+    return text;
+}
+
 }  // namespace pelagic

@@ -1,20 +1,27 @@
 #include "plugin/bake/record.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <fstream>
+#include <cstring>
+#include <istream>
 #include <limits>
+#include <span>
 #include <sstream>
+#include <streambuf>
+#include <system_error>
 
 #include "core/base/constants.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/mode_lattice.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/text.h"
 #include "core/spectrum/cox_munk.h"
 #include "core/spectrum/viscous_cutoff.h"
 #include "core/waves/whitecaps.h"
-#include "plugin/files/files.h"
+#include "plugin/files/checksum.h"
+#include "plugin/files/read.h"
 
 namespace pelagic {
 namespace {
@@ -30,6 +37,7 @@ Json number(double value) {
 struct ToJson {
     Json operator()(std::monostate) const { return nullptr; }
     Json operator()(double value) const { return number(value); }
+    Json operator()(const std::string& text) const { return utf8_text(text); }  // a path may be anything
     Json operator()(const std::vector<KeyEntry>& entries) const {
         Json list = Json::array();
         for (const KeyEntry& entry : entries) {
@@ -53,7 +61,8 @@ Json settings(const Scene& scene) {
 }
 
 Json to_json(const FileRecord& file) {
-    Json json{{"bytes", file.bytes}, {"fingerprint", file.fingerprint}};
+    Json json{{"bytes", file.bytes}, {"checksum", file.checksum}};
+    if (!file.fingerprint.empty()) json["fingerprint"] = file.fingerprint;
     if (file.coverage) json["whitecap_coverage"] = *file.coverage;
     if (file.significant_height_m) json["hs_m"] = *file.significant_height_m;
     return json;
@@ -61,7 +70,8 @@ Json to_json(const FileRecord& file) {
 
 FileRecord file_from_json(const Json& json) {
     FileRecord file{.bytes = json.at("bytes").get<std::uintmax_t>(),
-                    .fingerprint = json.at("fingerprint").get<std::string>()};
+                    .checksum = json.at("checksum").get<std::string>(),
+                    .fingerprint = json.value("fingerprint", std::string())};
     if (json.contains("whitecap_coverage")) file.coverage = json.at("whitecap_coverage").get<double>();
     if (json.contains("hs_m")) file.significant_height_m = json.at("hs_m").get<double>();
     return file;
@@ -70,6 +80,7 @@ FileRecord file_from_json(const Json& json) {
 Json to_json(const FrameRecord& frame) {
     Json json;
     json["fingerprint"] = frame.fingerprint;
+    if (frame.is_stale) json["stale"] = true;
     json["instruction_set"] = frame.instruction_set;
     json["time_s"] = frame.time_s;
     if (frame.waves) {
@@ -89,6 +100,7 @@ Json to_json(const FrameRecord& frame) {
 FrameRecord from_json(const Json& json) {
     FrameRecord frame;
     frame.fingerprint = json.at("fingerprint").get<std::string>();
+    frame.is_stale = json.value("stale", false);
     frame.instruction_set = json.at("instruction_set").get<std::string>();
     frame.time_s = json.at("time_s").get<double>();
     if (json.contains("hs_m"))
@@ -102,32 +114,67 @@ FrameRecord from_json(const Json& json) {
     return frame;
 }
 
-// Each frame of a record in turn, so that never more than one of them is in memory; whether it could be read
-// to its end.
-bool read_frames(const std::filesystem::path& file, const std::function<void(int, FrameRecord)>& take) {
-    constexpr int kSection = 1, kFrame = 2;  // depths
-    std::string section, frame;
-    const auto at_event = [&](int depth, Json::parse_event_t event, const Json& parsed) {
-        if (event == Json::parse_event_t::key && depth == kSection) section = parsed;
-        if (event == Json::parse_event_t::key && depth == kFrame) frame = parsed;
-        if (event != Json::parse_event_t::object_end || depth != kFrame || section != "frames") return true;
-        take(std::stoi(frame), from_json(parsed));
-        return false;
-    };
-    std::ifstream stream(file, std::ios::binary);
-    try {
-        [[maybe_unused]] const Json rest = Json::parse(stream, at_event);
-    } catch (const files::FileError&) {
-        throw;  // of who takes the frames
-    } catch (const std::exception&) {
-        return false;
-    }
-    return true;
+// As text of which checksums are made. What isn't UTF-8 (in a path) is replaced: JSON has no other text.
+std::string text_of(const Json& json, int indent = -1) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
+
+// Of a part of the record: its content but for the checksum itself, and its key.
+std::string checksum_of(const std::string& key, Json part) {
+    part.erase("checksum");
+    return files::checksum_of(key + text_of(part));
+}
+
+bool is_as_written(const std::string& key, const Json& part) {
+    return part.is_object() && part.contains("checksum") && part.at("checksum") == checksum_of(key, part);
+}
+
+ShotRecord shot_from_json(const Json& json) {
+    ShotRecord shot{.name = json.at("name").get<std::string>(),
+                    .first_frame = json.at("frame_range").at(0).get<int>(),
+                    .last_frame = json.at("frame_range").at(1).get<int>(),
+                    .files = {}};
+    for (const auto& [path, file] : json.at("files").items()) shot.files[path] = file_from_json(file);
+    return shot;
+}
+
+// The bytes of a file for a parser. Ends where a single frame would be larger than any is, so that a file of
+// anything in the record's place fills no memory and takes no time.
+class Bytes final : public std::streambuf {
+  public:
+    Bytes(files::FileReader& file, const RecordWatch& watch) : file_(file), watch_(watch) {}
+
+    void begin_part() { left_ = kLargestPart; }
+    // A zero ends a text for the parser; in ours there is none.
+    bool had_zero() const { return had_zero_; }
+    void end() {  // nothing more is read
+        left_ = 0;
+        setg(eback(), egptr(), egptr());
+    }
+
+  private:
+    static constexpr std::size_t kLargestPart = std::size_t{64} << 20;  // [bytes] camera keys for 1e5 frames
+
+    int_type underflow() override {
+        if (watch_) watch_();
+        const std::size_t got = file_.read(std::span(piece_).first(std::min(piece_.size(), left_)));
+        if (got == 0) return traits_type::eof();
+        left_ -= got;
+        had_zero_ = had_zero_ || std::memchr(piece_.data(), 0, got) != nullptr;
+        setg(piece_.data(), piece_.data(), piece_.data() + got);
+        return traits_type::to_int_type(piece_.front());
+    }
+
+    files::FileReader& file_;
+    const RecordWatch& watch_;
+    std::vector<char> piece_ = std::vector<char>(std::size_t{1} << 16);
+    std::size_t left_ = kLargestPart;
+    bool had_zero_ = false;
+};
 
 // The object's lines without its own brackets, each after a line's end and `indent`.
 std::string lines_inside(const Json& object, const std::string& indent) {
-    std::istringstream lines(object.dump(2));
+    std::istringstream lines(text_of(object, 2));
     std::string text;
     for (std::string line; std::getline(lines, line);)
         if (line != "{" && line != "}") text += "\n" + indent + line;
@@ -136,11 +183,64 @@ std::string lines_inside(const Json& object, const std::string& indent) {
 
 }  // namespace
 
-std::map<int, FrameRecord> recorded_frames(const std::filesystem::path& file) {
-    std::map<int, FrameRecord> frames;
-    if (!read_frames(file, [&](int number, FrameRecord frame) { frames[number] = std::move(frame); }))
-        frames.clear();
-    return frames;
+RecordReading read_record(const std::filesystem::path& file,
+                          const std::function<void(int, FrameRecord)>& take, const RecordWatch& watch) {
+    constexpr int kSection = 1, kFrame = 2, kDeepest = 16;  // depths
+    RecordReading reading;
+    files::FileReader reader(file);
+    if (!reader.problem().empty()) {
+        reading.problem = reader.problem();
+        reading.is_missing = reader.is_missing();
+        reading.is_blocked = !reading.is_missing;
+        return reading;
+    }
+    Bytes bytes(reader, watch);
+    std::string section, number;
+    const auto take_frame = [&](const Json& parsed) {
+        bytes.begin_part();
+        int frame = 0;
+        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), frame);
+        if (error != std::errc() || end != number.data() + number.size()) return;
+        if (!is_as_written(number, parsed)) return reading.altered.push_back(frame);
+        FrameRecord record;
+        try {
+            record = from_json(parsed);
+        } catch (const Json::exception&) {  // another version's
+            return reading.altered.push_back(frame);
+        }
+        take(frame, std::move(record));
+    };
+    const auto at_event = [&](int depth, Json::parse_event_t event, const Json& parsed) {
+        if (depth > kDeepest) bytes.end();
+        if (event == Json::parse_event_t::key && depth == kSection) section = parsed;
+        if (event == Json::parse_event_t::key && depth == kFrame) number = parsed;
+        if (event != Json::parse_event_t::object_end || depth != kFrame || section != "frames") return true;
+        take_frame(parsed);
+        return false;
+    };
+    Json shot;
+    bool is_read = false;
+    try {
+        std::istream stream(&bytes);
+        shot = Json::parse(stream, at_event);
+        is_read = !bytes.had_zero();
+    } catch (const Json::exception&) {
+    }
+    if (!is_read) {
+        reading.problem = reader.problem().empty() ? "is damaged, or no record of a bake" : reader.problem();
+        return reading;
+    }
+    if (!shot.is_object() || !shot.contains("checksum")) {
+        reading.problem = "is no record of a bake, or an older version's";
+        return reading;
+    }
+    shot.erase("frames");
+    try {
+        if (is_as_written("", shot)) reading.shot = shot_from_json(shot);
+    } catch (const Json::exception&) {
+    }
+    if (!reading.shot) reading.problem = "was altered in what it says about the shot";
+    return reading;
 }
 
 void Record::describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold) {
@@ -157,6 +257,7 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
     shot["frame_range"] = {scene.shot.first_frame, scene.shot.last_frame};
     shot["fps"] = scene.shot.fps;
     shot["settings"] = settings(scene);
+    shot["files"] = Json::object();
 
     Json& spectrum = shot["spectrum"];
     spectrum["kind"] = word_of(scene.sea.spectrum);
@@ -199,16 +300,12 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
                                        {"modes", lattice_modes(cascade.grid_radius())}});
 }
 
-bool is_whole(const FrameRecord& frame, const std::string& path, const std::string& fingerprint,
-              const std::filesystem::path& folder) {
-    const auto found = frame.files.find(path);
-    return found != frame.files.end() && found->second.fingerprint == fingerprint &&
-           files::file_size(folder / path) == found->second.bytes &&
-           files::carries(folder / path, fingerprint);
+void Record::set(const std::string& path, const files::FileState& file) {
+    shot_["files"][path] = to_json(FileRecord{.bytes = file.bytes, .checksum = file.checksum});
 }
 
-void Record::save(const std::filesystem::path& file) {
-    const files::FolderLock lock(file.parent_path());
+void Record::save(const std::filesystem::path& file, const files::LockWatch& waiting) {
+    const files::FolderLock lock(file.parent_path(), waiting);
     files::write_atomically(file, [&](const files::ByteSink& sink) { write(file, sink); });
     unsaved_.clear();
 }
@@ -217,14 +314,19 @@ void Record::save(const std::filesystem::path& file) {
 void Record::write(const std::filesystem::path& former,
                    const std::function<void(std::string_view)>& sink) const {
     constexpr std::size_t kPiece = 1 << 16;  // bytes: a piece is a call of the system
-    std::string piece = "{" + lines_inside(shot_, "") + ",\n  \"frames\": {";
+    Json shot = shot_;
+    shot["checksum"] = checksum_of("", shot);
+    std::string piece = "{" + lines_inside(shot, "") + ",\n  \"frames\": {";
     std::optional<int> last;
     const auto add = [&](int number, const FrameRecord& frame) {
         if (last && number <= *last) return;  // ours have taken its place, or somebody has mixed them up
         if (number < first_frame_ || number > last_frame_) return;
         if (last) piece += ',';
         last = number;
-        piece += lines_inside({{std::to_string(number), to_json(frame)}}, "  ");
+        const std::string key = std::to_string(number);
+        Json entry = to_json(frame);
+        entry["checksum"] = checksum_of(key, entry);
+        piece += lines_inside({{key, std::move(entry)}}, "  ");
         if (piece.size() < kPiece) return;
         sink(piece);
         piece.clear();
@@ -234,8 +336,9 @@ void Record::write(const std::filesystem::path& former,
         for (; ours != unsaved_.end() && ours->first <= number; ++ours) add(ours->first, ours->second);
     };
     // Where the former one can't be read any further, ours goes on without it.
-    read_frames(former, [&](int number, const FrameRecord& frame) {
+    read_record(former, [&](int number, FrameRecord frame) {
         add_ours_up_to(number);
+        if (is_stale_) frame.is_stale = is_stale_(number, frame);
         add(number, frame);
     });
     add_ours_up_to(std::numeric_limits<int>::max());

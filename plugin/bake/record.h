@@ -1,5 +1,6 @@
 // The record of a bake, DIR/NAME.json: what was asked, what the spectrum and the literature say, and for each
-// frame that is whole its files and what the sea did.
+// frame that is whole its files and what the sea did. Each file has its size and checksum, and so have each frame's
+// entry and the shot's part: a number that was altered since is noticed.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +11,14 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/base/instruction_set.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/spectrum/spectral_moments.h"
+#include "plugin/files/files.h"
 
 namespace pelagic {
 
@@ -26,7 +30,8 @@ struct WaveRecord {
 // A file as it was when it was whole.
 struct FileRecord {
     std::uintmax_t bytes = 0;
-    std::string fingerprint;  // of what it was made of; it carries the same
+    std::string checksum{};     // plugin/files/checksum.h
+    std::string fingerprint{};  // of what it was made of; it carries the same; empty: none
     // What its output says about the frame.
     std::optional<double> coverage{}, significant_height_m{};
 };
@@ -36,6 +41,7 @@ struct FrameRecord {
     std::string fingerprint;  // of what its statistics were made of
     std::string instruction_set = pelagic::instruction_set();
     std::map<std::string, FileRecord> files;  // by path below DIR, with /
+    bool is_stale = false;                    // of another version of the shot than the record's
     double time_s = 0.0;
     std::optional<WaveRecord> waves;
     double mss_residual = 0.0;                        // the spectrum's, of what the first output hides
@@ -43,14 +49,32 @@ struct FrameRecord {
     std::optional<double> coverage;                   // mean over the first output that has it
 };
 
-// The frames that the record at `file` holds; none where there is no record, or one that can't be read as
-// ours: its frames are baked again.
-std::map<int, FrameRecord> recorded_frames(const std::filesystem::path& file);
+// What a record says about the whole shot.
+struct ShotRecord {
+    std::string name;
+    int first_frame = 0, last_frame = 0;
+    std::map<std::string, FileRecord> files;  // that belong to no frame
+};
 
-// Whether the frame's file at `path` is there, has its recorded size and fingerprint, and says itself that it
-// is of this fingerprint: the record alone would vouch for a file that another shot has replaced since.
-bool is_whole(const FrameRecord& frame, const std::string& path, const std::string& fingerprint,
-              const std::filesystem::path& folder);
+// What was found in a record.
+struct RecordReading {
+    std::optional<ShotRecord> shot;  // absent where that part was altered, or isn't ours
+    // What is wrong with the file as a whole, as the end of a sentence that begins with its name; what could be read
+    // before was read.
+    std::string problem;
+    bool is_missing = false;  // the problem is that there is none
+    bool is_blocked =
+        false;  // something is there that can't be read: a pipe, a folder, a file of another user
+    std::vector<int> altered{};  // frames whose entries aren't as they were written
+};
+
+// Called as the file is read; what it throws ends the reading and passes through.
+using RecordWatch = std::function<void()>;
+
+// Hands over each frame whose entry is as it was written, in the order of the file: never more than one of them is in
+// memory.
+RecordReading read_record(const std::filesystem::path& file,
+                          const std::function<void(int, FrameRecord)>& take, const RecordWatch& watch = {});
 
 // What a run adds to the record of its shot.
 class Record {
@@ -58,19 +82,26 @@ class Record {
     // The part that belongs to the shot and not to a frame. Frames outside the shot's range are left out of
     // the record from now on.
     void describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold);
+    // Whether a frame that an earlier run recorded is of another version of the shot; may be empty.
+    void mark_stale(std::function<bool(int, const FrameRecord&)> is_stale) {
+        is_stale_ = std::move(is_stale);
+    }
 
+    // A file that belongs to no frame.
+    void set(const std::string& path, const files::FileState& file);
     void set(int frame, FrameRecord record) { unsaved_[frame] = std::move(record); }
 
     // Writes the record to `file`, with the frames that are there already, of this run and of others. Holds
-    // one of those at a time: memory doesn't grow with the shot. Throws files::FileError; then what was set
-    // is kept for the next time.
-    void save(const std::filesystem::path& file);
+    // one of those at a time: memory doesn't grow with the shot. Throws files::FileError, and what `waiting`
+    // throws; then what was set is kept for the next time.
+    void save(const std::filesystem::path& file, const files::LockWatch& waiting = {});
 
   private:
     void write(const std::filesystem::path& former, const std::function<void(std::string_view)>& sink) const;
 
     nlohmann::ordered_json shot_;
     int first_frame_ = 0, last_frame_ = 0;
+    std::function<bool(int, const FrameRecord&)> is_stale_;
     std::map<int, FrameRecord> unsaved_;
 };
 

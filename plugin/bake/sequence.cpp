@@ -51,7 +51,6 @@ class SequenceOf final : public Sequence {
         for (std::size_t p = 0; p < parts_.size(); ++p)
             if (wants(slot, p))
                 slot.record.files[parts_[p]->file(slot.frame)] = {
-                    .bytes = 0,
                     .fingerprint = parts_[p]->fingerprint(slot.frame),
                     .coverage = slot.outputs[p]->coverage,
                     .significant_height_m = slot.outputs[p]->significant_height_m};

@@ -1,20 +1,24 @@
 // pelagic bake SHOT.toml
 #include "plugin/bake/bake.h"
 
+#include <algorithm>
 #include <iostream>
 #include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/plan/plan.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/memory.h"
 #include "plugin/cli/progress.h"
 #include "plugin/cli/stop.h"
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
+#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
@@ -24,8 +28,17 @@ struct Arguments {
     std::string shot;
     std::optional<std::string> out;
     std::optional<std::string> frames;
-    std::string threads;
+    std::string threads, max_memory;
+    bool trust_times = false;
 };
+
+void print_damaged(const std::vector<std::string>& damaged, const std::string& out) {
+    constexpr std::size_t kMost = 10;
+    for (std::size_t i = 0; i < std::min(damaged.size(), kMost); ++i)
+        std::cerr << "pelagic: in " << out << ' ' << damaged[i] << "; made again\n";
+    if (damaged.size() > kMost)
+        std::cerr << "pelagic: and so " << damaged.size() - kMost << " more; made again\n";
+}
 
 void print_done(const BakeReport& report, const std::string& out) {
     if (!report.root.empty()) std::cout << "stage:  " << report.root.string() << '\n';
@@ -37,6 +50,7 @@ void print_done(const BakeReport& report, const std::string& out) {
     std::cout << '\n';
     if (const std::string times = time_text(report); !times.empty()) std::cout << times << '\n';
     std::cout << std::flush;
+    print_damaged(report.damaged, out);
     for (const std::string& line : report.foreign)
         std::cerr << "pelagic: in " << out << " lies " << line << "; nothing was deleted\n";
     if (!report.stale.empty()) {
@@ -47,18 +61,11 @@ void print_done(const BakeReport& report, const std::string& out) {
     }
 }
 
-// What was planned, so that people see what is large.
-std::string out_of_memory(const Scene& scene) {
-    const Plan plan = plan_bake(scene);
-    long vertices = 0, texels = 0;
-    for (const PlannedOutput& output : plan.outputs)
-        (output.map ? texels : vertices) += static_cast<long>(plan.queries[output.query].query.points);
-    return "pelagic: out of memory; planned: " + bytes_text(plan.sea_bytes()) + " for the sea, " +
-           bytes_text(plan.frame_bytes()) + " for a frame of it, and the values at " +
-           count_text(vertices, "vertex", "vertices") + " and " + count_text(texels, "texel", "texels") +
-           " with their files; lower surface.resolution, output.map_resolution or the cascades' resolutions, "
-           "or ask "
-           "for fewer attributes; files already written are whole\n";
+// The system gave less than the bake was allowed: what it holds, so that people see what is large.
+std::string out_of_memory(const Scene& scene, int threads) {
+    const MemoryNeed need = bake_memory(plan_bake(scene), kFramesInFlight, threads);
+    return "pelagic: out of memory; this bake holds " + memory_text(need) + "; to need less, " +
+           need.parts().front().remedy + "; files already written are whole\n";
 }
 
 int stopped(const BakeReport& report, const std::string& out, int signal) {
@@ -69,7 +76,7 @@ int stopped(const BakeReport& report, const std::string& out, int signal) {
 }
 
 int run(const Arguments& arguments) {
-    const Scene scene = load_shot(arguments.shot);
+    const Scene scene = load_shot(arguments.shot, check_sky);
     BakeOptions options;
     if (arguments.frames) {
         try {
@@ -85,6 +92,8 @@ int run(const Arguments& arguments) {
         return kWrongUsage;
     }
     options.out = arguments.out.value_or(scene.shot.name);
+    options.max_memory_bytes = memory_of(arguments.max_memory);
+    options.trust_times = arguments.trust_times;
 
     StopSignals stop;
     Progress progress;
@@ -100,8 +109,11 @@ int run(const Arguments& arguments) {
         report = threads.execute([&] { return bake(scene, options); });
     } catch (const std::bad_alloc&) {
         progress.clear();
-        std::cerr << out_of_memory(scene);
+        std::cerr << out_of_memory(scene, threads.count());
         return kRefused;
+    } catch (const NotEnoughMemory& error) {
+        progress.clear();
+        return refuse_memory(arguments.shot, error);
     } catch (const std::invalid_argument& error) {
         // load_shot() has looked at every value with its line: what is refused here is what it can't see.
         progress.clear();
@@ -125,7 +137,9 @@ Verb add_bake(CLI::App& program) {
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
+    command->add_flag("--trust-times", arguments->trust_times, help::kTrustTimes);
     add_threads(*command, arguments->threads, help::kThreads);
+    add_max_memory(*command, arguments->max_memory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

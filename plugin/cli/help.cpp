@@ -13,13 +13,14 @@ const char* const kProgramFooter =
     "  pelagic render storm.toml --out storm   pictures of it, OpenEXR and PNG\n"
     "  pelagic preview storm.toml              a window that plays it\n"
     "  pelagic explain storm.toml              what a bake will compute, and why\n"
+    "  pelagic verify storm                    check the files that were written\n"
     "  pelagic validate shots/*.toml           check shot files without baking\n"
     "  pelagic keys                            every key of a shot file\n"
     "\n"
     "\"pelagic VERB --help\" has more on each verb.\n"
     "\n"
-    "Exit status: 0 if everything requested is complete; 1 if a shot file is invalid or a\n"
-    "file can't be read or written; 2 for an error on the command line; 128 plus the number\n"
+    "Exit status: 0 if everything requested is complete; 1 if a shot file is invalid, a file can't\n"
+    "be read or written, or verify finds something wrong; 2 for an error on the command line; 128 plus the number\n"
     "of the signal that stopped the program (130: Ctrl-C).";
 const char* const kVersion = "Print the version and what the program was built with, and exit";
 const char* const kVerbs = "Verbs";
@@ -30,8 +31,8 @@ const char* const kShots = "The shot files";
 
 const char* const kBake =
     "Bake a shot into a USD stage, OpenEXR maps and a record of the sea.\n"
-    "Run again, it keeps frames that are complete and belong to exactly this shot, and\n"
-    "bakes the others.";
+    "Run again, it reads what is there, keeps the files that are whole and belong to exactly\n"
+    "this shot, and bakes the others.";
 const char* const kBakeFooter =
     "Examples:\n"
     "  pelagic bake storm.toml                      every frame, into a folder of the shot's name\n"
@@ -50,6 +51,14 @@ const char* const kFrames =
 const char* const kThreads =
     "How many threads, 1 to 256; the files don't depend on it.\n"
     "Default: one for each core that the process may use";
+
+const char* const kMaxMemory =
+    "Refuse a shot that would take more memory than this, before any work: 8G, 512M.\n"
+    "Default: what the machine has, or less where a container or ulimit allows less";
+
+const char* const kTrustTimes =
+    "Don't read the files that are there: those of the recorded size that are no newer than the\n"
+    "record count as whole. Faster for many gigabytes, and damage goes unnoticed";
 
 const char* const kRender =
     "Render pictures of a shot through its camera: OpenEXR with layers, and PNG.\n"
@@ -78,6 +87,10 @@ const char* const kSkyQuality =
 const char* const kTerms =
     "The terms of the light: sun, sky, sea, foam, separated by commas.\n"
     "Default: all of them";
+
+const char* const kTrustPictures =
+    "Don't read the pictures that are there in full: those with the right beginning and end\n"
+    "count as whole. Faster for many gigabytes, and damage goes unnoticed";
 
 const char* const kPreview =
     "Play a shot in a window, in real time, and change it while it plays.\n"
@@ -133,6 +146,29 @@ const char* const kMeasure =
     "bytes and milliseconds: a frame with it minus a frame without it";
 const char* const kMeasureThreads =
     "With --measure: how many threads, 1 to 256.\n"
+    "Default: one for each core that the process may use";
+
+const char* const kVerify =
+    "Check that everything in a folder is as it was written.\n"
+    "Reads the files of all shots that were baked there, and the pictures, and names each that is\n"
+    "  missing   recorded and not there, or a frame of the shot that isn't baked\n"
+    "  damaged   not the bytes that were written, or a record with a changed number\n"
+    "  stale     a frame of another version of the shot than the record's\n"
+    "  foreign   named as a bake's files are, and in no record\n"
+    "Changes nothing: the next bake or render makes again what is missing, damaged or stale.";
+const char* const kVerifyFooter =
+    "Examples:\n"
+    "  pelagic verify storm\n"
+    "  pelagic verify shots/* && rsync …\n"
+    "\n"
+    "A picture whose .exr and .png are both gone isn't missed: pictures have no record.\n"
+    "\n"
+    "Exit status: 0 if every folder is whole; 1 if something is missing, damaged, stale or foreign,\n"
+    "if a folder holds nothing to check, or can't be read; 2 for an error on the command line; 128\n"
+    "plus the signal's number if it was stopped (130: Ctrl-C).";
+const char* const kFolders = "The folders that were baked or rendered into";
+const char* const kVerifyThreads =
+    "How many threads read, 1 to 256.\n"
     "Default: one for each core that the process may use";
 
 const char* const kValidate =

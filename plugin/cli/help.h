@@ -16,6 +16,9 @@ extern const char* const kBakeFooter;
 extern const char* const kOut;
 extern const char* const kFrames;
 extern const char* const kThreads;
+extern const char* const kTrustTimes;
+
+extern const char* const kMaxMemory;
 
 extern const char* const kRender;
 extern const char* const kRenderFooter;
@@ -24,6 +27,7 @@ extern const char* const kExposure;
 extern const char* const kSamples;
 extern const char* const kSkyQuality;
 extern const char* const kTerms;
+extern const char* const kTrustPictures;
 
 extern const char* const kPreview;
 extern const char* const kPreviewFooter;
@@ -42,6 +46,11 @@ extern const char* const kExplain;
 extern const char* const kExplainFooter;
 extern const char* const kMeasure;
 extern const char* const kMeasureThreads;
+
+extern const char* const kVerify;
+extern const char* const kVerifyFooter;
+extern const char* const kFolders;
+extern const char* const kVerifyThreads;
 
 extern const char* const kValidate;
 extern const char* const kValidateFooter;

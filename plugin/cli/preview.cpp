@@ -13,6 +13,7 @@
 #include "plugin/bake/bake.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/memory.h"
 #include "plugin/cli/size.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
@@ -32,7 +33,7 @@ struct Arguments {
     std::string shot;
     std::optional<std::string> offscreen, screenshot, quality;
     std::optional<int> frame;
-    std::string size, threads;
+    std::string size, threads, max_memory;
     int scale = 1, after = 8;
 };
 
@@ -60,9 +61,12 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
     const OffscreenContext context;
-    const Sky sky = make_sky(scene);  // before the folder is made: an error leaves none behind
-    files::ensure_folder(file.parent_path());
-    const OffscreenPicture drawn = render_offscreen(scene, sky, frame);
+    files::check_folder(file.parent_path());
+    const OffscreenPlan planned = plan_offscreen(scene, frame, {}, memory_of(arguments.max_memory));
+    const Sky sky = make_sky(scene);
+    const OffscreenPicture drawn = render_offscreen(planned, sky);
+    files::ensure_folder(file.parent_path());  // an error before has left none behind
+    files::remove_stale_temporaries(file.has_parent_path() ? file.parent_path() : ".");
     RenderOptions options = render_options(scene);
     options.samples = 1;
     const PictureContext about{
@@ -74,14 +78,14 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
                 {.scene = scene, .options = options, .sky_content = sky_content(scene), .drawn_by_gpu = true})
                 .of(frame)};
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
-                                                             : encode_png(about, drawn.picture));
+                                                             : encode_png(about, drawn.picture, frame));
     if (!drawn.note.empty()) std::cerr << "pelagic: note: " << drawn.note << '\n';
     std::cout << "picture: " << file.string() << "\ndrawn by " << drawn.device << std::endl;
     return kDone;
 }
 
 int run(const Arguments& arguments) {
-    Scene scene = load_shot(arguments.shot);
+    Scene scene = load_shot(arguments.shot, check_sky);
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
         if (!level)
@@ -100,12 +104,20 @@ int run(const Arguments& arguments) {
     if (arguments.offscreen) {
         if (const std::string problem = refuse_file(*arguments.offscreen, {".png", ".exr"}); !problem.empty())
             return wrong_usage("--offscreen " + problem);
-        return threads.execute([&] { return draw_offscreen(scene, *arguments.offscreen, arguments); });
+        try {
+            return threads.execute([&] { return draw_offscreen(scene, *arguments.offscreen, arguments); });
+        } catch (const NotEnoughMemory& error) {
+            return refuse_memory(arguments.shot, error);
+        } catch (const std::invalid_argument& error) {
+            std::cerr << arguments.shot << ": " << error.what() << '\n';
+            return kRefused;
+        }
     }
     WindowOptions options{.folder = fs::path(arguments.shot).parent_path(),
                           .size = size_of(arguments.size),
                           .pixel_size = arguments.scale,
                           .frame = arguments.frame,
+                          .max_memory_bytes = memory_of(arguments.max_memory),
                           .screenshot_after = arguments.after};
     if (arguments.screenshot) {
         if (const std::string problem = refuse_file(*arguments.screenshot, {".png"}); !problem.empty())
@@ -140,6 +152,7 @@ Verb add_preview(CLI::App& program) {
         ->needs(screenshot);
     screenshot->excludes(offscreen);
     add_threads(*command, arguments->threads, help::kPreviewThreads);
+    add_max_memory(*command, arguments->max_memory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

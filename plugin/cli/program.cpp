@@ -1,13 +1,23 @@
 // The command line as a whole. See program.h.
 #include "plugin/cli/program.h"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
 #include <iostream>
 #include <memory>
 #include <new>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "core/scene/names.h"
@@ -103,8 +113,9 @@ int run(int argc, const char* const* argv) {
     formatter->label("SUBCOMMAND", "VERB");
     formatter->column_width(20);
     program.formatter(formatter);  // inherited by the verbs
-    const std::vector<Verb> verbs{add_bake(program),    add_render(program),   add_preview(program),
-                                  add_explain(program), add_validate(program), add_keys(program)};
+    const std::vector<Verb> verbs{add_bake(program),    add_render(program), add_preview(program),
+                                  add_explain(program), add_verify(program), add_validate(program),
+                                  add_keys(program)};
 
     if (argc < 2) return usage_error("a verb is missing", "pelagic");
     if (const std::string problem = refuse_verb(argc, argv, verbs); !problem.empty())
@@ -116,10 +127,7 @@ int run(int argc, const char* const* argv) {
     }
     for (const Verb& verb : verbs) {
         if (!verb.command->parsed()) continue;
-        const int status = verb.run();
-        if (std::cout.flush()) return status;
-        std::cerr << "pelagic: standard output can't be written to: is its disk full?\n";
-        return std::max(status, kRefused);
+        return verb.run();
     }
     return kWrongUsage;
 }
@@ -129,18 +137,76 @@ int failed(std::string_view message) {
     return kRefused;
 }
 
+// A closed standard stream's number must not become an output file's, which messages would then be written into.
+// Opened the wrong way round, so that using it is an error, as if it were closed.
+void hold_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(stream, F_GETFD) < 0 && errno == EBADF)
+            // The lowest free number is this one: those below are open by now.
+            if (open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
+}
+
+// The system refuses a thread, wherever it is asked for: also in the libraries' own threads, from which no
+// exception comes back.
+constexpr const char* kNoThread =
+    "pelagic: the system refuses another thread; ask for fewer with --threads, or raise the limit on processes or "
+    "memory (ulimit -u, ulimit -v); files already written are whole";
+
+// oneTBB's exception says it in words only.
+bool is_about_threads(const std::exception& error) {
+    const auto* system = dynamic_cast<const std::system_error*>(&error);
+    return (system && system->code() == std::errc::resource_unavailable_try_again) ||
+           std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
+}
+
+[[noreturn]] void end_at_once() {
+    static std::atomic_flag is_ending;  // several threads may come here
+    while (is_ending.test_and_set()) pause();
+    const char* message =
+        "pelagic: an error that nothing handles; this is a bug in the program, please report it";
+    try {
+        if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+    } catch (const std::bad_alloc&) {
+        message = "pelagic: out of memory; files already written are whole";
+    } catch (const std::exception& error) {
+        if (is_about_threads(error)) message = kNoThread;
+    } catch (...) {
+    }
+    for (const char* part : {message, "\n"})
+        if (write(STDERR_FILENO, part, std::strlen(part)) < 0) break;
+    _exit(kRefused);
+}
+
+// Whether whoever reads our output has gone, as head does when it has enough.
+bool is_reader_gone() {
+    pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+    return poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
+// What was printed must have arrived.
+int flushed(int status) {
+    if (std::cout.flush()) return status;
+    if (is_reader_gone()) raise(SIGPIPE);  // ends the program without a word, as it ends other tools
+    std::cerr << "pelagic: standard output can't be written to: is it closed, or its disk full?\n";
+    return std::max(status, kRefused);
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv) noexcept {
     try {
-        return run(argc, argv);
+        hold_standard_streams();
+        std::set_terminate(end_at_once);
+        // A file beyond the limit (ulimit -f) is an error with a message, also where it is a log.
+        std::signal(SIGXFSZ, SIG_IGN);
+        return flushed(run(argc, argv));
     } catch (const ShotError& error) {
         return failed(error.what());  // each line begins with the file, as compilers' messages do
     } catch (const std::bad_alloc&) {
         return failed(
             "pelagic: out of memory; lower the resolution (pelagic explain shows what takes how much)");
     } catch (const std::exception& error) {
-        return failed(std::string("pelagic: ") + error.what());
+        return failed(is_about_threads(error) ? kNoThread : std::string("pelagic: ") + error.what());
     } catch (...) {
         return failed("pelagic: an error without a message; this is a bug in the program, please report it");
     }

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "plugin/cli/text.h"
 
@@ -94,11 +95,18 @@ void Progress::show(const BakeProgress& progress) {
     switch (progress.stage) {
         case BakeStage::Planning:
             return;  // milliseconds
+        case BakeStage::Checking:
+            return show("checking the files that are there: " +
+                        std::to_string(std::lround(100.0 * progress.checked)) + " %");
+        case BakeStage::Waiting:
+            if (!std::exchange(waiting_said_, true)) last_ = {};  // at once, whatever was said just now
+            return show("waiting for another bake that writes into the same folder");
         case BakeStage::Building:
             return show_building(progress.built);
         case BakeStage::Frames:
             break;
     }
+    waiting_said_ = false;
     const bool last = finished(progress) >= progress.total;
     const Clock::time_point now = Clock::now();
     if (frame_said_ && !last && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery))

@@ -29,6 +29,7 @@ class Progress {
     bool line_is_there_ = false;
     bool building_said_ = false;
     bool frame_said_ = false;
+    bool waiting_said_ = false;
     Clock::time_point last_;
 };
 

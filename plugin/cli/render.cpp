@@ -2,6 +2,8 @@
 #include "plugin/render/render.h"
 #include "plugin/light/light.h"
 
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -23,6 +25,7 @@
 #include "plugin/bake/pipeline.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/memory.h"
 #include "plugin/cli/progress.h"
 #include "plugin/cli/size.h"
 #include "plugin/cli/stop.h"
@@ -30,14 +33,13 @@
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/files/files.h"
+#include "plugin/machine/memory.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
 namespace {
 
-// A picture is computed while the one before is encoded and written.
-constexpr int kPicturesInFlight = 2;
 constexpr double kMostStops = 30.0;
 
 struct Arguments {
@@ -45,7 +47,8 @@ struct Arguments {
     std::optional<std::string> out, frames, terms, sky_quality;
     std::optional<int> samples;
     double exposure_stops = 0.0;
-    std::string size, threads;
+    std::string size, threads, max_memory;
+    bool trust_times = false;
 };
 
 struct WrongUsage : std::runtime_error {
@@ -83,10 +86,12 @@ struct Job {
     std::vector<int> frames;
     std::filesystem::path out;
     double exposure_stops = 0.0;
+    std::size_t max_memory_bytes = 0;
+    bool trust_times = false;
 };
 
 Job job_of(const Arguments& arguments) {
-    Job job{.scene = load_shot(arguments.shot), .options = {}, .frames = {}, .out = {}};
+    Job job{.scene = load_shot(arguments.shot, check_sky), .options = {}, .frames = {}, .out = {}};
     const Shot& shot = job.scene.shot;
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) job.scene.camera.resolution = size;
     job.options = render_options(job.scene);
@@ -100,6 +105,8 @@ Job job_of(const Arguments& arguments) {
         throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
                          number_text(-kMostStops) + " to " + number_text(kMostStops));
     job.exposure_stops = arguments.exposure_stops;
+    job.max_memory_bytes = memory_of(arguments.max_memory);
+    job.trust_times = arguments.trust_times;
     try {
         const std::string whole_shot =
             std::to_string(shot.first_frame) + "-" + std::to_string(shot.last_frame);
@@ -142,24 +149,36 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
                                           .options = job.options,
                                           .sky_content = sky_content(job.scene),
                                           .exposure_stops = job.exposure_stops});
-    const std::vector<int> frames = unfinished_pictures(job.out, shot, fingerprint, job.frames);
+    const std::vector<int> frames = unfinished_pictures(job.out, shot, fingerprint, job.frames,
+                                                        {.trust = job.trust_times,
+                                                         .watch = {.progress =
+                                                                       [&](double checked) {
+                                                                           now.stage = BakeStage::Checking;
+                                                                           now.checked = checked;
+                                                                           progress.show(now);
+                                                                       },
+                                                                   .cancel = &stop.cancelled()}});
     Done done;
     done.kept = static_cast<int>(job.frames.size() - frames.size());
     for (const int frame : frames_in(job.out, {shot.name + '.', ".png"}))
         if (frame >= shot.first_frame && frame <= shot.last_frame &&
             !std::binary_search(job.frames.begin(), job.frames.end(), frame) &&
-            !is_whole_picture(job.out / picture_file(shot, frame, "png"), fingerprint.of(frame)))
+            !is_whole_picture(job.out / picture_file(shot, frame, "png"), fingerprint.of(frame),
+                              {.trust = true}))
             done.stale.push_back(frame);
     now.kept = done.kept;
     if (frames.empty()) {
         done.seconds = seconds_since(start);
         return done;
     }
+    require_memory(render_memory(job.scene, job.options, frames,
+                                 std::min(static_cast<int>(frames.size()), kPicturesInFlight),
+                                 tbb::this_task_arena::max_concurrency()),
+                   machine::memory_limit_or(job.max_memory_bytes), "this picture");
     now.stage = BakeStage::Building;
     progress.show(now);
-    Sky sky = make_sky(job.scene);  // what is wrong with it leaves no folder behind
-    files::ensure_folder(job.out);
-    files::remove_stale_temporaries(job.out);
+    files::check_folder(job.out);
+    Sky sky = make_sky(job.scene);
     const BuildWatch building{.progress =
                                   [&](double built) {
                                       now.built = built;
@@ -181,6 +200,19 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
                               .made_of = fingerprint.of(frame),
                               .exposure_stops = job.exposure_stops};
     };
+    if (!renderer.check_cameras(frames, {.progress =
+                                             [&](double part) {
+                                                 progress.show("looking where the camera is above water: " +
+                                                               std::to_string(std::lround(100.0 * part)) +
+                                                               " %");
+                                             },
+                                         .cancel = &stop.cancelled()})) {
+        done.cancelled = true;
+        return done;
+    }
+    // Whatever is refused has left no folder behind.
+    files::ensure_folder(job.out);
+    files::remove_stale_temporaries(job.out);
     stop.files_begin();
     now.stage = BakeStage::Frames;
     const Clock::time_point first_frame = Clock::now();
@@ -205,7 +237,7 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
     stages.encode = [&](int item, int place) {
         Place& at = places[place];
         const PictureContext context = context_of(frames[item]);
-        at.png = encode_png(context, at.picture);
+        at.png = encode_png(context, at.picture, frames[item]);
         at.exr = encode_exr(context, at.picture, frames[item]);
     };
     stages.write = [&](int item, int place) {
@@ -248,6 +280,9 @@ int run(const Arguments& arguments) {
                   << job.scene.camera.resolution.x << "x" << job.scene.camera.resolution.y
                   << ") or lower the cascades' resolutions; files already written are whole\n";
         return kRefused;
+    } catch (const NotEnoughMemory& error) {
+        progress.clear();
+        return refuse_memory(arguments.shot, error);
     } catch (const std::invalid_argument& error) {
         progress.clear();
         std::cerr << arguments.shot << ": " << error.what() << '\n';
@@ -289,7 +324,9 @@ Verb add_render(CLI::App& program) {
     command->add_option("--samples", arguments->samples, help::kSamples)->type_name("N");
     command->add_option("--sky-quality", arguments->sky_quality, help::kSkyQuality)->type_name("QUALITY");
     command->add_option("--terms", arguments->terms, help::kTerms)->type_name("TERMS");
+    command->add_flag("--trust-times", arguments->trust_times, help::kTrustPictures);
     add_threads(*command, arguments->threads, help::kThreads);
+    add_max_memory(*command, arguments->max_memory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

@@ -14,7 +14,7 @@
 namespace pelagic::cli {
 namespace {
 
-constexpr std::array kStopping{SIGINT, SIGTERM, SIGHUP};
+constexpr std::array kStopping{SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
 std::atomic<bool> stop_asked{false};
 std::atomic<int> stop_signal{0};
@@ -22,8 +22,7 @@ std::atomic<bool> writing{false};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 std::array<struct sigaction, kStopping.size()> before{};
-struct sigaction pipe_before {
-}, size_before{};
+struct sigaction pipe_before {};
 
 void say(std::string_view text) {
     // An error of stderr can't be reported.
@@ -59,14 +58,11 @@ StopSignals::StopSignals() {
     }
     action.sa_handler = SIG_IGN;
     sigaction(SIGPIPE, &action, &pipe_before);
-    sigaction(SIGXFSZ, &action,
-              &size_before);  // a file too large is then an error with a message
 }
 
 StopSignals::~StopSignals() {
     for (std::size_t i = 0; i < kStopping.size(); ++i) sigaction(kStopping[i], &before[i], nullptr);
     sigaction(SIGPIPE, &pipe_before, nullptr);
-    sigaction(SIGXFSZ, &size_before, nullptr);
 }
 
 const std::atomic<bool>& StopSignals::cancelled() const {

@@ -1,4 +1,4 @@
-// Stop signals: SIGINT (Ctrl-C), SIGTERM, SIGHUP.
+// Stop signals: SIGINT (Ctrl-C), SIGTERM, SIGHUP, SIGQUIT (Ctrl-\).
 #pragma once
 
 #include <atomic>

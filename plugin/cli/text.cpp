@@ -39,17 +39,4 @@ std::string count_text(long count, const char* singular, const char* plural) {
     return std::to_string(count) + ' ' + (count == 1 ? singular : plural);
 }
 
-std::string frames_text(const std::vector<int>& frames) {
-    std::string text;
-    for (std::size_t i = 0; i < frames.size();) {
-        std::size_t last = i;
-        while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
-        if (!text.empty()) text += ", ";
-        text += std::to_string(frames[i]);
-        if (last > i) text += '-' + std::to_string(frames[last]);
-        i = last + 1;
-    }
-    return text;
-}
-
 }  // namespace pelagic::cli

@@ -1,4 +1,6 @@
 // pelagic validate SHOT.toml …
+#include <oneapi/tbb/task_arena.h>
+
 #include <iostream>
 #include <string>
 #include <vector>
@@ -6,10 +8,12 @@
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
+#include "plugin/bake/bake.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/text.h"
 #include "plugin/cli/verb.h"
+#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
@@ -33,7 +37,7 @@ std::string summary(const Scene& scene, const Plan& plan) {
     text += ": ";
     if (plan.trains) text += count_text(plan.trains->count, "wave train, ", "wave trains, ");
     return text + count_text(plan.transforms_per_frame(), "transform", "transforms") + " a frame, " +
-           bytes_text(plan.sea_bytes() + plan.frame_bytes() + plan.output_bytes());
+           bytes_text(bake_memory(plan, kFramesInFlight, tbb::this_task_arena::max_concurrency()).bytes());
 }
 
 }  // namespace
@@ -48,7 +52,7 @@ Verb add_validate(CLI::App& program) {
                 int status = kDone;
                 for (const std::string& file : *files) {
                     try {
-                        const Scene scene = load_shot(file);
+                        const Scene scene = load_shot(file, check_sky);
                         const Plan plan = plan_bake(scene);
                         std::cout << file << ": fine\n    " << summary(scene, plan) << std::endl;
                     } catch (const ShotError& error) {

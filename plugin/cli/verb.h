@@ -18,6 +18,7 @@ Verb add_bake(CLI::App& program);
 Verb add_render(CLI::App& program);
 Verb add_preview(CLI::App& program);
 Verb add_explain(CLI::App& program);
+Verb add_verify(CLI::App& program);
 Verb add_validate(CLI::App& program);
 Verb add_keys(CLI::App& program);
 

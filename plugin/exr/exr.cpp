@@ -269,6 +269,15 @@ void check_levels(std::span<const Image> levels) {
 
 }  // namespace
 
+std::string text_attribute_bytes(std::string_view name, std::string_view value) {
+    std::string bytes(name);
+    bytes += '\0';
+    bytes += "string";
+    bytes += '\0';
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value.size() >> shift & 0xff);
+    return bytes.append(value);
+}
+
 std::string encode_scanline(const Header& header, const Image& image) {
     check_image(image);
     StringStream stream(raw_bytes(image));

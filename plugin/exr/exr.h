@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -60,6 +61,9 @@ struct Header {
     bool periodic = false;              // wrapmodes "periodic,periodic", otherwise "clamp,clamp"
     Compression compression = Compression::Auto;
 };
+
+// The bytes that an attribute of text is in a file: for who looks for one, or fills it in after the file is encoded.
+std::string text_attribute_bytes(std::string_view name, std::string_view value);
 
 // The image as the bytes of a scan-line file.
 // Throws std::invalid_argument, naming the problem, for: no pixels, no channels, no data; a channel or

@@ -16,9 +16,13 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <ctime>
-#include <fstream>
+#include <thread>
 #include <utility>
+
+#include "plugin/files/checksum.h"
+#include "plugin/files/read.h"
 
 namespace pelagic::files {
 namespace {
@@ -239,17 +243,37 @@ bool remove_if_stale(const fs::path& path, const std::string& own_host) {
 FileError::FileError(const std::string& message, std::filesystem::path path, std::error_code code)
     : std::runtime_error(message), path_(std::move(path)), code_(code) {}
 
-std::uintmax_t write_atomically(const std::filesystem::path& target, const Content& content) {
+FileState write_atomically(const std::filesystem::path& target, const Content& content) {
     Temporary temporary(target);
     std::uintmax_t written = 0;
+    Checksum sum;
     content([&](std::string_view piece) {
+        sum.add(piece);
         temporary.write(std::as_bytes(std::span(piece)));
         written += piece.size();
     });
     temporary.flush();
     temporary.rename_to_target();
     flush_folder(target);
-    return written;
+    return {written, sum.text()};
+}
+
+FileState write_if_different(const std::filesystem::path& target, const Content& content) {
+    FileReader file(target);
+    Checksum sum;
+    std::uintmax_t bytes = 0;
+    bool is_same = file.problem().empty();
+    std::string there;
+    content([&](std::string_view piece) {
+        sum.add(piece);
+        bytes += piece.size();
+        if (!is_same) return;
+        there.resize(piece.size());
+        is_same = file.read(there) == piece.size() && there == piece;
+    });
+    char more = 0;
+    if (is_same && file.read({&more, 1}) == 0 && file.problem().empty()) return {bytes, sum.text()};
+    return write_atomically(target, content);
 }
 
 void write_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes) {
@@ -280,19 +304,27 @@ void ensure_folder(const std::filesystem::path& asked) {
     if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
 }
 
+void check_folder(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    fs::path there = folder;
+    while (!there.empty() && !fs::exists(there, ignored) && there != there.parent_path())
+        there = there.parent_path();
+    if (there.empty()) there = ".";
+    if (!fs::is_directory(there, ignored)) fail_to_make_folder(folder, ENOTDIR);
+    if (faccessat(AT_FDCWD, there.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_make_folder(folder, errno);
+}
+
 bool carries(const std::filesystem::path& path, std::string_view text) {
-    constexpr std::streamoff kEnd = 8192;
-    std::ifstream stream(path, std::ios::binary | std::ios::ate);
-    const std::streamoff size = stream.tellg();
-    const auto stands_from = [&](std::streamoff begin) {
+    constexpr std::size_t kEnd = 8192;
+    const std::optional<std::uintmax_t> size = files::file_size(path);
+    FileReader file(path);
+    const auto stands_from = [&](std::uintmax_t begin) {
         std::string bytes(kEnd, '\0');
-        stream.clear();
-        stream.seekg(begin);
-        stream.read(bytes.data(), kEnd);
-        bytes.resize(static_cast<std::size_t>(stream.gcount()));
+        file.seek(begin);
+        bytes.resize(file.read(bytes));
         return bytes.find(text) != std::string::npos;
     };
-    return stream && (stands_from(0) || stands_from(std::max<std::streamoff>(size - kEnd, 0)));
+    return size && (stands_from(0) || stands_from(*size > kEnd ? *size - kEnd : 0));
 }
 
 std::optional<std::uintmax_t> file_size(const std::filesystem::path& path) {
@@ -302,9 +334,24 @@ std::optional<std::uintmax_t> file_size(const std::filesystem::path& path) {
     return size;
 }
 
-FolderLock::FolderLock(const std::filesystem::path& folder)
+FolderLock::FolderLock(const std::filesystem::path& folder, const LockWatch& watch)
     : descriptor_(open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds kAskAgain{20};
+    constexpr double kSaidAfter_s = 1.0;
+    const Clock::time_point start = Clock::now();
+    // Asked again and again, and not waited for in the kernel, where nobody could say so or give up.
+    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+        if (errno == EINTR) continue;
+        if (errno != EWOULDBLOCK) return;
+        const double waited_s = std::chrono::duration<double>(Clock::now() - start).count();
+        try {
+            if (watch && waited_s > kSaidAfter_s) watch(waited_s);
+        } catch (...) {
+            close(descriptor_);
+            throw;
+        }
+        std::this_thread::sleep_for(kAskAgain);
     }
 }
 

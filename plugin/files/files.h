@@ -45,9 +45,19 @@ using ByteSink = std::function<void(std::string_view)>;
 // Passes the bytes of a file to the sink. They need to live during the call only.
 using Content = std::function<void(const ByteSink&)>;
 
+// What the bytes of a file were when it was written.
+struct FileState {
+    std::uintmax_t bytes = 0;
+    std::string checksum;  // plugin/files/checksum.h
+    bool operator==(const FileState&) const = default;
+};
+
 // The same for bytes that are never in memory all at once: each piece is written to the hidden file as it
-// comes. Returns the number of bytes. Exceptions of `content` pass through, and nothing is changed then.
-std::uintmax_t write_atomically(const std::filesystem::path& target, const Content& content);
+// comes. Exceptions of `content` pass through, and nothing is changed then.
+FileState write_atomically(const std::filesystem::path& target, const Content& content);
+
+// The same, unless the file has exactly these bytes already; then it stays untouched.
+FileState write_if_different(const std::filesystem::path& target, const Content& content);
 
 // Deletes the hidden files in `folder` (not in its sub-folders) left by write_atomically() in processes that
 // were killed, and returns how many. Files still being written stay. Does nothing, and reports no error, if
@@ -58,11 +68,18 @@ std::size_t remove_stale_temporaries(const std::filesystem::path& folder);
 // empty path is the working folder. Throws FileError.
 void ensure_folder(const std::filesystem::path& folder);
 
+// Whether it could, without making anything. Throws FileError where it is sure that it couldn't.
+void check_folder(const std::filesystem::path& folder);
+
+// Told how long a lock has been awaited [s], some times a second from the first second on. What it throws ends the
+// waiting.
+using LockWatch = std::function<void(double waited_s)>;
+
 // Locks the folder for this process during the object's lifetime, and waits for other holders: for files that
 // several runs read, change and write again. No effect on file systems without locks.
 class FolderLock {
   public:
-    explicit FolderLock(const std::filesystem::path& folder);
+    explicit FolderLock(const std::filesystem::path& folder, const LockWatch& watch = {});
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;

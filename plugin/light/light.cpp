@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 
 #include "core/plan/fingerprint.h"
+#include "core/scene/text.h"
 #include "plugin/exr/read.h"
 
 namespace pelagic {
@@ -23,18 +25,9 @@ WaterKind kind_of(WaterType type) {
     throw std::invalid_argument("water of no type");
 }
 
-LatLong read_picture(const std::string& file) {
-    const exr::RgbPixels pixels = [&] {
-        try {
-            return exr::read_rgb(file);
-        } catch (const std::runtime_error& error) {
-            throw std::invalid_argument(error.what());  // the message names the file
-        }
-    }();
-    LatLong picture{.width = pixels.width, .height = pixels.height, .radiance = {}};
-    picture.radiance.reserve(pixels.pixels.size());
-    for (const auto& [r, g, b] : pixels.pixels) picture.radiance.emplace_back(r, g, b);
-    return picture;
+// `problem` may have names from the file in it.
+Problem sky_problem(const Scene& scene, const std::string& problem, const std::string& accepted) {
+    return {"light.sky", quoted_text(scene.light.sky), line_text(problem), accepted};
 }
 
 }  // namespace
@@ -45,11 +38,29 @@ Sky make_sky(const Scene& scene) {
         return daylight_sky({.sun_elevation_deg = light.sun_elevation_deg,
                              .sun_azimuth_deg = light.sun_azimuth_deg,
                              .turbidity = light.turbidity});
-    const LatLong picture = read_picture(light.sky);
     try {
-        return picture_sky(picture);
+        const exr::RgbFile file(light.sky);
+        LatLongRows rows{.width = file.width(),
+                         .height = file.height(),
+                         .rows_in_piece = file.rows_in_piece(),
+                         .read = [&](int first_row, std::span<glm::vec3> radiance) {
+                             file.read(first_row, {&radiance.data()->x, 3 * radiance.size()});
+                         }};
+        return picture_sky(rows);
+    } catch (const exr::ReadError& error) {
+        throw std::invalid_argument(text_of(sky_problem(scene, error.problem(), error.accepted())));
     } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument(light.sky + ": " + error.what());
+        throw std::invalid_argument("light.sky = " + quoted_text(light.sky) + ": " + error.what());
+    }
+}
+
+std::vector<Problem> check_sky(const Scene& scene) {
+    if (scene.light.sky == Light{}.sky) return {};
+    try {
+        const exr::RgbFile looked_at(scene.light.sky);
+        return {};
+    } catch (const exr::ReadError& error) {
+        return {sky_problem(scene, error.problem(), error.accepted())};
     }
 }
 
@@ -61,7 +72,8 @@ std::string sky_content(const Scene& scene) {
     while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())) || stream.gcount() > 0)
         hash.add(std::string_view(piece).substr(0, static_cast<std::size_t>(stream.gcount())));
     if (!stream.eof())
-        throw std::invalid_argument(scene.light.sky + ": can't be read; accepted: a picture in OpenEXR");
+        throw std::invalid_argument(
+            text_of(sky_problem(scene, "can't be read", "a lat-long picture in OpenEXR")));
     return hash.text();
 }
 

@@ -2,15 +2,20 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
+#include "core/scene/problem.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
 
-// The shot's light: its daylight, or the picture that light.sky is the path of. Throws std::invalid_argument,
-// naming the file, for a picture that can't be read or isn't one of a sky.
+// What is wrong with the picture that light.sky is the path of, as far as can be said without its pixels: the check
+// of named files that hosts pass to load_shot().
+std::vector<Problem> check_sky(const Scene& scene);
+// The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
+// Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky.
 Sky make_sky(const Scene& scene);
 // What make_sky() reads besides the scene, as text for fingerprints: a hash of the picture's bytes; empty for
 // daylight. Throws std::invalid_argument for a file that can't be read.

@@ -4,9 +4,11 @@
 #include <png.h>
 
 #include <csetjmp>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <stdexcept>
+#include <vector>
 
 namespace pelagic::png {
 namespace {
@@ -33,6 +35,27 @@ extern "C" void pelagic_png_write(png_structp file, png_bytep bytes, std::size_t
 }
 
 extern "C" void pelagic_png_flush(png_structp) {}
+
+extern "C" void pelagic_png_read(png_structp file, png_bytep bytes, std::size_t count) {
+    auto& left = *static_cast<std::string_view*>(png_get_io_ptr(file));
+    if (left.size() < count) png_error(file, "the file ends too early");
+    std::memcpy(bytes, left.data(), count);
+    left.remove_prefix(count);
+}
+
+// Unpacks the bytes that are `left`, row after row into `row`. As write().
+bool read(png_structp file, png_infop info, std::string_view& left, png_bytep row) {
+    if (setjmp(png_jmpbuf(file)) != 0) return false;
+    png_set_read_fn(file, &left, pelagic_png_read);
+    png_set_user_limits(file, kLargest, kLargest);
+    png_set_crc_action(file, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_set_benign_errors(file, 0);
+    png_read_info(file, info);
+    const png_uint_32 height = png_get_image_height(file, info);
+    for (png_uint_32 y = 0; y < height; ++y) png_read_row(file, row, nullptr);
+    png_read_end(file, nullptr);
+    return left.empty();
+}
 
 // Returns false if the library failed. Has no local with a destructor, because the library uses longjmp().
 bool write(png_structp file, png_infop info, const Image& image) {
@@ -80,6 +103,33 @@ std::string encode(const Image& image) {
     if (sink.error) std::rethrow_exception(sink.error);
     if (!whole) throw std::bad_alloc();  // the only failure left after the checks above
     return std::move(sink.bytes);
+}
+
+bool is_whole(std::string_view bytes) {
+    // The signature, the header's length and name, and its content: width, height, 8 bits of red, green and blue.
+    constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
+    constexpr std::string_view kColours("\x08\x02\0\0\0", 5);
+    constexpr std::size_t kWidth = 16, kColoursAt = 24, kHeader = 33;
+    if (bytes.size() < kHeader || !bytes.starts_with(kSignature) ||
+        bytes.substr(kColoursAt, kColours.size()) != kColours)
+        return false;
+    std::size_t width = 0;
+    for (std::size_t i = kWidth; i < kWidth + 4; ++i)
+        width = width << 8 | static_cast<std::uint8_t>(bytes[i]);
+    if (width > kLargest) return false;
+    std::vector<std::uint8_t> row(3 * width);
+    // Neither errors nor warnings are printed.
+    png_structp file = png_create_read_struct(
+        PNG_LIBPNG_VER_STRING, nullptr, [](png_structp reader, png_const_charp) { png_longjmp(reader, 1); },
+        [](png_structp, png_const_charp) {});
+    png_infop info = file == nullptr ? nullptr : png_create_info_struct(file);
+    if (info == nullptr) {
+        png_destroy_read_struct(&file, &info, nullptr);
+        throw std::bad_alloc();
+    }
+    const bool whole = read(file, info, bytes, row.data());  // `bytes` are then what is left
+    png_destroy_read_struct(&file, &info, nullptr);
+    return whole;
 }
 
 }  // namespace pelagic::png

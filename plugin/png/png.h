@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace pelagic::png {
 
@@ -19,5 +20,9 @@ struct Image {
 // The image as the bytes of a file, marked as sRGB. Throws std::invalid_argument if the size is out of range
 // or doesn't match the number of bytes, and std::bad_alloc.
 std::string encode(const Image& image);
+
+// Whether the bytes are a whole file of ours: every chunk's checksum is right, the pixels can be unpacked, and nothing
+// is missing or left over. Throws std::bad_alloc.
+bool is_whole(std::string_view bytes);
 
 }  // namespace pelagic::png

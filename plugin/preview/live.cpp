@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/waves/frame.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -30,6 +31,9 @@ LiveSea::Build in_the_background(LiveSea::Build build) {
 LiveSea::LiveSea(Build build)
     : frames_thread_([this] { compute_frames(); }), builder_(in_the_background(std::move(build))) {}
 
+LiveSea::LiveSea(const LiveLimits& limits)
+    : LiveSea([limits](const Scene& scene) { return build_live(scene, limits); }) {}
+
 LiveSea::~LiveSea() {
     {
         const std::lock_guard lock(mutex_);
@@ -45,11 +49,13 @@ void LiveSea::ask(const Scene& scene) {
     builder_.ask(scene);
 }
 
-void LiveSea::show(double time_s) {
+void LiveSea::show(double time_s, const std::optional<View>& eye) {
     auto built = builder_.take();
     {
         const std::lock_guard lock(mutex_);
         time_s_ = time_s;
+        eye_ = eye;
+        if (!eye) water_over_eye_m_.reset();
         if (built) {
             build_.swap(built);
             ++seas_;
@@ -66,6 +72,11 @@ const LiveFrame* LiveSea::newest() {
     return frame.packed ? &frame : nullptr;
 }
 
+std::optional<double> LiveSea::water_over_eye() const {
+    const std::lock_guard lock(mutex_);
+    return water_over_eye_m_;
+}
+
 LiveStatus LiveSea::status() const {
     LiveStatus status{.building = builder_.is_busy(), .error = builder_.error()};
     const std::lock_guard lock(mutex_);
@@ -80,17 +91,28 @@ void LiveSea::compute_frames() {
     // The request computed last, whether it succeeded or failed: not repeated.
     std::shared_ptr<const LiveBuild> tried;
     std::optional<double> tried_s;
+    std::optional<View> tried_eye;
     std::unique_lock lock(mutex_);
+    const auto wants_frame = [&] {
+        return build_ != nullptr && time_s_ && (build_ != tried || time_s_ != tried_s);
+    };
     for (;;) {
-        wake_.wait(lock, [&] {
-            return stopping_ || (build_ != nullptr && time_s_ && (build_ != tried || time_s_ != tried_s));
-        });
+        wake_.wait(lock, [&] { return stopping_ || wants_frame() || (frame && eye_ && eye_ != tried_eye); });
         if (stopping_) return;
+        tried_eye = eye_;
+        if (!wants_frame()) {  // the eye has moved over a sea that stands still
+            lock.unlock();
+            const auto water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
+            lock.lock();
+            if (eye_) water_over_eye_m_ = water_m;
+            continue;
+        }
         tried = build_;
         tried_s = time_s_;
         LiveFrame& slot = slots_[written_];
         lock.unlock();
         std::string error;
+        std::optional<double> water_m;
         try {
             if (!frame || &frame->sea() != tried->sea.get()) {
                 frame.reset();  // before the new one is made: halves the peak memory
@@ -107,6 +129,7 @@ void LiveSea::compute_frames() {
             slot.packed->pack(*frame);
             slot.transforms_ms = milliseconds(start, transformed);
             slot.packing_ms = milliseconds(transformed, Clock::now());
+            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
         } catch (...) {
             error = message_of(std::current_exception());
             frame.reset();
@@ -115,6 +138,7 @@ void LiveSea::compute_frames() {
         lock.lock();
         frame_error_ = error;
         if (!error.empty()) continue;
+        if (eye_) water_over_eye_m_ = water_m;
         slot.number = ++frames_;
         std::swap(written_, waiting_);
         fresh_ = true;

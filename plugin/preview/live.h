@@ -4,15 +4,19 @@
 
 #include <array>
 #include <condition_variable>
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "core/plan/memory.h"
 #include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
 #include "core/waves/sea.h"
 #include "plugin/preview/live_worker.h"
 #include "plugin/preview/sea_renderer.h"
@@ -26,11 +30,19 @@ struct LiveBuild {
     int query = 0;  // the picture's query, an index into the plan
     ProjectedGridOptions grid;
     double build_s = 0.0;  // time that building took
+    std::string note;      // what was left out so that it fits; empty: nothing
 };
 
-// Plans and builds the sea for pictures of the scene. Throws std::invalid_argument with every problem that
-// validate() finds.
-std::shared_ptr<const LiveBuild> build_live(const Scene& scene);
+// What a window's sea may hold, and its textures' sides.
+struct LiveLimits {
+    MemoryLimit memory{std::numeric_limits<std::size_t>::max(), "there are"};
+    int texture = std::numeric_limits<int>::max();
+};
+
+// Plans and builds the sea for pictures of the scene. Where that doesn't fit the limits, the shortest waves are left
+// to the slope variance until it does, and the note says so. Throws std::invalid_argument with every problem that
+// validate() finds, and NotEnoughMemory where nothing is left to leave out.
+std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits);
 
 // Whether the two scenes have the same waves in pictures, so that nothing needs to be built.
 bool same_sea(const Scene& a, const Scene& b);
@@ -54,7 +66,8 @@ class LiveSea {
     using Build = LiveWorker<Scene, LiveBuild>::Make;
 
     // Two threads: one builds seas, one computes frames. Frames have priority on the cores.
-    explicit LiveSea(Build build = build_live);
+    explicit LiveSea(Build build);
+    explicit LiveSea(const LiveLimits& limits = {});
     ~LiveSea();  // waits for the frame and the sea being made
     LiveSea(const LiveSea&) = delete;
     LiveSea& operator=(const LiveSea&) = delete;
@@ -65,10 +78,13 @@ class LiveSea {
     // current sea between two frames. During a build only the latest request is kept.
     void ask(const Scene& scene);
     // Requests a frame at this time [s], finite, of the latest sea that is ready; the latest request wins.
-    // Must be called for every picture drawn: this call swaps in a sea that is ready.
-    void show(double time_s);
+    // Must be called for every picture drawn: this call swaps in a sea that is ready. `eye`: a camera among the
+    // waves (is_among_waves()), of which water_over_eye() will tell.
+    void show(double time_s, const std::optional<View>& eye = {});
     // The latest finished frame; null before the first. Unchanged until the next call.
     const LiveFrame* newest();
+    // The height z [m] of the surface above the eye, in the latest frame computed; nullopt for one in the air.
+    std::optional<double> water_over_eye() const;
     LiveStatus status() const;
 
   private:
@@ -83,6 +99,8 @@ class LiveSea {
     std::condition_variable wake_;
     std::shared_ptr<const LiveBuild> build_;  // for the next frame
     std::optional<double> time_s_;            // for the next frame
+    std::optional<View> eye_;
+    std::optional<double> water_over_eye_m_;
     std::string frame_error_;
     long seas_ = 0, frames_ = 0;
     bool stopping_ = false;

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -27,10 +28,12 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/files/files.h"
+#include "plugin/machine/memory.h"
 #include "plugin/png/png.h"
 #include "plugin/preview/controls.h"
 #include "plugin/preview/live.h"
 #include "plugin/preview/orbit.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -412,6 +415,11 @@ class Preview {
         return view;
     }
 
+    View view_now() const {
+        const View lens = lens_now();
+        return readout_.follows_shot ? lens : camera_.view(lens);
+    }
+
     void show_sky(const LiveSky& sky) {
         renderer_.set_sky(sky.sky, sky.water);
         exposure_ = sky.exposure;
@@ -425,15 +433,26 @@ class Preview {
         }
         if (const auto sky = skies_.take()) show_sky(*sky);
         sea_.ask(controls_.scene);
-        sea_.show(shot_.shot.time_s(controls_.frame));
+        const View view = view_now();
+        const bool may_be_wet = frame_ == nullptr || is_among_waves(view, frame_->build->grid);
+        sea_.show(shot_.shot.time_s(controls_.frame), may_be_wet ? std::optional<View>(view) : std::nullopt);
         frame_ = sea_.newest();
         const LiveStatus status = sea_.status();
         readout_.building_sea = status.building;
         readout_.building_sky = skies_.is_busy();
         readout_.message = status.error.empty() ? skies_.error() : status.error;
+        is_under_water_ = sea_.water_over_eye().has_value();
+        if (readout_.message.empty() && is_under_water_)
+            readout_.message =
+                "the camera is under water, which can't be drawn: raise it (E), or wait for the wave to pass";
         if (frame_ != nullptr && std::exchange(uploaded_, frame_->number) != frame_->number) upload();
         for (const std::string& error : {upload_error_, save_error_})
             if (readout_.message.empty()) readout_.message = error;
+        if (frame_ != nullptr && frame_->build->note != note_) {
+            note_ = frame_->build->note;
+            if (!note_.empty()) std::cerr << "pelagic: note: " << note_ << '\n';
+        }
+        if (readout_.message.empty()) readout_.message = note_;
         readout_.has_sea = frame_ != nullptr;
         if (frame_ == nullptr) return;
         readout_.significant_height_m = frame_->build->grid.significant_height_m;
@@ -446,9 +465,13 @@ class Preview {
         // The camera goes with the sea that is shown, which may be an earlier frame's.
         const Shot& shot = shot_.shot;
         const double sea_s = frame_->packed->time_s();
-        shown_frame_ = sea_s == shot.time_s(controls_.frame) || shot.time_scale == 0.0
-                           ? controls_.frame
-                           : 1.0 + (sea_s - shot.time_offset_s) / shot.time_scale * shot.fps;
+        shown_frame_ = controls_.frame;
+        if (sea_s != shot.time_s(controls_.frame) && shot.time_scale != 0.0) {
+            shown_frame_ = 1.0 + (sea_s - shot.time_offset_s) / shot.time_scale * shot.fps;
+            // In a loop every round has such a frame: the nearest one.
+            if (const double round = std::round(shot.loop_s * shot.fps); round > 0.0)
+                shown_frame_ += round * std::round((controls_.frame - shown_frame_) / round);
+        }
         try {
             renderer_.upload(*frame_->packed);
             upload_error_.clear();
@@ -458,10 +481,16 @@ class Preview {
     }
 
     void draw_sea(glm::ivec2 size) {
-        const View lens = lens_now();
-        const View view = readout_.follows_shot ? lens : camera_.view(lens);
+        const View view = view_now();
         readout_.camera_m = view.position_m;
         readout_.drawn_px = view.resolution;
+        if (is_under_water_) {  // nothing rather than a wrong picture
+            glBindFramebuffer(GL_FRAMEBUFFER, 0);
+            glViewport(0, 0, size.x, size.y);
+            glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
+            glClear(GL_COLOR_BUFFER_BIT);
+            return;
+        }
         const auto start = Clock::now();
         ProjectedGridOptions grid_options;
         if (frame_ != nullptr) grid_options = frame_->build->grid;
@@ -504,10 +533,11 @@ class Preview {
     long uploaded_ = 0;  // the frame's number
     double shown_frame_ = 1.0;
     int pictures_ = 0;
-    bool is_flying_ = false, save_picture_ = false;
-    std::string upload_error_, save_error_;
+    bool is_flying_ = false, save_picture_ = false, is_under_water_ = false;
+    std::string upload_error_, save_error_, note_;
     LiveWorker<Scene, LiveSky> skies_;
-    LiveSea sea_;
+    LiveSea sea_{LiveLimits{.memory = machine::memory_limit_or(options_.max_memory_bytes),
+                            .texture = renderer_.largest_texture()}};
 };
 
 }  // namespace

@@ -23,6 +23,7 @@
 #include "core/plan/plan.h"
 #include "core/waves/frame.h"
 #include "plugin/bake/output_part.h"
+#include "plugin/bake/verify.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/values.h"
@@ -39,10 +40,14 @@ const char* word_of(BakeStage stage) {
     switch (stage) {
         case BakeStage::Planning:
             return "planning";
+        case BakeStage::Checking:
+            return "checking";
         case BakeStage::Building:
             return "building";
         case BakeStage::Frames:
             return "frames";
+        case BakeStage::Waiting:
+            return "waiting";
     }
     throw std::logic_error("a bake in no stage");
 }
@@ -63,7 +68,8 @@ std::vector<int> frames_of(const std::optional<FramesAsked>& asked, const Shot& 
 
 BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
                     const std::optional<FramesAsked>& frames, const py::object& progress,
-                    const py::object& cancel) {
+                    const py::object& cancel, bool trust_times,
+                    std::optional<std::size_t> max_memory_bytes) {
     require_valid(scene);
     Watch watch(progress, cancel);
     const Scene kept = scene;
@@ -72,12 +78,14 @@ BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::pat
                         .progress =
                             [&](const BakeProgress& now) {
                                 watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total,
-                                           now.built);
+                                           now.stage == BakeStage::Checking ? now.checked : now.built);
                             },
-                        .cancel = watch.flag()};
+                        .max_memory_bytes = max_memory_bytes.value_or(0),
+                        .cancel = watch.flag(),
+                        .trust_times = trust_times};
     BakeReport report;
     {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         report = bake(kept, options);
     }
     watch.rethrow();
@@ -107,8 +115,48 @@ void add_bake_report(py::module_& module) {
                       "Frames of the shot that lie there and belong to another version of it, not asked for.")
         .def_readonly("foreign", &BakeReport::foreign,
                       "Files that lie there and aren't the shot's, a line each.")
+        .def_readonly("damaged", &BakeReport::damaged,
+                      "What wasn't as it was recorded, and was made again, a line each.")
         .def_property_readonly("times", &time_text,
                                "Where the time went, a line; empty where nothing was baked.");
+}
+
+std::vector<Finding> run_verify(const std::filesystem::path& folder, const py::object& progress,
+                                const py::object& cancel) {
+    Watch watch(progress, cancel);
+    try {
+        Verification found;
+        {
+            const OthersMayRun others_may_run;
+            found =
+                verify(folder, {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()});
+        }
+        watch.rethrow();
+        return found.findings;
+    } catch (const CheckCancelled& cancelled) {
+        watch.rethrow();
+        throw Cancelled(cancelled.what());
+    }
+}
+
+void add_verify(py::module_& module) {
+    py::class_<Finding>(module, "Finding", "What verify() found: a file that isn't as it was written.")
+        .def_readonly("path", &Finding::path, "Below the folder, with /.")
+        .def_property_readonly(
+            "flaw", [](const Finding& self) { return word_of(self.flaw); },
+            "\"missing\", \"damaged\", \"stale\" (frames of another version of the shot) or \"foreign\" (in no "
+            "record).")
+        .def_readonly("what", &Finding::what, "In words: the end of a sentence that begins with the path.")
+        .def("__repr__", [](const Finding& self) {
+            return std::string("<") + word_of(self.flaw) + ": " + self.path + ' ' + self.what + '>';
+        });
+    module.def(
+        "verify", &run_verify, py::arg("dir"), py::arg("progress") = py::none(),
+        py::arg("cancel") = py::none(),
+        "Reads everything that was baked or rendered into a folder, as `pelagic verify` does: a list of "
+        "findings, empty where all is as it was written.\n\n"
+        "progress: called with the share that was read, 0 to 1, from the first second on. cancel: as bake()'s. "
+        "Cancelled; FileError where there is no such folder.");
 }
 
 // ---- Arrays
@@ -162,16 +210,19 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     require_valid(asked);
     Watch watch(progress, cancel);
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
+    std::unique_ptr<Maps> made;
     try {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         Plan plan = plan_bake(asked);
-        return with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
+        made = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
             return std::make_unique<MapsOf<T>>(std::move(plan), building);
         });
     } catch (const BuildCancelled& cancelled) {
         watch.rethrow();
         throw Cancelled(cancelled.what());
     }
+    watch.rethrow();  // a small sea is there before it looks at the flag
+    return made;
 }
 
 // The arrays of one output, n × n texels, by product.
@@ -193,7 +244,7 @@ void add_arrays(py::dict& arrays, Values& values) {
 py::tuple maps_at(Maps& self, double t_s) {
     std::vector<Values> values;
     {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         values = self.at(t_s);
     }
     py::dict patch;
@@ -211,17 +262,24 @@ py::tuple maps_at(Maps& self, double t_s) {
 
 void add_bake(py::module_& module) {
     add_bake_report(module);
+    add_verify(module);
     module.def(
         "bake", &run_bake, py::arg("scene"), py::arg("out") = py::none(), py::arg("frames") = py::none(),
-        py::arg("progress") = py::none(), py::arg("cancel") = py::none(),
+        py::arg("progress") = py::none(), py::arg("cancel") = py::none(), py::kw_only(),
+        py::arg("trust_times") = false, py::arg("max_memory_bytes") = py::none(),
         "Bakes a scene into files, as `pelagic bake` does, and the same bits. Files that are whole "
         "already are kept. Other threads run meanwhile.\n\n"
         "out: the folder, made where it is missing; by default ./NAME. frames: a frame, a list, a text like "
         "\"1-48x5\", or None for the whole shot.\n"
         "progress: called as progress(stage, frame, done, kept, total, built) from any thread: \"planning\", "
-        "\"building\" (built: the share of the sea that is) or \"frames\"; the frame finished last; frames "
+        "\"checking\" (built: the share of the files that were read), \"building\" (built: the share of the sea "
+        "that is), \"frames\" or \"waiting\" (for another bake that writes into the folder); the frame finished last; frames "
         "written, kept, and asked for. cancel: a Cancel, or a callable that is asked as often and is true "
         "when it is enough: the bake ends soon, and its report says so.\n"
+        "max_memory_bytes: MemoryError, before anything is written, for a bake that needs more; by default "
+        "what the system gives this process.\n"
+        "trust_times: files of the recorded size that are no newer than the record count as whole; otherwise each is "
+        "read, and its checksum compared.\n"
         "FileError where a file can't be written, ShotError for a scene that is refused, ValueError for "
         "frames outside the shot.");
     py::class_<Maps>(

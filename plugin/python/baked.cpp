@@ -11,6 +11,7 @@
 #include "plugin/files/files.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/watch.h"
 #include "plugin/shot/text_file.h"
 #include "plugin/usd/read_mesh.h"
 
@@ -62,7 +63,7 @@ py::array as_array(usd::MeshArray& array) {
 py::dict read_mesh(const std::filesystem::path& path) {
     usd::MeshLayer layer;
     {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         layer = read_layer(path);
     }
     py::dict arrays;

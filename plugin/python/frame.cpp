@@ -23,6 +23,7 @@
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/sea.h"
+#include "plugin/python/watch.h"
 
 namespace pelagic::python {
 namespace {
@@ -88,7 +89,7 @@ class PythonFrame {
     explicit PythonFrame(const PythonSea& sea) : sea_(sea), frame_(sea.sea) {}
 
     void set(double t_s) {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         const std::unique_lock writing(mutex_);
         alone([&] { frame_.set(t_s); });
     }
@@ -144,7 +145,7 @@ class PythonFrame {
         std::vector<glm::vec2> rest_m(points.count);
         std::vector<float> residual_m(points.count), height_m(points.count);
         {
-            const py::gil_scoped_release others_may_run;
+            const OthersMayRun others_may_run;
             require_on_the_sea(points, "xy");
             const std::shared_lock reading(mutex_);
             require_time();
@@ -204,7 +205,7 @@ class PythonFrame {
     }
 
     void run(const Points<float>& points, const Results<float>& results) const {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         require_on_the_sea(points, "rest");
         const std::shared_lock reading(mutex_);
         require_time();

@@ -17,6 +17,7 @@
 #include "core/lighting/tone.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/watch.h"
 #include "plugin/render/render.h"
 
 namespace pelagic::python {
@@ -40,14 +41,14 @@ struct PythonSky {
 PythonSky sky_of(const Scene& scene) {
     require_valid(scene);
     const Scene kept = scene;
-    const py::gil_scoped_release others_may_run;
+    const OthersMayRun others_may_run;
     return {std::make_shared<const Sky>(make_sky(kept))};
 }
 
 py::array image_of(const PythonSky& self, int width) {
     LatLong picture;
     {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         picture = lat_long(*self.sky, width);
     }
     return array_of<float>(std::move(picture.radiance), {picture.height, picture.width});
@@ -58,7 +59,7 @@ py::object radiance_towards(const PythonSky& self, const py::object& directions,
     if (out.is_none()) out = py::array_t<float>({count, py::ssize_t{3}});
     const Strided<glm::vec3> radiance = writable_vectors(out, {"out", count});
     const Strided<const glm::vec3> to = towards;
-    const py::gil_scoped_release others_may_run;
+    const OthersMayRun others_may_run;
     tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
             radiance[i] = background(*self.sky, to[i], 1.0f).sky;
@@ -141,7 +142,7 @@ py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArgument
         out[layer] = writable_vectors(array, {name, count});
         written[name] = array;
     }
-    const py::gil_scoped_release others_may_run;
+    const OthersMayRun others_may_run;
     tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
         std::vector<SeaPoint> points(range.size());
         std::vector<SeaRadiance> radiance(range.size());

@@ -1,8 +1,10 @@
 // The Python module `pelagic`: thin, because the work is core's. Arrays are numpy's, exceptions Python's, and
 // long work lets other Python threads run.
+#include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/watch.h"
 #include "plugin/shot/shot.h"
 
 namespace {
@@ -13,11 +15,31 @@ namespace py = pybind11;
 std::string explain_bake(const pelagic::Scene& scene) {
     pelagic::python::require_valid(scene);
     const pelagic::Scene kept = scene;
-    const py::gil_scoped_release others_may_run;  // a plan looks at each frame's view
+    const pelagic::python::OthersMayRun others_may_run;  // a plan looks at each frame's view
     return pelagic::explain(pelagic::plan_bake(kept));
 }
 
 }  // namespace
+
+// pybind11 gives an object whose __init__() was never called (cls.__new__(cls), a subclass that uses it first) memory
+// without a value when it is first used. Here that is an error.
+void refuse_objects_without_a_value(const py::module_& module) {
+    for (const auto& [name, member] : module.attr("__dict__").cast<py::dict>()) {
+        if (PyType_Check(member.ptr()) == 0) continue;
+        if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(member.ptr())))
+            type->operator_new = [](std::size_t) -> void* {
+                throw py::type_error("an object of pelagic whose __init__() was not called has no value");
+            };
+    }
+    // What pybind11 says of such an object where it is held by several.
+    py::register_local_exception_translator([](std::exception_ptr error) {
+        try {
+            if (error) std::rethrow_exception(error);
+        } catch (const py::cast_error& wrong) {
+            PyErr_SetString(PyExc_TypeError, wrong.what());
+        }
+    });
+}
 
 PYBIND11_MODULE(pelagic, module) {
     module.doc() =
@@ -27,14 +49,21 @@ PYBIND11_MODULE(pelagic, module) {
         "    frame = pelagic.Frame(pelagic.Sea(scene))\n"
         "    frame.set(1.5)\n"
         "    position = frame.evaluate(rest, outputs=(\"position\",))[\"position\"]\n\n"
-        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north. Threads that work in it must "
-        "be joined before the program ends: Python can't end under them.";
+        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north. At the program's end "
+        "work in other threads is cancelled, or waited for.";
     module.attr("__version__") = PELAGIC_VERSION;
     py::register_exception<pelagic::ShotError>(module, "ShotError", PyExc_ValueError).doc() =
         "A shot that is refused: a line for each problem, FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: "
         "WHAT IS.\n"
         "Without the place for a scene that is not read from a file.";
 
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const pelagic::NotEnoughMemory& error) {
+            PyErr_SetString(PyExc_MemoryError, error.what());
+        }
+    });
     py::register_exception<pelagic::files::FileError>(module, "FileError", PyExc_OSError).doc() =
         "A file or folder that can't be read or written: its path, why, and what would do.";
 
@@ -48,6 +77,7 @@ PYBIND11_MODULE(pelagic, module) {
     pelagic::python::add_bake(module);
     pelagic::python::add_baked(module);
     pelagic::python::add_viewport(module);
+    refuse_objects_without_a_value(module);
     module.def(
         "explain", &explain_bake, py::arg("scene"),
         "What baking this scene computes, and why: each output, product, field, transform with its size, "

@@ -14,10 +14,13 @@
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/scene/shot_text.h"
+#include "core/scene/text.h"
 #include "core/scene/validate.h"
 #include "plugin/files/files.h"
+#include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/values.h"
+#include "plugin/python/watch.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::python {
@@ -166,13 +169,21 @@ std::string text_of_shot(const Scene& scene) {
     const auto absolute = [](std::string& path) { path = std::filesystem::absolute(path).string(); };
     if (placed.light.sky != Light{}.sky) absolute(placed.light.sky);
     if (placed.sea.measured) absolute(placed.sea.measured->file);
+    const auto require_utf8 = [](const char* key, const std::string& path) {
+        if (utf8_text(path) != path)
+            throw std::invalid_argument(text_of(
+                Problem{key, quoted_text(path), "has bytes that aren't UTF-8, which no shot file can have",
+                        "a path in UTF-8"}));
+    };
+    require_utf8("light.sky", placed.light.sky);
+    if (placed.sea.measured) require_utf8("sea.spectrum_file", placed.sea.measured->file);
     return shot_text(placed);
 }
 
 double significant_height_of(const Scene& scene) {
     require_valid(scene);
     const Scene kept = scene;
-    const py::gil_scoped_release others_may_run;
+    const OthersMayRun others_may_run;
     return prepare(kept)->extent.significant_height_m;
 }
 
@@ -202,13 +213,15 @@ void add_scene(py::module_& module) {
     scene.def(py::init<>())
         .def_static(
             "from_file",
-            [](const std::filesystem::path& path) { return std::make_shared<Scene>(load_shot(path)); },
+            [](const std::filesystem::path& path) {
+                return std::make_shared<Scene>(load_shot(path, check_sky));
+            },
             py::arg("path"),
             "The scene that a shot file describes. ShotError with every problem of the file.")
         .def_static(
             "from_text",
             [](const std::string& text, const std::filesystem::path& folder) {
-                return std::make_shared<Scene>(parse_shot(text, folder / "text"));
+                return std::make_shared<Scene>(parse_shot(text, folder / "text", check_sky));
             },
             py::arg("text"), py::arg("folder") = ".",
             "The scene that a shot file's text describes; paths in it are from this folder. ShotError with "

@@ -97,20 +97,22 @@ PythonSea build_sea(const Scene& scene, const SeaRequest& request, Watch& watch)
     if (request.views.empty()) plain = plain_query(scene, request);
     const Scene kept = scene;  // other threads may change the caller's meanwhile
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
+    std::shared_ptr<const Sea<float>> sea;
     try {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         const auto prepared = prepare(kept);
         Query query = plain ? *plain : query_of_views(*prepared, request, held);
         query.name = "python";
         query.products = held;
         // Whatever the level, arrays are float32.
-        return {std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}),
-                                                   building),
-                products};
+        sea = std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}),
+                                                 building);
     } catch (const BuildCancelled& cancelled) {
         watch.rethrow();
         throw Cancelled(cancelled.what());
     }
+    watch.rethrow();  // a small sea is there before it looks at the flag
+    return {sea, products};
 }
 
 const std::string kSeaDoc =

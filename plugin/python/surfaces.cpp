@@ -19,6 +19,7 @@
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/sea.h"
+#include "plugin/python/watch.h"
 
 namespace pelagic::python {
 namespace {
@@ -29,7 +30,7 @@ using Triple = std::array<double, 3>;
 py::array grid_quads(int columns, int rows) {
     Faces faces;
     {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         faces = grid_faces(columns, rows);
     }
     const auto quads = static_cast<py::ssize_t>(faces.counts.size());
@@ -153,7 +154,7 @@ PythonGrid grid_of(const PythonSea& sea, const View& view, const std::optional<s
     options.size = checked_size(size);
     ProjectedGrid grid;
     {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         grid = projected_grid(view, options);
         if (sea.query().cell_m.size() > 1) keep_to_rungs(grid, projected_grid_needs(view, options));
     }

@@ -36,6 +36,11 @@ struct ToPython {
         }
         return out;
     }
+    // A path may be any bytes: those that aren't UTF-8 come as in Python's own names of files.
+    py::object operator()(const std::string& text) const {
+        return py::reinterpret_steal<py::object>(
+            PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+    }
     template <class Element>
     py::object operator()(const std::vector<Element>& list) const {
         return py::tuple(py::cast(list));
@@ -105,6 +110,8 @@ KeyValue from_python(const Key& key, const std::string& path, py::handle given) 
         case KeyType::Word:
         case KeyType::DataFile:
         case KeyType::DataTime:
+            if (py::isinstance<py::str>(given))
+                return std::string(given.attr("encode")("utf-8", "surrogateescape").cast<py::bytes>());
             return cast_to<std::string>(key, path, given);
     }
     if (!key.empty_word.empty() && py::isinstance<py::str>(given) &&

@@ -30,7 +30,9 @@
 #include "plugin/light/light.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/watch.h"
 #include "plugin/render/render.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic::python {
 namespace {
@@ -85,7 +87,7 @@ template <class Made, class... More>
 std::shared_ptr<Made> make_beside_others(const Scene& scene, More... more) {
     require_valid(scene);
     const Scene kept = scene;  // other threads may change the caller's meanwhile
-    const py::gil_scoped_release others_may_run;
+    const OthersMayRun others_may_run;
     return std::make_shared<Made>(kept, more...);
 }
 
@@ -128,13 +130,22 @@ class GpuSea {
     }
 
     void set(double t_s) {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         const std::lock_guard writing(mutex_);
         // Without other tasks of the same TBB meanwhile: the host's own might ask this sea, and wait for themselves.
         tbb::this_task_arena::isolate([&] {
             frame_.set(t_s);
             packed_.pack(frame_);
         });
+    }
+
+    // Of the time that was set; nullopt before.
+    std::optional<double> water_over(const View& view) const {
+        const OthersMayRun others_may_run;
+        const std::lock_guard reading(mutex_);
+        if (!frame_.is_set()) return std::nullopt;
+        return tbb::this_task_arena::isolate(
+            [&] { return surface_above_camera(frame_, view, projected_grid_options(*prepared_)); });
     }
 
     py::dict shaders(const GpuLight& light) const {
@@ -196,7 +207,7 @@ class GpuSea {
         ProjectedGrid grid;
         std::vector<glm::vec4> vertices;
         {
-            const py::gil_scoped_release others_may_run;
+            const OthersMayRun others_may_run;
             const ProjectedGridNeeds needs = projected_grid_needs(view, options);
             options.size = {.columns = std::min(needs.size.columns, kMostCells),
                             .rows = std::min(needs.size.rows, kMostCells)};
@@ -221,7 +232,7 @@ class GpuSea {
   private:
     // Waits without the interpreter: who sets meanwhile may take long.
     std::unique_lock<std::mutex> locked() const {
-        const py::gil_scoped_release others_may_run;
+        const OthersMayRun others_may_run;
         return std::unique_lock(mutex_);
     }
 
@@ -321,6 +332,10 @@ void add_viewport(py::module_& module) {
              "Whether that scene has the same waves, foam and quality, so that nothing needs to be built.")
         .def("set", &GpuSea::set, py::arg("t"),
              "Makes it the sea at any finite time t [s]: `textures` changes. Other threads run meanwhile.")
+        .def(
+            "water_over", &GpuSea::water_over, py::arg("view"),
+            "The height z [m] of the surface above the view's place, at the time that was set; None for a view "
+            "in the air, the only one that can be drawn.")
         .def(
             "shaders", &GpuSea::shaders, py::arg("light"),
             "{\"sea\": (vertex, fragment), \"sky\": (vertex, fragment)}: GLSL 3.30 without a #version line. "

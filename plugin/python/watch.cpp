@@ -1,21 +1,85 @@
 #include "plugin/python/watch.h"
 
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
 #include "plugin/python/bindings.h"
 
 namespace pelagic::python {
 
 namespace py = pybind11;
 
+namespace {
+
+// What runs just now. The interpreter's lock guards it.
+struct Work {
+    int running = 0;
+    std::vector<Watch*> watched;
+    std::optional<std::thread::id> ending;  // the thread that ends the program, once it does
+};
+Work& work() {
+    static Work work;
+    return work;
+}
+
+void end_all_work() {
+    work().ending = std::this_thread::get_id();
+    for (Watch* watch : work().watched) watch->stop();
+    while (work().running > 0) {
+        const py::gil_scoped_release others_may_run;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+}
+
+}  // namespace
+
+void Cancel::set() {
+    const std::lock_guard lock(state_->mutex);
+    state_->is_set = true;
+    for (const auto& each : state_->works)
+        if (const auto flag = each.lock()) flag->store(true);
+    state_->works.clear();
+}
+
+bool Cancel::is_set() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->is_set;
+}
+
+void Cancel::ends(const std::shared_ptr<std::atomic<bool>>& flag) {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->is_set) return flag->store(true);
+    std::erase_if(state_->works, [](const auto& each) { return each.expired(); });
+    state_->works.push_back(flag);
+}
+
+OthersMayRun::OthersMayRun() {
+    if (work().ending && *work().ending != std::this_thread::get_id()) throw Cancelled("the program ends");
+    ++work().running;
+    released_.emplace();
+}
+
+OthersMayRun::~OthersMayRun() {
+    released_.reset();
+    --work().running;
+}
+
 Watch::Watch(const py::object& progress, const py::object& cancel) : progress_(progress) {
     if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0)
         throw py::type_error("progress: accepted: a callable, or None");
     if (py::isinstance<Cancel>(cancel))
-        cancel_ = cancel.cast<Cancel>();
+        cancel.cast<Cancel>().ends(stop_);
     else if (cancel.is_none() || PyCallable_Check(cancel.ptr()) != 0)
         asked_ = cancel;
     else
         throw py::type_error("cancel: accepted: a pelagic.Cancel, a callable that returns a bool, or None");
     asks_python_ = !progress_.is_none() || !asked_.is_none();
+    work().watched.push_back(this);
+}
+
+Watch::~Watch() {
+    std::erase(work().watched, this);
 }
 
 void add_watch(py::module_& module) {
@@ -24,10 +88,12 @@ void add_watch(py::module_& module) {
         module, "Cancel",
         "Ends long work from another thread: pass it as cancel, and set() it when it is enough.")
         .def(py::init<>())
-        .def(
-            "set", [](const Cancel& self) { self.flag->store(true); }, "The work ends soon, for good.")
-        .def_property_readonly(
-            "is_set", [](const Cancel& self) { return self.flag->load(); }, "Whether set() was called.");
+        .def("set", &Cancel::set, "The work ends soon, for good.")
+        .def_property_readonly("is_set", &Cancel::is_set, "Whether set() was called.");
+    py::module_::import("atexit").attr("register")(py::cpp_function(&end_all_work));
+    // A child has this thread alone.
+    py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") =
+                                                           py::cpp_function([] { work().running = 0; }));
 }
 
 }  // namespace pelagic::python

@@ -1,4 +1,4 @@
-// Progress and cancelling of long work, between Python and the core.
+// Long work, between Python and the core: progress, cancelling, other threads meanwhile, and the program's end.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -6,13 +6,28 @@
 #include <atomic>
 #include <exception>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace pelagic::python {
 
-// pelagic.Cancel: work looks at its flag; whoever holds it sets it, from any thread.
-struct Cancel {
-    std::shared_ptr<std::atomic<bool>> flag = std::make_shared<std::atomic<bool>>(false);
+// pelagic.Cancel: whoever holds it sets it, from any thread, and what was begun with it ends. Copies are the same.
+class Cancel {
+  public:
+    void set();
+    bool is_set() const;
+    // Sets this work's flag as well, now or when the time comes.
+    void ends(const std::shared_ptr<std::atomic<bool>>& work);
+
+  private:
+    struct State {
+        std::mutex mutex;
+        bool is_set = false;
+        std::vector<std::weak_ptr<std::atomic<bool>>> works;
+    };
+    std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
 // pelagic.Cancelled.
@@ -25,6 +40,20 @@ class Cancelled : public std::exception {
     const char* what_;
 };
 
+// During its lifetime other Python threads run, as with pybind11's gil_scoped_release, but Python doesn't end: it
+// would end this thread in the middle of its work, which C++ can't survive. At the program's end watched work is
+// cancelled and all work is waited for. Work begun by another thread after that throws Cancelled.
+class OthersMayRun {
+  public:
+    OthersMayRun();
+    ~OthersMayRun();
+    OthersMayRun(const OthersMayRun&) = delete;
+    OthersMayRun& operator=(const OthersMayRun&) = delete;
+
+  private:
+    std::optional<pybind11::gil_scoped_release> released_;
+};
+
 // What a caller of long work passes: `progress`, a callable or None, and `cancel`, a Cancel, a callable that is
 // true when it is enough, or None. Made and destroyed with the interpreter held; everything else is called
 // without it, from any thread.
@@ -32,11 +61,15 @@ class Watch {
   public:
     // pybind11::type_error for other objects.
     Watch(const pybind11::object& progress, const pybind11::object& cancel);
+    ~Watch();
+    Watch(const Watch&) = delete;
+    Watch& operator=(const Watch&) = delete;
 
-    const std::atomic<bool>* flag() const { return cancel_.flag.get(); }
+    const std::atomic<bool>* flag() const { return stop_.get(); }
+    void stop() { stop_->store(true); }
 
     // Calls progress with these, then the callable `cancel`, whose answer counts as in an `if`. An exception of
-    // either cancels the work, and is kept for rethrow().
+    // either ends this work, not what else a Cancel is for, and is kept for rethrow().
     template <class... Values>
     void tell(const Values&... values) {
         if (!asks_python_) return;
@@ -44,10 +77,10 @@ class Watch {
         if (failed_) return;
         try {
             if (!progress_.is_none()) progress_(values...);
-            if (!asked_.is_none() && pybind11::bool_(asked_())) cancel_.flag->store(true);
+            if (!asked_.is_none() && pybind11::bool_(asked_())) stop();
         } catch (...) {
             failed_ = std::current_exception();
-            cancel_.flag->store(true);
+            stop();
         }
     }
     // With the interpreter held, after the work: what a callable threw.
@@ -57,7 +90,7 @@ class Watch {
 
   private:
     pybind11::object progress_, asked_ = pybind11::none();
-    Cancel cancel_;
+    std::shared_ptr<std::atomic<bool>> stop_ = std::make_shared<std::atomic<bool>>(false);
     bool asks_python_ = false;
     std::exception_ptr failed_;
 };

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "core/base/instruction_set.h"
 #include "core/lighting/tone.h"
@@ -14,6 +15,7 @@
 #include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
+#include "plugin/bake/pictures.h"
 #include "plugin/exr/exr.h"
 #include "plugin/exr/read.h"
 #include "plugin/files/files.h"
@@ -71,6 +73,8 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"fingerprint", context.made_of},
         {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
+    for (exr::Attribute& attribute : seal_attributes(picture_file(scene.shot, frame, "exr")))
+        attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
     for (const DescribedKey& key : described(scene, kFeedsBesideTheView))
         std::visit(
@@ -89,7 +93,8 @@ std::string picture_file(const Shot& shot, int frame, const char* extension) {
     return shot.name + "." + number.data() + "." + extension;
 }
 
-PictureFingerprint::PictureFingerprint(const PictureSource& source) : camera_(source.scene.camera) {
+PictureFingerprint::PictureFingerprint(const PictureSource& source)
+    : shot_(source.scene.shot), camera_(source.scene.camera) {
     const LightingChoice& lighting = source.options.lighting;
     const auto digit = [](auto value) { return std::to_string(static_cast<int>(value)); };
     // What the plan says of a view is the same whichever frames it is for.
@@ -108,28 +113,51 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source) : camera_(so
 }
 
 std::string PictureFingerprint::of(int frame) const {
-    return Fingerprint()
-        .add(source_)
-        .add("frame " + std::to_string(frame))
-        .add(pose_text(view_at(camera_, frame)))
-        .text();
+    Fingerprint hash;
+    hash.add(source_).add("frame " + std::to_string(frame)).add(pose_text(view_at(camera_, frame)));
+    // Which time of a loop a frame shows isn't in any key.
+    if (shot_.loop_s > 0.0) hash.add("time " + number_text(shot_.time_s(frame)));
+    return hash.text();
 }
 
-bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of) {
+namespace {
+
+bool is_whole_of(const std::filesystem::path& file, const std::string& made_of, bool trust,
+                 CheckProgress& progress) {
+    progress.add(0);
     if (!files::carries(file, made_of)) return false;
+    if (!trust) return picture_problem(file, progress).empty();
     // A PNG ends with an empty chunk called IEND and its checksum.
     return file.extension() == ".exr" ? exr::ends_whole(file) : files::carries(file, "IEND\xae\x42\x60\x82");
 }
 
+}  // namespace
+
+bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of,
+                      const PictureCheck& check) {
+    CheckProgress progress(check.watch, files::file_size(file).value_or(0));
+    return is_whole_of(file, made_of, check.trust, progress);
+}
+
 std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const Shot& shot,
-                                     const PictureFingerprint& fingerprint, std::span<const int> frames) {
+                                     const PictureFingerprint& fingerprint, std::span<const int> frames,
+                                     const PictureCheck& check) {
+    constexpr std::array kExtensions{"png", "exr"};
+    std::uintmax_t total = 0;
+    for (const int frame : frames)
+        for (const char* extension : kExtensions)
+            total += files::file_size(folder / picture_file(shot, frame, extension)).value_or(0);
+    CheckProgress progress(check.watch, total);
+    std::vector<char> whole(frames.size());
+    tbb::parallel_for(std::size_t(0), frames.size(), [&](std::size_t i) {
+        whole[i] = std::all_of(kExtensions.begin(), kExtensions.end(), [&](const char* extension) {
+            return is_whole_of(folder / picture_file(shot, frames[i], extension), fingerprint.of(frames[i]),
+                               check.trust, progress);
+        });
+    });
     std::vector<int> unfinished;
-    for (const int frame : frames) {
-        const auto whole = [&](const char* extension) {
-            return is_whole_picture(folder / picture_file(shot, frame, extension), fingerprint.of(frame));
-        };
-        if (!whole("png") || !whole("exr")) unfinished.push_back(frame);
-    }
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        if (!whole[i]) unfinished.push_back(frames[i]);
     return unfinished;
 }
 
@@ -163,10 +191,12 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
     add("foam.", first.foam, kLayers, ranges.whole);
     const exr::Header header{.attributes = attributes_of(context, frame),
                              .compression = exr::Compression::Zip};
-    return exr::encode_scanline(header, image);
+    std::string file = exr::encode_scanline(header, image);
+    seal(file);
+    return file;
 }
 
-std::string encode_png(const PictureContext& context, const Picture& picture) {
+std::string encode_png(const PictureContext& context, const Picture& picture, int frame) {
     const float exposure = exposure_for(context.sky, context.exposure_stops);
     std::vector<std::uint8_t> bytes(picture.layers.size() * 3);
     tbb::parallel_for(0, picture.resolution.y, [&](int row) {
@@ -177,10 +207,11 @@ std::string encode_png(const PictureContext& context, const Picture& picture) {
                 bytes[3 * i + c] = static_cast<std::uint8_t>(std::lround(255.0f * colour[c]));
         }
     });
-    return png::encode({.width = picture.resolution.x,
-                        .height = picture.resolution.y,
-                        .rgb = bytes,
-                        .comment = "pelagic " + context.made_of});
+    return png::encode(
+        {.width = picture.resolution.x,
+         .height = picture.resolution.y,
+         .rgb = bytes,
+         .comment = png_comment(picture_file(context.scene.shot, frame, "png"), context.made_of)});
 }
 
 }  // namespace pelagic

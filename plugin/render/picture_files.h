@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "plugin/bake/check.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {
@@ -24,7 +25,7 @@ struct PictureContext {
 
 // Raised by hand when pictures of the same source get other bits; then none that is there counts as whole.
 // tests/plugin/bake/golden_test.cpp notices bits that change without it.
-inline constexpr int kPictureRevision = 2;
+inline constexpr int kPictureRevision = 3;
 
 // What the two files of a frame are made of: the keys that feed pictures, the camera's pose, the resolved
 // plan, the sky's picture, the samples, terms and lookups of the light, and the exposure. Pictures with the
@@ -42,22 +43,32 @@ class PictureFingerprint {
     std::string of(int frame) const;  // 16 hexadecimal digits
 
   private:
+    Shot shot_;
     Camera camera_;
     std::string source_;
 };
 
-// Whether the file is there and was made of this.
-bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of);
+// How pictures that are there are looked at.
+struct PictureCheck {
+    bool trust = false;  // what they say at their beginning and end; otherwise every byte is read
+    CheckWatch watch{};
+};
 
-// Those of the frames of which the folder hasn't both files as they would be made now, in their order.
+// Whether the file is there, whole, under its own name, and was made of this. Throws CheckCancelled.
+bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of,
+                      const PictureCheck& check = {});
+
+// Those of the frames of which the folder hasn't both files as they would be made now, in their order. Reads files
+// side by side. Throws CheckCancelled.
 std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const Shot& shot,
-                                     const PictureFingerprint& fingerprint, std::span<const int> frames);
+                                     const PictureFingerprint& fingerprint, std::span<const int> frames,
+                                     const PictureCheck& check = {});
 
 // EXR: scan lines; R, G, B and the layers sun.R … foam.B, in the sky's units; halves where no value that the
-// light can give is beyond their range, floats for the others; what it was made of in the header. The layers
-// add up to R, G, B.
+// light can give is beyond their range, floats for the others; what it was made of and a checksum of the whole file in
+// the header. The layers add up to R, G, B.
 // PNG: display_colour() of the whole, at the light's own exposure and so many stops more.
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame);
-std::string encode_png(const PictureContext& context, const Picture& picture);
+std::string encode_png(const PictureContext& context, const Picture& picture, int frame);
 
 }  // namespace pelagic

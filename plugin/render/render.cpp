@@ -22,6 +22,7 @@
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
 #include "plugin/render/raster.h"
+#include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
@@ -29,6 +30,18 @@ namespace {
 // Samples that are computed at once: enough to keep all threads busy, little enough to stay near the caches.
 constexpr int kBatch = 1 << 16;
 constexpr std::size_t kShadeGrain = 256;  // samples a task shades
+
+// Rows of samples that are computed at once: whole bands of the rasteriser that are whole rows of the picture.
+int rows_of_batch(int sample_width, int samples) {
+    const int rows_at_once = Rasteriser::kBandRows * samples;
+    return std::max(1, kBatch / (rows_at_once * sample_width)) * rows_at_once;
+}
+
+// [bytes/pixel] of a picture; of its two files, where layers that are packed take half of their halves; and of what
+// encode_exr() and encode_png() hold beside them.
+constexpr std::size_t kPictureBytes = sizeof(SeaRadiance) + 1;
+constexpr std::size_t kFileBytes = 15 * 2 / 2 + 2;
+constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 3;
 
 // What a batch of samples holds, by sample of the batch or by sample that shows the sea.
 template <class T>
@@ -50,6 +63,7 @@ class Renderer::Impl {
   public:
     virtual ~Impl() = default;
     virtual bool render(int frame, Picture& picture, const RenderWatch& watch) = 0;
+    virtual bool check_cameras(std::span<const int> frames, const RenderWatch& watch) = 0;
     virtual const Plan& plan() const = 0;
     virtual const Sky& sky() const = 0;
 };
@@ -82,15 +96,14 @@ class RendererOf final : public Impl {
 
     bool render(int frame, Picture& picture, const RenderWatch& watch) override {
         frame_.set(scene_.shot.time_s(frame));
+        refuse_under_water(frame_, scene_, frame, grid_options_);
         view_ = view_at(scene_.camera, frame);
         lay_out_grid();
         picture.resolution = scene_.camera.resolution / options_.samples;
         const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
         picture.layers.resize(pixels);
         picture.sea.resize(pixels);
-        // Whole bands of the rasteriser that are whole rows of the picture.
-        const int rows_at_once = Rasteriser::kBandRows * options_.samples;
-        const int step = std::max(1, kBatch / (rows_at_once * view_.resolution.x)) * rows_at_once;
+        const int step = rows_of_batch(view_.resolution.x, options_.samples);
         for (int row = 0; row < view_.resolution.y; row += step) {
             const int rows = std::min(step, view_.resolution.y - row);
             draw(row, rows);
@@ -98,6 +111,18 @@ class RendererOf final : public Impl {
             light_sea(row);
             average(row, rows, picture);
             if (watch.progress) watch.progress(static_cast<double>(row + rows) / view_.resolution.y);
+            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
+        }
+        return true;
+    }
+
+    bool check_cameras(std::span<const int> frames, const RenderWatch& watch) override {
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            if (!is_among_waves(view_at(scene_.camera, frames[i]), grid_options_)) continue;
+            frame_.set(scene_.shot.time_s(frames[i]));
+            refuse_under_water(frame_, scene_, frames[i], grid_options_);
+            if (watch.progress)
+                watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
             if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
         }
         return true;
@@ -124,7 +149,8 @@ class RendererOf final : public Impl {
                            .rest_m = {rest_.data()},
                            .cell_m = {cell_m_.data()}},
                  results);
-        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kNear_m);
+        constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
+        const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
         clip_.resize(count);
         for (std::size_t i = 0; i < count; ++i) clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
         const ProjectedGridSize size{grid_.columns, grid_.rows};
@@ -345,6 +371,49 @@ void check_render(const Scene& scene, const RenderOptions& options) {
                                     " a side are accepted; ask for a smaller picture or fewer samples");
 }
 
+namespace {
+
+// [bytes] of a point of the grid: as it is laid out, with the one of the frame before, in T, displaced, on the screen
+// and in triangles. Of the rasteriser's pieces of triangles, which are fewer where most lie outside the picture, and
+// need more room while their vector grows, as many as there are triangles.
+template <class T>
+constexpr std::size_t kPointBytes = 2 * (sizeof(glm::vec2) + 2 * sizeof(float)) + sizeof(double) +
+                                    6 * sizeof(std::uint32_t) + 6 * sizeof(T) + sizeof(glm::dvec4) +
+                                    2 * (Rasteriser::kPieceBytes + sizeof(std::uint32_t));
+
+// [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
+template <class T>
+constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
+                                     3 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) +
+                                     7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
+
+}  // namespace
+
+MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
+                         std::optional<int> in_flight, int threads) {
+    const Scene sampled = of_samples(scene, options.samples);
+    const Plan plan = picture_plan(sampled, frames);
+    MemoryNeed need;
+    add_sea(need, plan, threads);
+    with_precision(plan.knobs.double_precision, [&]<class T>(T) {
+        need.add("the camera's grid of points", plan.queries[0].query.points * kPointBytes<T>,
+                 "raise surface.cell_px, or ask for a smaller picture (--size)");
+        const glm::ivec2 samples = sampled.camera.resolution;
+        const auto rows =
+            static_cast<std::size_t>(std::min(rows_of_batch(samples.x, options.samples), samples.y));
+        need.add("the pixels at hand", rows * static_cast<std::size_t>(samples.x) * kSampleBytes<T>,
+                 "ask for a smaller picture (--size) or fewer --samples");
+    });
+    const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
+                        static_cast<std::size_t>(scene.camera.resolution.y);
+    need.add("pictures",
+             pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (kPictureBytes + kFileBytes) +
+                                       kEncodingBytes
+                                 : kPictureBytes),
+             "ask for a smaller picture (--size)");
+    return need;
+}
+
 Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames,
                    const BuildWatch& watch) {
     check_render(scene, options);
@@ -358,6 +427,9 @@ Renderer::~Renderer() = default;
 
 bool Renderer::render(int frame, Picture& picture, const RenderWatch& watch) {
     return impl_->render(frame, picture, watch);
+}
+bool Renderer::check_cameras(std::span<const int> frames, const RenderWatch& watch) {
+    return impl_->check_cameras(frames, watch);
 }
 const Plan& Renderer::plan() const {
     return impl_->plan();

@@ -6,8 +6,8 @@
 //
 // and where there is no sea, the sky (core/lighting/background.glsl).
 //
-// A renderer holds its plan's sea and one frame of it (Plan::sea_bytes(), frame_bytes()), the projected grid,
-// some 100 bytes a cell, and some 30 MB for the pixels at hand, whatever the picture's size.
+// A renderer holds its plan's sea and one frame of it, the projected grid and the pixels at hand: render_memory()
+// says how much, and with it what the pictures themselves and their files take.
 #pragma once
 
 #include <atomic>
@@ -16,20 +16,22 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
+#include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/waves/sea.h"
 
 namespace pelagic {
 
-// Where the pictures' view volume begins [m]: nearer than any lens focuses on a sea, and far enough for the
-// depth buffers of GPUs.
+// Where the preview's view volume begins [m]: far enough for the depth buffers of GPUs. A rendered picture's begins at
+// the eye: wide lenses close to the water see much of it at less than this depth.
 inline constexpr double kNear_m = 0.05;
 
 // One frame, HDR, rows from the top, x fastest; in the sky's units. The layers add up to the picture:
@@ -64,6 +66,14 @@ void check_render(const Scene& scene, const RenderOptions& options);
 // whose ladder is as fine as these frames need it. They decide nothing about any frame's bits.
 Plan picture_plan(const Scene& scene, std::span<const int> frames);
 
+// A picture is computed while the one before is encoded and written.
+inline constexpr int kPicturesInFlight = 2;
+
+// What rendering these frames holds at most, on so many threads: the renderer and the picture, or so many pictures in
+// flight with their encoded files.
+MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
+                         std::optional<int> in_flight, int threads);
+
 // A large picture takes long: both are looked at after each part of it.
 struct RenderWatch {
     std::function<void(double done)> progress{};  // 0 … 1, from the calling thread; may be empty
@@ -83,8 +93,14 @@ class Renderer {
 
     // One frame of the shot at the camera's resolution, into a picture whose memory is used again. On all
     // threads of the calling arena; the same bits whatever their number and whichever frame came before.
-    // Every value is finite. False when it was cancelled: the picture is then only partly there.
+    // Every value is finite. False when it was cancelled: the picture is then only partly there. Throws
+    // std::invalid_argument for a camera under water (plugin/render/under_water.h).
     bool render(int frame, Picture& picture, const RenderWatch& watch = {});
+
+    // Throws what render() would throw for the first of these frames whose camera is under water, before hours
+    // are spent on the others. Frames whose camera is above the highest crest to be expected cost nothing, each
+    // other one its transforms. False when it was cancelled.
+    bool check_cameras(std::span<const int> frames, const RenderWatch& watch = {});
 
     const Plan& plan() const;
     const Sky& sky() const;

@@ -20,20 +20,33 @@ namespace pelagic {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;  // a year of hours with 47 bins is 3 MiB
+constexpr std::size_t kMostColumns = 1024;                 // the archive's have at most 52
 
 [[noreturn]] void fail(std::string problem, std::string accepted) {
     throw NdbcError({std::move(problem), std::move(accepted), false});
 }
 
+// The line's words; of a hostile line the first kMostColumns + 1.
 std::vector<std::string_view> words(std::string_view line) {
     constexpr std::string_view kSpace = " \t\r";
     std::vector<std::string_view> out;
-    for (std::size_t at = line.find_first_not_of(kSpace); at != std::string_view::npos;) {
+    for (std::size_t at = line.find_first_not_of(kSpace);
+         at != std::string_view::npos && out.size() <= kMostColumns;) {
         const std::size_t end = std::min(line.find_first_of(kSpace, at), line.size());
         out.push_back(line.substr(at, end - at));
         at = line.find_first_not_of(kSpace, end);
     }
     return out;
+}
+
+std::string columns_text(std::size_t words) {
+    return words > kMostColumns ? "more than " + std::to_string(kMostColumns) + " columns"
+                                : std::to_string(words) + " columns";
+}
+
+// A word of a file, for messages.
+std::string shown(std::string_view word) {
+    return quoted_text(shortened(word));
 }
 
 template <class Number>
@@ -66,23 +79,23 @@ NameParts taken_apart(const std::filesystem::path& w_file) {
         while (station > 0 && is_letter_or_digit(name[station - 1])) --station;
         return {name.substr(0, at), name.substr(at + 1), name.substr(station, at - station)};
     }
-    fail(w_file.string() + " is not named like a file of spectral densities",
+    fail(line_text(shortened(w_file.string(), 300)) + " is not named like a file of spectral densities",
          "a name with the letter w before the year, such as 41010w2019.txt");
 }
 
 struct Row {
-    std::chrono::sys_seconds time;
     int line;
-    std::vector<std::string_view> values;  // one for each frequency once used
+    std::vector<std::string> values;  // one for each frequency
 };
 
 struct Table {
     std::filesystem::path file;
-    std::string text;  // what the rows' values point into
     std::vector<double> frequencies_hz;
-    std::vector<Row> rows;
+    std::vector<std::chrono::sys_seconds> times;  // of all rows
+    std::optional<Row> row;                       // the first of the time that is asked for
 
-    std::string place(int line) const { return file.string() + ':' + std::to_string(line) + ": "; }
+    std::string name() const { return line_text(file.string()); }  // for messages
+    std::string place(int line) const { return name() + ':' + std::to_string(line) + ": "; }
 };
 
 std::vector<double> parsed_header(const Table& table, int line, std::span<const std::string_view> columns) {
@@ -90,11 +103,11 @@ std::vector<double> parsed_header(const Table& table, int line, std::span<const 
     for (const std::string_view column : columns) {
         const std::optional<double> frequency = parsed<double>(column);
         if (!frequency || !limits::kMeasuredFrequency_hz.holds(*frequency)) {
-            fail(table.place(line) + quoted_text(column) + " is no frequency",
+            fail(table.place(line) + shown(column) + " is no frequency",
                  "a header of frequencies, each " + text_of(limits::kMeasuredFrequency_hz) + " Hz");
         }
         if (!frequencies_hz.empty() && *frequency <= frequencies_hz.back()) {
-            fail(table.place(line) + "the frequency " + std::string(column) + " is not above the one before",
+            fail(table.place(line) + "the frequency " + shown(column) + " is not above the one before",
                  "rising frequencies");
         }
         frequencies_hz.push_back(*frequency);
@@ -112,7 +125,7 @@ std::chrono::sys_seconds parsed_time(const Table& table, int line,
     for (std::size_t i = 0; i < columns.size(); ++i) {
         const std::optional<int> part = parsed<int>(columns[i]);
         if (!part) {
-            fail(table.place(line) + quoted_text(columns[i]) + " is no part of a date",
+            fail(table.place(line) + shown(columns[i]) + " is no part of a date",
                  "year month day hour [minute]");
         }
         parts[i] = *part;
@@ -143,17 +156,20 @@ std::size_t time_columns(const Table& table, int line, std::span<const std::stri
     return count;
 }
 
-Table read_table(const std::filesystem::path& file) {
-    Table table{.file = file, .text = {}, .frequencies_hz = {}, .rows = {}};
+Table read_table(const std::filesystem::path& file, std::chrono::sys_seconds asked) {
+    Table table{.file = file, .frequencies_hz = {}, .times = {}, .row = {}};
+    std::string whole;
     try {
-        table.text = read_text_file(file, kMostBytes);
+        std::error_code ignored;
+        if (std::filesystem::is_fifo(file, ignored)) throw TextFileError("is a pipe, not a file");
+        whole = read_text_file(file, kMostBytes);
     } catch (const TextFileError& error) {
-        fail(file.string() + ' ' + error.what(),
+        fail(table.name() + ' ' + error.what(),
              "NDBC's five files of a buoy and year in one folder, those with the letters w, d, i, j and k");
     }
     std::size_t times = 0;
     int line_number = 0;
-    const std::string_view text = table.text;
+    const std::string_view text = whole;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
         std::string_view line = text.substr(at, end - at);
@@ -164,29 +180,29 @@ Table read_table(const std::filesystem::path& file) {
         const std::vector<std::string_view> columns = words(line);
         if (columns.empty()) continue;
         if (times == 0) {
+            if (columns.size() > kMostColumns)
+                fail(table.place(line_number) + "the header has " + columns_text(columns.size()),
+                     "at most " + std::to_string(kMostColumns));
             times = time_columns(table, line_number, columns);
             table.frequencies_hz = parsed_header(table, line_number, std::span(columns).subspan(times));
         } else if (!is_comment) {
             if (columns.size() != times + table.frequencies_hz.size()) {
-                fail(table.place(line_number) + "the row has " + std::to_string(columns.size()) + " columns",
+                fail(table.place(line_number) + "the row has " + columns_text(columns.size()),
                      "as many as the header: " + std::to_string(times + table.frequencies_hz.size()));
             }
-            table.rows.push_back({parsed_time(table, line_number, std::span(columns).first(times)),
-                                  line_number,
-                                  {columns.begin() + static_cast<std::ptrdiff_t>(times), columns.end()}});
+            table.times.push_back(parsed_time(table, line_number, std::span(columns).first(times)));
+            if (table.times.back() == asked && !table.row)
+                table.row = {line_number,
+                             {columns.begin() + static_cast<std::ptrdiff_t>(times), columns.end()}};
         }
     }
-    if (table.rows.empty()) fail(file.string() + " has no rows", "a header and at least one row");
+    if (table.times.empty()) fail(table.name() + " has no rows", "a header and at least one row");
     return table;
 }
 
 // The file's times that stand nearest to the one asked for.
 std::string nearest_times(const Table& table, std::chrono::sys_seconds time) {
-    std::vector<std::chrono::sys_seconds> times;
-    for (const Row& row : table.rows) {
-        if (row.time != time) times.push_back(row.time);
-    }
-    if (times.empty()) return "none other in this file";
+    std::vector<std::chrono::sys_seconds> times = table.times;
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
     const auto after = std::lower_bound(times.begin(), times.end(), time);
@@ -198,12 +214,9 @@ std::string nearest_times(const Table& table, std::chrono::sys_seconds time) {
 }
 
 const Row& row_at(const Table& table, std::chrono::sys_seconds time) {
-    const auto row =
-        std::find_if(table.rows.begin(), table.rows.end(), [&](const Row& r) { return r.time == time; });
-    if (row == table.rows.end()) {
-        throw NdbcError({table.file.string() + " has no row of that time", nearest_times(table, time), true});
-    }
-    return *row;
+    if (!table.row)
+        throw NdbcError({table.name() + " has no row of that time", nearest_times(table, time), true});
+    return *table.row;
 }
 
 // A value of the table, within the range; nothing where it is missing: "MM", 999 in any spelling, or for
@@ -216,13 +229,13 @@ struct Column {
 };
 
 std::optional<double> value_at(const Table& table, const Row& row, std::size_t index, const Column& column) {
-    const std::string_view word = row.values[index];
+    const std::string& word = row.values.at(index);
     if (word == "MM") return std::nullopt;
     const std::optional<double> value = parsed<double>(word);
     constexpr double kMissing = 999.0;
     if (value && (*value == kMissing || (column.missing_at_99 && *value == 99.0))) return std::nullopt;
     if (!value || !column.range.holds(*value)) {
-        fail(table.place(row.line) + quoted_text(word) + " at " + number_text(table.frequencies_hz[index]) +
+        fail(table.place(row.line) + shown(word) + " at " + number_text(table.frequencies_hz[index]) +
                  " Hz is no " + column.what,
              text_of(column.range) + ", or 999 for a missing value");
     }
@@ -245,12 +258,12 @@ std::string time_text(std::chrono::sys_seconds time) {
 
 MeasuredSpectrum load_ndbc(const std::filesystem::path& w_file, std::chrono::sys_seconds time) {
     const NameParts name = taken_apart(w_file);
-    const Table densities = read_table(w_file);
+    const Table densities = read_table(w_file, time);
     std::vector<Table> directional;  // d, i, j, k
     for (const char letter : {'d', 'i', 'j', 'k'}) {
-        directional.push_back(read_table(w_file.parent_path() / (name.before + letter + name.after)));
+        directional.push_back(read_table(w_file.parent_path() / (name.before + letter + name.after), time));
         if (directional.back().frequencies_hz != densities.frequencies_hz) {
-            fail(directional.back().file.string() + " has other frequencies than " + w_file.string(),
+            fail(directional.back().name() + " has other frequencies than " + densities.name(),
                  "five files with the same frequencies");
         }
     }

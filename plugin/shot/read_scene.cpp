@@ -45,6 +45,18 @@ std::nullopt_t refuse_type(Reader& reader, const Asked& asked) {
     return refuse(reader, asked, "is " + type_of(asked.node));
 }
 
+// A table's keys in the order of the file: its first problems are those that are listed.
+std::vector<std::pair<toml::key, const toml::node*>> in_order(const toml::table& table) {
+    std::vector<std::pair<toml::key, const toml::node*>> out;
+    out.reserve(table.size());
+    for (const auto& [key, node] : table) out.emplace_back(key, &node);
+    std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
+        const toml::source_position &x = a.first.source().begin, &y = b.first.source().begin;
+        return std::pair(x.line, x.column) < std::pair(y.line, y.column);
+    });
+    return out;
+}
+
 // ---- Unknown keys
 
 // What a person who wrote this unknown key may have meant: a key of the same table, else one of that name
@@ -68,7 +80,8 @@ struct KnownKeys {
 void refuse_unknown(Reader& reader, const std::string& path,
                     const std::pair<toml::key, const toml::node*>& at, const KnownKeys& known) {
     const std::string name(at.first.str());
-    const std::string meant = meant_key(path, name, known.names);
+    const bool is_listed = reader.is_listed(at.first.source().begin);
+    const std::string meant = is_listed ? meant_key(path, name, known.names) : std::string();
     reader.refuse(at.first.source().begin,
                   {inside_of(path, name), text_of(*at.second),
                    std::string(at.second->is_table() ? "is an unknown table" : "is an unknown key") +
@@ -142,6 +155,9 @@ std::optional<KeyValue> read_numbers(Reader& reader, const Asked& asked, std::si
 std::optional<KeyValue> read_words(Reader& reader, const Asked& asked) {
     const auto* list = asked.node.as_array();
     if (!list) return refuse_type(reader, asked);
+    // No word counts twice: a list that is much longer isn't looked at word by word.
+    if (const std::size_t most = 4 * asked.key.choices.size(); list->size() > most)
+        return refuse(reader, asked, "is a list of " + std::to_string(list->size()));
     std::vector<std::string> words;
     for (std::size_t i = 0; i < list->size(); ++i) {
         const toml::node& element = *list->get(i);
@@ -157,9 +173,10 @@ std::optional<KeyValue> read_words(Reader& reader, const Asked& asked) {
 KeyEntry read_entry(Reader& reader, const toml::table& table, const std::string& path,
                     std::span<const Key> keys) {
     KeyEntry entry;
-    for (const auto& [name, node] : table)
-        if (std::none_of(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name.str(); }))
-            refuse_unknown(reader, path, {name, &node}, known_keys(path, keys));
+    for (const auto& at : in_order(table))
+        if (std::none_of(keys.begin(), keys.end(),
+                         [&](const Key& key) { return key.name == at.first.str(); }))
+            refuse_unknown(reader, path, at, known_keys(path, keys));
     for (const Key& key : keys) {
         entry.values.emplace_back(key.name, key.fallback);
         const toml::node* node = table.get(key.name);
@@ -186,6 +203,12 @@ std::optional<KeyValue> read_entries(Reader& reader, const Asked& asked) {
     }
     const auto* list = asked.node.as_array();
     if (!list) return refuse_type(reader, asked);
+    if (list->size() > key.most_entries) {
+        reader.refuse(asked.node.source().begin,
+                      {asked.path, std::to_string(list->size()) + " entries", "is too many",
+                       "at most " + std::to_string(key.most_entries)});
+        return std::nullopt;
+    }
     std::vector<KeyEntry> entries;
     for (std::size_t i = 0; i < list->size(); ++i) {
         const toml::node& node = *list->get(i);
@@ -297,18 +320,20 @@ void read_key(Reader& reader, const Asked& asked, Scene& scene) {
 }
 
 void read_table(Reader& reader, const toml::table& table, const KeyTable& about, Scene& scene) {
-    for (const auto& [name_in_file, node] : table) {
+    const KnownKeys known = known_keys(about.name, about.keys);
+    for (const auto& at : in_order(table)) {
+        const auto& [name_in_file, node] = at;
         const auto key =
             std::find_if(about.keys.begin(), about.keys.end(),
                          [&, name = name_in_file.str()](const Key& k) { return k.name == name; });
         if (key == about.keys.end()) {
-            refuse_unknown(reader, about.name, {name_in_file, &node}, known_keys(about.name, about.keys));
+            refuse_unknown(reader, about.name, at, known);
         } else if (!key->has_value()) {
-            reader.refuse(name_in_file.source().begin, {key->path, text_of(node), "is not built yet",
+            reader.refuse(name_in_file.source().begin, {key->path, text_of(*node), "is not built yet",
                                                         "a file without this key: " + key->meanwhile});
         } else {
-            reader.remember(key->path, node.source().begin);
-            read_key(reader, {node, key->path, *key}, scene);
+            reader.remember(key->path, node->source().begin);
+            read_key(reader, {*node, key->path, *key}, scene);
         }
     }
 }
@@ -321,20 +346,21 @@ void read_scene(Reader& reader, const toml::table& root, Scene& scene) {
         tables.accepted += (tables.names.empty() ? "the tables " : ", ") + table.name;
         tables.names.push_back(table.name);
     }
-    for (const auto& [name_in_file, node] : root) {
+    for (const auto& at : in_order(root)) {
+        const auto& [name_in_file, node] = at;
         const auto table =
             std::find_if(key_tables().begin(), key_tables().end(),
                          [&, name = name_in_file.str()](const KeyTable& t) { return t.name == name; });
         if (table == key_tables().end()) {
-            refuse_unknown(reader, "", {name_in_file, &node}, tables);
+            refuse_unknown(reader, "", at, tables);
             continue;
         }
-        reader.remember(table->name, node.source().begin);
-        if (const auto* inner = node.as_table()) {
+        reader.remember(table->name, node->source().begin);
+        if (const auto* inner = node->as_table()) {
             read_table(reader, *inner, *table, scene);
         } else {
-            reader.refuse(node.source().begin,
-                          {table->name, text_of(node), "is " + type_of(node),
+            reader.refuse(node->source().begin,
+                          {table->name, text_of(*node), "is " + type_of(*node),
                            "a table, [" + table->name + "], of " + joined_names(table->keys)});
         }
     }

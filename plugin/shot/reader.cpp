@@ -16,6 +16,10 @@ std::string parent_of(const std::string& key) {
     return cut == std::string::npos ? std::string() : key.substr(0, cut);
 }
 
+bool is_before(const toml::source_position& a, const toml::source_position& b) {
+    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+}
+
 // toml++ knows no place for tables that only a dotted key or a sub-table implies.
 toml::source_position or_start(const toml::source_position& place) {
     return place.line > 0 ? place : toml::source_position{1, 1};
@@ -23,10 +27,12 @@ toml::source_position or_start(const toml::source_position& place) {
 
 void append_text(std::string& out, const toml::node& node);
 
+// Texts are for messages: what a list has beyond their length is left out.
 void append_list(std::string& out, const toml::array& list) {
     out += '[';
     bool first = true;
     for (const toml::node& element : list) {
+        if (out.size() > kShort) break;
         out += first ? "" : ", ";
         append_text(out, element);
         first = false;
@@ -38,8 +44,9 @@ void append_table(std::string& out, const toml::table& table) {
     out += "{ ";
     bool first = true;
     for (const auto& [key, value] : table) {
+        if (out.size() > kShort) break;
         out += first ? "" : ", ";
-        out += std::string(key.str()) + " = ";
+        out += line_text(shortened(key.str())) + " = ";
         append_text(out, value);
         first = false;
     }
@@ -52,7 +59,7 @@ void append_text(std::string& out, const toml::node& node) {
     } else if (const auto* table = node.as_table()) {
         append_table(out, *table);
     } else if (const auto* text = node.as_string()) {
-        out += quoted_text(text->get());
+        out += quoted_text(shortened(text->get()));
     } else if (const auto* number = node.as_floating_point()) {
         out += number_text(number->get());
     } else if (const auto* integer = node.as_integer()) {
@@ -73,15 +80,7 @@ void append_text(std::string& out, const toml::node& node) {
 std::string text_of(const toml::node& node) {
     std::string text;
     append_text(text, node);
-    constexpr std::size_t kMostBytes = 80;
-    if (text.size() > kMostBytes) {
-        text.resize(kMostBytes);
-        // Not in the middle of a UTF-8 character.
-        while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xc0) == 0x80) text.pop_back();
-        if (!text.empty() && (static_cast<unsigned char>(text.back()) & 0x80) != 0) text.pop_back();
-        text += "…";
-    }
-    return text;
+    return shortened(text);
 }
 
 std::string type_of(const toml::node& node) {
@@ -110,9 +109,19 @@ std::string type_of(const toml::node& node) {
     return "nothing";
 }
 
+bool Reader::is_listed(const toml::source_position& place) const {
+    return listed_.size() < kMostListed || is_before(or_start(place), listed_.back().place);
+}
+
 void Reader::refuse(const toml::source_position& place, const Problem& problem) {
     mark_failed(problem.key);
-    lines_.push_back({or_start(place), text_of(problem)});
+    ++count_;
+    if (!is_listed(place)) return;
+    const Line line{or_start(place), text_of(problem)};
+    listed_.insert(std::upper_bound(listed_.begin(), listed_.end(), line,
+                                    [](const Line& a, const Line& b) { return is_before(a.place, b.place); }),
+                   line);
+    if (listed_.size() > kMostListed) listed_.pop_back();
 }
 
 void Reader::refuse(const Problem& problem) {
@@ -123,12 +132,9 @@ void Reader::refuse(const Problem& problem) {
 }
 
 void Reader::refuse_value(Problem problem) {
-    for (const auto& [scene_key, file_key] : names_) {
-        if (problem.key.starts_with(scene_key)) {
-            problem.key = file_key + problem.key.substr(scene_key.size());
-            break;
-        }
-    }
+    const std::size_t end = problem.key.find(']') + 1;  // 0 where there is none
+    if (const auto name = names_.find(problem.key.substr(0, end)); name != names_.end())
+        problem.key = name->second + problem.key.substr(end);
     for (std::string key = problem.key; !key.empty(); key = parent_of(key)) {
         if (failed_.contains(key)) return;
     }
@@ -140,15 +146,13 @@ void Reader::refuse_value(Problem problem) {
 }
 
 std::string Reader::report() const {
-    std::vector<Line> sorted = lines_;
-    std::stable_sort(sorted.begin(), sorted.end(), [](const Line& a, const Line& b) {
-        return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-    });
     std::string out;
-    for (const Line& line : sorted) {
+    for (const Line& line : listed_) {
         out += (out.empty() ? "" : "\n") + file_ + ':' + std::to_string(line.place.line) + ':' +
                std::to_string(line.place.column) + ": " + line.text;
     }
+    if (count_ > listed_.size())
+        out += '\n' + file_ + ": and " + std::to_string(count_ - listed_.size()) + " more problems";
     return out;
 }
 

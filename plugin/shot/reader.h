@@ -22,6 +22,7 @@ std::string type_of(const toml::node& node);
 
 class Reader {
   public:
+    // `file`: as messages call it.
     explicit Reader(std::string file) : file_(std::move(file)) {}
 
     // A spectrum's file and hour, as asked for: they are parsed with [sea] and loaded when all of it is read.
@@ -53,12 +54,18 @@ class Reader {
     // defaults as long as the file has problems of its own.
     void refuse_value(Problem problem);
 
-    std::size_t problem_count() const { return lines_.size(); }
+    std::size_t problem_count() const { return count_; }
 
-    // All problems, a line each, in the order of the file.
+    // Whether a problem at this place would be in the report, as far as is known: what is costly to say need not be
+    // said otherwise.
+    bool is_listed(const toml::source_position& place) const;
+
+    // The first problems in the order of the file, a line each, and how many more there are.
     std::string report() const;
 
   private:
+    static constexpr std::size_t kMostListed = 20;
+
     struct Line {
         toml::source_position place;
         std::string text;
@@ -68,7 +75,8 @@ class Reader {
     std::map<std::string, toml::source_position> places_;
     std::map<std::string, std::string> names_;
     std::set<std::string> failed_;
-    std::vector<Line> lines_;
+    std::size_t count_ = 0;
+    std::vector<Line> listed_;  // in the order of the file
 };
 
 }  // namespace pelagic

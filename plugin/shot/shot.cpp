@@ -6,6 +6,7 @@
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
+#include "plugin/shot/bounds.h"
 #include "plugin/shot/ndbc.h"
 #include "plugin/shot/read_scene.h"
 #include "plugin/shot/reader.h"
@@ -16,6 +17,7 @@ namespace pelagic {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // 100 000 camera keys are 10 MiB
+constexpr std::size_t kMostOfPath = 4096;                  // in messages [bytes]: no longer one can be opened
 
 // A measured spectrum is data of the scene: its file is read here, and the scene forgets where it came from.
 void load_measured(Reader& reader, const std::filesystem::path& folder, SeaState& sea) {
@@ -55,51 +57,62 @@ void load_measured(Reader& reader, const std::filesystem::path& folder, SeaState
     }
 }
 
+// Whether there is a file of that name. The system takes a path up to its first NUL.
+bool is_file(const std::filesystem::path& file) {
+    std::error_code ignored;
+    return file.native().find('\0') == std::string::npos && std::filesystem::is_regular_file(file, ignored);
+}
+
 // A picture of a sky is data of the hosts that make pictures: here only its place is found.
 void find_sky(Reader& reader, const std::filesystem::path& folder, Light& light) {
     if (light.sky == Light{}.sky || reader.has_failed("light.sky")) return;
     const std::filesystem::path file = folder / light.sky;
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) {
+    if (!is_file(file))
         reader.refuse({"light.sky", quoted_text(light.sky),
                        "is no file in " + quoted_text(folder.empty() ? "." : folder.string()),
                        "\"daylight\", or the path of an .exr, from the shot file's folder"});
-        reader.mark_failed("light.sky");
-    }
     light.sky = file.string();
 }
 
 }  // namespace
 
-Scene parse_shot(std::string_view text, const std::filesystem::path& file) {
+Scene parse_shot(std::string_view text, const std::filesystem::path& file, const FilesCheck& check_files) {
+    const std::string name = line_text(file.string());
+    const auto place_text = [&](std::size_t line, std::size_t column) {
+        return name + ':' + std::to_string(line) + ':' + std::to_string(column) + ": ";
+    };
+    if (const std::optional<BeyondBound> beyond = beyond_bounds(text))
+        throw ShotError(place_text(beyond->line, beyond->column) + beyond->problem +
+                        "; accepted: " + beyond->accepted);
     toml::table root;
     try {
         root = toml::parse(text);
     } catch (const toml::parse_error& error) {
         const toml::source_position place = error.source().begin;
-        throw ShotError(file.string() + ':' + std::to_string(place.line) + ':' +
-                        std::to_string(place.column) + ": " + std::string(error.description()) +
+        throw ShotError(place_text(place.line, place.column) + line_text(error.description()) +
                         "; accepted: TOML 1.0 in UTF-8");
     }
-    Reader reader(file.string());
+    Reader reader(name);
     Scene scene;
     read_scene(reader, root, scene);
     load_measured(reader, file.parent_path(), scene.sea);
     find_sky(reader, file.parent_path(), scene.light);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
+    if (!reader.has_failed("light.sky"))
+        for (Problem& problem : check_files(scene)) reader.refuse_value(std::move(problem));
     if (reader.problem_count() > 0) throw ShotError(reader.report());
     return scene;
 }
 
-Scene load_shot(const std::filesystem::path& file) {
+Scene load_shot(const std::filesystem::path& file, const FilesCheck& check_files) {
     std::string text;
     try {
         text = read_text_file(file, kMostBytes);
     } catch (const TextFileError& error) {
-        throw ShotError(file.string() + ": the shot file " + error.what() +
+        throw ShotError(line_text(shortened(file.string(), kMostOfPath)) + ": the shot file " + error.what() +
                         "; accepted: a TOML file of at most 16 MiB");
     }
-    return parse_shot(text, file);
+    return parse_shot(text, file, check_files);
 }
 
 }  // namespace pelagic

@@ -3,30 +3,39 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "core/scene/problem.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
 
 // A shot file that is refused. what() has one line for each problem, in the order of the file:
 //   FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: WHAT IS
-// (FILE alone before the colon where the file itself can't be read). Lines count from 1, columns from 1 in
-// characters.
+// (FILE alone before the colon where the file itself can't be read; no KEY where the text goes beyond the bounds of
+// bounds.h or is no TOML). Lines count from 1, columns from 1 in characters. Of very many problems the first are
+// there and the number of the others.
 class ShotError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-// The scene that a shot file describes, a measured spectrum that it names included; it has passed validate().
-// All problems of the file are collected into one ShotError; of errors in the TOML itself the first.
-Scene load_shot(const std::filesystem::path& file);
+// The problems of files that the scene names and whose formats this reader doesn't know: pictures of skies.
+// plugin/light has the check for hosts, check_sky().
+using FilesCheck = std::function<std::vector<Problem>(const Scene&)>;
+
+// The scene that a shot file describes, a measured spectrum that it names included; it has passed validate(), and
+// the files that it names have been looked at. The file's first problems and the number of the others are collected
+// into one ShotError; of errors in the TOML itself the first.
+Scene load_shot(const std::filesystem::path& file, const FilesCheck& check_files);
 
 // The same for a text that is already in memory: `file` is its name in messages, and the folder that it names
 // paths from.
-Scene parse_shot(std::string_view text, const std::filesystem::path& file);
+Scene parse_shot(std::string_view text, const std::filesystem::path& file, const FilesCheck& check_files);
 
 // Help: every table and key, with its default, unit, what it accepts, what it does and what depends on it;
 // the words that the parser uses.

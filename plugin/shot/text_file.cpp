@@ -9,12 +9,25 @@
 
 namespace pelagic {
 
+namespace {
+
+// /dev/stdin, or what "<(command)" becomes.
+bool is_open_already(const std::filesystem::path& file) {
+    const std::string folder = file.parent_path().string();
+    return file == "/dev/stdin" || folder == "/dev/fd" || folder == "/proc/self/fd";
+}
+
+}  // namespace
+
 std::string read_text_file(const std::filesystem::path& file, std::size_t most_bytes) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (status.type() == std::filesystem::file_type::not_found) throw TextFileError("does not exist");
     if (status.type() == std::filesystem::file_type::directory)
         throw TextFileError("is a folder, not a file");
+    // Opening it would wait for whoever may write to it. The shell's own have someone who does.
+    if (status.type() == std::filesystem::file_type::fifo && !is_open_already(file))
+        throw TextFileError("is a pipe, not a file");
     errno = 0;
     std::ifstream in(file, std::ios::binary);
     if (!in) throw TextFileError(std::string("can't be opened: ") + std::strerror(errno));

@@ -25,7 +25,9 @@
 #include "plugin/bake/maps.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/exr/exr.h"
+#include "plugin/files/checksum.h"
 #include "plugin/files/files.h"
+#include "plugin/files/read.h"
 #include "tests/bench/timing.h"
 
 namespace pelagic::bench {
@@ -170,7 +172,7 @@ void overlap_table(const Scene& scene, Sequence& sequence, int rounds, const fs:
     }
     std::uintmax_t bytes = 0, bytes_a_frame = 0;
     const FileSink sink = [&](const FileJob& file) {
-        bytes += files::write_atomically(folder / file.path, file.content);
+        bytes += files::write_atomically(folder / file.path, file.content).bytes;
     };
     const auto nothing = [](int, int) {};
     const auto compute = [&](int item, int place) { sequence.compute(item + 1, slots[place]); };
@@ -229,6 +231,42 @@ void overlap_table(const Scene& scene, Sequence& sequence, int rounds, const fs:
         time_text(report).c_str());
 }
 
+// What checksums cost: the bytes of a bake are hashed as they are written, and read and hashed by the next one.
+void resume_table(const Scene& scene, int rounds, const fs::path& folder) {
+    const auto again = [&](bool trust_times) {
+        BakeOptions options;
+        options.out = folder;
+        options.trust_times = trust_times;
+        return bake(scene, options).seconds;
+    };
+    const double before_s = processor_s();
+    const double baking_s = again(false), baking_processor_s = processor_s() - before_s;
+    std::vector<double> reading_s, trusting_s, hashing_s;
+    std::uintmax_t bytes = 0;
+    for (int round = 0; round < rounds; ++round) {
+        reading_s.push_back(again(false));
+        trusting_s.push_back(again(true));
+        hashing_s.push_back(0.0);
+        bytes = 0;
+        for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder)) {
+            if (!file.is_regular_file()) continue;
+            std::string content;
+            files::read_pieces(file.path(), [&](std::string_view piece) { content += piece; });
+            bytes += content.size();
+            const double start_s = processor_s();
+            files::checksum_of(content);
+            hashing_s.back() += processor_s() - start_s;
+        }
+    }
+    fs::remove_all(folder);
+    std::printf(
+        "\nThe same bake again, all of it whole, against the bake; %.0f MB\n"
+        "  its files read: %.4f; sizes and times trusted: %.4f\n"
+        "  the checksums of its bytes, of the bake's processor time: %.4f\n",
+        1e-6 * static_cast<double>(bytes), median(reading_s) / baking_s, median(trusting_s) / baking_s,
+        median(hashing_s) / baking_processor_s);
+}
+
 int run(int argc, char** argv) {
     const int frames = argc > 1 ? std::atoi(argv[1]) : 100;
     const int rounds = argc > 2 ? std::atoi(argv[2]) : 4;
@@ -242,6 +280,7 @@ int run(int argc, char** argv) {
     const std::unique_ptr<Sequence> sequence = make_sequence(plan_bake(scene));
     packing_table();
     overlap_table(scene, *sequence, rounds, folder);
+    resume_table(scene, rounds, folder);
     std::printf("  peak memory of this process: %.0f MiB\n", peak_mib());
     return 0;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Poses times seas: cameras from a hand above the water to 300 km up, near and a million metres out, looking anywhere,
+"""Poses times seas: cameras from a hand above the water to 300 km up, near and ten million metres out, looking anywhere,
 over seas from glass to hurricane. Pictures have the horizon where it must be and only light that can be, and the
 projected grid of the same camera is a whole mesh."""
 
@@ -29,7 +29,7 @@ SEAS = {
 }
 UNFOLDED = ("calm", "swell alone")
 # Height and distance from the origin.
-PLACES = [(0.3, 0.0), (2.0, 0.0), (10.0, 0.0), (1e3, 0.0), (2e4, 0.0), (3e5, 0.0), (10.0, 1e6), (1e3, 1e6), (2.0, 1e7),
+PLACES = [(0.3, 0.0), (2.0, 0.0), (10.0, 0.0), (1e3, 0.0), (2e4, 0.0), (3e5, 0.0), (10.0, 1e7), (1e3, 1e6),
           (10.0, 9e8)]
 # Elevation of the line of sight.
 LOOKS = {"straight down": -90.0, "down": -30.0, "at the horizon": 0.0, "up": 30.0, "straight up": 90.0}
@@ -66,7 +66,8 @@ def judge(draw, folder):
     campaign.ended_well(done, (0, 1))
     if done.status:
         campaign.expect(str(shot) in done.err and not out.exists(), f"{words}: refused, but how", done)
-        campaign.expect(height_m < 3 * scene.significant_height_m(), f"{words}: refused high above the waves", done)
+        campaign.expect("memory" in done.err or height_m < 3 * scene.significant_height_m(),
+                        f"{words}: refused high above the waves", done)
         campaign.count("pictures refused")
     else:
         campaign.count("pictures")

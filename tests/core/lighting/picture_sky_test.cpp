@@ -2,11 +2,14 @@
 // map.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -186,6 +189,53 @@ TEST(PictureSky, TheLowerHalfIsNotUsed) {
     const Sky sky = picture_sky(painted(64, 32, above), 64);
     EXPECT_EQ(sky.sun_radiance, glm::vec3(0.0f));
     EXPECT_NEAR(static_cast<double>(sky.sky_irradiance.x), kPi, 1e-3);
+}
+
+// A picture that is read in parts gives the same sky, and never has many rows at hand.
+TEST(PictureSky, RowsAreReadInPartsAndTheLowerHalfIsNot) {
+    const LatLong picture = painted(512, 256, [](glm::dvec3 d) {
+        const double sun = glm::dot(d, glm::normalize(glm::dvec3(0.3, -0.5, 0.6)));
+        return glm::vec3(static_cast<float>(2.0 + d.x + 0.5 * d.y + (sun > 0.9995 ? 5000.0 : 0.0)));
+    });
+    const Sky whole = picture_sky(picture, 128);
+    EXPECT_GT(whole.sun_radiance.x, 0.0f);
+    for (const int rows_in_piece : {1, 7, 32, 512}) {
+        std::atomic<int> rows_read = 0, lowest = 0;
+        const auto read = [&](int first, std::span<glm::vec3> radiance) {
+            const int count = static_cast<int>(radiance.size() / 512);
+            rows_read += count;
+            for (int now = lowest;
+                 now < first + count && !lowest.compare_exchange_weak(now, first + count);) {
+            }
+            std::copy_n(picture.radiance.begin() + std::ptrdiff_t{512} * first, radiance.size(),
+                        radiance.begin());
+        };
+        const Sky parts =
+            picture_sky({.width = 512, .height = 256, .rows_in_piece = rows_in_piece, .read = read}, 128);
+        EXPECT_EQ(parts.map.level(0), whole.map.level(0)) << rows_in_piece;
+        EXPECT_EQ(parts.sun_irradiance, whole.sun_irradiance) << rows_in_piece;
+        EXPECT_EQ(parts.sky_irradiance, whole.sky_irradiance) << rows_in_piece;
+        EXPECT_EQ(lowest, 128) << "the lower half is not read";
+        EXPECT_LE(rows_read, 3 * 128) << "each row twice, near the sun three times";
+    }
+}
+
+// Of a large picture some rows are held at a time, unless it is stored in one piece: the sky is the same.
+TEST(PictureSky, ALargePictureIsHeldInRings) {
+    constexpr int kWidth = 8192, kHeight = 4096;
+    const auto read = [&](int first, std::span<glm::vec3> rows) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const std::size_t pixel = std::size_t{kWidth} * static_cast<std::size_t>(first) + i;
+            rows[i] = glm::vec3(1.0f + static_cast<float>(pixel * 2654435761u % 64u) / 64.0f);
+        }
+    };
+    const auto sky = [&](int rows_in_piece) {
+        return picture_sky({.width = kWidth, .height = kHeight, .rows_in_piece = rows_in_piece, .read = read},
+                           64);
+    };
+    const Sky rings = sky(16), whole = sky(kHeight);
+    EXPECT_EQ(rings.map.level(0), whole.map.level(0));
+    EXPECT_EQ(rings.sky_irradiance, whole.sky_irradiance);
 }
 
 TEST(PictureSky, SmallAndOddPicturesAreSkies) {

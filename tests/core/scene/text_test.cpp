@@ -41,6 +41,27 @@ TEST(Text, QuotedTextStaysOnOneLine) {
     EXPECT_EQ(quoted_text("sea"), "\"sea\"");
     EXPECT_EQ(quoted_text("a\"b\\c\nd\x7f"), "\"a\\\"b\\\\c\\u000ad\\u007f\"");
     EXPECT_EQ(quoted_text("é"), "\"é\"");
+    // A terminal's escape sequences, a line separator and what turns the writing direction are no text.
+    EXPECT_EQ(quoted_text("\x1b[31m\u009b\u2028\u202e"), "\"\\u001b[31m\\u009b\\u2028\\u202e\"");
+    // Bytes that aren't UTF-8: stray, cut off, overlong, a surrogate, beyond Unicode.
+    EXPECT_EQ(quoted_text("caf\xe9/"), "\"caf\\\\xe9/\"");
+    EXPECT_EQ(quoted_text("\xe2\x82"), "\"\\\\xe2\\\\x82\"");
+    EXPECT_EQ(quoted_text("\xc0\xaf"), "\"\\\\xc0\\\\xaf\"");
+    EXPECT_EQ(quoted_text("\xed\xa0\x80"), "\"\\\\xed\\\\xa0\\\\x80\"");
+    EXPECT_EQ(quoted_text("\xf4\x90\x80\x80"), "\"\\\\xf4\\\\x90\\\\x80\\\\x80\"");
+    EXPECT_EQ(quoted_text("水 🌊 \u07ff"), "\"水 🌊 \u07ff\"");
+}
+
+TEST(Text, PathsInMessagesAndRecords) {
+    EXPECT_EQ(line_text("a\nb\x1b[2J\xe9 \"é\".toml"), "a\\u000ab\\u001b[2J\\xe9 \"é\".toml");
+    EXPECT_EQ(utf8_text("caf\xe9\n\"é\""), "caf\\xe9\n\"é\"");
+}
+
+TEST(Text, Shortened) {
+    EXPECT_EQ(shortened("abc", 3), "abc");
+    EXPECT_EQ(shortened("abcd", 3), "abc…");
+    EXPECT_EQ(shortened("ab€d", 3), "ab…") << "not in the middle of a character";
+    EXPECT_EQ(shortened(std::string(1000, '\x80'), 3).size(), std::string("…").size() + 0u);
 }
 
 }  // namespace

@@ -162,6 +162,44 @@ TEST(Loop, RepeatsToTheBitOnAClockThatIsScaledAndOffset) {
     }
 }
 
+// However late: rounds are counted in whole frames, not in seconds, which a double no longer holds exactly.
+TEST(Loop, RepeatsToTheBitAtTheLastFrames) {
+    for (const double fps : {24.0, 24000.0 / 1001.0, 59.94, 1000.0})
+        for (const double scale : {1.0, 0.3, 2.5})
+            for (const double offset_s : {0.0, 3.7, -1e7}) {
+                Shot shot;
+                shot.fps = fps;
+                shot.time_scale = scale;
+                shot.time_offset_s = offset_s;
+                for (const long round : {1L, 7L, 120L, 4801L}) {
+                    shot.loop_s = static_cast<double>(round) / fps;
+                    for (const long frame :
+                         {-100'000'000L, -50'000'003L, -1L, 1L, 9'999'991L, 50'000'017L, 99'990'000L}) {
+                        const double t_s = shot.time_s(static_cast<double>(frame));
+                        for (const long turns : {1L, -1L, 2L, 1000L})
+                            ASSERT_EQ(t_s, shot.time_s(static_cast<double>(frame + turns * round)))
+                                << frame << " and " << turns << " rounds of " << round << " at " << fps;
+                        const long within = ((frame - 1) % round + round) % round;
+                        ASSERT_EQ(t_s, offset_s + scale * (static_cast<double>(within) / fps));
+                        // Between frames as well.
+                        ASSERT_NEAR(shot.time_s(static_cast<double>(frame) + 0.25) - t_s, 0.25 * scale / fps,
+                                    1e-6 * scale / fps + 4e-16 * std::abs(t_s));
+                    }
+                }
+            }
+    Scene scene;
+    scene.shot.loop_s = 5.0;
+    scene.shot.time_scale = 0.3;
+    scene.shot.time_offset_s = 3.7;
+    scene.waves.cascades = {{1000.0, 168}, {100.0, 64}};
+    auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});
+    const auto points = random_points<float>(500.0, 200);
+    frame.set(scene.shot.time_s(99'999'880));
+    const auto first = sample(frame, 0, points);
+    frame.set(scene.shot.time_s(100'000'000));
+    EXPECT_TRUE(same_bits(first.vectors(Displacement), sample(frame, 0, points).vectors(Displacement)));
+}
+
 TEST(Loop, RepeatsToTheBitAndFreezesNothing) {
     Scene scene;
     scene.shot.loop_s = 10.0;

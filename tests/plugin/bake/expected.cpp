@@ -11,6 +11,7 @@
 
 #include "core/evaluate/evaluate.h"
 #include "core/surface/patch.h"
+#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
 namespace {
@@ -30,7 +31,7 @@ std::string json_array(const float* values, std::size_t count) {
 }
 
 void write_expected(const std::string& shot_file, const std::string& file) {
-    const Scene scene = load_shot(shot_file);
+    const Scene scene = load_shot(shot_file, check_sky);
     Frame<float> frame(std::make_shared<const Sea<float>>(plan_bake(scene)));
     const int quads = scene.surface.resolution;
     const auto rest = rest_points<float>({.per_side = quads + 1,

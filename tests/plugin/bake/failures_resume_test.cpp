@@ -1,8 +1,15 @@
 // A second run: it keeps the frames that are whole and of this very shot, does all others again, and always
 // ends at the same bytes.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include "tests/plugin/cli/program.h"
 #include "tests/plugin/cli/small_shot.h"
@@ -130,6 +137,73 @@ TEST_F(BakeResume, PartsThatAreBakedOneAfterAnotherMakeTheWhole) {
     EXPECT_EQ(differences(folder() / "out", folder() / "parts"), "");
     const Ended all = bake({}, "parts");
     EXPECT_NE(all.out.find("0 frames baked, 8 kept as they were"), std::string::npos) << all.out;
+}
+
+// `pelagic verify`: what it says and its exit status.
+TEST_F(BakeResume, VerifySaysWhatIsWrongAndItsStatus) {
+    const auto verify = [&](std::vector<std::string> folders) {
+        folders.insert(folders.begin(), "verify");
+        return run({.arguments = folders, .folder = folder()});
+    };
+    Ended ended = verify({"out"});
+    EXPECT_EQ(ended.status, 0) << ended.out;
+    EXPECT_NE(ended.out.find("out: 1 shot, 29 files, "), std::string::npos) << ended.out;
+    EXPECT_NE(ended.out.find(": all whole"), std::string::npos) << ended.out;
+    std::string mesh = read_file(folder() / "out/mesh/small.0003.usda");
+    mesh[mesh.size() / 2] ^= 1;
+    write_file(folder() / "out/mesh/small.0003.usda", mesh);
+    fs::remove(folder() / "out/maps/small.whitecaps.0004.exr");
+    write_file(folder() / "out/maps/old.normal.0001.exr", "somebody's");
+    ended = verify({"out"});
+    EXPECT_EQ(ended.status, 1);
+    for (const char* line :
+         {"damaged: out/mesh/small.0003.usda holds other bytes than were written",
+          "missing: out/maps/small.whitecaps.0004.exr is missing",
+          "foreign: out/maps/old.normal.0001.exr is in no record here", "1 missing, 1 damaged, 1 foreign"})
+        EXPECT_NE(ended.out.find(line), std::string::npos) << line << "\n" << ended.out;
+    ended = bake();
+    EXPECT_EQ(ended.status, 0);
+    EXPECT_NE(ended.out.find("2 frames baked, 6 kept"), std::string::npos) << ended.out;
+    EXPECT_NE(ended.err.find("in out mesh/small.0003.usda holds other bytes than were written"),
+              std::string::npos)
+        << ended.err;
+    fs::remove(folder() / "out/maps/old.normal.0001.exr");
+    expect_as_new();
+    EXPECT_EQ(verify({"out", "new"}).status, 0);
+    EXPECT_EQ(verify({"out", "nowhere", "new"}).status, 1);
+    EXPECT_EQ(verify({}).status, 2);
+    fs::create_directory(folder() / "empty");
+    ended = verify({"empty"});
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_NE(ended.out.find("no bake and no pictures are here"), std::string::npos) << ended.out;
+}
+
+// A pipe in the record's place: it would wait for a writer for ever.
+TEST_F(BakeResume, APipeInTheRecordsPlaceIsRefused) {
+    fs::remove(folder() / "out/small.json");
+    ASSERT_EQ(mkfifo((folder() / "out/small.json").c_str(), 0600), 0);
+    const Ended ended = bake();
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_NE(ended.err.find("the record 'out/small.json' is a pipe, not a file: move it away"),
+              std::string::npos)
+        << ended.err;
+}
+
+TEST_F(BakeResume, ALockHeldElsewhereIsSaidAndCtrlCEndsTheWaiting) {
+    const int theirs = open((folder() / "out").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    ASSERT_EQ(flock(theirs, LOCK_EX), 0);
+    Running waiting({.arguments = {"bake", "shot.toml", "--out", "out"}, .folder = folder()});
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (waiting.messages().find("waiting for another bake") == std::string::npos && !waiting.has_ended() &&
+           std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    waiting.send(SIGINT);
+    const Ended ended = waiting.wait();
+    EXPECT_NE(ended.err.find("waiting for another bake that writes into the same folder"), std::string::npos)
+        << ended.err;
+    EXPECT_EQ(ended.status, 130);
+    close(theirs);
+    EXPECT_EQ(bake().status, 0);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // A bake that is stopped, politely or not: what has its own name is whole, and the next run goes on to the
 // very files that an undisturbed run leaves.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -153,8 +155,22 @@ TEST_P(BakeSignal, StopsAfterTheFileAtHandAndTheNextRunGoesOn) {
     EXPECT_EQ(differences(out, folder.path() / "whole"), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Failures, BakeSignal, ::testing::Values(SIGINT, SIGTERM, SIGHUP),
+INSTANTIATE_TEST_SUITE_P(Failures, BakeSignal, ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT),
                          [](const auto& one) -> std::string { return sigabbrev_np(one.param); });
+
+// A killed bake of a shot with a mesh, and then one without in the same folder.
+TEST(BakeStop, WhatAKilledBakeLeftIsGoneAfterTheNextWhateverItMakes) {
+    const TempFolder folder;
+    write_file(folder.path() / "maps.toml", text_of(kMapsOnly));
+    const fs::path out = folder.path() / "out";
+    fs::create_directories(out / "mesh");
+    std::array<char, 256> host{};
+    ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+    write_file(out / "mesh" / (std::string(".pelagic-1-5@") + host.data()), "half a file");
+    ASSERT_FALSE(leftovers(out).empty());
+    EXPECT_EQ(run({.arguments = {"bake", "maps.toml", "--out", "out"}, .folder = folder.path()}).status, 0);
+    EXPECT_EQ(leftovers(out), std::vector<std::string>());
+}
 
 TEST(BakeStop, ASecondSignalEndsItAtOnce) {
     const TempFolder folder;

@@ -73,16 +73,20 @@ TEST_F(ForeignFiles, AreThoseOfAnotherFormatAndOfOutputsThatAreGone) {
     EXPECT_EQ(foreign(scene_).size(), 11u) << "the stage and its sky, too";
 }
 
-TEST_F(ForeignFiles, AreThoseOfAnotherName) {
+TEST_F(ForeignFiles, AreThoseOfAnotherNameThatNoRecordKnows) {
     scene_.output.mesh = MeshFormat::Usda;
     foreign(scene_);
-    // A name that begins like the other one.
+    // A name that begins like the other one. That shot has its own record, and its files are its own business.
     scene_.shot.name = "sea-2";
+    EXPECT_EQ(foreign(scene_), Lines());
+    fs::remove(folder_ / "sea.json");
     const std::string other = " of another shot";
     EXPECT_EQ(foreign(scene_),
               (Lines{"mesh/sea.####.usda: 3 files" + other, "mesh/sea.manifest.usda:" + other,
-                     "mesh/sea.topology.usda:" + other, "sea.camera.usdc:" + other, "sea.json:" + other,
-                     "sea.sky.exr:" + other, "sea.usda:" + other}));
+                     "mesh/sea.topology.usda:" + other, "sea.camera.usdc:" + other, "sea.sky.exr:" + other,
+                     "sea.usda:" + other}));
+    write("sea.json");
+    EXPECT_EQ(foreign(scene_).size(), 7u) << "that is no record";
 }
 
 TEST_F(ForeignFiles, AreNotWhatPeopleAndRendersKeepBesideThem) {

@@ -157,7 +157,7 @@ void add_picture(const Scene& scene, const fs::path& folder, Hashes& hashes) {
     const PictureContext context{
         .scene = scene, .options = options, .sky = renderer.sky(), .made_of = "golden"};
     files::write_atomically(folder / "golden.exr", encode_exr(context, picture, frames.front()));
-    files::write_atomically(folder / "golden.png", encode_png(context, picture));
+    files::write_atomically(folder / "golden.png", encode_png(context, picture, frames.front()));
     hashes["picture.exr"] = {kPictureRevision, exr_hash(folder / "golden.exr")};
     hashes["picture.png"] = {kPictureRevision, png_hash(folder / "golden.png")};
 }

@@ -277,11 +277,11 @@ TEST_F(StageLightTest, ANewPictureUnderTheSameNameIsNoticed) {
     const std::string before = baked(scene), dome = text_of(folder_ / "a-b.sky.exr");
     write_sky(file, 1.5f);
     EXPECT_NE(baked(scene), before);  // the sun
-    EXPECT_NE(text_of(folder_ / "a-b.sky.exr"), dome);
+    EXPECT_TRUE(text_of(folder_ / "a-b.sky.exr") != dome);
     expect_light_of(scene);
     write_sky(file, 1.0f);
     EXPECT_EQ(baked(scene), before);
-    EXPECT_EQ(text_of(folder_ / "a-b.sky.exr"), dome);
+    EXPECT_TRUE(text_of(folder_ / "a-b.sky.exr") == dome);
 }
 
 // What the last light was made of is asked before it is used again: all that makes it must be in the answer.
@@ -302,7 +302,7 @@ TEST_F(StageLightTest, ABakeNeverWritesOverThePictureOfItsSky) {
     Scene scene = small_scene();
     scene.light.sky = (folder_ / ".." / folder_.filename() / "a-b.sky.exr").string();
     EXPECT_THROW(baked(scene), std::invalid_argument);
-    EXPECT_EQ(text_of(file), before);
+    EXPECT_TRUE(text_of(file) == before);
 }
 
 TEST_F(StageLightTest, WhatIsNoSkyIsRefusedBeforeAnythingIsDone) {

@@ -17,6 +17,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
+#include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 #include "tests/plugin/bake/read_exr.h"
 
@@ -180,7 +181,7 @@ TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
                                             static_cast<std::size_t>(threads));
             const fs::path out = folder / std::to_string(threads);
             try {
-                const Scene scene = load_shot(folder / "shot.toml");
+                const Scene scene = load_shot(folder / "shot.toml", check_sky);
                 const BakeReport report =
                     bake(scene, {.out = out, .frames = {}, .progress = {}, .cancel = nullptr});
                 ASSERT_EQ(report.done, report.total);

@@ -41,8 +41,8 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
     for (const char* flag : {"--help", "-h"}) {
         const Ended ended = cli({flag});
         EXPECT_EQ(ended.status, 0);
-        for (const char* part : {"  bake ", "  render ", "  preview ", "  explain ", "  validate ", "  keys ",
-                                 "Examples:", "Exit status"})
+        for (const char* part : {"  bake ", "  render ", "  preview ", "  explain ", "  verify ",
+                                 "  validate ", "  keys ", "Examples:", "Exit status"})
             EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
         EXPECT_EQ(ended.err, "");
     }
@@ -50,14 +50,18 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
 
 TEST_F(Cli, HelpOfEachVerbNamesEachOption) {
     const std::vector<std::pair<std::string, std::vector<std::string>>> verbs{
-        {"bake", {"SHOT.toml", "--out", "--frames", "--threads", "--help", "folder in the working folder"}},
+        {"bake",
+         {"SHOT.toml", "--out", "--frames", "--trust-times", "--threads", "--help",
+          "folder in the working folder"}},
         {"render",
          {"SHOT.toml", "--out", "--frames", "--size", "--exposure", "--samples", "--sky-quality", "--terms",
-          "--threads", "--help", "sun, sky, sea and foam"}},
+          "--trust-times", "--threads", "--help", "sun, sky, sea and foam"}},
         {"preview",
          {"SHOT.toml", "--offscreen", "--frame", "--size", "--quality", "--scale", "--screenshot", "--after",
           "--threads", "--help", "F1"}},
         {"explain", {"SHOT.toml", "--measure", "--threads", "--help"}},
+        {"verify",
+         {"DIR", "--threads", "--help", "missing", "damaged", "stale", "foreign", "Exit status: 0"}},
         {"validate", {"SHOT.toml", "--help"}},
         {"keys", {"--help"}}};
     for (const auto& [verb, options] : verbs) {
@@ -77,7 +81,7 @@ TEST_F(Cli, VersionSaysWhatItWasBuiltWith) {
     for (const char* part :
          {"built with ", "(", "parts: ", kHasPreview ? ": preview, " : ": no preview, ", " python",
           "sanitizer", "libraries: ", "FFTW 3.", "oneTBB 20", "OpenEXR 3.", "GLM ", "Highway ", "CLI11 ",
-          "libpng ", "toml++ ", "instruction set on this machine: "})
+          "libpng ", "toml++ ", "xxHash ", "instruction set on this machine: "})
         EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
 }
 
@@ -281,14 +285,15 @@ TEST_F(Cli, OutOfMemoryIsSaidAndIsNoCrash) {
     GTEST_SKIP() << "sanitizers take terabytes of addresses themselves";
 #endif
     write_file(folder() / "large.toml", "[surface]\nresolution = 8192\n");
-    const Ended ended = run({.arguments = {"bake", "large.toml", "--threads", "1"},
+    // Somebody who allows more than there is gets as far as that goes.
+    const Ended ended = run({.arguments = {"bake", "large.toml", "--threads", "1", "--max-memory", "1T"},
                              .folder = folder(),
                              .most_address_space = std::size_t{600} << 20});
     EXPECT_FALSE(ended.killed) << "signal " << ended.status - 128;
     EXPECT_EQ(ended.status, 1);
-    EXPECT_TRUE(has(ended.err, "out of memory")) << ended.err;
-    EXPECT_TRUE(has(ended.err, "planned: ")) << ended.err;
-    EXPECT_TRUE(has(ended.err, "67125249 vertices")) << ended.err;
+    for (const char* part :
+         {"out of memory; this bake holds about ", "for values of the mesh", "lower surface.resolution"})
+        EXPECT_TRUE(has(ended.err, part)) << part << "\n" << ended.err;
     EXPECT_EQ(torn_files(folder() / "sea"), "");
 }
 

@@ -4,12 +4,14 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <ImfOutputFile.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <thread>
 #include <vector>
@@ -191,12 +193,94 @@ TEST_F(Pictures, RenderRefusesWhatItCannotDoBeforeItBegins) {
     refused({"render", "missing.toml"}, 1, {"missing.toml: the shot file does not exist"});
 }
 
-TEST_F(Pictures, ASkyThatCantBeReadIsRefusedBeforeAnythingIsWritten) {
-    write_file(folder() / "torn.exr", "no picture at all");
-    write_file(folder() / "small.toml", small_shot() + "[light]\nsky = \"torn.exr\"\n");
-    refused({"render", "small.toml", "--out", "out"}, 1, {"torn.exr' can't be read as an OpenEXR picture"});
-    refused({"preview", "small.toml", "--offscreen", "new/a.png"}, 1,
-            {"torn.exr' can't be read as an OpenEXR picture"});
+// A lat-long picture of halves, grey; `wrong` is the value of one pixel of the upper half.
+void write_sky(const fs::path& file, float wrong = 1.0f) {
+    constexpr int kWidth = 64, kHeight = 32;
+    std::vector<float> values(kWidth * kHeight, 1.0f);
+    values[3 * kWidth + 5] = wrong;
+    Imf::Header header(kWidth, kHeight);
+    header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+    Imf::OutputFile out(file.c_str(), header);
+    Imf::FrameBuffer buffer;
+    buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float),
+                                  sizeof(float) * kWidth));
+    out.setFrameBuffer(buffer);
+    out.writePixels(kHeight);
+}
+
+TEST_F(Pictures, ASkyThatIsNoneIsRefusedByEveryVerbWithItsPlace) {
+    write_sky(folder() / "whole.exr");
+    const std::string whole = read_file(folder() / "whole.exr");
+    const std::vector<std::pair<std::string, std::string>> skies{
+        {"no picture at all", "can't be read as an OpenEXR picture"},
+        {"", "can't be read as an OpenEXR picture"},
+        {whole.substr(0, whole.size() - 1), "is cut short"},
+        {whole.substr(0, 200), "can't be read as an OpenEXR picture"},
+    };
+    const std::string shot = small_shot() + "[light]\nsky = \"torn.exr\"\n";
+    write_file(folder() / "small.toml", shot);
+    const auto line = std::count(shot.begin(), shot.end(), '\n');
+    const std::string place = "small.toml:" + std::to_string(line) + ":7: light.sky = \"torn.exr\": ";
+    for (const auto& [bytes, problem] : skies) {
+        write_file(folder() / "torn.exr", bytes);
+        for (const std::vector<std::string>& verb :
+             std::vector<std::vector<std::string>>{{"validate", "small.toml"},
+                                                   {"explain", "small.toml"},
+                                                   {"bake", "small.toml", "--out", "out"},
+                                                   {"render", "small.toml", "--out", "out"},
+                                                   {"preview", "small.toml", "--offscreen", "new/a.png"}})
+            refused(verb, 1, {place + problem, "; accepted: a whole file"});
+    }
+    write_file(folder() / "torn.exr", whole);
+    EXPECT_EQ(cli({"validate", "small.toml"}).status, 0);
+}
+
+// What only the pixels tell is refused when they are read, before any other work.
+TEST_F(Pictures, ASkyThatIsNoRadianceIsRefusedBeforeAnythingIsWritten) {
+    write_file(folder() / "small.toml", small_shot() + "[light]\nsky = \"odd.exr\"\n");
+    for (const float wrong : {std::numeric_limits<float>::quiet_NaN(), -1.0f}) {
+        write_sky(folder() / "odd.exr", wrong);
+        const std::vector<std::string> says{
+            "light.sky = \"odd.exr\": R of the pixel in column 5, row 3 from the top is ",
+            "; accepted: radiances from 0 to 1e30"};
+        refused({"render", "small.toml", "--out", "out"}, 1, says);
+        refused({"preview", "small.toml", "--offscreen", "new/a.png"}, 1, says);
+    }
+}
+
+// Unix takes any bytes for a name. Nothing written in text needs to name these folders, or it escapes them.
+TEST_F(Pictures, FoldersWhoseNamesAreNotUtf8) {
+    const std::string odd = "caf\xe9\x80\n";
+    fs::create_directories(folder() / odd / odd);
+    write_sky(folder() / odd / odd / "sky.exr");
+    const std::string shot =
+        "[surface]\nresolution = 8\n[output]\nmaps = [\"displacement\", \"whitecaps\"]\n"
+        "map_resolution = 8\n[light]\nsky = \"sky.exr\"\n";
+    write_file(folder() / odd / odd / "small.toml", small_shot() + shot);
+    // The shot's folder; with the working folder above it, in it, and elsewhere.
+    int number = 0;
+    for (const auto& [from, file] :
+         std::vector<std::pair<fs::path, std::string>>{{folder(), odd + '/' + odd + "/small.toml"},
+                                                       {folder() / odd, odd + "/small.toml"},
+                                                       {folder() / odd / odd, "small.toml"},
+                                                       {"/", (folder() / odd / odd / "small.toml").string()}})
+        for (const char* verb : {"bake", "render"}) {
+            const std::string out = (folder() / odd / ("out\xff" + std::to_string(++number))).string();
+            const Ended ended =
+                run({.arguments = {verb, file, "--frames", "1-2", "--out", out}, .folder = from});
+            EXPECT_EQ(ended.status, 0) << ended.err;
+            EXPECT_EQ(torn_files(out), "");
+            EXPECT_EQ(leftovers(out), std::vector<std::string>());
+            const Ended again =
+                run({.arguments = {verb, file, "--frames", "1-2", "--out", out}, .folder = from});
+            EXPECT_EQ(again.status, 0) << again.err;
+            EXPECT_TRUE(has(again.out, "2 kept as they were")) << again.out;
+        }
+    for (const char* verb : {"validate", "explain"})
+        EXPECT_EQ(run({.arguments = {verb, "small.toml"}, .folder = folder() / odd / odd}).status, 0);
+    const Ended preview = run({.arguments = {"preview", "small.toml", "--offscreen", odd + "/a.png"},
+                               .folder = folder() / odd / odd});
+    EXPECT_EQ(preview.status, 0) << preview.err;
 }
 
 TEST_F(Pictures, PreviewRefusesWhatItCannotDoBeforeItBegins) {
@@ -295,6 +379,35 @@ TEST_F(Pictures, AnInterruptedRenderLeavesWholeFilesAndSaysHowMany) {
     EXPECT_TRUE(has(ended.err, std::to_string(exrs) + " of the 9000 frames asked for are whole"))
         << ended.err;
     EXPECT_EQ(torn_files(folder() / "out"), "");
+}
+
+TEST_F(Pictures, ACameraUnderWaterIsRefusedForTheFramesAskedFor) {
+    const auto with_camera = [](const std::string& camera) {
+        std::string text = small_shot();
+        const std::string table = "[camera]\n";
+        return text.insert(text.find(table) + table.size(), camera);
+    };
+    write_file(folder() / "below.toml", with_camera("position_m = [0, -60, -9]\n"));
+    write_file(folder() / "diving.toml",
+               with_camera("keys = [ { frame = 1, position_m = [0, -60, 9], look_at_m = [0, 0, 0] }, "
+                           "{ frame = 4, position_m = [0, -60, -9], look_at_m = [0, 0, 0] } ]\n"));
+    refused({"render", "below.toml"}, 1,
+            {"below.toml: camera.position_m: at frame 1 the camera is under water: it is at z = -9 m",
+             "the surface there"});
+    refused({"render", "diving.toml"}, 1, {"diving.toml: camera.keys: at frame ", "raise the camera"});
+    refused({"render", "diving.toml", "--frames", "4"}, 1,
+            {"at frame 4 the camera is under water: it is at z = -9 m"});
+    EXPECT_EQ(cli({"render", "diving.toml", "--frames", "1"}).status, 0);
+    EXPECT_EQ(cli({"bake", "below.toml"}).status, 0);
+}
+
+TEST_F(Pictures, PreviewDrawsNothingUnderWater) {
+    std::string text = small_shot();
+    const std::string table = "[camera]\n";
+    write_file(folder() / "below.toml",
+               text.insert(text.find(table) + table.size(), "position_m = [0, -60, -9]\n"));
+    refused({"preview", "below.toml", "--offscreen", "new/x.png"}, 1,
+            {"below.toml: camera.position_m: at frame 1 the camera is under water"});
 }
 
 }  // namespace

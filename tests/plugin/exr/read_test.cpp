@@ -83,6 +83,20 @@ struct Planes {
     }
 };
 
+// The levels of a picture with mip levels, and what they point into.
+struct Levels {
+    std::vector<Planes> planes;
+    std::vector<Image> images;
+
+    Levels() {
+        for (int l = 0; l < mip_level_count(kWidth, kHeight); ++l) {
+            const auto [width, height] = mip_level_size(kWidth, kHeight, l);
+            planes.emplace_back(width, height);
+        }
+        for (const Planes& level : planes) images.push_back(level.image(PixelType::Half));
+    }
+};
+
 void expect_pixels(const RgbPixels& read) {
     ASSERT_EQ(read.width, kWidth);
     ASSERT_EQ(read.height, kHeight);
@@ -103,14 +117,8 @@ TEST_F(ReadRgb, ScanLinesOfHalvesAndFloats) {
 }
 
 TEST_F(ReadRgb, TilesOfTheFullPicture) {
-    std::vector<Planes> levels;
-    std::vector<Image> images;
-    for (int l = 0; l < mip_level_count(kWidth, kHeight); ++l) {
-        const auto [width, height] = mip_level_size(kWidth, kHeight, l);
-        levels.emplace_back(width, height);
-    }
-    for (const Planes& level : levels) images.push_back(level.image(PixelType::Half));
-    expect_pixels(read_rgb(written(encode_mipmapped({}, images))));
+    const Levels levels;
+    expect_pixels(read_rgb(written(encode_mipmapped({}, levels.images))));
 }
 
 TEST_F(ReadRgb, GreyAloneAndOtherChannelsBeside) {
@@ -165,7 +173,7 @@ TEST_F(ReadRgb, RefusesWhatIsNoPicture) {
     EXPECT_NE(refusal(written("no picture at all")).find("can't be read"), std::string::npos);
     const Planes planes(kWidth, kHeight);
     const std::string whole = encode_scanline({}, planes.image(PixelType::Half));
-    EXPECT_NE(refusal(written(whole.substr(0, whole.size() / 2))).find("can't be read"), std::string::npos);
+    EXPECT_NE(refusal(written(whole.substr(0, whole.size() / 2))).find("is cut short"), std::string::npos);
 
     Image named = planes.image(PixelType::Half);
     named.channels[0].name = "red";
@@ -173,6 +181,45 @@ TEST_F(ReadRgb, RefusesWhatIsNoPicture) {
     Image chroma = planes.image(PixelType::Half);
     chroma.channels[0].name = "Y", chroma.channels[1].name = "RY", chroma.channels[2].name = "BY";
     EXPECT_NE(refusal(written(encode_scanline({}, chroma))).find("BY, RY, Y"), std::string::npos);
+}
+
+TEST_F(ReadRgb, RowsInAnyPieces) {
+    for (const bool tiled : {false, true}) {
+        Header header;
+        header.compression = Compression::Piz;  // chunks of 32 rows
+        const Planes planes(kWidth, kHeight);
+        const Levels levels;
+        const RgbFile file(written(tiled ? encode_mipmapped(header, levels.images)
+                                         : encode_scanline(header, planes.image(PixelType::Half))));
+        EXPECT_EQ(file.rows_in_piece(), tiled ? 64 : 32);
+        for (const auto& [first, count] : {std::pair(0, 1), {31, 2}, {5, 60}, {65, 1}, {66, 0}}) {
+            std::vector<std::array<float, 3>> rows(static_cast<std::size_t>(count) * kWidth);
+            file.read(first, {rows.empty() ? nullptr : rows.data()->data(), 3 * rows.size()});
+            for (int y = 0; y < count; ++y)
+                for (int x = 0; x < kWidth; ++x)
+                    ASSERT_EQ(rows[static_cast<std::size_t>(y * kWidth + x)], pixel(x, first + y));
+        }
+        std::vector<float> beyond(3 * kWidth);
+        EXPECT_THROW(file.read(kHeight, beyond), std::invalid_argument);
+        EXPECT_THROW(file.read(0, std::span(beyond).first(5)), std::invalid_argument);
+    }
+}
+
+// Without its pixels being read: wherever a file ends too soon.
+TEST_F(ReadRgb, ACutFileIsRefusedWhenItIsLookedAt) {
+    const Planes planes(kWidth, kHeight);
+    const Levels levels;
+    Header header;
+    header.compression = Compression::Zip;
+    const std::string lines = encode_scanline(header, planes.image(PixelType::Half));
+    for (std::size_t bytes = 0; bytes < lines.size(); bytes += bytes < 1000 ? 1 : 97)
+        EXPECT_THROW(RgbFile(written(lines.substr(0, bytes))), ReadError) << bytes;
+    EXPECT_THROW(RgbFile(written(lines.substr(0, lines.size() - 1))), ReadError);
+    EXPECT_NO_THROW(RgbFile(written(lines)));
+    // Of tiles with mip levels the first level has to be there.
+    const std::string tiles = encode_mipmapped(header, levels.images);
+    for (std::size_t bytes = 0; bytes < tiles.size() / 2; bytes += 97)
+        EXPECT_THROW(RgbFile(written(tiles.substr(0, bytes))), ReadError) << bytes;
 }
 
 TEST_F(ReadRgb, RefusesIntegersCropsAndDeepPixels) {

@@ -1,6 +1,9 @@
 // Complete files or none: what a name has after success, failure and a kill.
 #include "plugin/files/files.h"
 
+#include "plugin/files/checksum.h"
+#include "plugin/files/read.h"
+
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -118,12 +121,10 @@ TEST_F(Files, AFileIsWrittenAndReplacedAndNothingElseIsLeft) {
 TEST_F(Files, PiecesMakeOneFileAndAnErrorBetweenThemLeavesTheOldOne) {
     const fs::path target = folder_ / "a";
     const std::string large(100000, 'x');
-    EXPECT_EQ(write_atomically(target,
-                               [&](const ByteSink& sink) {
-                                   for (const std::string& piece : {std::string("one"), large, std::string()})
-                                       sink(piece);
-                               }),
-              100003u);
+    const FileState written = write_atomically(target, [&](const ByteSink& sink) {
+        for (const std::string& piece : {std::string("one"), large, std::string()}) sink(piece);
+    });
+    EXPECT_EQ(written, (FileState{100003, checksum_of("one" + large)}));
     EXPECT_EQ(contents(target), "one" + large);
     const auto torn = [](const ByteSink& sink) {
         sink("half");
@@ -348,6 +349,76 @@ TEST_F(Files, OnlyTheLeftoversOfTheDeadAreCleared) {
     close(locked);
     EXPECT_EQ(remove_stale_temporaries(folder_), 1u);
     EXPECT_EQ(remove_stale_temporaries(folder_ / "nowhere"), 0u);
+}
+
+// The published values of XXH3 with 64 bits and no seed.
+TEST(Checksums, AreXxh3WhateverThePieces) {
+    EXPECT_EQ(checksum_of(""), "2d06800538d394c2");
+    const std::string bytes = std::string(5000, 'a') + '\0' + std::string(300, 'b');
+    Checksum sum;
+    for (std::size_t at = 0; at < bytes.size(); at += 77) sum.add(std::string_view(bytes).substr(at, 77));
+    EXPECT_EQ(sum.text(), checksum_of(bytes));
+    EXPECT_EQ(sum.text().size(), 16u);
+}
+
+TEST_F(Files, ThatAreTheSameStayUntouched) {
+    const fs::path target = folder_ / "a";
+    const auto content = [](const ByteSink& sink) {
+        sink("one");
+        sink("two");
+    };
+    const FileState state{6, checksum_of("onetwo")};
+    for (const char* there : {"", "onetw", "onetwo!", "oneTwo"}) {
+        std::ofstream(target) << there;
+        EXPECT_EQ(write_if_different(target, content), state);
+        EXPECT_EQ(contents(target), "onetwo") << there;
+    }
+    const fs::file_time_type before = fs::last_write_time(target) - std::chrono::hours(1);
+    fs::last_write_time(target, before);
+    EXPECT_EQ(write_if_different(target, content), state);
+    EXPECT_EQ(fs::last_write_time(target), before);
+}
+
+TEST_F(Files, ThatAreNoneAreSaidAndNotWaitedFor) {
+    EXPECT_EQ(FileReader(folder_ / "a").problem(), "is missing");
+    EXPECT_TRUE(FileReader(folder_ / "a").is_missing());
+    EXPECT_EQ(FileReader(folder_).problem(), "is a folder, not a file");
+    EXPECT_EQ(FileReader("/dev/zero").problem(), "is a device, not a file");
+    ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(FileReader(folder_ / "pipe").problem(), "is a pipe, not a file");
+    EXPECT_FALSE(carries(folder_ / "pipe", "x"));
+    std::ofstream(folder_ / "a") << "some bytes";
+    std::string read;
+    EXPECT_EQ(read_pieces(folder_ / "a", [&](std::string_view piece) { read += piece; }), "");
+    EXPECT_EQ(read, "some bytes");
+}
+
+// A lock that another holds is waited for, told of after a second, and given up when the watch says so.
+TEST_F(Files, ALockThatIsAwaitedIsToldOfAndCanBeGivenUp) {
+    struct Enough {};
+    double told_s = 0.0;
+    {
+        const files::FolderLock theirs(folder_);
+        EXPECT_THROW(files::FolderLock(folder_,
+                                       [&](double waited_s) {
+                                           told_s = waited_s;
+                                           throw Enough();
+                                       }),
+                     Enough);
+    }
+    EXPECT_GE(told_s, 1.0);
+    files::FolderLock(folder_, [](double) { FAIL() << "it is free"; });
+}
+
+TEST_F(Files, CheckFolderRefusesWhatEnsureFolderWouldAndMakesNothing) {
+    check_folder(folder_);
+    check_folder(folder_ / "new/and/below");
+    check_folder("");
+    check_folder("new");
+    EXPECT_TRUE(fs::is_empty(folder_));
+    write_atomically(folder_ / "file", std::string_view("kept"));
+    EXPECT_THROW(check_folder(folder_ / "file"), FileError);
+    EXPECT_THROW(check_folder(folder_ / "file/below"), FileError);
 }
 
 }  // namespace

@@ -225,6 +225,32 @@ TEST(LiveSea, TheFrameIsOfTheTimeAskedForAndOfItAlone) {
     EXPECT_EQ(sea.status().frames, frames);
 }
 
+TEST(LiveSea, ItTellsOfAnEyeUnderWaterWithoutAnotherFrame) {
+    LiveSea sea;
+    sea.ask(small_scene());
+    ASSERT_TRUE(wait_for([&] {
+        sea.show(1.0);
+        return sea.newest() != nullptr;
+    }));
+    const long frames = sea.status().frames;
+    View eye = view_at(small_scene().camera, 1);
+    const auto tells = [&](double z_m, bool is_under) {
+        eye.position_m.z = z_m;
+        return wait_for([&] {
+            sea.show(1.0, eye);
+            return sea.water_over_eye().has_value() == is_under;
+        });
+    };
+    EXPECT_FALSE(sea.water_over_eye());
+    EXPECT_TRUE(tells(-9.0, true));
+    EXPECT_LT(std::abs(*sea.water_over_eye()), 5.0);
+    EXPECT_TRUE(tells(9.0, false));
+    EXPECT_TRUE(tells(-9.0, true));
+    sea.show(1.0);
+    EXPECT_FALSE(sea.water_over_eye());
+    EXPECT_EQ(sea.status().frames, frames);
+}
+
 TEST(LiveSea, AFrameStaysAsItIsUntilTheNextIsTaken) {
     LiveSea sea(small_build);
     Player player(sea);

@@ -29,6 +29,14 @@ env -u DISPLAY -u WAYLAND_DISPLAY "$program" preview "$folder/small.toml" 2> "$f
 grep -q -e "--offscreen" "$folder/no-display.txt" || fail "no word of --offscreen: $(cat "$folder/no-display.txt")"
 grep -q "xvfb-run" "$folder/no-display.txt" || fail "no word of xvfb-run: $(cat "$folder/no-display.txt")"
 
+# Nothing is shown from under water, but a message.
+sed 's/-60.0, 8.0/-60.0, -8.0/' "$folder/small.toml" > "$folder/diving.toml"
+status=0
+LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 640x400x24" "$program" preview "$folder/diving.toml" \
+    --size 320x180 --scale 4 --screenshot "$folder/diving.png" 2> "$folder/diving.txt" || status=$?
+[ "$status" = 1 ] && [ ! -e "$folder/diving.png" ] || fail "status $status under water, not 1"
+grep -q "the camera is under water" "$folder/diving.txt" || fail "no word of the water: $(cat "$folder/diving.txt")"
+
 LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 640x400x24" "$program" preview "$folder/small.toml" \
     --size 640x360 --scale 4 --screenshot "$folder/window.png" --after 3
 

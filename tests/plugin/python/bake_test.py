@@ -72,6 +72,33 @@ class Bake(InFolder):
         report = pelagic.bake(changed, out, frames=[1])
         self.assertEqual((report.done, report.stale), (1, [2, 3]))
 
+    def test_verify_names_what_is_not_as_it_was_written_and_a_bake_makes_it_again(self):
+        out = self.path / "out"
+        pelagic.bake(shot(), out)
+        self.assertEqual(pelagic.verify(out), [])
+        whole = files(out)
+        mesh = next(path for path in (out / "mesh").iterdir() if ".0002." in path.name)
+        data = bytearray(mesh.read_bytes())
+        data[len(data) // 2] ^= 4
+        mesh.write_bytes(data)
+        (out / "maps" / "old.normal.0001.exr").write_bytes(b"somebody's")
+        found = pelagic.verify(str(out))
+        self.assertEqual([(finding.path, finding.flaw) for finding in found],
+                         [("maps/old.normal.0001.exr", "foreign"), (f"mesh/{mesh.name}", "damaged")])
+        self.assertIn("other bytes than were written", found[1].what)
+        self.assertIn(mesh.name, repr(found[1]))
+        report = pelagic.bake(shot(), out)
+        self.assertEqual((report.done, report.kept, len(report.damaged)), (1, 2, 1))
+        (out / "maps" / "old.normal.0001.exr").unlink()
+        self.assertEqual(files(out), whole)
+        self.assertEqual(pelagic.bake(shot(), out, trust_times=True).kept, 3)
+        with self.assertRaises(pelagic.FileError):
+            pelagic.verify(self.path / "nowhere")
+        cancel = pelagic.Cancel()
+        cancel.set()
+        with self.assertRaises(pelagic.Cancelled):
+            pelagic.verify(out, cancel=cancel)
+
     def test_progress_tells_each_frame(self):
         told = []
         pelagic.bake(shot(), self.path / "out", progress=lambda *now: told.append(now))

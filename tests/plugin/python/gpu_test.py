@@ -43,6 +43,19 @@ class Seas(unittest.TestCase):
         with self.assertRaises(ValueError):
             sea.textures["cell_fields"][0, 0, 0] = 1.0
 
+    def test_a_view_under_water_is_known(self):
+        sea = pelagic.GpuSea(small_scene(), 0.125)
+        self.assertIsNone(sea.water_over(view(-9.0)))  # it has no time yet
+        sea.set(1.5)
+        self.assertIsNone(sea.water_over(view(30.0)))
+        surface_m = sea.water_over(view(-9.0))
+        frame = pelagic.Frame(pelagic.Sea(small_scene()))
+        frame.set(1.5)
+        self.assertAlmostEqual(surface_m, float(frame.heights(np.array([[7.0, -3.0]]))["height_m"][0]), delta=0.05)
+        # From where the view is depends how fine a sea it sees.
+        self.assertIsNone(sea.water_over(view(surface_m + 0.05)))
+        self.assertAlmostEqual(sea.water_over(view(surface_m - 0.05)), surface_m, delta=0.05)
+
     def test_tables_follow_the_origin(self):
         here, cycles = self.sea.at_origin((0.0, 0.0))
         self.assertIsNone(cycles)

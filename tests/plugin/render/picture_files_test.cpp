@@ -12,8 +12,10 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -23,6 +25,7 @@
 #include <vector>
 
 #include "core/scene/keys.h"
+#include "plugin/bake/pictures.h"
 
 namespace pelagic {
 namespace {
@@ -139,8 +142,8 @@ TEST(PictureFiles, AreWholeWithTheirFingerprintAndTheirEnd) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("pelagic-pictures-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
-    for (const auto& [name, bytes] :
-         {std::pair{"a.exr", encode_exr(context, picture, 1)}, {"a.png", encode_png(context, picture)}}) {
+    for (const auto& [name, bytes] : {std::pair{"sea.0001.exr", encode_exr(context, picture, 1)},
+                                      {"sea.0001.png", encode_png(context, picture, 1)}}) {
         const std::filesystem::path file = folder / name;
         const auto write = [&](const std::string& content) {
             std::ofstream(file, std::ios::binary).write(content.data(), std::ssize(content));
@@ -152,6 +155,48 @@ TEST(PictureFiles, AreWholeWithTheirFingerprintAndTheirEnd) {
         for (const std::size_t cut : {std::size_t{1}, std::size_t{30}, bytes.size() / 2, bytes.size() - 9}) {
             write(bytes.substr(0, bytes.size() - cut));
             EXPECT_FALSE(is_whole_picture(file, "0123456789abcdef")) << name << " less " << cut;
+        }
+    }
+    std::filesystem::remove_all(folder);
+}
+
+// Every byte of a picture counts: a bit of another value, a block of zeros, an end that is cut off or longer, and the
+// bytes of another frame.
+TEST(PictureFiles, ShowEveryDamage) {
+    const Picture picture = pattern({24, 13});
+    const Scene scene;
+    const RenderOptions options;
+    const Sky sky = some_sky(100.0f);
+    const PictureContext context{scene, options, sky, "0123456789abcdef"};
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("pelagic-damaged-" + std::to_string(getpid()));
+    std::filesystem::create_directory(folder);
+    const CheckWatch watch;
+    for (const auto& [extension, bytes, other] :
+         {std::tuple{"exr", encode_exr(context, picture, 1), encode_exr(context, picture, 2)},
+          {"png", encode_png(context, picture, 1), encode_png(context, picture, 2)}}) {
+        const std::filesystem::path file = folder / picture_file(scene.shot, 1, extension);
+        const auto problem_of = [&](const std::string& content) {
+            std::ofstream(file, std::ios::binary).write(content.data(), std::ssize(content));
+            CheckProgress progress(watch, 0);
+            return picture_problem(file, progress);
+        };
+        EXPECT_EQ(problem_of(bytes), "") << extension;
+        EXPECT_NE(problem_of(other), "") << "another frame's";
+        EXPECT_NE(problem_of(""), "");
+        EXPECT_NE(problem_of(bytes + '\0'), "") << extension;
+        EXPECT_NE(problem_of(bytes + bytes), "") << extension;
+        for (std::size_t at = 0; at < bytes.size(); ++at) {
+            std::string damaged = bytes;
+            damaged[at] = static_cast<char>(damaged[at] ^ (1 << at % 8));
+            EXPECT_NE(problem_of(damaged), "") << extension << ": a bit of byte " << at;
+            if (at % 16 != 0) continue;
+            EXPECT_NE(problem_of(bytes.substr(0, at)), "") << extension << " cut to " << at;
+            std::string zeros = bytes;
+            zeros.replace(at, 64, std::min<std::size_t>(64, bytes.size() - at), '\0');
+            if (zeros != bytes) {
+                EXPECT_NE(problem_of(zeros), "") << extension << ": zeros from " << at;
+            }
         }
     }
     std::filesystem::remove_all(folder);
@@ -176,7 +221,7 @@ TEST(PictureFiles, ScreensShowTheSumWithTheExposure) {
     const Scene scene;
     const RenderOptions options;
     const Sky sky = some_sky(0.0f);
-    const auto png = [&](double stops) { return encode_png({scene, options, sky, "", stops}, picture); };
+    const auto png = [&](double stops) { return encode_png({scene, options, sky, "", stops}, picture, 1); };
     const std::string black = png(0.0);
     picture.layers[4].foam = glm::vec3(1.0f);
     const std::string foam = png(0.0);

@@ -141,6 +141,26 @@ TEST(Render, HorizonIsLevelAndInItsPlace) {
     }
 }
 
+// However little lies between the eye and the water along the line of sight.
+TEST(Render, WaterAtTheCamerasFeetIsSea) {
+    struct Pose {
+        double height_m, fov_deg;
+    };
+    for (const Pose& pose : {Pose{2.0, 179.0}, Pose{0.3, 170.0}, Pose{0.02, 50.0}}) {
+        Scene scene = calm_scene();
+        scene.camera.position_m = {0.0, 0.0, pose.height_m};
+        scene.camera.look_at_m = {87.0, 0.0, pose.height_m - 50.0};
+        scene.camera.fov_deg = pose.fov_deg;
+        const Picture picture = picture_of(scene);
+        const View view = view_at(scene.camera, 1);
+        for (int y = 0; y < picture.resolution.y; ++y)
+            for (int x = 0; x < picture.resolution.x; ++x)
+                EXPECT_EQ(picture.sea[static_cast<std::size_t>(y) * picture.resolution.x + x],
+                          view.direction({x + 0.5, y + 0.5}).z < 0.0)
+                    << pose.height_m << " m, " << pose.fov_deg << " degrees: " << x << ", " << y;
+    }
+}
+
 // Waves hide what is behind them and leave no holes: seen from above the crests, below the first sea of a
 // column there is nothing but sea.
 TEST(Render, AgitatedSeaHasNoHoles) {

@@ -12,6 +12,7 @@
 #include "core/scene/validate.h"
 #include "plugin/shot/shot.h"
 #include "tests/core/scene/key_samples.h"
+#include "tests/plugin/shot/no_check.h"
 
 namespace pelagic {
 namespace {
@@ -27,7 +28,7 @@ std::string shot_with(const Key& key, const std::string& value) {
 
 std::string refusal(const std::string& text) {
     try {
-        parse_shot(text, kMadeUp / "s.toml");
+        parse_shot(text, kMadeUp / "s.toml", no_check);
     } catch (const ShotError& error) {
         return error.what();
     }
@@ -148,7 +149,7 @@ TEST(ShotKeys, AreWrittenAndReadBack) {
             if (value_of(scene, key) != key.fallback) changed.insert(key.path);
         }
         const std::string text = shot_text(scene);
-        const Scene read = parse_shot(text, "s.toml");
+        const Scene read = parse_shot(text, "s.toml", no_check);
         for (const Key& key : keys()) {
             if (!key.has_value()) continue;
             EXPECT_EQ(value_of(read, key), value_of(scene, key)) << key.path << '\n' << text;
@@ -168,10 +169,10 @@ TEST(ShotKeys, AMeasuredSpectrumIsNamedByItsFileAndTime) {
     const Scene scene = parse_shot(
         "[sea]\nspectrum = \"file\"\nspectrum_file = \"made-99001w2021.txt\"\nspectrum_time = "
         "2021-03-01T02:50:00+02:00\n",
-        kMadeUp / "s.toml");
+        kMadeUp / "s.toml", no_check);
     const std::string text = shot_text(scene);
     EXPECT_NE(text.find("spectrum_time = 2021-03-01T00:50:00Z\n"), std::string::npos) << text;
-    EXPECT_EQ(canonical(parse_shot(text, "elsewhere.toml")), canonical(scene)) << text;
+    EXPECT_EQ(canonical(parse_shot(text, "elsewhere.toml", no_check)), canonical(scene)) << text;
 }
 
 TEST(ShotKeys, HelpSaysOfEachWhatDependsOnItAndWhatIsNotBuilt) {

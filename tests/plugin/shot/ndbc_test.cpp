@@ -152,7 +152,7 @@ TEST(Ndbc, MalformedFilesNameFileAndLine) {
     EXPECT_TRUE(has(text = refused(header, "2007 x 01 00 00", "1 2"), ":2: \"x\" is no part of a date"))
         << text;
     EXPECT_TRUE(
-        has(text = refused("#YY MM DD hh mm .04 .03", date, "1 2"), ":1: the frequency .03 is not above"))
+        has(text = refused("#YY MM DD hh mm .04 .03", date, "1 2"), ":1: the frequency \".03\" is not above"))
         << text;
     EXPECT_TRUE(has(text = refused("#YY MM DD hh mm .04 Hz", date, "1 2"), ":1: \"Hz\" is no frequency"))
         << text;

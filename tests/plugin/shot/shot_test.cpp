@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "core/scene/canonical.h"
+#include "core/scene/text.h"
 #include "temporary_folder.h"
+#include "tests/plugin/shot/no_check.h"
 
 namespace pelagic {
 namespace {
@@ -15,13 +18,13 @@ namespace {
 const std::filesystem::path kMadeUp = std::filesystem::path(PELAGIC_SOURCE_DIR) / "tests/plugin/shot/data";
 
 Scene parse(std::string_view text) {
-    return parse_shot(text, kMadeUp / "s.toml");
+    return parse_shot(text, kMadeUp / "s.toml", no_check);
 }
 
 // The message of a text that is refused, the file's folder taken off; empty if it loads.
 std::string refusal(std::string_view text) {
     try {
-        parse_shot(text, "s.toml");
+        parse_shot(text, "s.toml", no_check);
     } catch (const ShotError& error) {
         return error.what();
     }
@@ -330,17 +333,42 @@ TEST(Shot, APictureOfASkyIsFoundBesideTheShot) {
     const TemporaryFolder temporary;
     const std::filesystem::path folder = temporary.path();
     temporary.write("noon.exr", "only its place matters here");
-    const Scene scene = parse_shot("[light]\nsky = \"noon.exr\"\n", folder / "shot.toml");
+    const Scene scene = parse_shot("[light]\nsky = \"noon.exr\"\n", folder / "shot.toml", no_check);
     EXPECT_EQ(std::filesystem::path(scene.light.sky), folder / "noon.exr");
-    EXPECT_EQ(parse_shot("[light]\nsky = \"daylight\"\n", folder / "shot.toml").light.sky, "daylight");
+    EXPECT_EQ(parse_shot("[light]\nsky = \"daylight\"\n", folder / "shot.toml", no_check).light.sky,
+              "daylight");
     try {
-        parse_shot("[light]\nsky = \"dusk.exr\"\n", folder / "shot.toml");
+        parse_shot("[light]\nsky = \"dusk.exr\"\n", folder / "shot.toml", no_check);
         FAIL() << "a missing picture was accepted";
     } catch (const ShotError& error) {
         EXPECT_NE(std::string(error.what()).find(":2:7: light.sky = \"dusk.exr\": is no file in"),
                   std::string::npos)
             << error.what();
     }
+}
+
+TEST(Shot, WhatIsWrongInAPictureIsToldWithItsPlace) {
+    const TemporaryFolder temporary;
+    temporary.write("noon.exr", "only its place matters here");
+    const std::filesystem::path file = temporary.path() / "shot.toml";
+    const auto check = [](const Scene& scene) {
+        return std::vector{Problem{"light.sky", quoted_text(scene.light.sky), "is no sky", "a sky"}};
+    };
+    const auto refused_with = [&](const std::string& text) -> std::string {
+        try {
+            parse_shot(text, file, check);
+        } catch (const ShotError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refused_with("[light]\nturbidity = 3\nsky = \"noon.exr\"\n"),
+              file.string() + ":3:7: light.sky = " + quoted_text((temporary.path() / "noon.exr").string()) +
+                  ": is no sky; accepted: a sky");
+    // A path ends at its first NUL for the system: what is looked at would be another file.
+    EXPECT_NE(refused_with("[light]\nsky = \"noon.exr\\u0000.exr\"\n").find("is no file in"),
+              std::string::npos);
+    EXPECT_EQ(lines(refused_with("[light]\nsky = \"dusk.exr\"\n")), 1u);
 }
 
 TEST(Shot, WhatIsNotBuiltYetIsRefused) {
@@ -388,9 +416,104 @@ TEST(Shot, BrokenToml) {
     expect_refused("[sea\n", "1:", "TOML");
     expect_refused("[sea]\nspectrum = \"\xff\"\n", "2:", "UTF-8");
     expect_refused(std::string_view("[sea]\n\0", 7), "2:", "TOML");
-    expect_refused(std::string(100000, '['), "1:", "TOML");
-    expect_refused("a = " + std::string(100000, '['), "1:", "TOML");
     expect_refused("[shot]\nseed = 9223372036854775808\n", "2:", "TOML");
+}
+
+// Repeated text: parsers, and what walks through their trees, go as deep as a file does.
+std::string times(std::size_t count, std::string_view part) {
+    std::string out;
+    for (std::size_t i = 0; i < count; ++i) out += part;
+    return out;
+}
+
+TEST(Shot, DepthAndLengthAreBoundedBeforeParsing) {
+    const char* parts = "the key has too many parts";
+    const char* nested = "lists and tables are nested too deep";
+    for (const std::size_t count : {std::size_t{17}, std::size_t{16000}, std::size_t{1000000}}) {
+        expect_refused("[sea]\n" + times(count, "a.") + "a = 1\n", std::string("2:32: ") + parts,
+                       "at most 16");
+        expect_refused('[' + times(count, "a.") + "a]\n", std::string("1:33: ") + parts, "at most 16");
+        expect_refused("[[" + times(count, "a . ") + "a]]\n", std::string("1:65: ") + parts, "at most 16");
+        expect_refused(times(count, "\"ü\".") + "a = 1\n", std::string("1:64: ") + parts, "at most 16");
+        expect_refused("a = { " + times(count, "a.") + "a = 1 }\n", std::string("1:38: ") + parts,
+                       "at most 16");
+        expect_refused("# [[[\n'[' = " + times(count, "["), std::string("2:23: ") + nested, "at most 16");
+        expect_refused("a = " + times(count, "[\n"), std::string("17:1: ") + nested, "at most 16");
+        expect_refused("a = " + times(count, "{a="), std::string("1:53: ") + nested, "at most 16");
+        // Brackets in strings don't count, those behind them do.
+        expect_refused(
+            "a = [\"[[[\\\"[\", '[\\', '''[''[''', \"\"\"[\\\"\"\"[\"\"\"\"\", " + times(count, "[{"),
+            "1:65: " + std::string(nested), "at most 16");
+    }
+    expect_refused("[sea]\nfetch_m = 1" + times(300, "0"), "2:11: a key or value without quotes is too long",
+                   "at most 256 bytes");
+    expect_refused("[sea]\n" + times(257, "k") + " = 1", "2:1: a key or value", "at most 256 bytes");
+    for (const std::string quote : {"\"", "'", "\"\"\"", "'''"})
+        expect_refused("[shot]\nname = " + quote + times(8000000, "x") + quote, "2:8: a string is too long",
+                       "at most 16384 bytes");
+    // What isn't a key, a list or a string has no bound but the file's.
+    EXPECT_EQ(parse("# " + times(100000, "[a.") + "\n[shot]\nname = \"a\" # " + times(100000, "'")).shot.name,
+              "a");
+    EXPECT_EQ(parse(times(100000, "\n") + times(100000, "\t") + "shot.name = \"b\"").shot.name, "b");
+}
+
+TEST(Shot, ManyProblemsAreCountedAndTheFirstListed) {
+    constexpr std::size_t kMany = 50000;
+    const auto many = [](const auto& part) {
+        std::string out;
+        for (std::size_t i = 0; i < kMany; ++i) out += part(std::to_string(i));
+        return out;
+    };
+    const auto expect_some = [](const std::string& text, const std::string& first) {
+        const std::string report = refusal(text);
+        EXPECT_TRUE(report.starts_with("s.toml:" + first)) << report.substr(0, 200);
+        EXPECT_EQ(lines(report), 21u);
+        EXPECT_LT(report.size(), std::size_t{64} << 10);
+        return report.substr(report.rfind('\n') + 1);
+    };
+    // Names whose nearest key is dear to find; in the order of the file, whatever the order of their names.
+    const auto key = [](const std::string& i) { return "wind_speed_" + i + " = 1\n"; };
+    EXPECT_EQ(expect_some("[sea]\n" + many(key), "2:1: sea.wind_speed_0 = 1: is an unknown key"),
+              "s.toml: and 49980 more problems");
+    EXPECT_EQ(expect_some("[sea]\nz = 1\n" + many(key), "2:1: sea.z = 1: is an unknown key"),
+              "s.toml: and 49981 more problems");
+    expect_some(many([](const std::string& i) { return "[sea" + i + "]\n"; }),
+                "1:2: sea0 = { }: is an unknown table");
+    const auto entry = [](const std::string& i) { return "{frame=" + i + ",fov_deg=1e9},"; };
+    expect_some("[camera]\nkeys = [" + many(entry) + ']', "2:9: camera.keys[0]");
+    // Lists that are too long are one problem.
+    for (const char* list : {"sea.swell = [", "output.maps = [", "waves.cascades = ["})
+        EXPECT_EQ(lines(refusal(list + many([](const std::string&) { return "'normale',"; }) + ']')), 1u)
+            << list;
+}
+
+TEST(Shot, MessagesAreShortAndMoveNoCursor) {
+    const std::string folder_text = "[sea]\nspectrum = \"file\"\nspectrum_time = 2021-03-01T00:50:00Z\n";
+    for (const std::string& value :
+         {times(16000, "x"), std::string("\\u001b[2J\\u009b\\u202e\\u0000"), times(5000, "水")})
+        for (const std::string& text :
+             {"[shot]\nname = \"" + value + "\"\n", "[light]\nsky = \"" + value + ".exr\"\n",
+              "[sea]\nspectrum = \"" + value + "\"\n", "preset = \"" + value + "\"\n",
+              folder_text + "spectrum_file = \"" + value + "w2021.txt\"\n", '"' + value + "\" = 1\n",
+              "[shot]\n\"" + value + "\" = { \"" + value + "\" = 1 }\n",
+              "[sea]\nswell = [ { \"" + value + "\" = \"" + value + "\" } ]\n",
+              "[\"" + value + "\"]\n[\"" + value + "\"]\n"}) {
+            const std::string report = refusal(text);
+            EXPECT_TRUE(report.starts_with("s.toml:")) << text.substr(0, 100);
+            EXPECT_LT(report.size(), 4096u) << report.substr(0, 200);
+            std::istringstream each(report);
+            for (std::string line; std::getline(each, line);)
+                EXPECT_EQ(line_text(line), line) << "something in it is no text";
+        }
+    // A shot's own name may be anything that a system takes.
+    try {
+        parse_shot("[sea]\nfetch_m = -1\n", "a\x1b[2J\n\xe9.toml", no_check);
+        FAIL();
+    } catch (const ShotError& error) {
+        EXPECT_TRUE(
+            std::string_view(error.what()).starts_with("a\\u001b[2J\\u000a\\xe9.toml:2:11: sea.fetch_m"))
+            << error.what();
+    }
 }
 
 TEST(Shot, LineEndingsAndByteOrderMark) {
@@ -450,7 +573,7 @@ TEST(Shot, FilesThatAreNone) {
     const TemporaryFolder folder;
     const auto message = [](const std::filesystem::path& file) -> std::string {
         try {
-            load_shot(file);
+            load_shot(file, no_check);
         } catch (const ShotError& error) {
             return error.what();
         }

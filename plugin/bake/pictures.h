@@ -1,0 +1,25 @@
+// What pictures of `pelagic render` say about themselves, since no record does: the name that they were written under,
+// what they were made of, and a checksum of all their bytes (a PNG has the format's own, for each chunk).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "plugin/bake/check.h"
+#include "plugin/exr/exr.h"
+
+namespace pelagic {
+
+// The attributes of an EXR called `name` ("sea.0007.exr"), and what fills its checksum in once it is encoded.
+std::vector<exr::Attribute> seal_attributes(const std::string& name);
+void seal(std::string& exr);
+
+// The comment of a PNG called `name`.
+std::string png_comment(const std::string& name, const std::string& made_of);
+
+// Reads all of a picture, .exr or .png. What is wrong with it, as the end of a sentence that begins with its name;
+// empty: it is as it was written, under this very name. Throws CheckCancelled.
+std::string picture_problem(const std::filesystem::path& file, CheckProgress& progress);
+
+}  // namespace pelagic

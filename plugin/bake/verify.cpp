@@ -1,0 +1,145 @@
+#include "plugin/bake/verify.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "plugin/bake/bake.h"
+#include "plugin/bake/foreign.h"
+#include "plugin/bake/pictures.h"
+#include "plugin/bake/record.h"
+
+namespace pelagic {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a folder holds by its records.
+struct Known {
+    std::vector<FileCheck> files;
+    std::set<std::string> paths;      // of these and of the records
+    std::set<std::string> uncertain;  // shots whose record is damaged: what else is named so may be theirs
+};
+
+void read_shot(const fs::path& folder, const std::string& record, const RecordWatch& watch, Known& known,
+               Verification& found) {
+    const std::string name = record.substr(0, record.size() - std::string_view(".json").size());
+    const auto tell = [&](Flaw flaw, std::string what) {
+        found.findings.push_back({record, flaw, std::move(what)});
+    };
+    const auto add = [&](const std::string& path, FileRecord file) {
+        if (known.paths.insert(path).second)
+            known.files.push_back({.path = path, .recorded = std::move(file)});
+    };
+    std::vector<int> baked, stale;
+    const RecordReading reading = read_record(
+        folder / record,
+        [&](int frame, FrameRecord entry) {
+            baked.push_back(frame);
+            if (entry.is_stale) stale.push_back(frame);
+            for (auto& [path, file] : entry.files) add(path, std::move(file));
+        },
+        watch);
+    known.paths.insert(record);
+    ++found.shots;
+    if (!reading.problem.empty()) tell(Flaw::Damaged, reading.problem);
+    if (!reading.altered.empty())
+        tell(Flaw::Damaged, "was altered in what it says about the frames " + frames_text(reading.altered));
+    if (!reading.problem.empty() || !reading.altered.empty()) known.uncertain.insert(name);
+    if (!stale.empty()) tell(Flaw::Stale, "has frames of another version of the shot: " + frames_text(stale));
+    if (!reading.shot) return;
+    const ShotRecord& shot = *reading.shot;
+    if (shot.name != name) tell(Flaw::Damaged, "is the record of the shot " + shot.name + ", renamed");
+    for (const auto& [path, file] : shot.files) add(path, file);
+    std::vector<int> missing;
+    std::sort(baked.begin(), baked.end());
+    for (long frame = shot.first_frame; frame <= shot.last_frame; ++frame)
+        if (!std::binary_search(baked.begin(), baked.end(), static_cast<int>(frame)) &&
+            std::find(reading.altered.begin(), reading.altered.end(), frame) == reading.altered.end())
+            missing.push_back(static_cast<int>(frame));
+    if (!missing.empty()) tell(Flaw::Missing, "lacks frames that aren't baked: " + frames_text(missing));
+}
+
+bool is_picture(const std::string& name) {
+    const std::string shot = shot_of(name) + '.';
+    return frame_of(name, {shot, ".exr"}) || frame_of(name, {shot, ".png"});
+}
+
+}  // namespace
+
+const char* word_of(Flaw flaw) {
+    switch (flaw) {
+        case Flaw::Missing:
+            return "missing";
+        case Flaw::Damaged:
+            return "damaged";
+        case Flaw::Stale:
+            return "stale";
+        case Flaw::Foreign:
+            return "foreign";
+    }
+    return "";
+}
+
+Verification verify(const fs::path& folder, const CheckWatch& watch) {
+    std::set<std::string> names;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        names.insert(entry->path().filename().string());
+    if (error)
+        throw files::FileError("cannot read the folder '" + folder.string() + "': " + error.message() +
+                                   ": name a folder that a bake or a render wrote into",
+                               folder, error);
+
+    Verification found;
+    Known known;
+    const auto go_on = [&] {
+        if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) throw CheckCancelled();
+    };
+    struct PictureCheck {
+        std::string name, problem;
+    };
+    std::vector<PictureCheck> pictures;
+    for (const std::string& name : names) {
+        if (name.starts_with('.')) continue;
+        if (name.ends_with(".json")) read_shot(folder, name, go_on, known, found);
+        if (is_picture(name)) pictures.push_back({name, {}});
+    }
+
+    std::uintmax_t& total = found.bytes;
+    for (const FileCheck& file : known.files) total += file.recorded.bytes;
+    for (const PictureCheck& picture : pictures) total += files::file_size(folder / picture.name).value_or(0);
+    CheckProgress progress(watch, total);
+    const std::size_t of_bakes = known.files.size();
+    tbb::parallel_for(std::size_t(0), of_bakes + pictures.size(), [&](std::size_t i) {
+        if (i < of_bakes) return check_file(folder, known.files[i], progress);
+        PictureCheck& picture = pictures[i - of_bakes];
+        picture.problem = picture_problem(folder / picture.name, progress);
+    });
+    found.files = static_cast<int>(of_bakes + pictures.size());
+    for (const FileCheck& file : known.files)
+        if (!file.problem.empty())
+            found.findings.push_back(
+                {file.path, file.is_missing ? Flaw::Missing : Flaw::Damaged, file.problem});
+    for (const PictureCheck& picture : pictures) {
+        if (!picture.problem.empty())
+            found.findings.push_back({picture.name, Flaw::Damaged, picture.problem});
+        const std::string other = fs::path(picture.name)
+                                      .replace_extension(picture.name.ends_with(".png") ? ".exr" : ".png")
+                                      .string();
+        if (!names.contains(other))
+            found.findings.push_back({other, Flaw::Missing, "is missing beside " + picture.name});
+    }
+    for_each_bake_file(folder, [&](const std::string& path) {
+        if (!known.paths.contains(path) && !known.uncertain.contains(shot_of(path)))
+            found.findings.push_back({path, Flaw::Foreign, "is in no record here"});
+    });
+    std::stable_sort(found.findings.begin(), found.findings.end(),
+                     [](const Finding& a, const Finding& b) { return a.path < b.path; });
+    return found;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,87 @@
+// pelagic verify DIR …
+#include "plugin/bake/verify.h"
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plugin/cli/exit_status.h"
+#include "plugin/cli/help.h"
+#include "plugin/cli/progress.h"
+#include "plugin/cli/stop.h"
+#include "plugin/cli/text.h"
+#include "plugin/cli/threads.h"
+#include "plugin/cli/verb.h"
+#include "plugin/files/files.h"
+
+namespace pelagic::cli {
+namespace {
+
+struct Arguments {
+    std::vector<std::string> folders;
+    std::string threads;
+};
+
+// "2 shots, 151 files, 1.2 GiB: 3 missing, 1 damaged"
+std::string summary(const Verification& found) {
+    std::string text = count_text(found.shots, "shot", "shots") + ", " +
+                       count_text(found.files, "file", "files") + ", " + bytes_text(found.bytes) + ": ";
+    if (found.is_whole()) return text + "all whole";
+    std::string flaws;
+    for (const Flaw flaw : {Flaw::Missing, Flaw::Damaged, Flaw::Stale, Flaw::Foreign}) {
+        long count = 0;
+        for (const Finding& finding : found.findings) count += finding.flaw == flaw ? 1 : 0;
+        if (count > 0) flaws += (flaws.empty() ? "" : ", ") + std::to_string(count) + ' ' + word_of(flaw);
+    }
+    return text + (flaws.empty() ? "no bake and no pictures are here" : flaws);
+}
+
+int run(const Arguments& arguments) {
+    StopSignals stop;
+    stop.files_begin();  // a check ends soon, and with a word
+    Progress progress;
+    Threads threads(arguments.threads);
+    int status = kDone;
+    for (const std::string& folder : arguments.folders) {
+        const CheckWatch watch{.progress =
+                                   [&](double done) {
+                                       progress.show("reading " + folder + ": " +
+                                                     std::to_string(std::lround(100.0 * done)) + " %");
+                                   },
+                               .cancel = &stop.cancelled()};
+        try {
+            const Verification found = threads.execute([&] { return verify(folder, watch); });
+            progress.clear();
+            for (const Finding& finding : found.findings)
+                std::cout << word_of(finding.flaw) << ": " << folder << '/' << finding.path << ' '
+                          << finding.what << '\n';
+            std::cout << folder << ": " << summary(found) << std::endl;
+            if (!found.is_whole()) status = kRefused;
+        } catch (const CheckCancelled&) {
+            progress.clear();
+            std::cerr << "pelagic: stopped; " << folder << " was not read to its end\n";
+            return kSignal + stop.number();
+        } catch (const files::FileError& error) {
+            progress.clear();
+            std::cerr << "pelagic: " << error.what() << std::endl;
+            status = kRefused;
+        }
+    }
+    return status;
+}
+
+}  // namespace
+
+Verb add_verify(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("verify", help::kVerify);
+    command->group(help::kVerbs);
+    command->footer(help::kVerifyFooter);
+    auto arguments = std::make_shared<Arguments>();
+    command->add_option("DIR", arguments->folders, help::kFolders)->required()->type_name("");
+    add_threads(*command, arguments->threads, help::kVerifyThreads);
+    return {command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace pelagic::cli

@@ -1,0 +1,48 @@
+#include "plugin/render/under_water.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "core/evaluate/surface_above.h"
+#include "core/scene/text.h"
+#include "core/surface/rungs.h"
+
+namespace pelagic {
+
+bool is_among_waves(const View& view, const ProjectedGridOptions& options) {
+    return !(view.position_m.z > options.bounds.height_m);
+}
+
+template <class T>
+std::optional<double> surface_above_camera(const Frame<T>& frame, const View& view,
+                                           const ProjectedGridOptions& options) {
+    if (!is_among_waves(view, options)) return std::nullopt;
+    const double finest_m = projected_grid_needs(view, options).finest_cell_m;
+    const bool on_ladder = frame.sea().plan().queries.front().query.pixel_m.size() > 1;
+    return surface_above(frame, 0, view.position_m, on_ladder ? first_rung_m(finest_m) : finest_m);
+}
+
+template <class T>
+void refuse_under_water(const Frame<T>& state, const Scene& scene, int frame,
+                        const ProjectedGridOptions& options) {
+    const View view = view_at(scene.camera, frame);
+    const auto surface_m = surface_above_camera(state, view, options);
+    if (!surface_m) return;
+    const auto metres = [](double z_m) { return number_text(std::round(z_m * 1e3) / 1e3) + " m"; };
+    throw std::invalid_argument(
+        std::string(scene.camera.keys.empty() ? "camera.position_m" : "camera.keys") + ": at frame " +
+        std::to_string(frame) + " the camera is under water: it is at z = " + metres(view.position_m.z) +
+        ", and the surface there at z = " + metres(*surface_m) +
+        "; pictures are drawn from above the water only: raise the camera, or leave such "
+        "frames out");
+}
+
+template std::optional<double> surface_above_camera(const Frame<float>&, const View&,
+                                                    const ProjectedGridOptions&);
+template std::optional<double> surface_above_camera(const Frame<double>&, const View&,
+                                                    const ProjectedGridOptions&);
+template void refuse_under_water(const Frame<float>&, const Scene&, int, const ProjectedGridOptions&);
+template void refuse_under_water(const Frame<double>&, const Scene&, int, const ProjectedGridOptions&);
+
+}  // namespace pelagic

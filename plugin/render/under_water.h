@@ -1,0 +1,29 @@
+// A camera under water: its pictures would need other optics than those above it, so they are refused.
+#pragma once
+
+#include <optional>
+
+#include "core/scene/scene.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
+#include "core/waves/frame.h"
+
+namespace pelagic {
+
+// Whether the sea may reach the camera: false above the highest crest to be expected (core/plan/extent.h), where
+// nobody needs to look at the sea itself.
+bool is_among_waves(const View& view, const ProjectedGridOptions& options);
+
+// The height z [m] of the surface above the camera, as its picture shows the surface there; nullopt for a
+// camera in the air. Query 0 of the frame's plan is that of pictures (picture_plan()).
+template <class T>
+std::optional<double> surface_above_camera(const Frame<T>& frame, const View& view,
+                                           const ProjectedGridOptions& options);
+
+// For the shot's camera at a frame whose time `state` has. Throws std::invalid_argument, which says how deep
+// the camera is.
+template <class T>
+void refuse_under_water(const Frame<T>& state, const Scene& scene, int frame,
+                        const ProjectedGridOptions& options);
+
+}  // namespace pelagic

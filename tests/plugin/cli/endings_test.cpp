@@ -1,0 +1,134 @@
+// How the program ends where its surroundings fail: full or closed outputs, readers that leave, limits, no threads.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/plugin/cli/program.h"
+#include "tests/plugin/cli/small_shot.h"
+
+namespace pelagic::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+class Endings : public ::testing::Test {
+  protected:
+    void SetUp() override { write_file(folder() / "small.toml", text_of({.frames = 3})); }
+    const fs::path& folder() const { return folder_.path(); }
+    // Of bash, in which $P is the program.
+    Ended shell(const std::string& line) const {
+        return run({.arguments = {"-c", "P='" PELAGIC_PROGRAM "'; " + line},
+                    .folder = folder(),
+                    .program = "/bin/bash"});
+    }
+    void bake_whole() const { ASSERT_EQ(shell("$P bake small.toml --out whole >&2").status, 0); }
+
+  private:
+    TempFolder folder_;
+};
+
+TEST_F(Endings, WhatIsPrintedHasArrivedOrTheProgramSaysThatItHasnt) {
+    for (const char* arguments :
+         {"--help", "-h", "--version", "bake --help", "render --help", "preview --help", "explain --help",
+          "validate --help", "keys --help", "keys", "explain small.toml", "validate small.toml",
+          "bake small.toml --out out", "render small.toml --out out --size 16x8 --frames 1 --samples 1"})
+        for (const char* output : {">/dev/full", ">&-"}) {
+            const Ended ended = shell("$P " + std::string(arguments) + " " + output);
+            EXPECT_EQ(ended.status, 1) << arguments << output;
+            EXPECT_TRUE(has(ended.err, "standard output can't be written to"))
+                << arguments << output << ended.err;
+        }
+}
+
+TEST_F(Endings, AReaderThatLeavesEndsItWithoutAWord) {
+    for (const char* arguments : {"--help", "keys", "explain small.toml", "validate small.toml"}) {
+        const Ended ended =
+            shell("{ sleep 0.1; $P " + std::string(arguments) + "; echo $? > status; } | true; cat status");
+        EXPECT_EQ(ended.out, "141\n") << arguments;
+        EXPECT_EQ(ended.err, "") << arguments;
+    }
+    // A bake finishes before.
+    const Ended ended = shell("{ $P bake small.toml --out out; echo $? > status; } | true; cat status");
+    EXPECT_EQ(ended.out, "141\n");
+    EXPECT_FALSE(has(ended.err, "standard output")) << ended.err;
+    bake_whole();
+    EXPECT_EQ(differences(folder() / "out", folder() / "whole"), "");
+}
+
+TEST_F(Endings, NoFileTakesAClosedStreamsPlace) {
+    bake_whole();
+    for (const char* closed : {"2>&-", "0<&- 2>&-", "1>&- 2>&-", "0<&- 1>&- 2>&-"}) {
+        fs::remove_all(folder() / "out");
+        shell("$P bake small.toml --out out " + std::string(closed));
+        EXPECT_EQ(differences(folder() / "out", folder() / "whole"), "") << closed;
+        EXPECT_EQ(leftovers(folder()), std::vector<std::string>()) << closed;
+    }
+}
+
+// ulimit -f counts in blocks of 1 KiB.
+TEST_F(Endings, ALogBeyondTheLimitOfFilesIsNoSignal) {
+    for (const char* verb : {"validate", "explain", "bake", "render", "preview"}) {
+        const Ended ended =
+            shell("head -c 4096 /dev/zero > log; echo 'x = 1' > wrong.toml; ulimit -f 4; $P " +
+                  std::string(verb) + " wrong.toml 2>> log");
+        EXPECT_EQ(ended.status, 1) << verb;
+    }
+    const Ended ended = shell("ulimit -f 4; $P keys > keys.txt");
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_TRUE(has(ended.err, "standard output can't be written to")) << ended.err;
+    const Ended baked = shell("ulimit -f 1; $P bake small.toml --out out");
+    EXPECT_EQ(baked.status, 1);
+    EXPECT_TRUE(has(baked.err, "ulimit -f")) << baked.err;
+    EXPECT_EQ(torn_files(folder() / "out"), "");
+    EXPECT_EQ(leftovers(folder() / "out"), std::vector<std::string>());
+}
+
+// The system may refuse the first thread, or a later one, which a thread of oneTBB's own asks for.
+TEST_F(Endings, ThreadsThatTheSystemRefusesAreSaid) {
+    for (const char* arguments :
+         {"bake small.toml --out out", "render small.toml --out out --size 16x8 --samples 1",
+          "explain --measure small.toml"})
+        for (const int threads : {0, 1, 2, 4, 6}) {
+            fs::remove_all(folder() / "out");
+            const Ended ended =
+                shell("ulimit -c 0; export LD_PRELOAD='" PELAGIC_FEW_THREADS "' PELAGIC_TEST_THREADS=" +
+                      std::to_string(threads) + "; $P " + arguments + " --threads 12");
+            if (ended.status != 0) {  // it may have done with fewer
+                EXPECT_EQ(ended.status, 1) << arguments << ' ' << threads << ended.err;
+                EXPECT_TRUE(has(ended.err, "the system refuses another thread; ask for fewer with --threads"))
+                    << arguments << ' ' << threads << ended.err;
+            }
+            EXPECT_EQ(torn_files(folder()), "");
+        }
+}
+
+TEST_F(Endings, APipeOrADeviceIsNoFile) {
+    const std::string sea = "[sea]\nspectrum = \"file\"\nspectrum_time = 2019-02-06T00:40:00Z\n";
+    write_file(folder() / "buoy.toml", sea + "spectrum_file = \"pipe.txt\"\n");
+    write_file(folder() / "buoy-device.toml", sea + "spectrum_file = \"/dev/zero\"\n");
+    write_file(folder() / "sky.toml", "[light]\nsky = \"pipe.exr\"\n");
+    write_file(folder() / "sky-device.toml", "[light]\nsky = \"/dev/null\"\n");
+    fs::create_directory(folder() / "folder.toml");
+    shell("mkfifo pipe pipe.txt pipe.exr");
+    for (const char* file : {"pipe", "folder.toml", "/dev/null/x", "buoy.toml", "buoy-device.toml",
+                             "sky.toml", "sky-device.toml"})
+        for (const std::string verb :
+             {"validate ", "explain ", "bake ", "render --size 16x8 ", "preview --offscreen x.png "}) {
+            const Ended ended = shell("timeout 20 $P " + verb + file);
+            EXPECT_EQ(ended.status, 1) << verb << file << ended.err;
+            EXPECT_TRUE(ended.err.starts_with(file)) << verb << file << ended.err;
+        }
+}
+
+TEST_F(Endings, AShotMayComeThroughAPipeThatTheShellHolds) {
+    EXPECT_EQ(shell("cat small.toml | $P validate /dev/stdin").status, 0);
+    EXPECT_EQ(shell("$P validate <(cat small.toml)").status, 0);
+}
+
+}  // namespace
+}  // namespace pelagic::test

@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/grid_layout.h"
+#include "core/plan/memory.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/plan.h"
 #include "core/plan/products.h"
@@ -23,13 +24,6 @@ std::string format(const char* pattern, Args... args) {
     std::string text(static_cast<std::size_t>(length), '\0');
     std::snprintf(text.data(), text.size() + 1, pattern, args...);
     return text;
-}
-
-std::string bytes_text(std::size_t bytes) {
-    const double b = static_cast<double>(bytes);
-    if (bytes < 1024 * 1024) return format("%.1f KiB", b / 1024.0);
-    if (b < 1024.0 * 1024.0 * 1024.0) return format("%.1f MiB", b / (1024.0 * 1024.0));
-    return format("%.2f GiB", b / (1024.0 * 1024.0 * 1024.0));
 }
 
 const char* field_name(Field field) {

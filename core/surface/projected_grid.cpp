@@ -31,6 +31,12 @@ constexpr double kShift = 0.5;
 // Shrinks cells so that even such a side stays below cell_px. Found by trial over poses and lenses: the
 // longest side was 1.08 × cell_px without it.
 constexpr double kSlack = 0.92;
+// A lens narrower than a quarter of a right angle across its picture's corners sees so little of the circle
+// and of the way from the nadir to the horizon that evenly small cells would number millions. Rows keep their
+// cells in the last kFine diagonals of what is in view of the sea at rest; the rest on either side, where only
+// crests come before the lens, gets no more rows than kBeside diagonals have cells, and columns are no more than
+// kAcross diagonals have. kSpare cells more let small pictures have a round grid.
+constexpr double kFine = 4.0, kBeside = 1.0, kAcross = 6.0, kSpare = 64.0;
 // Counts are multiples of kCountStep. The largest serves an 8K picture with one cell per pixel.
 constexpr int kCountStep = 16, kLargestCount = 8192;
 
@@ -69,6 +75,7 @@ struct Station {
     double effective_height_m;  // √(h² + (Hs/2)²)
     double farthest_m;          // radius of the last row
     double corner_cos;          // cosine of the angle between the optical axis and a corner of the picture
+    double diagonal;            // the angle between opposite corners
     glm::dvec2 ahead;           // unit vector of azimuth 0
 };
 
@@ -81,6 +88,7 @@ Station station_of(const View& view, const ProjectedGridOptions& options) {
         view.tan_half_width *
         std::hypot(1.0, static_cast<double>(view.resolution.y) / static_cast<double>(view.resolution.x));
     at.corner_cos = 1.0 / std::hypot(1.0, tan_corner);
+    at.diagonal = 2.0 * std::atan(tan_corner);
     at.farthest_m = std::min(at.effective_height_m / (kHorizon_px * view.pixel_tangent() *
                                                       std::max(at.corner_cos * at.corner_cos, 1e-6)),
                              kFarthest_m);
@@ -221,6 +229,10 @@ struct Row {
     bool fine;          // in_view, and farther than kNear reaches
 };
 
+bool is_narrow(const Station& at) {
+    return kFine * at.diagonal < 0.5 * kPi;
+}
+
 // The rows of a pose: count + 1 of them, or as many as the pose needs if count is 0.
 std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, const Station& at,
                          double cell_angle, int count) {
@@ -246,11 +258,29 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
     const double before = (core.first - angles.first) / (kMargin * cell_angle);
     const double inside = (core.last - core.first) / cell_angle;
     const double after = (angles.last - core.last) / (kMargin * cell_angle);
-    const double all = before + inside + after;
-    const auto angle_of = [&](double cells) {
+    const auto angle_of_small = [&](double cells) {
         if (cells < before) return angles.first + cells * kMargin * cell_angle;
         if (cells < before + inside) return core.first + (cells - before) * cell_angle;
         return std::min(core.last + (cells - before - inside) * kMargin * cell_angle, angles.last);
+    };
+    // A narrow lens has larger cells on both sides of those that it looks at: so many small ones each.
+    double near_cells = 0.0, near_rows = 0.0, far_rows = after;
+    if (is_narrow(at)) {
+        const double most = kBeside * at.diagonal / cell_angle + kSpare;
+        const double first = core.last - kFine * at.diagonal;  // of those that stay small
+        near_cells = first > core.first     ? before + (first - core.first) / cell_angle
+                     : first > angles.first ? (first - angles.first) / (kMargin * cell_angle)
+                                            : 0.0;
+        near_rows = std::min(near_cells, most);
+        far_rows = std::min(after, most);
+    }
+    const double fine_rows = before + inside - near_cells, all = near_rows + fine_rows + far_rows;
+    const auto angle_of = [&](double cells) {
+        if (cells < near_rows) return angle_of_small(cells * (near_cells / near_rows));
+        const double beyond = cells - near_rows - fine_rows;
+        if (beyond > 0.0 && far_rows < after)
+            return angle_of_small(before + inside + beyond * (after / far_rows));
+        return angle_of_small(cells - near_rows + near_cells);
     };
     if (count == 0) {
         const double needed = std::ceil(all / kCountStep) * kCountStep;
@@ -279,10 +309,12 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
         rows[i].fine = rows[i].in_view && rows[i].radius_m >= kNear * reach_m;
         rows[i].seen_width = rows[i].in_view ? half_width(plane, ring).value_or(0.0) : 0.0;
     }
-    // Columns must stay nearly straight where they are in view: a row follows a wider neighbour.
+    // Columns must stay nearly straight where they are in view: a row follows a wider neighbour. A narrow lens
+    // sees the columns in the middle, which shift by a small part of what the outermost do.
     const auto follow = [&](Row& row, const Row& neighbour) {
-        const double cell = kShift * cell_angle * std::hypot(row.radius_m, at.effective_height_m) /
-                            std::max(row.radius_m, 1e-300);
+        double cell = kShift * cell_angle * std::hypot(row.radius_m, at.effective_height_m) /
+                      std::max(row.radius_m, 1e-300);
+        if (is_narrow(at)) cell *= std::max(neighbour.half_width / std::max(row.seen_width, 1e-9), 1.0);
         row.half_width = std::max(row.half_width, neighbour.half_width - cell);
     };
     for (int i = count; i-- > 0;) follow(rows[i], rows[i + 1]);
@@ -322,6 +354,7 @@ ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOpt
         const double across = 2.0 * width * row.radius_m / std::hypot(row.radius_m, at.effective_height_m);
         cells = std::max(cells, across / cell_angle);
     }
+    if (is_narrow(at)) cells = std::min(cells, kAcross * at.diagonal / cell_angle + kSpare);
     const double columns =
         std::clamp(std::ceil(cells / kCountStep) * kCountStep, 1.0 * kCountStep, 1.0 * kLargestCount);
     double finest_cell_m = std::numeric_limits<double>::infinity();

@@ -39,7 +39,9 @@ inline std::size_t points_of(ProjectedGridSize size) {
 struct ProjectedGridOptions {
     // The largest side of a cell on the screen where the sea at rest is in view, for lenses whose corners are
     // up to 60° off the axis; beyond that angle cells are stretched by up to 1/(4 cos²). Cells are some three
-    // times as large where only displaced crests come into view, and within twice their reach of the nadir.
+    // times as large where only displaced crests come into view, and within twice their reach of the nadir. A
+    // lens of less than some 20° has larger ones where the sea moves farther than the lens sees: points stay in
+    // proportion to the picture's cells.
     double cell_px = 8.0;
     SurfaceBounds bounds;
     double significant_height_m = 0.0;  // Hs

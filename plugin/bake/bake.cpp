@@ -1,5 +1,7 @@
 #include "plugin/bake/bake.h"
 
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -23,6 +25,7 @@
 #include "plugin/bake/sequence.h"
 #include "plugin/bake/stage.h"
 #include "plugin/files/files.h"
+#include "plugin/machine/memory.h"
 #include "plugin/usd/layers.h"
 
 namespace pelagic {
@@ -194,6 +197,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     const Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
         throw std::invalid_argument("the shot asks for no output: accepted: output.mesh, output.maps");
+    require_memory(bake_memory(plan, frames.size(), tbb::this_task_arena::max_concurrency()),
+                   machine::memory_limit_or(options.max_memory_bytes), "this bake");
     const Parts parts = make_parts(plan);
     prepare_folders(options.out, parts);
 

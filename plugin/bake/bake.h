@@ -5,14 +5,9 @@
 // Files that a former run left, with the fingerprint that they would get now and with the bytes that were written
 // (each is read, and its checksum compared), are kept; everything else that is asked for is done again.
 //
-// One frame is computed while others are encoded and written, kFramesInFlight at most together. Beside the
-// plan's sea and frame, each of these holds, whatever the shot's length,
-//   12 bytes a vertex for positions, normals, velocities and slope variances each, 4 for whitecaps, and with
-//      a mesh in text up to twice 18 bytes more for each of their numbers
-//   12 bytes a texel for each map and tile (whitecaps 16), and its file: as much again, with mip levels a
-//   third more
-// and while it is encoded once or twice more a map's texels with their mip levels. The faces of the mesh, 28
-// bytes a quad, are held while they are written, before the first frame; so are 6 MB for the sky.
+// One frame is computed while others are encoded and written, kFramesInFlight at most together. Whatever the
+// shot's length, that and the sea is all that is held: bake_memory() says how much, and a bake that needs more than
+// there is is refused before it begins.
 #pragma once
 
 #include <atomic>
@@ -22,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "core/plan/memory.h"
 #include "core/scene/scene.h"
 #include "plugin/bake/pipeline.h"
 
@@ -49,6 +45,8 @@ struct BakeOptions {
     std::vector<int> frames;    // rising, within the shot's range; empty: the whole shot
     // One call at a time, from any thread; may be empty.
     std::function<void(const BakeProgress&)> progress;
+    // What it may hold in memory; 0: what the system gives this process (plugin/machine).
+    std::size_t max_memory_bytes = 0;
     // Set from elsewhere (a signal handler, another thread): the bake stops as soon as the file at hand is
     // whole, the frame at hand is computed and the maps at hand are encoded.
     const std::atomic<bool>* cancel = nullptr;
@@ -71,7 +69,10 @@ struct BakeReport {
     std::vector<std::string> damaged;
 };
 
-// Throws files::FileError where a file can't be written (what was finished is kept and recorded),
+// What a bake of so many frames of the plan (plan_bake) holds at most, on so many threads.
+MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads);
+
+// Throws NotEnoughMemory before anything is written, files::FileError where a file can't be written (what was finished is kept and recorded),
 // std::invalid_argument for frames outside the shot's range or a scene that validate() refuses or that asks
 // for nothing.
 BakeReport bake(const Scene& scene, const BakeOptions& options);

@@ -49,6 +49,34 @@ class MapPart final : public OutputPart {
         compute_as(wide_, sea, static_cast<MapSlot&>(slot));
     }
 
+    OutputMemory memory() const override {
+        const std::size_t texels = query().points;
+        const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
+        // With mip levels a third more. The file of slope variances is the same all over, and packed to nothing.
+        struct Encoded {
+            std::size_t file, work;  // [bytes/texel] of the level that is as large as the map
+        };
+        const auto [file, work] = [&]() -> Encoded {
+            switch (kind_) {
+                case MapKind::Displacement:
+                    return {12, 0};
+                case MapKind::Normal:
+                    return {6 * 4 / 3, 12 / 3};
+                case MapKind::SlopeVariance:
+                    return {0, 12 * 4 / 3};
+                case MapKind::Whitecaps:
+                    return {16 * 4 / 3, 12 + 24 * 4 / 3};
+            }
+            throw std::logic_error("a map of no kind");
+        }();
+        return {.once = texels * 2 * scalar,
+                .slot = texels * file,
+                .encoding = texels * work,
+                .remedy = output_.cascade
+                              ? "lower the resolutions in waves.cascades, or leave cascade_tiles out"
+                              : "lower output.map_resolution, or ask for fewer output.maps"};
+    }
+
     void encode(int frame, OutputSlot& any_slot) const override {
         MapSlot& slot = static_cast<MapSlot&>(any_slot);
         const auto& coverage = slot.values.numbers(Product::Coverage);

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <memory>
 
-#include "core/plan/products.h"
 #include "core/scene/names.h"
+#include "plugin/bake/bake.h"
 #include "plugin/bake/sequence.h"
 
 namespace pelagic {
@@ -68,24 +68,6 @@ bool same_work(const Plan& a, const Plan& b) {
                                                 });
 }
 
-std::size_t held_bytes(const Plan& plan) {
-    std::size_t bytes = plan.sea_bytes() + plan.frame_bytes() + plan.output_bytes();
-    for (const PlannedOutput& output : plan.outputs) {
-        const PlannedQuery& planned = plan.queries[output.query];
-        // Encoded, at most: 18 bytes a number of text, 12 a texel, and a third more in levels, with as much
-        // again while a file is made.
-        constexpr std::size_t kText = 18, kTexel = 32;
-        std::size_t scalars = 0;
-        for (const ProductRow& row : kProductTable)
-            if (planned.query.products[index(row.product)]) scalars += row.components;
-        if (output.map)
-            bytes += planned.query.points * kTexel;
-        else if (plan.from->scene.output.mesh == MeshFormat::Usda)
-            bytes += planned.query.points * scalars * kText;
-    }
-    return bytes;
-}
-
 }  // namespace
 
 PlanCost cost_of(const Plan& plan) {
@@ -126,11 +108,11 @@ std::vector<MeasureItem> measure_items(const Scene& scene) {
     return items;
 }
 
-std::size_t measure_bytes(const Scene& scene) {
+std::size_t measure_bytes(const Scene& scene, int threads) {
     std::size_t beside = 0;
     for (const MeasureItem& item : measure_items(scene))
-        beside = std::max(beside, held_bytes(plan_bake(item.without)));
-    return held_bytes(plan_bake(scene)) + beside;
+        beside = std::max(beside, bake_memory(plan_bake(item.without), 1, threads).bytes());
+    return bake_memory(plan_bake(scene), 1, threads).bytes() + beside;
 }
 
 Measured measure(const Scene& scene, const MeasureOptions& options) {

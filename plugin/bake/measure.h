@@ -63,8 +63,8 @@ struct MeasureOptions {
     std::function<void(const Measured&)> measured;         // each item as soon as it is known; may be empty
 };
 
-// The most bytes that measure() holds, about: both seas, frames, results and encoded files.
-std::size_t measure_bytes(const Scene& scene);
+// The most bytes that measure() holds on so many threads, about: both seas, frames, results and encoded files.
+std::size_t measure_bytes(const Scene& scene, int threads);
 
 // The whole shot, after each of its items. The scene must be valid. Throws std::bad_alloc.
 Measured measure(const Scene& scene, const MeasureOptions& options);

@@ -69,6 +69,31 @@ class MeshPart final : public OutputPart {
         compute_as(wide_, sea, frame, static_cast<MeshSlot&>(slot));
     }
 
+    OutputMemory memory() const override {
+        const std::size_t points = query().points;
+        const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
+        constexpr std::size_t kFace =
+            5 * sizeof(std::int32_t) + sizeof(glm::vec2);  // a quad's count, corners, st
+        OutputMemory memory{.once = points * 2 * scalar, .remedy = {}};
+        if (plan_.surface->is_constant()) {
+            memory.fixed = points * kFace;
+            memory.remedy = "lower surface.resolution, or ask for fewer output.attributes";
+        } else {
+            // Footprints of each point, and the grid that they are taken from.
+            memory.once += points * (2 * scalar + sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double));
+            memory.slot = points * kFace;
+            memory.remedy = "raise surface.cell_px, or lower camera.resolution";
+        }
+        if (is_text()) {
+            memory.slot += points * kText * numbers();
+            memory.encoding =
+                points * kText * numbers() / 2;  // the string moves to a larger place as it grows
+            if (memory.fixed > 0) memory.fixed += points * kFace;
+            memory.remedy += "; output.mesh = \"usdc\" needs a third";
+        }
+        return memory;
+    }
+
     void encode(int frame, OutputSlot& any_slot) const override {
         MeshSlot& slot = static_cast<MeshSlot&>(any_slot);
         const auto& coverage = slot.values.numbers(Product::Coverage);
@@ -125,6 +150,15 @@ class MeshPart final : public OutputPart {
         bool is_laid_out = false;
         QueryRunner<T> runner;
     };
+
+    // Characters of a number in text, with what separates them, as a mesh has them.
+    static constexpr std::size_t kText = 13;
+    std::size_t numbers() const {
+        std::size_t count = 0;
+        for (const ProductRow& row : kProductTable)
+            if (asks(row.product)) count += row.components;
+        return count;
+    }
 
     bool asks(Product product) const { return query().products[index(product)]; }
     bool is_text() const { return scene().output.mesh == MeshFormat::Usda; }

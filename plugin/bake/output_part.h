@@ -47,6 +47,15 @@ struct OutputSlot {
     std::optional<double> coverage, significant_height_m;
 };
 
+// What an output will hold [bytes].
+struct OutputMemory {
+    std::size_t once = 0;      // from its first frame on, whatever is in flight: points at rest
+    std::size_t slot = 0;      // in each frame in flight, beside the query's values: a file as it is encoded
+    std::size_t encoding = 0;  // while one frame is encoded
+    std::size_t fixed = 0;     // while files that belong to no frame are written, before the first frame
+    std::string remedy;
+};
+
 class OutputPart {
   public:
     // The plan must outlive the part.
@@ -64,6 +73,8 @@ class OutputPart {
     // The frame's values. One frame at a time.
     virtual void compute(const Frame<float>& sea, int frame, OutputSlot& slot) = 0;
     virtual void compute(const Frame<double>& sea, int frame, OutputSlot& slot) = 0;
+    // What it will hold, beside the values of its query.
+    virtual OutputMemory memory() const = 0;
     // The bytes that aren't the values as they are. Different slots side by side, also while another frame is
     // computed.
     virtual void encode(int frame, OutputSlot& slot) const = 0;

@@ -12,6 +12,7 @@
 #include "core/plan/plan.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/memory.h"
 #include "plugin/cli/progress.h"
 #include "plugin/cli/stop.h"
 #include "plugin/cli/text.h"
@@ -27,7 +28,7 @@ struct Arguments {
     std::string shot;
     std::optional<std::string> out;
     std::optional<std::string> frames;
-    std::string threads;
+    std::string threads, max_memory;
     bool trust_times = false;
 };
 
@@ -60,18 +61,11 @@ void print_done(const BakeReport& report, const std::string& out) {
     }
 }
 
-// What was planned, so that people see what is large.
-std::string out_of_memory(const Scene& scene) {
-    const Plan plan = plan_bake(scene);
-    long vertices = 0, texels = 0;
-    for (const PlannedOutput& output : plan.outputs)
-        (output.map ? texels : vertices) += static_cast<long>(plan.queries[output.query].query.points);
-    return "pelagic: out of memory; planned: " + bytes_text(plan.sea_bytes()) + " for the sea, " +
-           bytes_text(plan.frame_bytes()) + " for a frame of it, and the values at " +
-           count_text(vertices, "vertex", "vertices") + " and " + count_text(texels, "texel", "texels") +
-           " with their files; lower surface.resolution, output.map_resolution or the cascades' resolutions, "
-           "or ask "
-           "for fewer attributes; files already written are whole\n";
+// The system gave less than the bake was allowed: what it holds, so that people see what is large.
+std::string out_of_memory(const Scene& scene, int threads) {
+    const MemoryNeed need = bake_memory(plan_bake(scene), kFramesInFlight, threads);
+    return "pelagic: out of memory; this bake holds " + memory_text(need) + "; to need less, " +
+           need.parts().front().remedy + "; files already written are whole\n";
 }
 
 int stopped(const BakeReport& report, const std::string& out, int signal) {
@@ -98,6 +92,7 @@ int run(const Arguments& arguments) {
         return kWrongUsage;
     }
     options.out = arguments.out.value_or(scene.shot.name);
+    options.max_memory_bytes = memory_of(arguments.max_memory);
     options.trust_times = arguments.trust_times;
 
     StopSignals stop;
@@ -114,8 +109,11 @@ int run(const Arguments& arguments) {
         report = threads.execute([&] { return bake(scene, options); });
     } catch (const std::bad_alloc&) {
         progress.clear();
-        std::cerr << out_of_memory(scene);
+        std::cerr << out_of_memory(scene, threads.count());
         return kRefused;
+    } catch (const NotEnoughMemory& error) {
+        progress.clear();
+        return refuse_memory(arguments.shot, error);
     } catch (const std::invalid_argument& error) {
         // load_shot() has looked at every value with its line: what is refused here is what it can't see.
         progress.clear();
@@ -141,6 +139,7 @@ Verb add_bake(CLI::App& program) {
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
     command->add_flag("--trust-times", arguments->trust_times, help::kTrustTimes);
     add_threads(*command, arguments->threads, help::kThreads);
+    add_max_memory(*command, arguments->max_memory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

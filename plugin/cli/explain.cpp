@@ -1,17 +1,20 @@
 // pelagic explain SHOT.toml
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "core/base/instruction_set.h"
+#include "core/plan/memory.h"
 #include "core/plan/plan.h"
+#include "plugin/bake/bake.h"
 #include "plugin/bake/measure.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
@@ -20,6 +23,8 @@
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
+#include "plugin/render/render.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
@@ -30,16 +35,6 @@ struct Arguments {
     bool measure = false;
     std::string threads;
 };
-
-// Memory that this process could get without swapping; the largest number if the system doesn't say.
-std::size_t free_bytes() {
-    std::ifstream memory("/proc/meminfo");
-    for (std::string key, rest; memory >> key; std::getline(memory, rest)) {
-        std::size_t kib = 0;
-        if (key == "MemAvailable:" && memory >> kib) return kib * 1024;
-    }
-    return std::numeric_limits<std::size_t>::max();
-}
 
 std::string signed_bytes(std::int64_t bytes) {
     if (bytes == 0) return "0";
@@ -80,10 +75,10 @@ int refuse_memory(std::size_t needed, const std::string& there) {
 }
 
 int print_prices(const Scene& scene, const Arguments& arguments) {
-    const std::size_t needed = measure_bytes(scene);
-    if (const std::size_t there = free_bytes(); needed > there)
-        return refuse_memory(needed, ", and " + bytes_text(there) + " are free");
     Threads threads(arguments.threads);
+    const std::size_t needed = measure_bytes(scene, threads.count());
+    if (const MemoryLimit limit = machine::memory_limit(); needed > limit.bytes)
+        return refuse_memory(needed, ", and " + limit.whose + " " + bytes_text(limit.bytes));
     std::cout << "\nPrices: a frame with the item minus a frame without it, on "
               << count_text(threads.count(), "thread", "threads") << ", " << instruction_set()
               << ".\nBytes: held by the sea, by a frame, and by points and results. Milliseconds: median\n"
@@ -113,6 +108,21 @@ int print_prices(const Scene& scene, const Arguments& arguments) {
     return kDone;
 }
 
+// What a bake of the shot and its pictures would hold, as bake and render compare it with what there is.
+void print_memory(const Scene& scene, const Plan& plan) {
+    const int threads = tbb::this_task_arena::max_concurrency();
+    const std::vector<int> frames = representative_frames(scene, 64);
+    const bool alone = scene.shot.first_frame == scene.shot.last_frame;
+    if (!plan.outputs.empty())
+        std::cout << "A bake holds " << memory_text(bake_memory(plan, alone ? 1 : kFramesInFlight, threads))
+                  << ".\n";
+    std::cout << "Pictures of " << scene.camera.resolution.x << " × " << scene.camera.resolution.y << " hold "
+              << memory_text(render_memory(scene, render_options(scene), frames,
+                                           alone ? 1 : kPicturesInFlight, threads))
+              << ".\n"
+              << std::flush;
+}
+
 }  // namespace
 
 Verb add_explain(CLI::App& program) {
@@ -125,7 +135,9 @@ Verb add_explain(CLI::App& program) {
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
     return {command, [arguments] {
                 const Scene scene = load_shot(arguments->shot, check_sky);
-                std::cout << explain(plan_bake(scene)) << std::flush;
+                const Plan plan = plan_bake(scene);
+                std::cout << explain(plan);
+                print_memory(scene, plan);
                 return arguments->measure ? print_prices(scene, *arguments) : int{kDone};
             }};
 }

@@ -52,6 +52,10 @@ const char* const kThreads =
     "How many threads, 1 to 256; the files don't depend on it.\n"
     "Default: one for each core that the process may use";
 
+const char* const kMaxMemory =
+    "Refuse a shot that would take more memory than this, before any work: 8G, 512M.\n"
+    "Default: what the machine has, or less where a container or ulimit allows less";
+
 const char* const kTrustTimes =
     "Don't read the files that are there: those of the recorded size that are no newer than the\n"
     "record count as whole. Faster for many gigabytes, and damage goes unnoticed";

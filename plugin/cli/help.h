@@ -18,6 +18,8 @@ extern const char* const kFrames;
 extern const char* const kThreads;
 extern const char* const kTrustTimes;
 
+extern const char* const kMaxMemory;
+
 extern const char* const kRender;
 extern const char* const kRenderFooter;
 extern const char* const kSize;

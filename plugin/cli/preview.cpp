@@ -13,6 +13,7 @@
 #include "plugin/bake/bake.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/memory.h"
 #include "plugin/cli/size.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
@@ -32,7 +33,7 @@ struct Arguments {
     std::string shot;
     std::optional<std::string> offscreen, screenshot, quality;
     std::optional<int> frame;
-    std::string size, threads;
+    std::string size, threads, max_memory;
     int scale = 1, after = 8;
 };
 
@@ -61,8 +62,9 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
     const OffscreenContext context;
     files::check_folder(file.parent_path());
+    const OffscreenPlan planned = plan_offscreen(scene, frame, {}, memory_of(arguments.max_memory));
     const Sky sky = make_sky(scene);
-    const OffscreenPicture drawn = render_offscreen(scene, sky, frame);
+    const OffscreenPicture drawn = render_offscreen(planned, sky);
     files::ensure_folder(file.parent_path());  // an error before has left none behind
     files::remove_stale_temporaries(file.has_parent_path() ? file.parent_path() : ".");
     RenderOptions options = render_options(scene);
@@ -104,6 +106,8 @@ int run(const Arguments& arguments) {
             return wrong_usage("--offscreen " + problem);
         try {
             return threads.execute([&] { return draw_offscreen(scene, *arguments.offscreen, arguments); });
+        } catch (const NotEnoughMemory& error) {
+            return refuse_memory(arguments.shot, error);
         } catch (const std::invalid_argument& error) {
             std::cerr << arguments.shot << ": " << error.what() << '\n';
             return kRefused;
@@ -113,6 +117,7 @@ int run(const Arguments& arguments) {
                           .size = size_of(arguments.size),
                           .pixel_size = arguments.scale,
                           .frame = arguments.frame,
+                          .max_memory_bytes = memory_of(arguments.max_memory),
                           .screenshot_after = arguments.after};
     if (arguments.screenshot) {
         if (const std::string problem = refuse_file(*arguments.screenshot, {".png"}); !problem.empty())
@@ -147,6 +152,7 @@ Verb add_preview(CLI::App& program) {
         ->needs(screenshot);
     screenshot->excludes(offscreen);
     add_threads(*command, arguments->threads, help::kPreviewThreads);
+    add_max_memory(*command, arguments->max_memory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

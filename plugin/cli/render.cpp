@@ -2,6 +2,8 @@
 #include "plugin/render/render.h"
 #include "plugin/light/light.h"
 
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -23,6 +25,7 @@
 #include "plugin/bake/pipeline.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/memory.h"
 #include "plugin/cli/progress.h"
 #include "plugin/cli/size.h"
 #include "plugin/cli/stop.h"
@@ -30,14 +33,13 @@
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/files/files.h"
+#include "plugin/machine/memory.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
 namespace {
 
-// A picture is computed while the one before is encoded and written.
-constexpr int kPicturesInFlight = 2;
 constexpr double kMostStops = 30.0;
 
 struct Arguments {
@@ -45,7 +47,7 @@ struct Arguments {
     std::optional<std::string> out, frames, terms, sky_quality;
     std::optional<int> samples;
     double exposure_stops = 0.0;
-    std::string size, threads;
+    std::string size, threads, max_memory;
     bool trust_times = false;
 };
 
@@ -84,6 +86,7 @@ struct Job {
     std::vector<int> frames;
     std::filesystem::path out;
     double exposure_stops = 0.0;
+    std::size_t max_memory_bytes = 0;
     bool trust_times = false;
 };
 
@@ -102,6 +105,7 @@ Job job_of(const Arguments& arguments) {
         throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
                          number_text(-kMostStops) + " to " + number_text(kMostStops));
     job.exposure_stops = arguments.exposure_stops;
+    job.max_memory_bytes = memory_of(arguments.max_memory);
     job.trust_times = arguments.trust_times;
     try {
         const std::string whole_shot =
@@ -167,6 +171,10 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
         done.seconds = seconds_since(start);
         return done;
     }
+    require_memory(render_memory(job.scene, job.options, frames,
+                                 std::min(static_cast<int>(frames.size()), kPicturesInFlight),
+                                 tbb::this_task_arena::max_concurrency()),
+                   machine::memory_limit_or(job.max_memory_bytes), "this picture");
     now.stage = BakeStage::Building;
     progress.show(now);
     files::check_folder(job.out);
@@ -272,6 +280,9 @@ int run(const Arguments& arguments) {
                   << job.scene.camera.resolution.x << "x" << job.scene.camera.resolution.y
                   << ") or lower the cascades' resolutions; files already written are whole\n";
         return kRefused;
+    } catch (const NotEnoughMemory& error) {
+        progress.clear();
+        return refuse_memory(arguments.shot, error);
     } catch (const std::invalid_argument& error) {
         progress.clear();
         std::cerr << arguments.shot << ": " << error.what() << '\n';
@@ -315,6 +326,7 @@ Verb add_render(CLI::App& program) {
     command->add_option("--terms", arguments->terms, help::kTerms)->type_name("TERMS");
     command->add_flag("--trust-times", arguments->trust_times, help::kTrustPictures);
     add_threads(*command, arguments->threads, help::kThreads);
+    add_max_memory(*command, arguments->max_memory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

@@ -1,4 +1,6 @@
 // pelagic validate SHOT.toml …
+#include <oneapi/tbb/task_arena.h>
+
 #include <iostream>
 #include <string>
 #include <vector>
@@ -6,6 +8,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
+#include "plugin/bake/bake.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/text.h"
@@ -34,7 +37,7 @@ std::string summary(const Scene& scene, const Plan& plan) {
     text += ": ";
     if (plan.trains) text += count_text(plan.trains->count, "wave train, ", "wave trains, ");
     return text + count_text(plan.transforms_per_frame(), "transform", "transforms") + " a frame, " +
-           bytes_text(plan.sea_bytes() + plan.frame_bytes() + plan.output_bytes());
+           bytes_text(bake_memory(plan, kFramesInFlight, tbb::this_task_arena::max_concurrency()).bytes());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -21,8 +22,7 @@ SplitNumber split_number(double value) {
     return {static_cast<float>(high), static_cast<float>(value - high)};
 }
 
-SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(std::move(sea)), query_(query) {
-    const Plan& plan = sea_->plan();
+std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, Ladder& cells, Ladder& pixels) {
     const PlannedQuery& planned = plan.queries.at(query);
     if (planned.query.lattice || planned.query.only_cascade)
         throw std::invalid_argument("query \"" + planned.query.name +
@@ -33,20 +33,27 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
         throw std::invalid_argument(
             "query \"" + planned.query.name +
             "\" must ask for position, normal and slope variance: a picture needs them");
-    has_coverage_ = planned.query.products[index(Product::Coverage)];
-    is_choppy_ = !plan.dropped[index(Field::Dx)];
+    cells = ladder_of(plan, planned.query.cell_m, planned.cell_levels);
+    pixels = ladder_of(plan, planned.query.pixel_m, planned.pixel_levels);
+    const glm::ivec2 cell_size = place(plan, cells), pixel_size = place(plan, pixels);
+    if (plan.dropped[index(Field::Dx)])
+        return {{true, 1, {Field::Height}, cell_size},
+                {false, 2, {Field::SlopeX, Field::SlopeY}, pixel_size}};
+    return {{true, 4, {Field::Height, Field::Dx, Field::Dy}, cell_size},
+            {false, 4, {Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy}, pixel_size},
+            {false, 1, {Field::Dxy}, pixel_size}};
+}
 
-    cells_ = ladder_of(planned.query.cell_m, planned.cell_levels);
-    pixels_ = ladder_of(planned.query.pixel_m, planned.pixel_levels);
-    const glm::ivec2 cell_size = place(cells_), pixel_size = place(pixels_);
-    if (is_choppy_) {
-        planes_.push_back({true, 4, {Field::Height, Field::Dx, Field::Dy}, cell_size});
-        planes_.push_back({false, 4, {Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy}, pixel_size});
-        planes_.push_back({false, 1, {Field::Dxy}, pixel_size});
-    } else {
-        planes_.push_back({true, 1, {Field::Height}, cell_size});
-        planes_.push_back({false, 2, {Field::SlopeX, Field::SlopeY}, pixel_size});
-    }
+std::vector<SeaLayout::Plane> SeaLayout::planes_of(const Plan& plan, int query) {
+    Ladder cells, pixels;
+    return lay_out(plan, query, cells, pixels);
+}
+
+SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(std::move(sea)), query_(query) {
+    const Plan& plan = sea_->plan();
+    planes_ = lay_out(plan, query, cells_, pixels_);
+    has_coverage_ = plan.queries[query].query.products[index(Product::Coverage)];
+    is_choppy_ = !plan.dropped[index(Field::Dx)];
 
     // Differences are taken in double: in single precision those of the finest rungs would cancel.
     const QueryStatistics& statistics = sea_->statistics(query);
@@ -63,12 +70,12 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
                                                              : HiddenMoments<float>{}});
 }
 
-SeaLayout::Ladder SeaLayout::ladder_of(const std::vector<double>& footprints_m,
-                                       const std::vector<int>& levels) const {
+SeaLayout::Ladder SeaLayout::ladder_of(const Plan& plan, const std::vector<double>& footprints_m,
+                                       const std::vector<int>& levels) {
     Ladder ladder{footprints_m, {}};
     for (const int level : levels)
-        for (int c = 0; c < cascades(); ++c) {
-            const CascadePlan& cascade = sea_->plan().cascades[c];
+        for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
+            const CascadePlan& cascade = plan.cascades[c];
             const int grid = cascade.grid_of_level[level];
             ladder.tiles.push_back(
                 {.n = grid < 0 ? 0 : cascade.grids[grid].resolution, .cascade = c, .grid = grid});
@@ -76,37 +83,53 @@ SeaLayout::Ladder SeaLayout::ladder_of(const std::vector<double>& footprints_m,
     return ladder;
 }
 
-// Packs tiles in shelves, the largest first, into a texture about as wide as high.
-glm::ivec2 SeaLayout::place(Ladder& ladder) const {
-    const int skirt = sea_->plan().knobs.spline_taps - 1;
+// Packs tiles in shelves, the largest first, into the texture of the fewest texels that most drivers have: as wide
+// as one of the tiles, as two side by side, and so on.
+glm::ivec2 SeaLayout::place(const Plan& plan, Ladder& ladder) {
+    const int skirt = plan.knobs.spline_taps - 1;
     std::map<std::pair<int, int>, std::vector<Tile*>> by_grid;  // several rungs may share a grid
     for (Tile& tile : ladder.tiles)
         if (tile.n > 0) by_grid[{tile.cascade, tile.grid}].push_back(&tile);
     if (by_grid.empty()) return glm::ivec2(1);
     std::vector<std::vector<Tile*>> grids;
-    double texels = 0.0;
-    for (auto& [key, tiles] : by_grid) {
-        texels += std::pow(tiles.front()->n + skirt, 2.0);
-        grids.push_back(tiles);
-    }
+    for (auto& [key, tiles] : by_grid) grids.push_back(tiles);
     std::stable_sort(grids.begin(), grids.end(),
                      [](const auto& a, const auto& b) { return a.front()->n > b.front()->n; });
-    const int width =
-        std::max(grids.front().front()->n + skirt, static_cast<int>(std::ceil(std::sqrt(texels))));
-    glm::ivec2 at(0), size(0);
-    int shelf = 0;
-    for (const auto& tiles : grids) {
-        const int side = tiles.front()->n + skirt;
-        if (at.x + side > width) {
-            at = {0, at.y + shelf};
-            shelf = 0;
+    // Their size within this width; `put` is told where each goes.
+    const auto shelves = [&](int width, const auto& put) {
+        glm::ivec2 at(0), size(0);
+        int shelf = 0;
+        for (const auto& tiles : grids) {
+            const int side = tiles.front()->n + skirt;
+            if (at.x + side > width) {
+                at = {0, at.y + shelf};
+                shelf = 0;
+            }
+            put(tiles, at);
+            shelf = std::max(shelf, side);
+            at.x += side;
+            size = {std::max(size.x, at.x), std::max(size.y, at.y + shelf)};
         }
-        for (Tile* tile : tiles) tile->first = at;
-        shelf = std::max(shelf, side);
-        at.x += side;
-        size = {std::max(size.x, at.x), std::max(size.y, at.y + shelf)};
+        return size;
+    };
+    // How many of the sizes that drivers stop at it is larger than, and then its texels.
+    const auto judge = [&](glm::ivec2 size) {
+        const int side = std::max(size.x, size.y);
+        return std::pair((side > 4096) + (side > 8192) + (side > 16384),
+                         static_cast<double>(size.x) * size.y);
+    };
+    std::optional<std::pair<int, double>> best;
+    int best_width = 0, width = 0;
+    for (const auto& tiles : grids) {
+        width += tiles.front()->n + skirt;
+        const auto judged = judge(shelves(width, [](const auto&, glm::ivec2) {}));
+        if (best && !(judged < *best)) continue;
+        best = judged;
+        best_width = width;
     }
-    return size;
+    return shelves(best_width, [](const auto& tiles, glm::ivec2 at) {
+        for (Tile* tile : tiles) tile->first = at;
+    });
 }
 
 void SeaLayout::fill(const Frame<float>& frame, std::vector<std::vector<float>>& planes) const {

@@ -38,6 +38,8 @@ class SeaLayout {
         glm::ivec2 size{1};
     };
     const std::vector<Plane>& planes() const { return planes_; }
+    // Those that a sea of this plan will have. Throws as the constructor.
+    static std::vector<Plane> planes_of(const Plan& plan, int query);
     void fill(const Frame<float>& frame, std::vector<std::vector<float>>& planes) const;
 
     // A grid's place: its N × N samples, with the first columns and rows repeated at the end so that a spline
@@ -72,8 +74,10 @@ class SeaLayout {
     std::vector<float> train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const;
 
   private:
-    Ladder ladder_of(const std::vector<double>& footprints_m, const std::vector<int>& levels) const;
-    glm::ivec2 place(Ladder& ladder) const;
+    static Ladder ladder_of(const Plan& plan, const std::vector<double>& footprints_m,
+                            const std::vector<int>& levels);
+    static glm::ivec2 place(const Plan& plan, Ladder& ladder);
+    static std::vector<Plane> lay_out(const Plan& plan, int query, Ladder& cells, Ladder& pixels);
 
     std::shared_ptr<const Sea<float>> sea_;
     int query_ = 0;

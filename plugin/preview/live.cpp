@@ -31,6 +31,9 @@ LiveSea::Build in_the_background(LiveSea::Build build) {
 LiveSea::LiveSea(Build build)
     : frames_thread_([this] { compute_frames(); }), builder_(in_the_background(std::move(build))) {}
 
+LiveSea::LiveSea(const LiveLimits& limits)
+    : LiveSea([limits](const Scene& scene) { return build_live(scene, limits); }) {}
+
 LiveSea::~LiveSea() {
     {
         const std::lock_guard lock(mutex_);

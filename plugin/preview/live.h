@@ -4,13 +4,16 @@
 
 #include <array>
 #include <condition_variable>
+#include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "core/plan/memory.h"
 #include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
@@ -27,11 +30,19 @@ struct LiveBuild {
     int query = 0;  // the picture's query, an index into the plan
     ProjectedGridOptions grid;
     double build_s = 0.0;  // time that building took
+    std::string note;      // what was left out so that it fits; empty: nothing
 };
 
-// Plans and builds the sea for pictures of the scene. Throws std::invalid_argument with every problem that
-// validate() finds.
-std::shared_ptr<const LiveBuild> build_live(const Scene& scene);
+// What a window's sea may hold, and its textures' sides.
+struct LiveLimits {
+    MemoryLimit memory{std::numeric_limits<std::size_t>::max(), "there are"};
+    int texture = std::numeric_limits<int>::max();
+};
+
+// Plans and builds the sea for pictures of the scene. Where that doesn't fit the limits, the shortest waves are left
+// to the slope variance until it does, and the note says so. Throws std::invalid_argument with every problem that
+// validate() finds, and NotEnoughMemory where nothing is left to leave out.
+std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits);
 
 // Whether the two scenes have the same waves in pictures, so that nothing needs to be built.
 bool same_sea(const Scene& a, const Scene& b);
@@ -55,7 +66,8 @@ class LiveSea {
     using Build = LiveWorker<Scene, LiveBuild>::Make;
 
     // Two threads: one builds seas, one computes frames. Frames have priority on the cores.
-    explicit LiveSea(Build build = build_live);
+    explicit LiveSea(Build build);
+    explicit LiveSea(const LiveLimits& limits = {});
     ~LiveSea();  // waits for the frame and the sea being made
     LiveSea(const LiveSea&) = delete;
     LiveSea& operator=(const LiveSea&) = delete;

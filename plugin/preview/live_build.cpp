@@ -1,14 +1,45 @@
 // Builds a sea that plays from a scene. See live.h.
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
+#include "core/scene/text.h"
 #include "core/scene/validate.h"
+#include "plugin/gpu/sea_layout.h"
 #include "plugin/preview/live.h"
 
 namespace pelagic {
-std::shared_ptr<const LiveBuild> build_live(const Scene& scene) {
+namespace {
+
+// The sea, a frame of it, three packed ones, two on their way to the driver, and the textures, which are the driver's
+// in software and a graphics card's otherwise.
+MemoryNeed live_memory(const Plan& plan) {
+    MemoryNeed need;
+    add_sea(need, plan, tbb::this_task_arena::max_concurrency());
+    std::size_t packed = 0;
+    for (const SeaLayout::Plane& plane : SeaLayout::planes_of(plan, 0))
+        packed += static_cast<std::size_t>(plane.size.x) * static_cast<std::size_t>(plane.size.y) *
+                  static_cast<std::size_t>(plane.channels) * sizeof(float);
+    need.add("the frame's grids as textures", 6 * packed,
+             "lower the resolutions in waves.cascades, or quality.level");
+    return need;
+}
+
+bool fits(const Plan& plan, const LiveLimits& limits) {
+    for (const SeaLayout::Plane& plane : SeaLayout::planes_of(plan, 0))
+        if (std::max(plane.size.x, plane.size.y) > limits.texture) return false;
+    return live_memory(plan).bytes() <= limits.memory.bytes;
+}
+
+}  // namespace
+
+std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits) {
     std::string problems;
     for (const Problem& problem : validate(scene))
         problems += (problems.empty() ? "" : "\n") + text_of(problem);
@@ -17,8 +48,30 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene) {
     const auto prepared = prepare(scene);
     LiveBuild made;
     made.scene = scene;
-    made.sea = std::make_shared<const Sea<float>>(
-        make_plan(prepared, {view_query(*prepared)}, {.double_precision = false}));
+    const auto plan_from = [&](double finest_m) {
+        return make_plan(prepared,
+                         {view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m})},
+                         {.double_precision = false});
+    };
+    Plan plan = plan_from(0.0);
+    const Plan whole = plan;
+    // Rung by rung of the whole ladder, whose first lets everything pass.
+    for (const double rung_m : whole.queries.front().query.pixel_m) {
+        if (fits(plan, limits)) break;
+        if (rung_m == 0.0) continue;
+        plan = plan_from(rung_m);
+        const std::size_t needed = live_memory(whole).bytes();
+        made.note =
+            (needed > limits.memory.bytes ? "the sea needs about " + bytes_text(needed) + ", and " +
+                                                limits.memory.whose + " " + bytes_text(limits.memory.bytes)
+                                          : "the sea's grids need larger textures than the driver's, " +
+                                                std::to_string(limits.texture) + " a side") +
+            "; waves below " + number_text(plan.filter.n_min * rung_m) +
+            " m are left out of the picture. To see them, lower the resolutions in waves.cascades, or "
+            "quality.level";
+    }
+    if (!fits(plan, limits)) require_memory(live_memory(plan), limits.memory, "this sea");
+    made.sea = std::make_shared<const Sea<float>>(std::move(plan));
     made.grid = projected_grid_options(*prepared);
     made.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::make_shared<const LiveBuild>(std::move(made));

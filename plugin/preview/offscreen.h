@@ -1,11 +1,16 @@
 // Pictures from the GPU without a display.
 #pragma once
 
+#include <cstddef>
 #include <glm/vec2.hpp>
 #include <memory>
+#include <string>
 
 #include "core/lighting/lighting.h"
+#include "core/plan/memory.h"
+#include "core/plan/plan.h"
 #include "core/scene/scene.h"
+#include "core/surface/projected_grid.h"
 #include "plugin/preview/sea_renderer.h"
 #include "plugin/render/render.h"
 
@@ -31,10 +36,27 @@ struct OffscreenPicture {
     std::string note;    // what the scene asks for and the GPU doesn't do; usually empty
 };
 
-// The scene at `frame` through its camera, in `size` pixels (0: the camera's resolution), one sample per
-// pixel. Needs a current context. The GPU computes in single precision; a note says so if quality.level asks
-// for double. Throws std::invalid_argument for a camera under water (plugin/render/under_water.h).
-OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame,
-                                  glm::ivec2 size = glm::ivec2(0));
+// What a picture needs, known before the sea is built: its grid, and a sea whose ladder is as fine as the pixels
+// that show it. Frames and pictures of other plans give the same picture.
+struct OffscreenPlan {
+    Scene scene;  // its resolution is the picture's
+    int frame = 1;
+    Plan plan;
+    ProjectedGrid grid;
+};
+
+// The scene at `frame` through its camera, in `size` pixels (0: the camera's resolution). Needs a current context.
+// Throws PreviewError for a picture that is larger than the driver's largest, and NotEnoughMemory for one that needs
+// more than max_memory_bytes (0: what the system gives this process).
+OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size = glm::ivec2(0),
+                             std::size_t max_memory_bytes = 0);
+
+// What drawing it holds at most: with a driver in software that is all memory of this process.
+MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads);
+
+// One sample per pixel. Needs a current context. The GPU computes in single precision; a note says so if
+// quality.level asks for double. Throws std::invalid_argument for a camera under water
+// (plugin/render/under_water.h).
+OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky);
 
 }  // namespace pelagic

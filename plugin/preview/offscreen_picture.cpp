@@ -1,36 +1,192 @@
-#include <array>
+#include <epoxy/gl.h>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/vec4.hpp>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "core/evaluate/values.h"
 #include "core/plan/plan.h"
+#include "core/plan/quality.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "plugin/gpu/packed_frame.h"
+#include "plugin/gpu/sea_layout.h"
 #include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
 #include "plugin/preview/offscreen.h"
 #include "plugin/render/under_water.h"
 
 namespace pelagic {
+namespace {
 
-OffscreenPicture render_offscreen(const Scene& scene, const Sky& sky, int frame, glm::ivec2 size) {
-    Scene seen = scene;
-    if (size.x > 0 && size.y > 0) seen.camera.resolution = size;
-    const auto sea = std::make_shared<const Sea<float>>(picture_plan(seen, std::array{frame}));
-    Frame<float> state(sea);
-    state.set(seen.shot.time_s(frame));
-    const ProjectedGridOptions options = projected_grid_options(*sea->plan().from);
-    refuse_under_water(state, seen, frame, options);
-    PackedFrame packed(sea, 0);
-    packed.pack(state);
+int largest_picture() {
+    std::array<GLint, 3> largest{};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, largest.data());
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, largest.data() + 1);
+    return *std::min_element(largest.begin(), largest.end());
+}
 
+void check_size(glm::ivec2 size) {
+    const int largest = largest_picture();
+    if (size.x >= 1 && size.y >= 1 && std::max(size.x, size.y) <= largest) return;
+    throw PreviewError("a picture of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
+                       " does not fit the driver (" +
+                       reinterpret_cast<const char*>(glGetString(GL_RENDERER)) + "), whose largest is " +
+                       std::to_string(largest) +
+                       " a side: ask for a smaller one with --size, or use pelagic render");
+}
+
+// Positions of the grid's points, relative to its origin, by waves as long as its cells show.
+std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea, double time_s,
+                                    const ProjectedGrid& grid) {
+    Frame<float> frame(sea);
+    frame.set(time_s);
+    std::vector<glm::vec3> positions(grid.rest_m.size());
+    Results<float> results;
+    results.set(Product::Position, {positions.data()});
+    evaluate(frame, 0,
+             Points<float>{.origin_m = grid.origin_m,
+                           .count = positions.size(),
+                           .rest_m = {grid.rest_m.data()},
+                           .cell_m = {grid.cell_m.data()}},
+             results);
+    return positions;
+}
+
+// The finest footprint of a pixel that shows the sea, or more than any where none does: the least of all triangles
+// that reach into the picture.
+double finest_pixel_in_view(const View& view, const ProjectedGrid& grid,
+                            std::span<const glm::vec3> positions) {
+    const glm::dmat4 clip_from = view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m);
+    constexpr int kPlanes = 5;
+    std::vector<std::uint8_t> outside(positions.size());  // of which planes, a bit each
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const glm::dvec4 p = clip_from * glm::dvec4(positions[i], 1.0);
+        const std::array<bool, kPlanes> beyond{p.x > p.w, p.x<-p.w, p.y> p.w, p.y < -p.w, p.z < -p.w};
+        for (int plane = 0; plane < kPlanes; ++plane)
+            outside[i] |= static_cast<std::uint8_t>(beyond[plane] ? 1 << plane : 0);
+    }
+    double finest_m = std::numeric_limits<double>::infinity();
+    const auto take = [&](std::size_t a, std::size_t b, std::size_t c) {
+        if ((outside[a] & outside[b] & outside[c]) != 0) return;
+        for (const std::size_t corner : {a, b, c})
+            finest_m = std::min(finest_m, static_cast<double>(grid.pixel_m[corner]));
+    };
+    const auto stride = static_cast<std::size_t>(grid.columns) + 1;
+    for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row)
+        for (std::size_t column = 0; column + 1 < stride; ++column) {
+            const std::size_t near_left = row * stride + column, far_left = near_left + stride;
+            take(near_left, near_left + 1, far_left + 1);
+            take(near_left, far_left + 1, far_left);
+        }
+    return finest_m;
+}
+
+// [bytes] of a point of the grid: itself and while it is made, as a vertex, and in triangles, here and at the driver's.
+constexpr std::size_t kPointBytes = sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double) +
+                                    2 * (sizeof(glm::vec4) + 6 * sizeof(std::uint32_t)) + sizeof(glm::vec3);
+// [bytes/pixel] of the driver's pictures of four terms and their depth; of what is read back from it.
+constexpr std::size_t kDrawnBytes = 4 * sizeof(glm::vec4) + sizeof(float),
+                      kReadBytes = sizeof(SeaRadiance) + 1 + sizeof(glm::vec4);
+// Mesa's driver in software, with its compiler and the programs of this sea.
+constexpr std::size_t kDriverBytes = std::size_t{64} << 20;
+
+std::string smaller() {
+    return "ask for a smaller picture (--size) or raise surface.cell_px";
+}
+
+}  // namespace
+
+MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
+    MemoryNeed need;
+    add_sea(need, planned.plan, threads);
+    // The frame goes when it is packed, and what is packed when the driver has it.
+    std::size_t packed = 0;
+    for (const SeaLayout::Plane& plane : SeaLayout::planes_of(planned.plan, 0))
+        packed += static_cast<std::size_t>(plane.size.x) * static_cast<std::size_t>(plane.size.y) *
+                  static_cast<std::size_t>(plane.channels) * sizeof(float);
+    const std::size_t frame = planned.plan.frame_bytes();
+    need.add("the frame's grids as textures", packed + std::max(packed, frame) - frame,
+             "lower quality.level (--quality draft), or the resolutions in waves.cascades");
+    const glm::ivec2 size = planned.scene.camera.resolution;
+    need.add("the picture",
+             static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * (kDrawnBytes + kReadBytes),
+             "ask for a smaller picture (--size)");
+    need.add("the camera's grid of points", planned.grid.rest_m.size() * kPointBytes, smaller());
+    need.add("the driver", kDriverBytes, smaller());
+    return need;
+}
+
+OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std::size_t max_memory_bytes) {
+    OffscreenPlan planned{.scene = scene, .frame = frame, .plan = {}, .grid = {}};
+    if (size.x > 0 && size.y > 0) planned.scene.camera.resolution = size;
+    check_size(planned.scene.camera.resolution);
+    const MemoryLimit limit = machine::memory_limit_or(max_memory_bytes);
+    const int threads = tbb::this_task_arena::max_concurrency();
+    const char* const run = "this picture";
+
+    const auto prepared = prepare(planned.scene);
+    const View view = view_at(planned.scene.camera, frame);
+    const ProjectedGridOptions options = projected_grid_options(*prepared);
+    const ProjectedGridNeeds needs = projected_grid_needs(view, options);
+    const auto plan_for = [&](ProductSet products, double finest_pixel_m) {
+        return make_plan(prepared,
+                         {view_query(*prepared, {.products = products,
+                                                 .finest_cell_m = needs.finest_cell_m,
+                                                 .finest_pixel_m = finest_pixel_m,
+                                                 .points = points_of(needs.size)})},
+                         {.double_precision = false});
+    };
+    // Positions alone, by waves no shorter than the cells: little beside what pixels show. But which pixels are there
+    // follows from them. A low camera has points nearby that a crest might bring into view and that no pixel shows:
+    // what they would ask of the sea is gigabytes.
+    MemoryNeed first;
+    const Plan of_points = plan_for(products(Product::Position), needs.finest_cell_m);
+    add_sea(first, of_points, threads);
+    first.add("the camera's grid of points", points_of(needs.size) * kPointBytes, smaller());
+    require_memory(first, limit, run);
+    planned.grid = projected_grid(view, options);
+    const bool has_ladder = of_points.queries.front().query.cell_m.size() > 1;
+    if (has_ladder) keep_to_rungs(planned.grid, needs);
+    double finest_pixel_m = needs.finest_pixel_m;
+    if (has_ladder) {
+        const auto sea = std::make_shared<const Sea<float>>(of_points);
+        const double in_view_m = finest_pixel_in_view(
+            view, planned.grid, positions_of(sea, planned.scene.shot.time_s(frame), planned.grid));
+        // The rung below, as every point reads the two beside its footprint.
+        finest_pixel_m = std::max(first_rung_m(needs.finest_pixel_m),
+                                  rung_below_m(std::min(in_view_m, needs.finest_cell_m)));
+    }
+    planned.plan = plan_for({}, finest_pixel_m);
+    require_memory(offscreen_memory(planned, threads), limit, run);
+    return planned;
+}
+
+OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky) {
+    const auto sea = std::make_shared<const Sea<float>>(planned.plan);
     SeaRenderer renderer;
-    renderer.set_sky(sky, make_water(seen));
-    renderer.upload(packed);
-    const View view = view_at(seen.camera, frame);
-    ProjectedGrid grid = projected_grid(view, options);
-    if (sea->plan().queries.front().query.pixel_m.size() > 1)
-        keep_to_rungs(grid, projected_grid_needs(view, options));
-    renderer.draw(view, grid, {.lighting = render_options(seen).lighting, .layers = true});
+    renderer.set_sky(sky, make_water(planned.scene));
+    {
+        PackedFrame packed(sea, 0);
+        {
+            Frame<float> state(sea);
+            state.set(planned.scene.shot.time_s(planned.frame));
+            refuse_under_water(state, planned.scene, planned.frame,
+                               projected_grid_options(*planned.plan.from));
+            packed.pack(state);
+        }
+        renderer.upload_once(packed);
+    }
+    renderer.draw(view_at(planned.scene.camera, planned.frame), planned.grid,
+                  {.lighting = render_options(planned.scene).lighting, .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
-    if (sea->plan().knobs.double_precision)
+    if (quality_of(planned.scene.quality.level).double_precision)
         drawn.note =
             "the preview computes in single precision, quality.level \"reference\" in double: "
             "use pelagic render for that";

@@ -229,6 +229,10 @@ void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& 
 SeaRenderer::SeaRenderer() : implementation_(std::make_unique<Implementation>()) {}
 SeaRenderer::~SeaRenderer() = default;
 
+int SeaRenderer::largest_texture() const {
+    return implementation_->largest_texture;
+}
+
 std::string SeaRenderer::device() const {
     return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", OpenGL " +
            reinterpret_cast<const char*>(glGetString(GL_VERSION));
@@ -254,6 +258,9 @@ void SeaRenderer::upload(const PackedFrame& frame) {
     Implementation& of = *implementation_;
     const GlStageTimer::Measured measured(of.timer, GlStageTimer::Upload);
     of.sea.upload(frame);
+}
+void SeaRenderer::upload_once(const PackedFrame& frame) {
+    implementation_->sea.upload_once(frame);
 }
 bool SeaRenderer::has_frame() const {
     return !implementation_->sea.empty();

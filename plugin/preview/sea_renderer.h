@@ -46,6 +46,8 @@ class SeaRenderer {
     SeaRenderer(const SeaRenderer&) = delete;
     SeaRenderer& operator=(const SeaRenderer&) = delete;
 
+    int largest_texture() const;  // the driver's, texels a side
+
     // The driver's name for the device, for messages and benchmarks.
     std::string device() const;
 
@@ -54,6 +56,8 @@ class SeaRenderer {
     // shaders only if the number of cascades or footprints changed. Returns before the copy is done. Throws
     // PreviewError if the driver's textures are too small for the sea.
     void upload(const PackedFrame& frame);
+    // The same for a picture that is the only one: returns when the copy is done, and holds no second one.
+    void upload_once(const PackedFrame& frame);
     bool has_frame() const;
 
     // Draws a picture of view.resolution into the renderer's own framebuffer. `grid` must be this view's.

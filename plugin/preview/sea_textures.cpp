@@ -63,10 +63,27 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     train_cycles_ = std::move(train_cycles);
 }
 
-void SeaTextures::upload(const PackedFrame& frame) {
+void SeaTextures::begin_upload(const PackedFrame& frame) {
     if (frame.planes().empty())
         throw std::invalid_argument("the packed frame holds nothing yet: call pack() first");
     if (layout_ != frame.layout()) take_sea(frame.layout());
+    time_within_loop_s_ = frame.time_within_loop_s();
+}
+
+void SeaTextures::upload_once(const PackedFrame& frame) {
+    begin_upload(frame);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    for (std::size_t p = 0; p < frame.planes().size(); ++p) {
+        const SeaLayout::Plane& plane = layout_->planes()[p];
+        edit_texture(planes_[p]);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, plane.size.x, plane.size.y,
+                        float_texels(plane.channels).format, GL_FLOAT, frame.planes()[p].data());
+    }
+}
+
+void SeaTextures::upload(const PackedFrame& frame) {
+    begin_upload(frame);
     Staging& buffers = staging_[next_staging_];
     next_staging_ = (next_staging_ + 1) % staging_.size();
     for (std::size_t p = 0; p < frame.planes().size(); ++p) {
@@ -82,7 +99,6 @@ void SeaTextures::upload(const PackedFrame& frame) {
                         float_texels(plane.channels).format, GL_FLOAT, nullptr);
     }
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
-    time_within_loop_s_ = frame.time_within_loop_s();
 }
 
 // Uploads what depends on the grid's origin.

@@ -18,8 +18,9 @@ class SeaTextures {
   public:
     static constexpr int kUnits = 5;  // bind() uses texture units 0 … kUnits − 1
 
-    // As SeaRenderer::upload().
+    // As SeaRenderer::upload() and upload_once().
     void upload(const PackedFrame& frame);
+    void upload_once(const PackedFrame& frame);
     bool empty() const { return layout_ == nullptr; }
     const SeaLayout& layout() const { return *layout_; }
 
@@ -28,6 +29,7 @@ class SeaTextures {
     void bind(const ShaderProgram& program, glm::dvec2 origin_m);
 
   private:
+    void begin_upload(const PackedFrame& frame);
     void take_sea(const std::shared_ptr<const SeaLayout>& layout);
     void upload_tables(glm::dvec2 origin_m);
 

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
+#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -27,6 +28,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/files/files.h"
+#include "plugin/machine/memory.h"
 #include "plugin/png/png.h"
 #include "plugin/preview/controls.h"
 #include "plugin/preview/live.h"
@@ -446,6 +448,11 @@ class Preview {
         if (frame_ != nullptr && std::exchange(uploaded_, frame_->number) != frame_->number) upload();
         for (const std::string& error : {upload_error_, save_error_})
             if (readout_.message.empty()) readout_.message = error;
+        if (frame_ != nullptr && frame_->build->note != note_) {
+            note_ = frame_->build->note;
+            if (!note_.empty()) std::cerr << "pelagic: note: " << note_ << '\n';
+        }
+        if (readout_.message.empty()) readout_.message = note_;
         readout_.has_sea = frame_ != nullptr;
         if (frame_ == nullptr) return;
         readout_.significant_height_m = frame_->build->grid.significant_height_m;
@@ -527,9 +534,10 @@ class Preview {
     double shown_frame_ = 1.0;
     int pictures_ = 0;
     bool is_flying_ = false, save_picture_ = false, is_under_water_ = false;
-    std::string upload_error_, save_error_;
+    std::string upload_error_, save_error_, note_;
     LiveWorker<Scene, LiveSky> skies_;
-    LiveSea sea_;
+    LiveSea sea_{LiveLimits{.memory = machine::memory_limit_or(options_.max_memory_bytes),
+                            .texture = renderer_.largest_texture()}};
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The preview's window: plays a shot in real time, with controls for everything that an artist may change.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <optional>
@@ -15,6 +16,8 @@ struct WindowOptions {
     glm::ivec2 size{0};                  // of the window; 0: the camera's resolution, limited by the screen
     int pixel_size = 1;                  // 1, 2 or 4: a drawn pixel covers pixel_size² of the window's
     std::optional<int> frame{};          // starts paused at this frame; otherwise plays from the first
+    // What the sea may hold; 0: what the system gives this process. A sea that needs more is drawn with less detail.
+    std::size_t max_memory_bytes = 0;
     // For tests of the window: saves it, panel included, after this many pictures with the sea, and closes
     // it.
     std::optional<std::filesystem::path> screenshot{};

@@ -68,7 +68,8 @@ std::vector<int> frames_of(const std::optional<FramesAsked>& asked, const Shot& 
 
 BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
                     const std::optional<FramesAsked>& frames, const py::object& progress,
-                    const py::object& cancel, bool trust_times) {
+                    const py::object& cancel, bool trust_times,
+                    std::optional<std::size_t> max_memory_bytes) {
     require_valid(scene);
     Watch watch(progress, cancel);
     const Scene kept = scene;
@@ -79,6 +80,7 @@ BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::pat
                                 watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total,
                                            now.stage == BakeStage::Checking ? now.checked : now.built);
                             },
+                        .max_memory_bytes = max_memory_bytes.value_or(0),
                         .cancel = watch.flag(),
                         .trust_times = trust_times};
     BakeReport report;
@@ -264,7 +266,7 @@ void add_bake(py::module_& module) {
     module.def(
         "bake", &run_bake, py::arg("scene"), py::arg("out") = py::none(), py::arg("frames") = py::none(),
         py::arg("progress") = py::none(), py::arg("cancel") = py::none(), py::kw_only(),
-        py::arg("trust_times") = false,
+        py::arg("trust_times") = false, py::arg("max_memory_bytes") = py::none(),
         "Bakes a scene into files, as `pelagic bake` does, and the same bits. Files that are whole "
         "already are kept. Other threads run meanwhile.\n\n"
         "out: the folder, made where it is missing; by default ./NAME. frames: a frame, a list, a text like "
@@ -274,6 +276,8 @@ void add_bake(py::module_& module) {
         "that is), \"frames\" or \"waiting\" (for another bake that writes into the folder); the frame finished last; frames "
         "written, kept, and asked for. cancel: a Cancel, or a callable that is asked as often and is true "
         "when it is enough: the bake ends soon, and its report says so.\n"
+        "max_memory_bytes: MemoryError, before anything is written, for a bake that needs more; by default "
+        "what the system gives this process.\n"
         "trust_times: files of the recorded size that are no newer than the record count as whole; otherwise each is "
         "read, and its checksum compared.\n"
         "FileError where a file can't be written, ShotError for a scene that is refused, ValueError for "

@@ -1,5 +1,6 @@
 // The Python module `pelagic`: thin, because the work is core's. Arrays are numpy's, exceptions Python's, and
 // long work lets other Python threads run.
+#include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "plugin/files/files.h"
 #include "plugin/python/bindings.h"
@@ -56,6 +57,13 @@ PYBIND11_MODULE(pelagic, module) {
         "WHAT IS.\n"
         "Without the place for a scene that is not read from a file.";
 
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            if (thrown) std::rethrow_exception(thrown);
+        } catch (const pelagic::NotEnoughMemory& error) {
+            PyErr_SetString(PyExc_MemoryError, error.what());
+        }
+    });
     py::register_exception<pelagic::files::FileError>(module, "FileError", PyExc_OSError).doc() =
         "A file or folder that can't be read or written: its path, why, and what would do.";
 

@@ -1,6 +1,7 @@
 // pelagic.render: what `pelagic render` draws, as arrays.
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
+#include <tbb/task_arena.h>
 
 #include <array>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/light.h"
@@ -31,7 +33,8 @@ py::array layer_of(const py::capsule& owner, const Picture& picture, glm::vec3 S
 
 py::dict render_frame(const Scene& scene, int frame, const std::optional<std::array<int, 2>>& size,
                       std::optional<int> samples, const std::optional<std::string>& sky_quality,
-                      const py::object& progress, const py::object& cancel) {
+                      const py::object& progress, const py::object& cancel,
+                      std::optional<std::size_t> max_memory_bytes) {
     Scene kept = scene;
     if (size) kept.camera.resolution = {(*size)[0], (*size)[1]};
     require_valid(kept);
@@ -45,6 +48,9 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     try {
         const OthersMayRun others_may_run;
         const std::array frames{frame};
+        require_memory(
+            render_memory(kept, options, frames, std::nullopt, tbb::this_task_arena::max_concurrency()),
+            machine::memory_limit_or(max_memory_bytes.value_or(0)), "this picture");
         // Half of the way is the sea's: the first frame is about as long in the making.
         Renderer renderer(kept, options, make_sky(kept), frames,
                           {.progress = [&](double done) { watch.tell(0.5 * done); }, .cancel = watch.flag()});
@@ -72,13 +78,16 @@ void add_picture(py::module_& module) {
         "render", &render_frame, py::arg("scene"), py::arg("frame"), py::arg("size") = py::none(),
         py::arg("samples") = py::none(), py::kw_only(), py::arg("sky_quality") = py::none(),
         py::arg("progress") = py::none(), py::arg("cancel") = py::none(),
+        py::arg("max_memory_bytes") = py::none(),
         "A frame through the scene's camera, as `pelagic render` draws it: a dict of float32 (height, width, 3), "
         "rows from the top, in the sky's units, whose sum is the picture: \"sun\", \"sky\", \"sea\", \"foam\", by "
         "the source of the light (beside the sea \"sky\" is the sky itself with the sun's disc); and "
         "\"is_sea\", bool (height, width).\n\n"
         "size: (width, height), by default the camera's. samples: N of N × N a pixel; sky_quality: \"one\", "
         "\"nine\" or \"integral\"; by default the quality level's. progress: called with the share that is "
-        "done, 0 … 1. cancel: a Cancel, or a callable; Cancelled is then raised.");
+        "done, 0 … 1. cancel: a Cancel, or a callable; Cancelled is then raised. "
+        "max_memory_bytes: MemoryError, before any work, for a picture that needs more; by default what the "
+        "system gives this process.");
 }
 
 }  // namespace pelagic::python

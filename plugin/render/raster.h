@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -24,7 +25,8 @@ class Rasteriser {
   public:
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     static constexpr int kBandRows = 16;
-    static constexpr int kLargestSide = 1 << 18;  // [pixels] limit of the integers
+    static constexpr int kLargestSide = 1 << 18;                          // [pixels] limit of the integers
+    static constexpr std::size_t kPieceBytes = 7 * sizeof(std::int32_t);  // held for each triangle in view
 
     // clip: OpenGL's clip coordinates by vertex, finite. indices: three per triangle. Both must stay alive
     // and unchanged until the last call. Throws std::invalid_argument for a resolution out of range.
@@ -47,6 +49,7 @@ class Rasteriser {
         std::array<glm::ivec2, 3> corner;  // in the order that gives a positive area
         std::uint32_t triangle;
     };
+    static_assert(sizeof(Piece) == kPieceBytes);
 
     void add_clipped(std::uint32_t triangle);
     void add_piece(std::uint32_t triangle, const std::array<glm::dvec4, 3>& corners);

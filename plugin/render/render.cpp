@@ -31,6 +31,18 @@ namespace {
 constexpr int kBatch = 1 << 16;
 constexpr std::size_t kShadeGrain = 256;  // samples a task shades
 
+// Rows of samples that are computed at once: whole bands of the rasteriser that are whole rows of the picture.
+int rows_of_batch(int sample_width, int samples) {
+    const int rows_at_once = Rasteriser::kBandRows * samples;
+    return std::max(1, kBatch / (rows_at_once * sample_width)) * rows_at_once;
+}
+
+// [bytes/pixel] of a picture; of its two files, where layers that are packed take half of their halves; and of what
+// encode_exr() and encode_png() hold beside them.
+constexpr std::size_t kPictureBytes = sizeof(SeaRadiance) + 1;
+constexpr std::size_t kFileBytes = 15 * 2 / 2 + 2;
+constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 3;
+
 // What a batch of samples holds, by sample of the batch or by sample that shows the sea.
 template <class T>
 struct Batch {
@@ -91,9 +103,7 @@ class RendererOf final : public Impl {
         const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
         picture.layers.resize(pixels);
         picture.sea.resize(pixels);
-        // Whole bands of the rasteriser that are whole rows of the picture.
-        const int rows_at_once = Rasteriser::kBandRows * options_.samples;
-        const int step = std::max(1, kBatch / (rows_at_once * view_.resolution.x)) * rows_at_once;
+        const int step = rows_of_batch(view_.resolution.x, options_.samples);
         for (int row = 0; row < view_.resolution.y; row += step) {
             const int rows = std::min(step, view_.resolution.y - row);
             draw(row, rows);
@@ -359,6 +369,49 @@ void check_render(const Scene& scene, const RenderOptions& options) {
         throw std::invalid_argument("a picture of " + std::to_string(all.x) + " x " + std::to_string(all.y) +
                                     " samples: up to " + std::to_string(Rasteriser::kLargestSide) +
                                     " a side are accepted; ask for a smaller picture or fewer samples");
+}
+
+namespace {
+
+// [bytes] of a point of the grid: as it is laid out, with the one of the frame before, in T, displaced, on the screen
+// and in triangles. Of the rasteriser's pieces of triangles, which are fewer where most lie outside the picture, and
+// need more room while their vector grows, as many as there are triangles.
+template <class T>
+constexpr std::size_t kPointBytes = 2 * (sizeof(glm::vec2) + 2 * sizeof(float)) + sizeof(double) +
+                                    6 * sizeof(std::uint32_t) + 6 * sizeof(T) + sizeof(glm::dvec4) +
+                                    2 * (Rasteriser::kPieceBytes + sizeof(std::uint32_t));
+
+// [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
+template <class T>
+constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
+                                     3 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) +
+                                     7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
+
+}  // namespace
+
+MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
+                         std::optional<int> in_flight, int threads) {
+    const Scene sampled = of_samples(scene, options.samples);
+    const Plan plan = picture_plan(sampled, frames);
+    MemoryNeed need;
+    add_sea(need, plan, threads);
+    with_precision(plan.knobs.double_precision, [&]<class T>(T) {
+        need.add("the camera's grid of points", plan.queries[0].query.points * kPointBytes<T>,
+                 "raise surface.cell_px, or ask for a smaller picture (--size)");
+        const glm::ivec2 samples = sampled.camera.resolution;
+        const auto rows =
+            static_cast<std::size_t>(std::min(rows_of_batch(samples.x, options.samples), samples.y));
+        need.add("the pixels at hand", rows * static_cast<std::size_t>(samples.x) * kSampleBytes<T>,
+                 "ask for a smaller picture (--size) or fewer --samples");
+    });
+    const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
+                        static_cast<std::size_t>(scene.camera.resolution.y);
+    need.add("pictures",
+             pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (kPictureBytes + kFileBytes) +
+                                       kEncodingBytes
+                                 : kPictureBytes),
+             "ask for a smaller picture (--size)");
+    return need;
 }
 
 Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames,

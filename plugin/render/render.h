@@ -6,8 +6,8 @@
 //
 // and where there is no sea, the sky (core/lighting/background.glsl).
 //
-// A renderer holds its plan's sea and one frame of it (Plan::sea_bytes(), frame_bytes()), the projected grid,
-// some 100 bytes a cell, and some 30 MB for the pixels at hand, whatever the picture's size.
+// A renderer holds its plan's sea and one frame of it, the projected grid and the pixels at hand: render_memory()
+// says how much, and with it what the pictures themselves and their files take.
 #pragma once
 
 #include <atomic>
@@ -16,12 +16,14 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
+#include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/waves/sea.h"
@@ -63,6 +65,14 @@ void check_render(const Scene& scene, const RenderOptions& options);
 // The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike,
 // whose ladder is as fine as these frames need it. They decide nothing about any frame's bits.
 Plan picture_plan(const Scene& scene, std::span<const int> frames);
+
+// A picture is computed while the one before is encoded and written.
+inline constexpr int kPicturesInFlight = 2;
+
+// What rendering these frames holds at most, on so many threads: the renderer and the picture, or so many pictures in
+// flight with their encoded files.
+MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
+                         std::optional<int> in_flight, int threads);
 
 // A large picture takes long: both are looked at after each part of it.
 struct RenderWatch {

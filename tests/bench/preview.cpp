@@ -54,7 +54,7 @@ void pictures() {
         const Sky sky = make_sky(scene);
         Picture cpu;
         Renderer(scene, options, sky, std::array{5}).render(5, cpu);
-        const Difference difference = compare(cpu, render_offscreen(scene, sky, 5).picture);
+        const Difference difference = compare(cpu, render_offscreen(plan_offscreen(scene, 5), sky).picture);
         std::printf("  %-28s %9.1e %18.1e   <= 1e-3 %s, <= 1e-2 %s\n", name, difference.median,
                     difference.last_percent, verdict(difference.median <= 1e-3),
                     verdict(difference.last_percent <= 1e-2));

@@ -285,14 +285,15 @@ TEST_F(Cli, OutOfMemoryIsSaidAndIsNoCrash) {
     GTEST_SKIP() << "sanitizers take terabytes of addresses themselves";
 #endif
     write_file(folder() / "large.toml", "[surface]\nresolution = 8192\n");
-    const Ended ended = run({.arguments = {"bake", "large.toml", "--threads", "1"},
+    // Somebody who allows more than there is gets as far as that goes.
+    const Ended ended = run({.arguments = {"bake", "large.toml", "--threads", "1", "--max-memory", "1T"},
                              .folder = folder(),
                              .most_address_space = std::size_t{600} << 20});
     EXPECT_FALSE(ended.killed) << "signal " << ended.status - 128;
     EXPECT_EQ(ended.status, 1);
-    EXPECT_TRUE(has(ended.err, "out of memory")) << ended.err;
-    EXPECT_TRUE(has(ended.err, "planned: ")) << ended.err;
-    EXPECT_TRUE(has(ended.err, "67125249 vertices")) << ended.err;
+    for (const char* part :
+         {"out of memory; this bake holds about ", "for values of the mesh", "lower surface.resolution"})
+        EXPECT_TRUE(has(ended.err, part)) << part << "\n" << ended.err;
     EXPECT_EQ(torn_files(folder() / "sea"), "");
 }
 

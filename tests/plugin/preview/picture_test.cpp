@@ -25,7 +25,7 @@ void compare_frame(const char* name, Scene scene) {
     const Sky sky = make_sky(scene);
     Picture cpu;
     Renderer(scene, options, sky, std::array{5}).render(5, cpu);
-    const OffscreenPicture gpu = render_offscreen(scene, sky, 5);
+    const OffscreenPicture gpu = render_offscreen(plan_offscreen(scene, 5), sky);
     ASSERT_EQ(gpu.picture.resolution, cpu.resolution);
     const Difference difference = compare(cpu, gpu.picture);
     std::printf("    %s: median %.1e, 99th percentile %.1e, at silhouettes %.1f %% of the pixels\n", name,

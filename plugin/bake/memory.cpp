@@ -1,0 +1,51 @@
+// What a bake holds in memory, from its plan.
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "core/plan/products.h"
+#include "plugin/bake/bake.h"
+#include "plugin/bake/output_part.h"
+
+namespace pelagic {
+namespace {
+
+// The numbers of a query's products at a point.
+std::size_t numbers_of(const Query& query) {
+    std::size_t count = 0;
+    for (const ProductRow& row : kProductTable)
+        if (query.products[index(row.product)]) count += row.components;
+    return count;
+}
+
+}  // namespace
+
+MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
+    const std::size_t in_flight = std::min<std::size_t>(frames, kFramesInFlight);
+    // Files that belong to no frame are written one after another, before there are values.
+    MemoryNeed before, during;
+    add_sea(before, plan, threads);
+    add_sea(during, plan, threads);
+    std::size_t fixed = 0;
+    std::string fixed_remedy;
+    std::set<std::pair<std::size_t, double>> squares;  // whose points at rest are counted
+    for (const auto& part : make_parts(plan)) {
+        const Query& query = part->query();
+        const OutputMemory memory = part->memory();
+        if (memory.fixed > fixed) {
+            fixed = memory.fixed;
+            fixed_remedy = memory.remedy;
+        }
+        const std::size_t values = query.points * numbers_of(query);
+        during.add("values of the " + query.name, in_flight * values * sizeof(float), memory.remedy);
+        if (plan.knobs.double_precision)
+            during.add("values of the " + query.name, values * sizeof(double), memory.remedy);
+        if (!query.lattice || squares.insert({query.points, query.lattice->spacing_m}).second)
+            during.add("points of the " + query.name, memory.once, memory.remedy);
+        during.add("files of the " + query.name, in_flight * memory.slot + memory.encoding, memory.remedy);
+    }
+    before.add("the faces of the mesh", fixed, fixed_remedy);
+    return before.bytes() > during.bytes() ? before : during;
+}
+
+}  // namespace pelagic

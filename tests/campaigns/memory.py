@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""What a run says that it needs of memory, and what it takes: surfaces, outputs, cascades, precisions, trains, maps,
+tiles and pictures of all sizes. The peak that the system counts lies near what the refusal of the same run names: never
+far above, or a machine that runs out isn't warned, nor far below, or shots that would run are refused."""
+
+import os
+import re
+import signal
+import threading
+
+from common import Campaign
+import common_shots
+
+ALL_MAPS = ["displacement", "normal", "slope-variance", "whitecaps"]
+SMALL_WAVES = {"waves.cascades": [{"size_m": 100.0, "resolution": 128}]}
+LARGE_WAVES = {"waves.cascades": [{"size_m": 1000.0, "resolution": 2048}, {"size_m": 60.0, "resolution": 2048}]}
+NO_MESH = {"output.mesh": "none"}
+
+
+def patch(side, **keys):
+    return {"surface.resolution": side, "surface.size_m": 200.0, **keys}
+
+
+# The verb, its options, the frames and the shot's keys.
+CASES = [
+    ("bake", [], 1, patch(2048)),
+    ("bake", [], 4, patch(1024, **SMALL_WAVES)),
+    ("bake", [], 4, patch(1024, **SMALL_WAVES, **{"output.mesh": "usda"})),
+    ("bake", [], 2, patch(700, **SMALL_WAVES, **{"quality.level": "reference"})),
+    ("bake", [], 4, patch(1500, **SMALL_WAVES, **{"output.attributes": []})),
+    ("bake", [], 4, patch(1024, **{"waves.model": "trochoid", "output.attributes": ["normal"]})),
+    ("bake", [], 1, patch(64, **LARGE_WAVES, **{"surface.size_m": 1.0})),
+    ("bake", [], 4, {**NO_MESH, **SMALL_WAVES, "output.maps": ALL_MAPS, "output.map_resolution": 2048}),
+    ("bake", [], 4, {**NO_MESH, **SMALL_WAVES, "output.maps": ["displacement"], "output.map_resolution": 2048}),
+    ("bake", [], 4, {**NO_MESH, **SMALL_WAVES, "output.maps": ["normal"], "output.map_resolution": 2048}),
+    ("bake", [], 4, {**NO_MESH, **SMALL_WAVES, "output.maps": ["whitecaps"], "output.map_resolution": 2048}),
+    ("bake", [], 2, {**NO_MESH, **SMALL_WAVES, "output.maps": ALL_MAPS, "output.map_resolution": 1024,
+                     "quality.level": "reference"}),
+    ("bake", [], 2, {**NO_MESH, **LARGE_WAVES, "output.maps": ["displacement", "whitecaps"],
+                     "output.cascade_tiles": True, "output.map_resolution": 64}),
+    ("bake", [], 3, {"surface.kind": "projected-grid", "surface.cell_px": 1.0, "camera.resolution": [1280, 720],
+                     "quality.level": "draft"}),
+    ("render", ["--samples", 1], 1, {"sea.wind_speed_mps": 20.0, "camera.resolution": [64, 36]}),
+    ("render", ["--samples", 1], 1, {"quality.level": "draft", "camera.resolution": [4096, 2304]}),
+    ("render", ["--samples", 1], 3, {"quality.level": "draft", "camera.resolution": [2048, 1152]}),
+    ("render", ["--samples", 8], 1, {"quality.level": "draft", "camera.resolution": [1024, 128]}),
+    ("render", ["--samples", 1], 2, {"quality.level": "draft", "camera.resolution": [1280, 720], "surface.cell_px": 1.0}),
+    ("render", ["--samples", 1], 1, {"quality.level": "reference", "camera.resolution": [512, 288],
+                                     "camera.position_m": [0.0, -60.0, 40.0], "surface.cell_px": 2.0}),
+    ("preview", [], 1, {"sea.wind_speed_mps": 20.0, "camera.resolution": [640, 360]}),
+    ("preview", [], 1, {"quality.level": "draft", "camera.resolution": [4096, 2304]}),
+    ("preview", [], 1, {**LARGE_WAVES, "camera.position_m": [0.0, -60.0, 1.0], "camera.look_at_m": [0.0, -59.0, 0.0],
+                        "camera.resolution": [320, 180]}),
+]
+# The program, its libraries and what its allocator keeps are no part of the need: at most this.
+OWN_MIB = 40.0
+BELOW, ABOVE = 0.85, 1.30
+
+campaign = Campaign("Memory that runs say they need, and take.", len(CASES))
+
+
+def arguments_of(folder, case):
+    verb, options, frames, keys = CASES[case % len(CASES)]
+    shot = folder / "shot.toml"
+    shot.write_text(common_shots.shot_text({"shot.frames": [1, frames], **keys}), encoding="utf-8")
+    out = ["--offscreen", folder / "out.exr"] if verb == "preview" else ["--out", folder / "out"]
+    return [verb, shot, *out, *options, "--threads", 2]
+
+
+def peak_mib(folder, arguments):
+    """The program's exit status, and its largest resident memory."""
+    with open(folder / "words.txt", "wb") as words:
+        process = os.posix_spawn(campaign.program, [str(campaign.program), *map(str, arguments)], os.environ,
+                                 file_actions=[(os.POSIX_SPAWN_DUP2, words.fileno(), 1),
+                                               (os.POSIX_SPAWN_DUP2, words.fileno(), 2)])
+        watch = threading.Timer(600, os.kill, (process, signal.SIGKILL))
+        watch.start()
+        _, status, usage = os.wait4(process, 0)
+        watch.cancel()
+    return os.waitstatus_to_exitcode(status), usage.ru_maxrss / 1024
+
+
+def mib_of(number, unit):
+    return float(number) * {"KiB": 1 / 1024, "MiB": 1, "GiB": 1024}[unit]
+
+
+def judge(draw, folder):
+    arguments = arguments_of(folder, draw.case)
+    # A preview looks at little first: what its pixels show decides about the rest.
+    least = "50M" if arguments[0] == "preview" else "1K"
+    refused = campaign.run(*arguments, "--max-memory", least, timeout=600)
+    named = re.search(r"needs about ([\d.]+) ([KMG]iB) of memory", refused.err)
+    campaign.expect(refused.status == 1 and named, "it isn't refused with the memory that it needs", refused)
+    campaign.expect(not (folder / "out").exists(), "a refused run left a folder", refused)
+    need = mib_of(*named.groups())
+    status, peak = peak_mib(folder, arguments)
+    words = (folder / "words.txt").read_text(errors="replace")
+    campaign.expect(status == 0, f"exit status {status}: {words[-1000:]}")
+    line = (f"{arguments[0]} {' '.join(map(str, arguments[4:-2]))} {CASES[draw.case % len(CASES)][3]}: "
+            f"needs {need:.0f} MiB by its own words, took {peak:.0f} MiB")
+    print(f"  {draw.case}: {line}", flush=True)
+    campaign.expect(BELOW * need <= peak <= ABOVE * need + OWN_MIB, line)
+
+
+campaign.go(judge)

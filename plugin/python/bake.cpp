@@ -68,8 +68,7 @@ std::vector<int> frames_of(const std::optional<FramesAsked>& asked, const Shot& 
 
 BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
                     const std::optional<FramesAsked>& frames, const py::object& progress,
-                    const py::object& cancel, bool trust_times,
-                    std::optional<std::size_t> max_memory_bytes) {
+                    const py::object& cancel, bool trust_times, std::optional<std::size_t> max_memory_bytes) {
     require_valid(scene);
     Watch watch(progress, cancel);
     const Scene kept = scene;

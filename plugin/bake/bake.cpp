@@ -159,7 +159,7 @@ std::map<int, FrameRecord> recorded_frames(BakeReport& report, const RecordWatch
         report.record, [&](int frame, FrameRecord record) { frames[frame] = std::move(record); }, watch);
     if (reading.is_blocked)
         throw files::FileError("the record '" + report.record.string() + "' " + reading.problem +
-                                   ": move it away or choose another --out",
+                                   ": move it away or choose another folder",
                                report.record, std::make_error_code(std::errc::file_exists));
     const std::string name = report.record.filename().string();
     if (!reading.problem.empty() && !reading.is_missing)

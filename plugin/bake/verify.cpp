@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -22,6 +23,7 @@ struct Known {
     std::vector<FileCheck> files;
     std::set<std::string> paths;      // of these and of the records
     std::set<std::string> uncertain;  // shots whose record is damaged: what else is named so may be theirs
+    std::map<std::string, std::vector<int>> missing;  // by shot: the frames that aren't baked, rising
 };
 
 void read_shot(const fs::path& folder, const std::string& record, const RecordWatch& watch, Known& known,
@@ -40,7 +42,14 @@ void read_shot(const fs::path& folder, const std::string& record, const RecordWa
         [&](int frame, FrameRecord entry) {
             baked.push_back(frame);
             if (entry.is_stale) stale.push_back(frame);
-            for (auto& [path, file] : entry.files) add(path, std::move(file));
+            for (auto& [path, file] : entry.files) {
+                // A bake makes a stale frame's files anew one after another, and then writes its entry: until
+                // then they hold other bytes, and aren't damaged.
+                if (entry.is_stale)
+                    known.paths.insert(path);
+                else
+                    add(path, std::move(file));
+            }
         },
         watch);
     known.paths.insert(record);
@@ -61,6 +70,15 @@ void read_shot(const fs::path& folder, const std::string& record, const RecordWa
             std::find(reading.altered.begin(), reading.altered.end(), frame) == reading.altered.end())
             missing.push_back(static_cast<int>(frame));
     if (!missing.empty()) tell(Flaw::Missing, "lacks frames that aren't baked: " + frames_text(missing));
+    known.missing[name] = std::move(missing);
+}
+
+// Whether the file is of a frame that its shot's record lacks: a bake makes the files, and then the entry.
+bool is_of_missing_frame(const std::string& path, const Known& known) {
+    const auto shot = known.missing.find(shot_of(path));
+    if (shot == known.missing.end()) return false;
+    const auto frame = frame_of(fs::path(path).stem().extension().string(), {".", ""});
+    return frame && std::binary_search(shot->second.begin(), shot->second.end(), *frame);
 }
 
 bool is_picture(const std::string& name) {
@@ -134,7 +152,8 @@ Verification verify(const fs::path& folder, const CheckWatch& watch) {
             found.findings.push_back({other, Flaw::Missing, "is missing beside " + picture.name});
     }
     for_each_bake_file(folder, [&](const std::string& path) {
-        if (!known.paths.contains(path) && !known.uncertain.contains(shot_of(path)))
+        if (!known.paths.contains(path) && !known.uncertain.contains(shot_of(path)) &&
+            !is_of_missing_frame(path, known))
             found.findings.push_back({path, Flaw::Foreign, "is in no record here"});
     });
     std::stable_sort(found.findings.begin(), found.findings.end(),

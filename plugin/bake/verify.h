@@ -34,7 +34,8 @@ struct Verification {
 
 // Reads all files in full. A shot's files are known by its record; pictures (NAME.####.exr, .png) by what they say
 // about themselves: those that a folder lacks altogether, nobody knows. Of a shot whose record is damaged, files that
-// are in no entry that is left aren't called foreign. Throws files::FileError where there is no such folder, and
+// are in no entry that is left aren't called foreign. Nor are files of a frame that the record lacks, and those of a
+// stale frame aren't looked at: a bake is at them, or was stopped there. Throws files::FileError where there is no such folder, and
 // CheckCancelled.
 Verification verify(const std::filesystem::path& folder, const CheckWatch& watch = {});
 

@@ -139,7 +139,7 @@ Verb add_bake(CLI::App& program) {
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");
     command->add_flag("--trust-times", arguments->trust_times, help::kTrustTimes);
     add_threads(*command, arguments->threads, help::kThreads);
-    add_max_memory(*command, arguments->max_memory);
+    add_max_memory(*command, arguments->max_memory, help::kMaxMemory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

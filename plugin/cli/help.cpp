@@ -55,6 +55,10 @@ const char* const kThreads =
 const char* const kMaxMemory =
     "Refuse a shot that would take more memory than this, before any work: 8G, 512M.\n"
     "Default: what the machine has, or less where a container or ulimit allows less";
+const char* const kPreviewMaxMemory =
+    "Refuse a picture that would take more memory than this, before any work: 8G, 512M. A window\n"
+    "draws less instead, and says so.\n"
+    "Default: what the machine has, or less where a container or ulimit allows less";
 
 const char* const kTrustTimes =
     "Don't read the files that are there: those of the recorded size that are no newer than the\n"
@@ -155,6 +159,7 @@ const char* const kVerify =
     "  damaged   not the bytes that were written, or a record with a changed number\n"
     "  stale     a frame of another version of the shot than the record's\n"
     "  foreign   named as a bake's files are, and in no record\n"
+    "A frame that a bake is at, or was stopped at, is missing or stale: its files aren't named one by one.\n"
     "Changes nothing: the next bake or render makes again what is missing, damaged or stale.";
 const char* const kVerifyFooter =
     "Examples:\n"
@@ -174,7 +179,7 @@ const char* const kVerifyThreads =
 const char* const kValidate =
     "Check shot files without baking them.\n"
     "Prints a summary of each valid file, and for others every problem with line and column.\n"
-    "Measured spectra that a shot file names are read as well.";
+    "Measured spectra and sky pictures that a shot file names are looked at as well.";
 const char* const kValidateFooter =
     "Examples:\n"
     "  pelagic validate storm.toml\n"

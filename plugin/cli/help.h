@@ -19,6 +19,7 @@ extern const char* const kThreads;
 extern const char* const kTrustTimes;
 
 extern const char* const kMaxMemory;
+extern const char* const kPreviewMaxMemory;
 
 extern const char* const kRender;
 extern const char* const kRenderFooter;

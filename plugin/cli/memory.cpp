@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "plugin/cli/exit_status.h"
-#include "plugin/cli/help.h"
 
 namespace pelagic::cli {
 namespace {
@@ -36,8 +35,8 @@ std::string refuse_text(const std::string& text) {
 
 }  // namespace
 
-CLI::Option* add_max_memory(CLI::App& command, std::string& memory) {
-    return command.add_option("--max-memory", memory, help::kMaxMemory)
+CLI::Option* add_max_memory(CLI::App& command, std::string& memory, const char* help) {
+    return command.add_option("--max-memory", memory, help)
         ->type_name("SIZE")
         ->check(CLI::Validator(refuse_text, ""));
 }

@@ -11,7 +11,7 @@ namespace pelagic::cli {
 
 // Adds the option, which rejects what is no size. `memory` must outlive the parsing; it stays empty if the option
 // isn't given.
-CLI::Option* add_max_memory(CLI::App& command, std::string& memory);
+CLI::Option* add_max_memory(CLI::App& command, std::string& memory, const char* help);
 
 // Converts the text, "8G" or "512MiB"; an empty one gives 0.
 std::size_t memory_of(const std::string& memory);

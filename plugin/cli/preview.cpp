@@ -152,7 +152,7 @@ Verb add_preview(CLI::App& program) {
         ->needs(screenshot);
     screenshot->excludes(offscreen);
     add_threads(*command, arguments->threads, help::kPreviewThreads);
-    add_max_memory(*command, arguments->max_memory);
+    add_max_memory(*command, arguments->max_memory, help::kPreviewMaxMemory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

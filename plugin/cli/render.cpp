@@ -326,7 +326,7 @@ Verb add_render(CLI::App& program) {
     command->add_option("--terms", arguments->terms, help::kTerms)->type_name("TERMS");
     command->add_flag("--trust-times", arguments->trust_times, help::kTrustPictures);
     add_threads(*command, arguments->threads, help::kThreads);
-    add_max_memory(*command, arguments->max_memory);
+    add_max_memory(*command, arguments->max_memory, help::kMaxMemory);
     return {command, [arguments] { return run(*arguments); }};
 }
 

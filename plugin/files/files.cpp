@@ -47,38 +47,38 @@ struct Advice {
 Advice advice(int error) {
     switch (error) {
         case ENOSPC:
-            return {"no space left on the device", "free some room or choose another --out"};
+            return {"no space left on the device", "free some room or choose another folder"};
         case EDQUOT:
-            return {"your disk quota is used up", "free some room or choose another --out"};
+            return {"your disk quota is used up", "free some room or choose another folder"};
         case EFBIG:
             return {"the file is larger than the file system or the process's limit (ulimit -f) allows",
-                    "raise the limit or choose another --out"};
+                    "raise the limit or choose another folder"};
         case EACCES:
         case EPERM:
-            return {"permission denied", "make the folder writable for you or choose another --out"};
+            return {"permission denied", "make the folder writable for you or choose another folder"};
         case EROFS:
-            return {"the file system is read-only", "mount it for writing or choose another --out"};
+            return {"the file system is read-only", "mount it for writing or choose another folder"};
         case EISDIR:
-            return {"a folder of that name is in the way", "move it away or choose another --out"};
+            return {"a folder of that name is in the way", "move it away or choose another folder"};
         case ENOENT:
-            return {"its folder does not exist (any more)", "make the folder or choose another --out"};
+            return {"its folder does not exist (any more)", "make the folder or choose another folder"};
         case ENOTDIR:
         case EEXIST:
             return {"a part of the path is a file, not a folder",
-                    "move that file away or choose another --out"};
+                    "move that file away or choose another folder"};
         case ELOOP:
-            return {"the path contains a loop of symbolic links", "fix the links or choose another --out"};
+            return {"the path contains a loop of symbolic links", "fix the links or choose another folder"};
         case ENAMETOOLONG:
-            return {"the path is too long for the file system", "choose a shorter name or --out"};
+            return {"the path is too long for the file system", "choose a shorter name or folder"};
         case EIO:
-            return {"the device reports an input/output error", "check the disk or choose another --out"};
+            return {"the device reports an input/output error", "check the disk or choose another folder"};
         case EMFILE:
         case ENFILE:
             return {"too many files are open", "close some programs or raise the limit (ulimit -n)"};
         case ESTALE:
-            return {"the network folder is gone", "mount it again or choose another --out"};
+            return {"the network folder is gone", "mount it again or choose another folder"};
         default:
-            return {std::generic_category().message(error), "fix that or choose another --out"};
+            return {std::generic_category().message(error), "fix that or choose another folder"};
     }
 }
 

@@ -26,7 +26,7 @@ TEST(BakeDisk, AFileInTheWayOfTheFolderIsSaid) {
         EXPECT_EQ(ended.status, 1) << out;
         EXPECT_TRUE(has(ended.err, "'" + std::string(out) + "'")) << ended.err;
         EXPECT_TRUE(has(ended.err, "a file, not a folder")) << ended.err;
-        EXPECT_TRUE(has(ended.err, "--out")) << "what to do: " << ended.err;
+        EXPECT_TRUE(has(ended.err, "choose another folder")) << "what to do: " << ended.err;
         EXPECT_EQ(ended.out, "");
     }
     EXPECT_EQ(read_file(folder.path() / "file"), "kept");

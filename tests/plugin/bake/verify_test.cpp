@@ -262,6 +262,38 @@ TEST_F(Verify, FramesThatArentBakedAreMissingAndThoseOfAnotherVersionStale) {
     EXPECT_EQ(flaws().size(), 1u + 4 + 8);
 }
 
+// A bake writes a frame's files, then its entry: whoever verifies in between, or after the bake was stopped there,
+// is told of the frame, and of no file that would be foreign or damaged.
+TEST_F(Verify, AFrameInTheMakingIsMissingOrStaleAndItsFilesAreNoFlaws) {
+    Scene scene = every_output(MeshFormat::Usdc);
+    bake_into(folder_, scene);
+    Files frame;
+    for (const auto& [path, bytes] : files_in(folder_))
+        if (path.find(".0002.") != std::string::npos) frame[path] = bytes;
+    EXPECT_EQ(frame.size(), 1u + 4 + 8);
+
+    fs::remove_all(folder_);
+    bake_into(folder_, scene, {1, 3});
+    for (const auto& [path, bytes] : frame) {
+        write(folder_ / path, bytes);
+        EXPECT_EQ(flaws(), std::vector<std::string>{"missing sea.json"}) << path;
+    }
+    write(folder_ / "mesh/sea.0004.usdc", "");
+    EXPECT_EQ(flaws(), (std::vector<std::string>{"foreign mesh/sea.0004.usdc", "missing sea.json"}));
+    fs::remove(folder_ / "mesh/sea.0004.usdc");
+    bake_into(folder_, scene);
+    EXPECT_TRUE(verify(folder_).is_whole());
+
+    scene.shot.seed = 2;
+    bake_into(folder_, scene, {1, 3});
+    for (const auto& [path, bytes] : frame) {
+        write(folder_ / path, bytes + "a later version");
+        EXPECT_EQ(flaws(), std::vector<std::string>{"stale sea.json"}) << path;
+    }
+    bake_into(folder_, scene);
+    EXPECT_TRUE(verify(folder_).is_whole());
+}
+
 // A folder may hold several shots: no file of one is another's, whatever their names and outputs.
 TEST_F(Verify, TwoShotsInAFolderShareNoFile) {
     const fs::path both = folder_ / "both";

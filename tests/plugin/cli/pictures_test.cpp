@@ -248,6 +248,16 @@ TEST_F(Pictures, ASkyThatIsNoRadianceIsRefusedBeforeAnythingIsWritten) {
     }
 }
 
+// The preview's option for its file is --offscreen; it has none for a folder.
+TEST_F(Pictures, WhatAPreviewCantWriteIsAnsweredWithoutAnotherVerbsOption) {
+    write_file(folder() / "small.toml", small_shot());
+    write_file(folder() / "file", "");
+    const Ended ended = cli({"preview", "small.toml", "--offscreen", "file/a.png"});
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_NE(ended.err.find("a part of the path is a file"), std::string::npos) << ended.err;
+    EXPECT_EQ(ended.err.find("--out"), std::string::npos) << ended.err;
+}
+
 // Unix takes any bytes for a name. Nothing written in text needs to name these folders, or it escapes them.
 TEST_F(Pictures, FoldersWhoseNamesAreNotUtf8) {
     const std::string odd = "caf\xe9\x80\n";

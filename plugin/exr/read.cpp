@@ -93,6 +93,14 @@ bool looks_grey(std::span<const exr_attr_chlist_entry_t> channels) {
     return is_grey;
 }
 
+// Nobody else may have looked at the path. A pipe would be waited for as soon as it is opened.
+void refuse_no_file(const std::filesystem::path& path) {
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        throw Refusal{"is a pipe or a folder, or another thing that is no file", kAccepted};
+}
+
 // Whether the file ends before its pixels do. Looks at the place and size of each chunk of level 0, not into it.
 void refuse_short_file(const Context& file, std::uintmax_t bytes, const exr_attr_box2i_t& window,
                        bool is_tiled) {
@@ -126,6 +134,7 @@ void refuse_short_file(const Context& file, std::uintmax_t bytes, const exr_attr
 
 RgbFile::RgbFile(std::filesystem::path path) : path_(std::move(path)) {
     try {
+        refuse_no_file(path_);
         const Context file(path_);
         const auto storage = file.get<exr_storage_t>(exr_get_storage);
         if (storage == EXR_STORAGE_DEEP_SCANLINE || storage == EXR_STORAGE_DEEP_TILED)

@@ -68,8 +68,7 @@ std::vector<int> frames_of(const std::optional<FramesAsked>& asked, const Shot& 
 
 BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
                     const std::optional<FramesAsked>& frames, const py::object& progress,
-                    const py::object& cancel, bool trust_times,
-                    std::optional<std::size_t> max_memory_bytes) {
+                    const py::object& cancel, bool trust_times, std::optional<std::size_t> max_memory_bytes) {
     require_valid(scene);
     Watch watch(progress, cancel);
     const Scene kept = scene;
@@ -111,8 +110,10 @@ void add_bake_report(py::module_& module) {
         .def_readonly("cancelled", &BakeReport::cancelled,
                       "Whether it was cancelled; what is in the files is whole, and the next bake goes on.")
         .def_readonly("seconds", &BakeReport::seconds, "From the call to its end.")
-        .def_readonly("stale", &BakeReport::stale,
-                      "Frames of the shot that lie there and belong to another version of it, not asked for.")
+        .def_readonly(
+            "stale", &BakeReport::stale,
+            "Frames of the shot that lie there and belong to another version of it, or whose entry in the record was "
+            "altered, not asked for.")
         .def_readonly("foreign", &BakeReport::foreign,
                       "Files that lie there and aren't the shot's, a line each.")
         .def_readonly("damaged", &BakeReport::damaged,

@@ -9,6 +9,7 @@
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <cmath>
@@ -171,6 +172,9 @@ TEST_F(ReadRgb, AWindowAwayFromTheOrigin) {
 TEST_F(ReadRgb, RefusesWhatIsNoPicture) {
     EXPECT_NE(refusal(path("missing.exr")).find("can't be read"), std::string::npos);
     EXPECT_NE(refusal(written("no picture at all")).find("can't be read"), std::string::npos);
+    ASSERT_EQ(mkfifo(path("pipe.exr").c_str(), 0600), 0);
+    EXPECT_NE(refusal(path("pipe.exr")).find("is a pipe or a folder"), std::string::npos);
+    EXPECT_NE(refusal(path("")).find("is a pipe or a folder"), std::string::npos);
     const Planes planes(kWidth, kHeight);
     const std::string whole = encode_scanline({}, planes.image(PixelType::Half));
     EXPECT_NE(refusal(written(whole.substr(0, whole.size() / 2))).find("is cut short"), std::string::npos);

@@ -71,7 +71,7 @@ class MapPart final : public OutputPart {
         }();
         return {.once = texels * 2 * scalar,
                 .slot = texels * file,
-                .encoding = texels * work,
+                .encoding = texels * (file + work),  // the file once more, in blocks
                 .remedy = output_.cascade
                               ? "lower the resolutions in waves.cascades, or leave cascade_tiles out"
                               : "lower output.map_resolution, or ask for fewer output.maps"};

@@ -29,7 +29,8 @@ SEAS = {
 }
 UNFOLDED = ("calm", "swell alone")
 # Height and distance from the origin.
-PLACES = [(0.3, 0.0), (2.0, 0.0), (10.0, 0.0), (1e3, 0.0), (2e4, 0.0), (3e5, 0.0), (10.0, 1e7), (1e3, 1e6)]
+PLACES = [(0.3, 0.0), (2.0, 0.0), (10.0, 0.0), (1e3, 0.0), (2e4, 0.0), (3e5, 0.0), (10.0, 1e7), (1e3, 1e6),
+          (10.0, 9e8)]
 # Elevation of the line of sight.
 LOOKS = {"straight down": -90.0, "down": -30.0, "at the horizon": 0.0, "up": 30.0, "straight up": 90.0}
 ROLLS = [0.0, 0.0, 7.0, 90.0, 180.0, -135.0]

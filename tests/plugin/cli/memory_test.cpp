@@ -1,5 +1,5 @@
 // Shots that need more memory, or larger pictures, than there is are refused before any work: nothing is written, the
-// memory stays small, and it takes no longer than to explain the shot.
+// memory stays small, and nobody waits.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -25,15 +25,15 @@ class Memory : public testing::Test {
     Ended pelagic(std::vector<std::string> arguments) {
         return run({.arguments = std::move(arguments), .folder = folder()});
     }
-    // Refused in words, with nothing left behind, and not much later than its plan is explained: what a shot of that
-    // size takes to build is a multiple.
+    // Refused in words, with nothing left behind. That no work was begun shows in the memory that it takes
+    // (RefusingTakesLittle); the time is no more than a guard: such shots take minutes to build.
     void expect_refused(std::vector<std::string> arguments, const std::vector<std::string>& words) {
         const Ended explained = pelagic({"explain", "shot.toml"});
         const Ended refused = pelagic(std::move(arguments));
         EXPECT_EQ(refused.status, 1) << refused.err;
         for (const std::string& word : words)
             EXPECT_TRUE(has(refused.err, word)) << word << "\n" << refused.err;
-        EXPECT_LT(refused.seconds, 5.0 * explained.seconds + 1.0) << explained.seconds;
+        EXPECT_LT(refused.seconds, 20.0 * explained.seconds + 60.0);
         EXPECT_EQ(files_below(folder()).size(), 1u) << "the shot alone";
     }
 

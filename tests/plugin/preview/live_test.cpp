@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "core/plan/plan.h"
+#include "plugin/gpu/sea_layout.h"
 
 namespace pelagic {
 namespace {
@@ -318,6 +320,29 @@ TEST(LiveSea, AnImpossibleSceneIsRefusedInWords) {
     EXPECT_TRUE(wait_for([&] { return !sea.status().error.empty(); }));
     EXPECT_NE(sea.status().error.find("sea.wind_speed_mps = -3"), std::string::npos) << sea.status().error;
     EXPECT_EQ(sea.newest(), nullptr);
+}
+
+// What doesn't fit the driver's textures or the memory is drawn without its shortest waves, and the window says so.
+TEST(LiveBuild, LeavesOutTheShortestWavesWhereTheSeaDoesNotFit) {
+    Scene scene;
+    scene.waves.cascades = {{.size_m = 400.0, .resolution = 256}};
+    const auto whole = build_live(scene, {});
+    EXPECT_EQ(whole->note, "");
+    LiveLimits small_textures;
+    small_textures.texture = 300;
+    LiveLimits little_memory;
+    little_memory.memory = {whole->sea->plan().frame_bytes(), "this machine has"};
+    for (const LiveLimits& limits : {small_textures, little_memory}) {
+        const auto less = build_live(scene, limits);
+        EXPECT_NE(less->note.find("waves below "), std::string::npos) << less->note;
+        EXPECT_LT(less->sea->plan().frame_bytes(), whole->sea->plan().frame_bytes());
+        EXPECT_GT(less->sea->plan().transforms_per_frame(), 0);
+        for (const SeaLayout::Plane& plane : SeaLayout::planes_of(less->sea->plan(), less->query))
+            EXPECT_LE(std::max(plane.size.x, plane.size.y), limits.texture);
+    }
+    LiveLimits none;
+    none.memory = {1, "this machine has"};
+    EXPECT_THROW(build_live(scene, none), NotEnoughMemory);
 }
 
 TEST(LiveSea, ItCanBeClosedAtAnyMoment) {

@@ -151,9 +151,11 @@ void complete(FrameRecord& record, const FrameJob& job, const Parts& parts) {
     }
 }
 
-// The frames that the record holds as they were written; what is wrong with it goes to the report. Throws
-// files::FileError where something is in the record's place that isn't one and can't be replaced.
-std::map<int, FrameRecord> recorded_frames(BakeReport& report, const RecordWatch& watch) {
+// The frames that the record holds as they were written; what is wrong with it goes to the report, an altered entry of
+// a frame that isn't asked for to the stale ones. Throws files::FileError where something is in the record's place
+// that isn't one and can't be replaced.
+std::map<int, FrameRecord> recorded_frames(BakeReport& report, const Shot& shot, std::span<const int> asked,
+                                           const RecordWatch& watch) {
     std::map<int, FrameRecord> frames;
     const RecordReading reading = read_record(
         report.record, [&](int frame, FrameRecord record) { frames[frame] = std::move(record); }, watch);
@@ -164,8 +166,13 @@ std::map<int, FrameRecord> recorded_frames(BakeReport& report, const RecordWatch
     const std::string name = report.record.filename().string();
     if (!reading.problem.empty() && !reading.is_missing)
         report.damaged.push_back(name + ' ' + reading.problem);
-    for (const int frame : reading.altered)
-        report.damaged.push_back(name + " was altered in what it says about frame " + std::to_string(frame));
+    for (const int frame : reading.altered) {
+        if (std::binary_search(asked.begin(), asked.end(), frame))
+            report.damaged.push_back(name + " was altered in what it says about frame " +
+                                     std::to_string(frame));
+        else if (frame >= shot.first_frame && frame <= shot.last_frame)
+            report.stale.push_back(frame);
+    }
     return frames;
 }
 
@@ -207,7 +214,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     report.record = options.out / (scene.shot.name + ".json");
     std::vector<FrameJob> jobs, records;  // frames to bake, and records to mend
     try {
-        const std::map<int, FrameRecord> recorded = recorded_frames(report, stop_if_cancelled);
+        const std::map<int, FrameRecord> recorded =
+            recorded_frames(report, scene.shot, frames, stop_if_cancelled);
         std::vector<FileCheck> checks = files_to_check(frames, recorded, parts);
         if (options.trust_times)
             check_times(options.out, checks, report.record);
@@ -234,6 +242,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             if (frame >= scene.shot.first_frame && frame <= scene.shot.last_frame &&
                 !std::binary_search(frames.begin(), frames.end(), frame) && is_stale(frame, entry, parts))
                 report.stale.push_back(frame);
+        std::sort(report.stale.begin(), report.stale.end());
     } catch (const Cancelled&) {
         report.cancelled = true;
     } catch (const CheckCancelled&) {

@@ -61,8 +61,8 @@ struct BakeReport {
     double seconds = 0.0;  // from the call to its end
     long executed_transforms = 0;
     PipelineTimes times;  // of the frames that were baked; all 0 where the bake was cancelled
-    // Frames of this shot's range that lie in DIR but belong to another version of it: not asked for, not
-    // touched.
+    // Frames of this shot's range that lie in DIR but belong to another version of it, or whose entry in the record was
+    // altered: not asked for, not touched.
     std::vector<int> stale;
     std::vector<std::string> foreign;  // files in DIR that aren't this shot's (plugin/bake/foreign.h)
     // What wasn't as it was recorded, and was made again, a line each: "mesh/sea.0007.usdc holds other bytes …".
@@ -72,7 +72,8 @@ struct BakeReport {
 // What a bake of so many frames of the plan (plan_bake) holds at most, on so many threads.
 MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads);
 
-// Throws NotEnoughMemory before anything is written, files::FileError where a file can't be written (what was finished is kept and recorded),
+// Throws NotEnoughMemory before anything is written, files::FileError where a file can't be written (what was
+// finished is kept and recorded),
 // std::invalid_argument for frames outside the shot's range or a scene that validate() refuses or that asks
 // for nothing.
 BakeReport bake(const Scene& scene, const BakeOptions& options);

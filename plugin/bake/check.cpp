@@ -1,6 +1,7 @@
 #include "plugin/bake/check.h"
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <optional>
@@ -27,8 +28,10 @@ void CheckProgress::add(std::size_t bytes) {
     const auto now = Clock::now();
     if (now < tell_from_) return;
     tell_from_ = now + kTellEvery;
-    watch_.progress(total_ > 0 ? std::min(static_cast<double>(done_) / static_cast<double>(total_), 1.0)
-                               : 1.0);
+    const double share =
+        total_ > 0 ? std::min(static_cast<double>(done_) / static_cast<double>(total_), 1.0) : 1.0;
+    // Where it waits for tasks of its own, this thread takes up none of ours: they would wait for this lock.
+    tbb::this_task_arena::isolate([&] { watch_.progress(share); });
 }
 
 void check_file(const std::filesystem::path& folder, FileCheck& check, CheckProgress& progress) {

@@ -56,8 +56,8 @@ void print_done(const BakeReport& report, const std::string& out) {
     if (!report.stale.empty()) {
         std::cerr
             << "pelagic: in " << out << " the frames " << frames_text(report.stale)
-            << " are of another version of this shot, and were not asked for; bake them again with --frames, "
-               "or without it for the whole shot\n";
+            << " are of another version of this shot, or altered in its record, and were not asked for; bake them "
+               "again with --frames, or without it for the whole shot\n";
     }
 }
 

@@ -22,6 +22,9 @@ namespace pelagic::exr {
 namespace {
 
 constexpr int kLargestSide = 32768;  // [pixels] 16 times a usual sky's; damaged headers may claim anything
+// What must be decoded at once, rows of tiles across the whole picture: 256 lines of the widest are half of it, and so
+// are usual tiles, 64 to 256 a side.
+constexpr std::int64_t kMostPixelsInPiece = std::int64_t{1} << 24;
 constexpr const char* kAccepted = "a whole file of half or float channels R, G, B or Y";
 
 // Why a file is refused. RgbFile adds its name.
@@ -93,6 +96,14 @@ bool looks_grey(std::span<const exr_attr_chlist_entry_t> channels) {
     return is_grey;
 }
 
+// Nobody else may have looked at the path. A pipe would be waited for as soon as it is opened.
+void refuse_no_file(const std::filesystem::path& path) {
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        throw Refusal{"is a pipe or a folder, or another thing that is no file", kAccepted};
+}
+
 // Whether the file ends before its pixels do. Looks at the place and size of each chunk of level 0, not into it.
 void refuse_short_file(const Context& file, std::uintmax_t bytes, const exr_attr_box2i_t& window,
                        bool is_tiled) {
@@ -126,6 +137,7 @@ void refuse_short_file(const Context& file, std::uintmax_t bytes, const exr_attr
 
 RgbFile::RgbFile(std::filesystem::path path) : path_(std::move(path)) {
     try {
+        refuse_no_file(path_);
         const Context file(path_);
         const auto storage = file.get<exr_storage_t>(exr_get_storage);
         if (storage == EXR_STORAGE_DEEP_SCANLINE || storage == EXR_STORAGE_DEEP_TILED)
@@ -156,6 +168,10 @@ RgbFile::RgbFile(std::filesystem::path path) : path_(std::move(path)) {
         if (is_tiled) {
             std::int32_t tile_width = 0;
             exr_get_tile_sizes(file.native(), 0, 0, 0, &tile_width, &rows_in_piece_);
+            if (const std::int64_t most = kMostPixelsInPiece / width; rows_in_piece_ > most)
+                throw Refusal{"has tiles that are " + std::to_string(rows_in_piece_) + " pixels high",
+                              "scan lines, or tiles of at most " + std::to_string(most) +
+                                  " in a picture of this width"};
         } else {
             rows_in_piece_ = file.get<std::int32_t>(exr_get_scanlines_per_chunk);
         }

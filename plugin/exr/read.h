@@ -33,8 +33,8 @@ class ReadError : public std::runtime_error {
 //
 // Throws ReadError for a file that can't be opened, isn't OpenEXR, or is cut short, as far as its tables and its
 // size say; for deep pixels; for missing channels, channels of integers or with fewer samples than pixels; for data
-// that don't fill the picture exactly; and for more than 32768 pixels per side. Pixels aren't read for that: it
-// takes a moment, whatever the picture's size.
+// that don't fill the picture exactly; for more than 32768 pixels per side; and for tiles so high that a row of them
+// takes gigabytes to read. Pixels aren't read for that: it takes a moment, whatever the picture's size.
 class RgbFile {
   public:
     explicit RgbFile(std::filesystem::path path);

@@ -66,6 +66,7 @@ std::vector<Problem> check_sky(const Scene& scene) {
 
 std::string sky_content(const Scene& scene) {
     if (scene.light.sky == Light{}.sky) return {};
+    for (const Problem& problem : check_sky(scene)) throw std::invalid_argument(text_of(problem));
     std::ifstream stream(scene.light.sky, std::ios::binary);
     Fingerprint hash;
     std::string piece(std::size_t{1} << 20, '\0');

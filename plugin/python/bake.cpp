@@ -110,8 +110,10 @@ void add_bake_report(py::module_& module) {
         .def_readonly("cancelled", &BakeReport::cancelled,
                       "Whether it was cancelled; what is in the files is whole, and the next bake goes on.")
         .def_readonly("seconds", &BakeReport::seconds, "From the call to its end.")
-        .def_readonly("stale", &BakeReport::stale,
-                      "Frames of the shot that lie there and belong to another version of it, not asked for.")
+        .def_readonly(
+            "stale", &BakeReport::stale,
+            "Frames of the shot that lie there and belong to another version of it, or whose entry in the record was "
+            "altered, not asked for.")
         .def_readonly("foreign", &BakeReport::foreign,
                       "Files that lie there and aren't the shot's, a line each.")
         .def_readonly("damaged", &BakeReport::damaged,

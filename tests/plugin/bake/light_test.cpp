@@ -1,6 +1,7 @@
 // The light of a baked stage, from the files that a bake leaves: NAME.usda as text and NAME.sky.exr, read as UsdLux
 // and MaterialX say, give the sun, the sky and the water that core/lighting lights pictures with.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -499,6 +500,17 @@ TEST_F(StageLightTest, FoamCoversTheWater) {
         EXPECT_LT(largest(glm::abs(glm::dvec3(network.surface("color3f", "base_color")) - expected)), 1e-6);
         EXPECT_EQ(network.surface("float", "specular").x, 1.0f - coverage);
     }
+}
+
+// A scene needn't come from a shot file, whose paths are looked at with it.
+TEST_F(StageLightTest, APipeInTheSkysPlaceIsNotWaitedFor) {
+    Scene scene = small_scene();
+    scene.light.sky = folder_ / "pipe.exr";
+    ASSERT_EQ(mkfifo(scene.light.sky.c_str(), 0600), 0);
+    EXPECT_EQ(check_sky(scene).size(), 1u);
+    EXPECT_THROW(make_sky(scene), std::invalid_argument);
+    EXPECT_THROW(sky_content(scene), std::invalid_argument);
+    EXPECT_THROW(baked(scene), std::invalid_argument);
 }
 
 }  // namespace

@@ -228,6 +228,14 @@ TEST_F(Verify, AnAlteredNumberInARecordIsNoticedAndTheFrameBakedAgain) {
                   std::vector<std::string>{"sea.json was altered in what it says about frame 2"});
         EXPECT_TRUE(files_in(folder_) == whole) << key;
     }
+    nlohmann::ordered_json altered = record;
+    altered["frames"]["2"]["hs_m"] = 17.0;
+    write(folder_ / "sea.json", altered.dump(2));
+    const BakeReport beside = bake_into(folder_, scene, {1, 3});
+    EXPECT_TRUE(beside.damaged.empty()) << "it wasn't asked for, and so not made again";
+    EXPECT_EQ(beside.stale, std::vector<int>{2});
+    bake_into(folder_, scene);
+    EXPECT_TRUE(files_in(folder_) == whole);
     record["spectrum"]["hs_m"] = 17.0;
     write(folder_ / "sea.json", record.dump(2));
     EXPECT_EQ(flaws(), std::vector<std::string>{"damaged sea.json"});

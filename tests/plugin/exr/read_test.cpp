@@ -8,7 +8,10 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfPartType.h>
+#include <ImfTileDescription.h>
+#include <ImfTiledOutputFile.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <array>
 #include <cmath>
@@ -171,6 +174,9 @@ TEST_F(ReadRgb, AWindowAwayFromTheOrigin) {
 TEST_F(ReadRgb, RefusesWhatIsNoPicture) {
     EXPECT_NE(refusal(path("missing.exr")).find("can't be read"), std::string::npos);
     EXPECT_NE(refusal(written("no picture at all")).find("can't be read"), std::string::npos);
+    ASSERT_EQ(mkfifo(path("pipe.exr").c_str(), 0600), 0);
+    EXPECT_NE(refusal(path("pipe.exr")).find("is a pipe or a folder"), std::string::npos);
+    EXPECT_NE(refusal(path("")).find("is a pipe or a folder"), std::string::npos);
     const Planes planes(kWidth, kHeight);
     const std::string whole = encode_scanline({}, planes.image(PixelType::Half));
     EXPECT_NE(refusal(written(whole.substr(0, whole.size() / 2))).find("is cut short"), std::string::npos);
@@ -181,6 +187,25 @@ TEST_F(ReadRgb, RefusesWhatIsNoPicture) {
     Image chroma = planes.image(PixelType::Half);
     chroma.channels[0].name = "Y", chroma.channels[1].name = "RY", chroma.channels[2].name = "BY";
     EXPECT_NE(refusal(written(encode_scanline({}, chroma))).find("BY, RY, Y"), std::string::npos);
+}
+
+// A small file may ask for gigabytes: whoever reads a row of such tiles holds the whole picture.
+TEST_F(ReadRgb, RefusesTilesAsHighAsALargePicture) {
+    constexpr int kWide = 20000, kHigh = 1000;
+    const auto written_in = [&](int tile_rows) {
+        Imf::Header header(kWide, kHigh);
+        header.channels().insert("Y", Imf::Channel(Imf::HALF));
+        header.setTileDescription(Imf::TileDescription(kWide, tile_rows, Imf::ONE_LEVEL));
+        const std::vector<std::uint16_t> black(std::size_t{kWide} * kHigh);
+        Imf::FrameBuffer buffer;
+        buffer.insert("Y", Imf::Slice::Make(Imf::HALF, black.data(), Imath::V2i(0), kWide, kHigh));
+        Imf::TiledOutputFile file(path("tiles.exr").c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writeTiles(0, 0, 0, file.numYTiles() - 1);
+        return path("tiles.exr");
+    };
+    EXPECT_NE(refusal(written_in(kHigh)).find("tiles that are 1000 pixels high"), std::string::npos);
+    EXPECT_EQ(RgbFile(written_in(256)).rows_in_piece(), 256);
 }
 
 TEST_F(ReadRgb, RowsInAnyPieces) {

@@ -200,12 +200,12 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     };
 
     report_progress(BakeStage::Planning);
-    if (scene.output.mesh != MeshFormat::None) prepare_light(scene);
     const Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
         throw std::invalid_argument("the shot asks for no output: accepted: output.mesh, output.maps");
     require_memory(bake_memory(plan, frames.size(), tbb::this_task_arena::max_concurrency()),
                    machine::memory_limit_or(options.max_memory_bytes), "this bake");
+    if (scene.output.mesh != MeshFormat::None) prepare_light(scene);
     const Parts parts = make_parts(plan);
     prepare_folders(options.out, parts);
 

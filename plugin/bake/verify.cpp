@@ -24,6 +24,8 @@ struct Known {
     std::set<std::string> paths;      // of these and of the records
     std::set<std::string> uncertain;  // shots whose record is damaged: what else is named so may be theirs
     std::map<std::string, std::vector<int>> missing;  // by shot: the frames that aren't baked, rising
+    // What is called .json and says nothing of a bake: somebody's own, if no file here is of a shot of its name.
+    std::set<std::string> unread;
 };
 
 void read_shot(const fs::path& folder, const std::string& record, const RecordWatch& watch, Known& known,
@@ -59,6 +61,7 @@ void read_shot(const fs::path& folder, const std::string& record, const RecordWa
         tell(Flaw::Damaged, "was altered in what it says about the frames " + frames_text(reading.altered));
     if (!reading.problem.empty() || !reading.altered.empty()) known.uncertain.insert(name);
     if (!stale.empty()) tell(Flaw::Stale, "has frames of another version of the shot: " + frames_text(stale));
+    if (!reading.shot && baked.empty() && !reading.is_blocked) known.unread.insert(record);
     if (!reading.shot) return;
     const ShotRecord& shot = *reading.shot;
     if (shot.name != name) tell(Flaw::Damaged, "is the record of the shot " + shot.name + ", renamed");
@@ -152,10 +155,18 @@ Verification verify(const fs::path& folder, const CheckWatch& watch) {
             found.findings.push_back({other, Flaw::Missing, "is missing beside " + picture.name});
     }
     for_each_bake_file(folder, [&](const std::string& path) {
-        if (!known.paths.contains(path) && !known.uncertain.contains(shot_of(path)) &&
-            !is_of_missing_frame(path, known))
+        if (known.paths.contains(path)) return;
+        const std::string shot = shot_of(path);
+        known.unread.erase(shot + ".json");
+        if (!known.uncertain.contains(shot) && !is_of_missing_frame(path, known))
             found.findings.push_back({path, Flaw::Foreign, "is in no record here"});
     });
+    found.shots -= static_cast<int>(known.unread.size());
+    for (Finding& finding : found.findings)
+        if (known.unread.contains(finding.path)) {
+            finding.flaw = Flaw::Foreign;
+            finding.what = "is no record of a bake, and no file here is of such a shot";
+        }
     std::stable_sort(found.findings.begin(), found.findings.end(),
                      [](const Finding& a, const Finding& b) { return a.path < b.path; });
     return found;

@@ -102,6 +102,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
     source_ = Fingerprint()
                   .add(source.drawn_by_gpu ? "drawn picture" : "picture")
                   .add("revision " + std::to_string(kPictureRevision))
+                  .add(source.scene.shot.name)  // a picture says its own file's name
                   .add(canonical(portable(source.scene), kFeedsBesideTheView))
                   .add(plan_text(plan, 0))
                   .add(source.sky_content)

@@ -349,6 +349,22 @@ TEST_F(Verify, OfAFolderWithoutABakeFindsNothingWhole) {
     EXPECT_THROW(verify(folder_, {.progress = {}, .cancel = &cancel}), CheckCancelled);
 }
 
+// Notes of one's own beside a bake aren't a damaged record, unless files lie there that need one.
+TEST_F(Verify, AJsonFileOfSomebodyElseIsForeign) {
+    bake_into(folder_, every_output(MeshFormat::Usdc));
+    for (const char* text : {"{\"a\": 1}", "", "notes"}) {
+        write(folder_ / "notes.json", text);
+        const Verification found = verify(folder_);
+        EXPECT_EQ(found.shots, 1);
+        ASSERT_EQ(found.findings.size(), 1u) << text;
+        EXPECT_EQ(found.findings[0].path, "notes.json");
+        EXPECT_EQ(found.findings[0].flaw, Flaw::Foreign);
+    }
+    fs::remove(folder_ / "notes.json");
+    write(folder_ / "sea.json", "{}");
+    EXPECT_EQ(verify(folder_).findings.at(0).flaw, Flaw::Damaged);
+}
+
 // What is no regular file is never waited for.
 TEST_F(Verify, PipesAndFoldersInTheWayAreSaid) {
     const Scene scene = every_output(MeshFormat::Usdc);

@@ -194,8 +194,10 @@ class Text(unittest.TestCase):
 
     def test_a_sky_is_found_from_the_folder_and_from_any_other(self):
         with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, "sky.exr"), "wb"):
-                pass
+            made = pelagic.Scene()
+            made.surface.resolution = 4
+            pelagic.bake(made, os.path.join(folder, "made"), 1)
+            os.rename(os.path.join(folder, "made", "sea.sky.exr"), os.path.join(folder, "sky.exr"))
             text = '[light]\nsky = "sky.exr"\n'
             scene = pelagic.Scene.from_text(text, folder)
             self.assertEqual(scene.light.sky, os.path.join(folder, "sky.exr"))

@@ -250,7 +250,8 @@ TEST(Render, LookingUpIsSkyAlone) {
     for (const SeaRadiance& pixel : picture.layers) EXPECT_EQ(radiance_of(pixel), glm::vec3(kSkyRadiance));
 }
 
-TEST(Render, StaysFiniteAtInAndUnderTheSurface) {
+// The surface above the camera is at -0.32 m.
+TEST(Render, StaysFiniteAtTheSurfaceAndIsRefusedUnderIt) {
     Scene scene = small_scene();
     scene.sea.wind_speed_mps = 25.0;
     for (const double height_m : {0.0, -3.0, -1000.0, 1e-3, 1e6}) {
@@ -258,7 +259,10 @@ TEST(Render, StaysFiniteAtInAndUnderTheSurface) {
         for (const glm::dvec3 towards :
              {glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(0.0, 0.0, -1.0), glm::dvec3(0.0, 0.0, 1.0)}) {
             scene.camera.look_at_m = scene.camera.position_m + towards;
-            expect_finite(picture_of(scene));
+            if (height_m < -1.0)
+                EXPECT_THROW(picture_of(scene), std::invalid_argument) << height_m;
+            else
+                expect_finite(picture_of(scene));
         }
     }
 }

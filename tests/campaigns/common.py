@@ -18,6 +18,7 @@ import sys
 import tempfile
 import threading
 import time
+import traceback
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -106,6 +107,8 @@ class Campaign:
                 judge(draw, folder)
             except Failure as failure:
                 return number, str(failure)
+            except Exception:  # a fault of the campaign's own, or an answer that it doesn't know: the others go on
+                return number, traceback.format_exc()
             finally:
                 if self.options.only is None:
                     shutil.rmtree(folder, ignore_errors=True)

@@ -56,13 +56,13 @@ TEST(MachineMemory, IsTheMachinesWhereNothingLimitsIt) {
 
 TEST(MachineMemory, IsTheLeastOfAGroupAndThoseAboveIt) {
     const Described system;
-    system.write("process/cgroup", "0::/farm/job/step");
-    system.write("groups/farm/job/step/memory.max", "max");
-    system.write("groups/farm/job/memory.max", std::to_string(700 * kMebi));
+    system.write("process/cgroup", "0::/batch/job/step");
+    system.write("groups/batch/job/step/memory.max", "max");
+    system.write("groups/batch/job/memory.max", std::to_string(700 * kMebi));
     system.write("groups/farm/memory.max", std::to_string(900 * kMebi));
     EXPECT_EQ(system.limit().bytes, 700 * kMebi);
     EXPECT_NE(system.limit().whose.find("control group"), std::string::npos);
-    system.write("groups/farm/job/step/memory.max", std::to_string(64 * kMebi));
+    system.write("groups/batch/job/step/memory.max", std::to_string(64 * kMebi));
     EXPECT_EQ(system.limit().bytes, 64 * kMebi);
 }
 

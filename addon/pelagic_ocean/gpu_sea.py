@@ -123,6 +123,7 @@ class Drawing:
         self._shaders, self._textures, self._grids = {}, {}, {}
         self._compiled = {}  # text → shader: a sea that is a bit different needs no new one
         self._time_s = None
+        self._air, self._air_height_m = {}, ()
         self._sky_batch = None
         self.is_under_water = False  # the view that was drawn last, which then stayed empty
 
@@ -133,6 +134,7 @@ class Drawing:
             self._textures.clear()
             self._time_s = None
         self._shaders.clear()
+        self._air_height_m = ()
         self.sea, self.light = sea, light
 
     def finest_m(self):
@@ -151,7 +153,8 @@ class Drawing:
         self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
         if self.is_under_water:
             return
-        light = {**self.light.uniforms, **camera.uniforms(), "exposure": self.light.exposure(exposure_stops)}
+        self._see_air(camera)
+        light = {**self.light.uniforms, **camera.uniforms(), **self._air, "exposure": self.light.exposure(exposure_stops)}
         depth_test, blend = gpu.state.depth_test_get(), gpu.state.blend_get()
         depth_mask = gpu.state.depth_mask_get()
         gpu.state.blend_set("NONE")
@@ -180,6 +183,14 @@ class Drawing:
                 if name != "train_table" or name not in self._textures:
                     self._textures[name] = _texture(pixels)
             self._time_s = time_s
+
+    def _see_air(self, camera):
+        """The air before the camera's eye, where it has one."""
+        height_m = camera.position.z if camera.is_perspective else None
+        if height_m != self._air_height_m:
+            self._air, table = self.light.air(height_m)
+            self._textures["air_table"] = _texture(table)
+            self._air_height_m = height_m
 
     def _grid(self, region, camera):
         """The region's grid: coarse where the view isn't that of its last picture."""

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -17,12 +18,11 @@
 namespace pelagic {
 namespace {
 
-constexpr double kEarth_km = 6371.0;
-constexpr double kTop_km = 100.0;       // 1e-6 of the air lies higher
+constexpr double kEarth_km = kEarthRadius_km, kTop_km = kAirTop_km;
 constexpr double kSunRadius = 0.00465;  // [rad]
 
 // Scale heights of the exponential densities. Ozone has a triangular profile; its column is 300 Dobson units.
-constexpr double kAirScale_km = 8.0, kHazeScale_km = 1.2;
+constexpr double kAirScale_km = 8.0;
 constexpr double kOzoneMiddle_km = 25.0, kOzoneHalfWidth_km = 15.0;
 constexpr double kOzoneColumn_per_m2 = 300.0 * 2.687e20;
 
@@ -167,8 +167,11 @@ double haze_phase(double cosine) {
 
 class Atmosphere::Tables {
   public:
-    Tables(double turbidity, double sun_elevation_rad)
-        : sun_elevation_(sun_elevation_rad), more_(kHeights * kElevations) {
+    Tables(double turbidity, double sun_elevation_rad, double highest_km)
+        : sun_elevation_(sun_elevation_rad),
+          outer_(highest_km > kNear_km ? kOuter : 0),
+          elevations_(kInner + 2 * outer_),
+          more_(kHeights * elevations_) {
         const double haze = (turbidity - 1.0) * air_thickness(kHazeReference_um);
         for (std::size_t b = 0; b < kBandCount; ++b) {
             const double um = band_um(static_cast<int>(b));
@@ -186,8 +189,10 @@ class Atmosphere::Tables {
         return out;
     }
 
-    std::vector<Scattered> scattered(double elevation, std::span<const double> azimuths) const {
-        const Ray ray = marched(kEarth_km, elevation, kViewSteps);
+    BandValues transmittance(const SightLine& line) const { return sighted(line).passed; }
+
+    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths) const {
+        const Ray ray = sighted(line);
         std::vector<Scattered> all(azimuths.size());
         for (std::size_t k = 0; k < azimuths.size(); ++k) {
             Scattered& out = all[k];
@@ -213,8 +218,11 @@ class Atmosphere::Tables {
     // The table of multiple scattering. Heights grow with the cube of the index, which resolves the haze. The
     // sun's elevations cover all those between the observer and the farthest visible air, 10° away round the
     // earth.
-    static constexpr std::size_t kHeights = 20, kElevations = 15;
+    static constexpr std::size_t kHeights = 20, kInner = 15;
     static constexpr double kReach = 11.0 * kPi / 180.0;
+    // From higher up than kNear_km farther air is seen, to 31° round the earth from 400 km: coarser steps on both sides.
+    static constexpr double kNear_km = 1.0, kOuterStep = 22.0 / 6.0 * kPi / 180.0;
+    static constexpr std::size_t kOuter = 6;
     static constexpr int kGatherElevations = 20, kGatherAzimuths = 5;  // azimuths of a half circle
 
     // The angle at the earth's centre between the ray's start and a point of the ray.
@@ -266,28 +274,68 @@ class Atmosphere::Tables {
         return true;
     }
 
-    Ray marched(double radius, double elevation, int steps) const {
+    // The ray from an observer, in or above the air.
+    Ray sighted(const SightLine& line) const {
+        double radius = kEarth_km + std::max(line.height_km, 0.0), elevation = line.elevation_rad;
+        double length = std::max(line.length_km, 0.0);
+        constexpr double top = kEarth_km + kTop_km;
+        Turn start;
+        if (radius > top) {
+            const double across = std::cos(elevation), up = std::sin(elevation);
+            const double inside2 = top * top - radius * radius * across * across;
+            const double empty = inside2 > 0.0 && up < 0.0 ? -radius * up - std::sqrt(inside2) : length;
+            start = turn_at(radius, across, up, empty);
+            elevation = std::atan2(radius * up + empty, radius * across);  // at the place where it enters the air
+            radius = top;
+            length = std::max(0.0, length - empty);
+        }
+        Ray ray = marched(radius, elevation, kViewSteps, length, -radius * std::sin(elevation));
+        if (start.sine == 0.0) return ray;
+        const auto turned = [&](Turn turn) {
+            return Turn{turn.sine * start.cosine + turn.cosine * start.sine,
+                        turn.cosine * start.cosine - turn.sine * start.sine};
+        };
+        for (Piece& piece : ray.pieces) piece.turn = turned(piece.turn);
+        ray.end = turned(ray.end);
+        return ray;
+    }
+
+    static Turn turn_at(double radius, double across, double up, double t) {
+        const double r = std::hypot(t * across, radius + t * up);
+        return Turn{t * across / r, (radius + t * up) / r};
+    }
+
+    // At most `longest` long. The pieces are shortest where the air is `densest` along the way.
+    Ray marched(double radius, double elevation, int steps,
+                double longest = std::numeric_limits<double>::infinity(), double densest = 0.0) const {
         const double across = std::cos(elevation), up = std::sin(elevation);
         const double closest2 = radius * radius * across * across;
         Ray ray;
         ray.ground = up < 0.0 && closest2 < kEarth_km * kEarth_km;
-        const double length = ray.ground
-                                  ? std::max(0.0, -radius * up - std::sqrt(kEarth_km * kEarth_km - closest2))
-                                  : to_top(radius, up);
-        const auto turn_at = [&](double t) {
-            const double r = std::hypot(t * across, radius + t * up);
-            return Turn{t * across / r, (radius + t * up) / r};
-        };
+        double length = ray.ground ? std::max(0.0, -radius * up - std::sqrt(kEarth_km * kEarth_km - closest2))
+                                   : to_top(radius, up);
+        ray.ground = ray.ground && length <= longest;
+        length = std::min(length, longest);
+        densest = std::clamp(densest, 0.0, length);
         ray.passed.fill(1.0);
-        ray.end = turn_at(length);
+        ray.end = turn_at(radius, across, up, length);
         ray.pieces.resize(static_cast<std::size_t>(steps));
+        // Cubic spacing on both sides: most of the light comes from dense air, however long the ray is.
+        const double before = std::cbrt(densest), after = std::cbrt(length - densest);
+        const int first = before > 0.0 ? static_cast<int>(std::lround(steps * before / (before + after))) : 0;
+        const auto at = [&](int i) {
+            if (i < first) {
+                const double s = static_cast<double>(first - i) / first;
+                return densest - densest * s * s * s;
+            }
+            const double s = static_cast<double>(i - first) / std::max(steps - first, 1);
+            return i == steps ? length : densest + (length - densest) * s * s * s;
+        };
         for (int i = 0; i < steps; ++i) {
-            // Cubic spacing: most of the light comes from nearby dense air, however long the ray is.
-            const auto at = [&](double s) { return length * s * s * s; };
-            const double from = at(static_cast<double>(i) / steps), to = at((i + 1.0) / steps);
+            const double from = at(i), to = at(i + 1);
             const double middle = 0.5 * (from + to);
             Piece& piece = ray.pieces[static_cast<std::size_t>(i)];
-            piece.turn = turn_at(middle);
+            piece.turn = turn_at(radius, across, up, middle);
             piece.radius =
                 std::clamp(std::hypot(middle * across, radius + middle * up), kEarth_km, kEarth_km + kTop_km);
             const Matter here = density(piece.radius - kEarth_km);
@@ -311,7 +359,7 @@ class Atmosphere::Tables {
     void gather(std::size_t height, const std::vector<double>& haze_turns) {
         const double x = static_cast<double>(height) / (kHeights - 1);
         const double radius = kEarth_km + kTop_km * x * x * x;
-        BandValues* row = &more_[height * kElevations];
+        BandValues* row = &more_[height * elevations_];
         BandValues again{};
         for (int i = 0; i < kGatherElevations; ++i) {
             // Equal steps of elevation resolve the dense air near the horizon better than equal solid angles.
@@ -322,7 +370,7 @@ class Atmosphere::Tables {
             for (const Piece& piece : ray.pieces)
                 for (std::size_t b = 0; b < kBandCount; ++b)
                     again[b] += kGatherAzimuths * share * (piece.by_air[b] + piece.by_haze[b]);
-            for (std::size_t j = 0; j < kElevations; ++j)
+            for (std::size_t j = 0; j < elevations_; ++j)
                 for (int k = 0; k < kGatherAzimuths; ++k) {
                     const Sun sun(table_elevation(j), kPi * (k + 0.5) / kGatherAzimuths);
                     const double air = share * air_phase(sun.turned_into(elevation));
@@ -330,7 +378,7 @@ class Atmosphere::Tables {
                     add_once(ray, sun, {air, haze, share * kGroundAlbedo / kPi}, row[j]);
                 }
         }
-        for (std::size_t j = 0; j < kElevations; ++j)
+        for (std::size_t j = 0; j < elevations_; ++j)
             for (std::size_t b = 0; b < kBandCount; ++b) row[j][b] /= 1.0 - again[b];
     }
 
@@ -352,8 +400,8 @@ class Atmosphere::Tables {
         }
     }
 
-    static std::size_t turn_index(int ray, std::size_t sun, int azimuth) {
-        return (static_cast<std::size_t>(ray) * kElevations + sun) * kGatherAzimuths +
+    std::size_t turn_index(int ray, std::size_t sun, int azimuth) const {
+        return (static_cast<std::size_t>(ray) * elevations_ + sun) * kGatherAzimuths +
                static_cast<std::size_t>(azimuth);
     }
 
@@ -361,9 +409,9 @@ class Atmosphere::Tables {
     // which is wider than the forward lobe.
     std::vector<double> haze_turns() const {
         constexpr int kParts = 6;
-        std::vector<double> means(kGatherElevations * kElevations * kGatherAzimuths);
+        std::vector<double> means(kGatherElevations * elevations_ * kGatherAzimuths);
         tbb::parallel_for(0, kGatherElevations, [&](int i) {
-            for (std::size_t j = 0; j < kElevations; ++j)
+            for (std::size_t j = 0; j < elevations_; ++j)
                 for (int k = 0; k < kGatherAzimuths; ++k) {
                     double sum = 0.0, weight = 0.0;
                     for (int a = 0; a < kParts; ++a) {
@@ -383,18 +431,24 @@ class Atmosphere::Tables {
     }
 
     double table_elevation(std::size_t j) const {
-        return sun_elevation_ + kReach * (2.0 * static_cast<double>(j) / (kElevations - 1) - 1.0);
+        if (j < outer_) return sun_elevation_ - kReach - kOuterStep * static_cast<double>(outer_ - j);
+        if (j >= outer_ + kInner)
+            return sun_elevation_ + kReach + kOuterStep * static_cast<double>(j - outer_ - kInner + 1);
+        return sun_elevation_ + kReach * (2.0 * static_cast<double>(j - outer_) / (kInner - 1) - 1.0);
     }
 
     BandValues more_at(double height, double sine) const {
         const double x = std::cbrt(std::clamp(height / kTop_km, 0.0, 1.0)) * (kHeights - 1);
-        const double off = (std::asin(std::clamp(sine, -1.0, 1.0)) - sun_elevation_) / kReach;
-        const double y = 0.5 * (std::clamp(off, -1.0, 1.0) + 1.0) * (kElevations - 1);
+        const double from_sun = std::asin(std::clamp(sine, -1.0, 1.0)) - sun_elevation_;
+        const double off = from_sun / kReach;
+        double y = static_cast<double>(outer_) + 0.5 * (std::clamp(off, -1.0, 1.0) + 1.0) * (kInner - 1);
+        const double beyond = (std::abs(from_sun) - kReach) / kOuterStep;
+        if (beyond > 0.0) y += std::copysign(std::min(beyond, static_cast<double>(outer_)), from_sun);
         const std::size_t i = std::min(static_cast<std::size_t>(x), kHeights - 2);
-        const std::size_t j = std::min(static_cast<std::size_t>(y), kElevations - 2);
+        const std::size_t j = std::min(static_cast<std::size_t>(y), elevations_ - 2);
         const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
-        const BandValues* low = &more_[i * kElevations + j];
-        const BandValues* high = low + kElevations;
+        const BandValues* low = &more_[i * elevations_ + j];
+        const BandValues* high = low + elevations_;
         BandValues out;
         for (std::size_t b = 0; b < kBandCount; ++b)
             out[b] = (1.0 - s) * ((1.0 - t) * low[0][b] + t * low[1][b]) +
@@ -403,13 +457,14 @@ class Atmosphere::Tables {
     }
 
     double sun_elevation_;
+    std::size_t outer_, elevations_;
     BandValues air_{}, haze_{}, ozone_{};  // vertical optical thickness
     Columns columns_;
     std::vector<BandValues> more_;  // by height and sun elevation
 };
 
-Atmosphere::Atmosphere(double turbidity, double sun_elevation_rad)
-    : tables_(std::make_unique<const Tables>(turbidity, sun_elevation_rad)) {}
+Atmosphere::Atmosphere(double turbidity, double sun_elevation_rad, double highest_km)
+    : tables_(std::make_unique<const Tables>(turbidity, sun_elevation_rad, highest_km)) {}
 Atmosphere::~Atmosphere() = default;
 
 BandValues Atmosphere::transmittance(double elevation_rad) const {
@@ -417,9 +472,13 @@ BandValues Atmosphere::transmittance(double elevation_rad) const {
     return tables_->transmittance(Columns::integrated(kEarth_km, to_top(kEarth_km, cosine)));
 }
 
-std::vector<Atmosphere::Scattered> Atmosphere::scattered(double elevation_rad,
+BandValues Atmosphere::transmittance(const SightLine& line) const {
+    return tables_->transmittance(line);
+}
+
+std::vector<Atmosphere::Scattered> Atmosphere::scattered(const SightLine& line,
                                                          std::span<const double> azimuths_rad) const {
-    return tables_->scattered(elevation_rad, azimuths_rad);
+    return tables_->scattered(line, azimuths_rad);
 }
 
 }  // namespace pelagic

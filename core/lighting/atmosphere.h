@@ -12,6 +12,7 @@
 // radiance in 1/sr. Heights and distances are in km, as in the published tables of air.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,14 +21,27 @@
 
 namespace pelagic {
 
+// Of the model's spherical earth and of its air, of which 1e-6 lies higher.
+inline constexpr double kEarthRadius_km = 6371.0, kAirTop_km = 100.0;
+inline constexpr double kHazeScale_km = 1.2;  // of height, in which haze thins out e-fold
+
+// A straight line of sight, without refraction. It ends at the latest on the ground or in space.
+struct SightLine {
+    double height_km = 0.0;      // of the observer above sea level, ≥ 0; may be in space
+    double elevation_rad = 0.0;  // at the observer, −π/2 … π/2
+    double length_km = std::numeric_limits<double>::infinity();
+};
+
 class Atmosphere {
   public:
     // turbidity T ≥ 1: at 0.55 μm, air and haze together have T times the optical thickness of air alone. The
-    // sun's elevation is as seen by the observer at sea level.
-    Atmosphere(double turbidity, double sun_elevation_rad);
+    // sun's elevation is as seen by the observer at sea level. highest_km: from how high up the air will be looked at.
+    Atmosphere(double turbidity, double sun_elevation_rad, double highest_km = 0.0);
 
     // Transmittance from space to sea level at this elevation ≥ 0, along a straight ray (no refraction).
     BandValues transmittance(double elevation_rad) const;
+    // Transmittance along a line of sight.
+    BandValues transmittance(const SightLine& line) const;
 
     // Light scattered towards the observer from one direction. by_air and by_haze lack their phase functions,
     // which the caller multiplies in: without them they are smooth even at the sun.
@@ -36,7 +50,12 @@ class Atmosphere {
         BandValues more{};               // scattered more than once: complete
     };
     // For one elevation ≥ 0 and each of these azimuths relative to the sun's.
-    std::vector<Scattered> scattered(double elevation_rad, std::span<const double> azimuths_rad) const;
+    std::vector<Scattered> scattered(double elevation_rad, std::span<const double> azimuths_rad) const {
+        return scattered(SightLine{.elevation_rad = elevation_rad}, azimuths_rad);
+    }
+    // Along a line of sight, without what its end itself sends. The azimuths are relative to the sun's at the place below
+    // the observer, and so is the sun's elevation.
+    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths_rad) const;
 
     ~Atmosphere();
 

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/lighting/air.h"
 #include "core/lighting/atmosphere.h"
 #include "core/lighting/colour.h"
 #include "core/lighting/sky_bake.h"
@@ -113,10 +114,13 @@ Sky daylight_sky(const Daylight& daylight, int map_size) {
 
     const double elevation = daylight.sun_elevation_deg * kDegree;
     const double azimuth = std::remainder(daylight.sun_azimuth_deg, 360.0) * kDegree;
-    const Atmosphere air(daylight.turbidity, elevation);
+    const auto atmosphere =
+        std::make_shared<const Atmosphere>(daylight.turbidity, elevation, 1e-3 * daylight.highest_eye_m);
+    const Atmosphere& air = *atmosphere;
     const ScatteredTable table(air);
 
     Sky sky;
+    sky.air = daylight_air(atmosphere, elevation, azimuth);
     const double radius = static_cast<double>(sky.sun_angular_radius);
     const Disc disc = disc_at(air, elevation, radius);
     const glm::dvec2 heading(std::cos(azimuth), std::sin(azimuth));

@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "core/lighting/sky_map.h"
 
 namespace pelagic {
+
+class AirModel;
 
 struct Sky {
     SkyMap map;  // without the sun
@@ -27,12 +30,15 @@ struct Sky {
     // Of the sun alone, on a horizontal plane: radiance · solid angle · sine of sun_direction's elevation.
     glm::vec3 sun_irradiance{0.0f};
     glm::vec3 sky_irradiance{0.0f};  // on a horizontal plane, of the upper hemisphere without the sun
+    // Before the sea (air.h). None: the sea is seen as if there were no air.
+    std::shared_ptr<const AirModel> air{};
 };
 
 struct Daylight {
     double sun_elevation_deg = 20.0;  // −90 … 90
     double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
     double turbidity = 3.0;  // 1.7 … 10: extinction of air and haze over that of air alone, at 0.55 μm
+    double highest_eye_m = 0.0;  // from how high up the air will be looked at, for air.h
 };
 
 // Clear daylight at sea level (model: atmosphere.h), without stars and moon: night is black. Finite and

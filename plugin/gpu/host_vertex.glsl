@@ -4,17 +4,20 @@ in vec2 rest_in;  // [m], relative to the grid's origin
 in float cell_in;
 in float pixel_in;
 
+uniform float eye_height_m;  // above the grid's origin
 uniform mat4 clip_from_grid;  // the host's
 
 out vec2 rest_m;
 out float pixel_m;
+out vec3 from_eye_m;
 
 void main() {
     vec3 displacement = query_cell(rest_in, cell_in);
     rest_m = rest_in;
     pixel_m = pixel_in;
-    vec4 clip = clip_from_grid *
-                vec4(rest_in.x + displacement.y, rest_in.y + displacement.z, displacement.x, 1.0);
+    vec3 place = vec3(rest_in.x + displacement.y, rest_in.y + displacement.z, displacement.x);
+    from_eye_m = place - vec3(0.0, 0.0, eye_height_m);
+    vec4 clip = clip_from_grid * vec4(place, 1.0);
     // Beyond the host's far plane the sea goes on, as far away as a depth buffer of 24 bits can tell from
     // nothing. Rows come nearest first, so that there, too, the nearer one is shown.
     gl_Position = vec4(clip.x, clip.y, min(clip.z, 0.99999976 * clip.w), clip.w);

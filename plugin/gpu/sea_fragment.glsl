@@ -2,20 +2,26 @@
 
 in vec2 rest_m;
 in float pixel_m;
+in vec3 from_eye_m;
 
 void main() {
     if (kWireframe) {
-        write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), 1.0);
+        write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), vec3(0.0), 1.0);
         return;
     }
     PixelAnswer answer = query_pixel(rest_m, pixel_m);
     if (kFalseColour != 0) {
-        write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), 1.0);
+        write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), vec3(0.0), 1.0);
         return;
     }
     SeaTerms terms = sea_radiance(-pixel_ray(), answer.normal,
                                   vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy), answer.coverage,
                                   SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance,
                                            sky_irradiance, water_reflectance));
-    write_terms(terms.sun, terms.sky, terms.sea, terms.foam, 1.0);
+    AirPath path = AirPath(vec3(1.0), vec3(0.0));
+    if (kAir)
+        path = air_path(-pixel_ray(), length(from_eye_m),
+                        AirView(air_azimuth, air_to_sun, air_reach_m.x, air_reach_m.y, air_reach_m.z));
+    write_terms(terms.sun * path.transmittance, terms.sky * path.transmittance, terms.sea * path.transmittance,
+                terms.foam * path.transmittance, path.scattered, 1.0);
 }

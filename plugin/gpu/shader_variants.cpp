@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/lighting/air.h"
+
 namespace pelagic {
 namespace {
 
@@ -69,7 +71,9 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
                         : choice.sky_quality == SkyQuality::Nine ? 9
                                                                  : 0;
     return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
-           constant("kWhitecaps", choice.whitecaps) + constant("kSkyLookups", lookups) +
+           constant("kWhitecaps", choice.whitecaps) + constant("kAir", choice.air) +
+           constant("kAirColumns", Air::kColumns) + constant("kAirRows", Air::kRows) +
+           constant("kAirHorizonRow", Air::kHorizonRow) + constant("kSkyLookups", lookups) +
            constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
            "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
 }
@@ -101,7 +105,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
             joined({query_files(),
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options)},
                     lighting_files(),
-                    {"plugin/gpu/rays.glsl"},
+                    {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "plugin/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/gpu/false_colour.glsl", "plugin/gpu/sea_fragment.glsl"}})};
 }

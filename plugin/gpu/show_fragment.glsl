@@ -3,6 +3,7 @@ uniform sampler2D sea_picture;
 uniform sampler2D sun_picture;
 uniform sampler2D sky_picture;
 uniform sampler2D foam_picture;
+uniform sampler2D air_picture;
 uniform vec2 picture_from_window;  // picture pixels per viewport pixel
 uniform vec2 window_first;
 uniform float exposure;
@@ -15,6 +16,6 @@ void main() {
     vec4 radiance = texelFetch(sea_picture, at, 0);
     if (kLayers)
         radiance += texelFetch(sun_picture, at, 0) + texelFetch(sky_picture, at, 0) +
-                    texelFetch(foam_picture, at, 0);
+                    texelFetch(foam_picture, at, 0) + texelFetch(air_picture, at, 0);
     colour_out = vec4(kPlain ? radiance.xyz : display_colour(radiance.xyz, exposure), 1.0);
 }

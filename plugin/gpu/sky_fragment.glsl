@@ -1,7 +1,7 @@
 // The background where there is no sea: the sky and the sun's disc (core/lighting/background.glsl).
 void main() {
     if (kWireframe || kFalseColour != 0) {
-        write_terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+        write_terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
         return;
     }
     vec3 direction = pixel_ray();
@@ -11,5 +11,5 @@ void main() {
         float width = pixel_angle(view_pixel_tangent, dot(direction, view_forward));
         sky += sun_disc(direction, sun_direction, sun_angular_radius, width) * sun_radiance;
     }
-    write_terms(vec3(0.0), sky, vec3(0.0), vec3(0.0), 0.0);
+    write_terms(vec3(0.0), sky, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 }

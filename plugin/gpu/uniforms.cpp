@@ -39,4 +39,10 @@ std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water) {
             vector("water_reflectance", water.reflectance)};
 }
 
+std::vector<Uniform> air_uniforms(const Air& air) {
+    return {{"air_azimuth", 2, glm::vec4(air.azimuth, 0.0f, 0.0f)},
+            vector("air_to_sun", air.to_sun),
+            vector("air_reach_m", {air.nearest_m, air.horizon_m, air.farthest_m})};
+}
+
 }  // namespace pelagic

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/lighting/air.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
 #include "plugin/gpu/sea_layout.h"
@@ -22,5 +23,7 @@ struct Uniform {
 std::vector<Uniform> query_uniforms(const SeaLayout& layout);
 // Of light_uniforms.glsl.
 std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water);
+// Of air_table.glsl.
+std::vector<Uniform> air_uniforms(const Air& air);
 
 }  // namespace pelagic

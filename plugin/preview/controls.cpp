@@ -203,8 +203,9 @@ void light_section(LightingChoice& choice) {
         Term{"Sun", &LightingChoice::sun, "The sun's reflection: the glitter"},
         Term{"Sky", &LightingChoice::sky, "The sky's reflection"},
         Term{"Water", &LightingChoice::water, "Light that comes back from under the surface"},
-        Term{"Foam", &LightingChoice::whitecaps, "Light from the whitecaps"}};
-    const float step = scaled(76.0f);
+        Term{"Foam", &LightingChoice::whitecaps, "Light from the whitecaps"},
+        Term{"Air", &LightingChoice::air, "The air before the sea: what it adds, and what it takes away"}};
+    const float step = scaled(62.0f);
     for (std::size_t i = 0; i < kTerms.size(); ++i) {
         if (i > 0) ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + step * static_cast<float>(i));
         ImGui::BeginGroup();

@@ -27,11 +27,11 @@ namespace pelagic {
 namespace {
 
 // Texture units. SeaTextures has the first ones.
-enum Unit : int { kSkyMap = SeaTextures::kUnits, kPictures };
+enum Unit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kPictures };
 
-constexpr int kTerms = 4;  // sea, sun, sky, foam: sea_outputs.glsl
+constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
-                                                        "foam_picture"};
+                                                        "foam_picture", "air_picture"};
 
 void set_uniform(GLint at, const glm::vec3& v) {
     glUniform3f(at, v.x, v.y, v.z);
@@ -66,7 +66,8 @@ struct SeaRenderer::Implementation {
     void upload_grid(const ProjectedGrid& grid);
     void make_pictures(glm::ivec2 size, bool layers);
     void set_common(const ShaderProgram& program, const View& view) const;
-    void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
+    void set_air(double height_m);
+    void draw_sea(const View& view, const ProjectedGrid& grid, DrawOptions options);
     void draw_sky(const View& view, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
 
@@ -78,6 +79,10 @@ struct SeaRenderer::Implementation {
     GlTexture sky_map;
     int sky_map_size = 0;
     std::vector<Uniform> light;
+    std::shared_ptr<const AirModel> air_model;
+    GlTexture air_table;
+    std::optional<double> air_height_m;  // of the eye that the table is for
+    std::vector<Uniform> air;
 
     GlVertexArray grid_array, no_array;
     GlBuffer grid_vertices, grid_indices;
@@ -114,6 +119,7 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     ShaderProgram program(variant.vertex(), variant.fragment());
     program.use();
     glUniform1i(program.uniform("sky_map"), kSkyMap);
+    glUniform1i(program.uniform("air_table"), kAirTable);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
     return programs.emplace(variant.key(), std::move(program)).first->second;
 }
@@ -195,13 +201,30 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     set_uniforms(program, light);
 }
 
-void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
-                                           const DrawOptions& options) {
+void SeaRenderer::Implementation::set_air(double height_m) {
+    bind_texture(kAirTable, air_table);
+    if (air_height_m == height_m) return;
+    const Air seen = air_model->seen_from(height_m);
+    texels_as_they_are();
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kLayers * Air::kColumns, Air::kRows, 0, GL_RGBA, GL_FLOAT,
+                 seen.texels.data());
+    air = air_uniforms(seen);
+    air_height_m = height_m;
+}
+
+void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid, DrawOptions options) {
     const SeaLayout& layout = sea.layout();
+    options.lighting.air = options.lighting.air && air_model != nullptr;
     const ShaderProgram& program = program_of(ShaderVariant::of_sea(layout, options, sky_map_size));
     program.use();
     set_common(program, view);
     sea.bind(program, grid.origin_m);
+    if (options.lighting.air) {
+        set_air(view.position_m.z);
+        set_uniforms(program, air);
+    }
+    glUniform1f(program.uniform("eye_height_m"), static_cast<float>(view.position_m.z));
     upload_grid(grid);
 
     const glm::mat4 clip(view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m));
@@ -242,6 +265,8 @@ void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
     Implementation& of = *implementation_;
     of.light = light_uniforms(sky, water);
     of.sky_map_size = sky.map.size();
+    of.air_model = sky.air;
+    of.air_height_m.reset();
     bind_texture(kSkyMap, of.sky_map);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -336,7 +361,8 @@ Picture SeaRenderer::read_layers() const {
     Picture picture{of.picture_size, std::vector<SeaRadiance>(width * height),
                     std::vector<std::uint8_t>(width * height)};
     constexpr std::array<glm::vec3 SeaRadiance::*, kTerms> kTerm{&SeaRadiance::sea, &SeaRadiance::sun,
-                                                                 &SeaRadiance::sky, &SeaRadiance::foam};
+                                                                 &SeaRadiance::sky, &SeaRadiance::foam,
+                                                                 &SeaRadiance::air};
     std::vector<glm::vec4> texels(width * height);
     for (int i = 0; i < (of.picture_layers ? kTerms : 1); ++i) {
         glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));

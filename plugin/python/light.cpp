@@ -27,6 +27,7 @@ namespace py = pybind11;
 using Range = tbb::blocked_range<std::size_t>;
 
 constexpr std::size_t kGrain = 256;  // points a task computes
+constexpr std::size_t kShaded = kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
 
 py::tuple tuple_of(glm::vec3 v) {
     return py::make_tuple(v.x, v.y, v.z);
@@ -118,7 +119,7 @@ Choice choice_of(const std::string& name, const std::string& word,
 
 struct ShadeArguments {
     py::object to_eye, normal, slope_variance, coverage;
-    std::array<py::object, kLayers.size()> layers;
+    std::array<py::object, kShaded> layers;
 };
 
 py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArguments& given,
@@ -133,9 +134,9 @@ py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArgument
     choice.whitecaps = !given.coverage.is_none();
     const Strided<const float> coverage =
         choice.whitecaps ? readable_numbers(given.coverage, {"coverage", count}) : Strided<const float>{};
-    std::array<Strided<glm::vec3>, kLayers.size()> out;
+    std::array<Strided<glm::vec3>, kShaded> out;
     py::dict written;
-    for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
+    for (std::size_t layer = 0; layer < kShaded; ++layer) {
         const char* name = kLayers[layer].first;
         py::object array = given.layers[layer];
         if (array.is_none()) array = py::array_t<float>({count, py::ssize_t{3}});
@@ -154,7 +155,7 @@ py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArgument
                          .coverage = coverage ? coverage[at] : 0.0f};
         }
         shade_sea(choice, *sky.sky, water, points, radiance);
-        for (std::size_t layer = 0; layer < kLayers.size(); ++layer)
+        for (std::size_t layer = 0; layer < kShaded; ++layer)
             for (std::size_t i = 0; i < radiance.size(); ++i)
                 out[layer][range.begin() + i] = radiance[i].*kLayers[layer].second;
     });

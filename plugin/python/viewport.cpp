@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/lighting/air.h"
 #include "core/lighting/tone.h"
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
@@ -64,6 +65,7 @@ struct GpuLight {
         const Sky sky = make_sky(scene);
         map_size = sky.map.size();
         uniforms = light_uniforms(sky, make_water(scene));
+        air = sky.air;
         exposure = exposure_for(sky);
         atlas = sky_atlas(sky.map);
     }
@@ -75,7 +77,22 @@ struct GpuLight {
     std::vector<Uniform> uniforms;
     float exposure = 1.0f;
     SkyAtlas atlas;
+    std::shared_ptr<const AirModel> air;
 };
+
+// The uniforms and the texture of the air before an eye; of none without a height.
+py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
+    if (height_m && !std::isfinite(*height_m)) throw py::value_error("height_m: accepted: a finite height [m], or None");
+    Air air;
+    if (height_m && light.air) {
+        const OthersMayRun others_may_run;
+        air = light.air->seen_from(*height_m);
+    }
+    air.texels.resize(std::size_t{Air::kLayers} * Air::kColumns * Air::kRows, glm::vec4(0.0f));
+    py::dict uniforms = dict_of(air_uniforms(air));
+    uniforms["eye_height_m"] = height_m.value_or(0.0);
+    return py::make_tuple(uniforms, array_of<float>(std::move(air.texels), {Air::kRows, Air::kLayers * Air::kColumns, 4}));
+}
 
 double checked_footprint(double finest_m) {
     if (!(finest_m >= 0.0 && finest_m < 1e6))
@@ -149,7 +166,8 @@ class GpuSea {
     }
 
     py::dict shaders(const GpuLight& light) const {
-        const DrawOptions options{.lighting = lighting_, .for_host = true};
+        DrawOptions options{.lighting = lighting_, .for_host = true};
+        options.lighting.air = options.lighting.air && light.air;
         const auto pair = [](const ShaderVariant& variant) {
             return py::make_tuple(std::string(variant.vertex().body()),
                                   std::string(variant.fragment().body()));
@@ -288,6 +306,11 @@ void add_gpu_light(py::module_& module) {
                 return view;
             },
             "The texture sky_map: float32 (height, width, 4), all its levels in one picture. Read-only.")
+        .def(
+            "air", &air_of, py::arg("height_m"),
+            "(uniforms, air_table) of the air before an eye so high above the sea at rest [m]: uniforms of the sea's "
+            "shader by name, and the texture air_table, float32 (height, width, 4), texels as they are. None: no air, "
+            "for views without an eye. Takes some milliseconds.")
         .def(
             "exposure", [](const GpuLight& self, float stops) { return self.exposure * std::exp2(stops); },
             py::arg("stops") = 0.0f,

@@ -107,7 +107,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
                   .add(plan_text(plan, 0))
                   .add(source.sky_content)
                   .add("samples " + std::to_string(source.options.samples) + " terms " + digit(lighting.sun) +
-                       digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + " sky " +
+                       digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + digit(lighting.air) + " sky " +
                        digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
                   .add("exposure " + number_text(source.exposure_stops))
                   .text();
@@ -190,6 +190,7 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
     add("sky.", first.sky, kLayers, ranges.sun);  // the disc beside the sea
     add("sea.", first.sea, kLayers, ranges.whole);
     add("foam.", first.foam, kLayers, ranges.whole);
+    add("air.", first.air, kLayers, ranges.whole);
     const exr::Header header{.attributes = attributes_of(context, frame),
                              .compression = exr::Compression::Zip};
     std::string file = exr::encode_scanline(header, image);

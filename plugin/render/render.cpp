@@ -14,6 +14,7 @@
 
 #include "core/base/precision.h"
 #include "core/evaluate/values.h"
+#include "core/lighting/air.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
 #include "core/plan/quality.h"
@@ -40,7 +41,7 @@ int rows_of_batch(int sample_width, int samples) {
 // [bytes/pixel] of a picture; of its two files, where layers that are packed take half of their halves; and of what
 // encode_exr() and encode_png() hold beside them.
 constexpr std::size_t kPictureBytes = sizeof(SeaRadiance) + 1;
-constexpr std::size_t kFileBytes = 15 * 2 / 2 + 2;
+constexpr std::size_t kFileBytes = 18 * 2 / 2 + 2;
 constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 3;
 
 // What a batch of samples holds, by sample of the batch or by sample that shows the sea.
@@ -52,6 +53,7 @@ struct Batch {
     std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
     std::vector<T> pixel_m;
     std::vector<glm::vec3> to_eye;
+    std::vector<float> distance_m;  // of the eye
     Values answers;
     std::vector<SeaPoint> points;
     std::vector<SeaRadiance> lit;
@@ -98,6 +100,7 @@ class RendererOf final : public Impl {
         frame_.set(scene_.shot.time_s(frame));
         refuse_under_water(frame_, scene_, frame, grid_options_);
         view_ = view_at(scene_.camera, frame);
+        air_ = options_.lighting.air && sky_.air ? sky_.air->seen_from(view_.position_m.z) : Air{};
         lay_out_grid();
         picture.resolution = scene_.camera.resolution / options_.samples;
         const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
@@ -234,6 +237,9 @@ class RendererOf final : public Impl {
                                   std::span(batch_.points).subspan(range.begin(), range.size());
                               const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
                               shade_sea(options_.lighting, sky_, water_, points, lit);
+                              see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
+                                          std::span(batch_.distance_m).subspan(range.begin(), range.size()),
+                                          lit);
                               for (std::size_t i = range.begin(); i < range.end(); ++i)
                                   batch_.radiance[batch_.sea[i]] = batch_.lit[i];
                           });
@@ -245,6 +251,7 @@ class RendererOf final : public Impl {
         batch_.rest.resize(count);
         batch_.pixel_m.resize(count);
         batch_.to_eye.resize(count);
+        batch_.distance_m.resize(count);
         const glm::dvec3 eye = view_.position_m - glm::dvec3(grid_.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
@@ -263,6 +270,7 @@ class RendererOf final : public Impl {
             batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
             const glm::dvec3 way = eye - position;
             const double distance = glm::length(way);
+            batch_.distance_m[i] = static_cast<float>(distance);
             // At the eye itself, which the near plane keeps from happening, up is as good as any.
             batch_.to_eye[i] = distance > 0.0 ? glm::vec3(way / distance) : glm::vec3(0.0f, 0.0f, 1.0f);
         });
@@ -285,9 +293,10 @@ class RendererOf final : public Impl {
                         sum.sky += sample.sky;
                         sum.sea += sample.sea;
                         sum.foam += sample.foam;
+                        sum.air += sample.air;
                     }
                 picture.layers[to + x] = {sum.sun * share, sum.sky * share, sum.sea * share,
-                                          sum.foam * share};
+                                          sum.foam * share, sum.air * share};
                 const std::size_t middle = sample_width * (row * n + n / 2) + x * n + n / 2;
                 picture.sea[to + x] = batch_.triangles[middle] != Rasteriser::kNone;
             }
@@ -304,6 +313,7 @@ class RendererOf final : public Impl {
     Frame<T> frame_;
     ProjectedGridOptions grid_options_;
     View view_;
+    Air air_;  // before that view's eye
     ProjectedGrid grid_;
     T first_pixel_m_ = T(0);  // the finest rung that the frame reads
     ProjectedGridSize triangles_size_;
@@ -384,7 +394,7 @@ constexpr std::size_t kPointBytes = 2 * (sizeof(glm::vec2) + 2 * sizeof(float)) 
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
-                                     3 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) +
+                                     3 * sizeof(T) + sizeof(glm::vec3) + sizeof(float) + sizeof(SeaPoint) +
                                      7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
 
 }  // namespace

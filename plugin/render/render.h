@@ -44,7 +44,7 @@ struct Picture {
 
 // The layers' sum.
 inline glm::vec3 radiance_of(const SeaRadiance& layers) {
-    return layers.sun + layers.sky + layers.sea + layers.foam;
+    return layers.sun + layers.sky + layers.sea + layers.foam + layers.air;
 }
 
 struct RenderOptions {

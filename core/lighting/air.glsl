@@ -1,0 +1,76 @@
+// The air between the eye and the sea: it takes light away and scatters light of the sun and the sky into the ray.
+// The includer defines
+//   const int kAirColumns, kAirRows        the table's size: three such pictures side by side
+//   const int kAirHorizonRow               the row of the horizon's distance
+//   vec4 air_texel(int column, int row)    the table (air.h)
+//
+// Rows are distances to places on the sea: the root of the distance from the nearest one, which is smooth for eyes at any
+// height, up to the horizon. Beyond it, where crests and a flat sea may lie, rows are distances along the ray that grazes
+// it, to the end of the air. Columns go round the circle from the sun's azimuth, at even steps.
+//
+// The table holds what varies slowly: the mean extinction from here to there, and the light that is scattered in over the
+// share 1 − T of light that is lost. That is an average along the ray. Phase functions are left to the pixel.
+
+struct AirView {
+    vec2 azimuth;       // unit, horizontal: of column 0
+    vec3 to_sun;        // unit, from below the eye: for the phase functions
+    float nearest_m;    // of the sea
+    float horizon_m;
+    float farthest_m;
+};
+
+// Rayleigh's, without the molecules' anisotropy [1/sr].
+float air_phase(float cosine) { return 0.05968310f * (1.0f + cosine * cosine); }
+
+// Henyey and Greenstein's lobe [1/sr].
+float phase_lobe(float cosine, float g) {
+    float bracket = 1.0f + g * g - 2.0f * g * cosine;
+    return 0.07957747f * (1.0f - g * g) / (bracket * sqrt(bracket));
+}
+
+// Two lobes with a mean cosine of 0.73. The forward lobe makes the aureole.
+float haze_phase(float cosine) { return 0.945f * phase_lobe(cosine, 0.80f) + 0.055f * phase_lobe(cosine, -0.45f); }
+
+float air_row(float distance_m, AirView air) {
+    float last = float(kAirHorizonRow);
+    float span = max(air.horizon_m - air.nearest_m, 1.0e-6f * air.horizon_m);
+    if (distance_m < air.horizon_m) return last * sqrt(clamp((distance_m - air.nearest_m) / span, 0.0f, 1.0f));
+    float beyond = (distance_m - air.horizon_m) / max(air.farthest_m - air.horizon_m, 1.0f);
+    return last + (float(kAirRows - 1) - last) * sqrt(clamp(beyond, 0.0f, 1.0f));
+}
+
+vec4 air_lookup(int layer, float column, float row) {
+    int first = int(floor(column));
+    float across = column - float(first);
+    int left = first % kAirColumns + layer * kAirColumns;
+    int right = (first + 1) % kAirColumns + layer * kAirColumns;
+    int near_row = min(int(row), kAirRows - 2);
+    return mix(mix(air_texel(left, near_row), air_texel(right, near_row), across),
+               mix(air_texel(left, near_row + 1), air_texel(right, near_row + 1), across), row - float(near_row));
+}
+
+struct AirPath {
+    vec3 transmittance;
+    vec3 scattered;  // radiance
+};
+
+// to_eye: unit, from the place towards the eye.
+AirPath air_path(vec3 to_eye, float distance_m, AirView air) {
+    // The azimuth of the place, from the sun's.
+    float along = -(to_eye.x * air.azimuth.x + to_eye.y * air.azimuth.y);
+    float across = to_eye.x * air.azimuth.y - to_eye.y * air.azimuth.x;
+    float turn = along * along + across * across > 0.0f ? atan(across, along) : 0.0f;
+    float column = (turn < 0.0f ? turn + 6.2831853f : turn) * (float(kAirColumns) / 6.2831853f);
+    float row = air_row(distance_m, air);
+    vec4 by_air = air_lookup(0, column, row);
+    vec4 by_haze = air_lookup(1, column, row);
+    vec4 more = air_lookup(2, column, row);
+    vec3 thickness = vec3(by_air.w, by_haze.w, more.w) * min(distance_m, air.farthest_m);
+    vec3 left = exp(-thickness);
+    // 1 − exp(−x) has no digits where x is small.
+    vec3 lost = mix(1.0f - left, thickness * (1.0f - 0.5f * thickness), lessThan(thickness, vec3(1.0e-3f)));
+    float cosine = -dot(to_eye, air.to_sun);
+    vec3 light = vec3(by_air.x, by_air.y, by_air.z) * air_phase(cosine) +
+                 vec3(by_haze.x, by_haze.y, by_haze.z) * haze_phase(cosine) + vec3(more.x, more.y, more.z);
+    return AirPath(left, max(light, 0.0f) * lost);
+}

@@ -1,4 +1,4 @@
-// Mathematical constants.
+// Constants of mathematics, and the earth's.
 #pragma once
 
 #include <numbers>
@@ -7,5 +7,6 @@ namespace pelagic {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2.0 * kPi;
+inline constexpr double kEarthRadius_m = 6371e3;
 
 }  // namespace pelagic

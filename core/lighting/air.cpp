@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
+#include <limits>
+#include <mutex>
 #include <stdexcept>
 #include <utility>
 
@@ -34,7 +36,6 @@ struct Shading {
 
 }  // namespace shading
 
-constexpr double kEarth_m = 1e3 * kEarthRadius_km;
 constexpr double kLeastHeight_m = 0.1;
 // Thicker air lets nothing through that single precision could add to its own light.
 constexpr double kLeastTransmittance = 1e-9;
@@ -43,9 +44,9 @@ constexpr double kLeastTransmittance = 1e-9;
 class Rows {
   public:
     explicit Rows(double height_m) : height_m_(std::max(height_m, kLeastHeight_m)) {
-        horizon_m_ = std::sqrt(height_m_ * (2.0 * kEarth_m + height_m_));
-        constexpr double top_m = kEarth_m + 1e3 * kAirTop_km;
-        farthest_m_ = horizon_m_ + std::sqrt(top_m * top_m - kEarth_m * kEarth_m);
+        horizon_m_ = std::sqrt(height_m_ * (2.0 * kEarthRadius_m + height_m_));
+        constexpr double top_m = kEarthRadius_m + 1e3 * kAirTop_km;
+        farthest_m_ = horizon_m_ + std::sqrt(top_m * top_m - kEarthRadius_m * kEarthRadius_m);
     }
 
     double height_m() const { return height_m_; }
@@ -59,7 +60,7 @@ class Rows {
     SightLine line(int row) const {
         const double reached_m = std::min(distance_m(row), horizon_m_);
         const double sine =
-            -(horizon_m_ * horizon_m_ + reached_m * reached_m) / (2.0 * reached_m * (kEarth_m + height_m_));
+            -(horizon_m_ * horizon_m_ + reached_m * reached_m) / (2.0 * reached_m * (kEarthRadius_m + height_m_));
         return {.height_km = 1e-3 * height_m_,
                 .elevation_rad = std::asin(std::max(sine, -1.0)),
                 .length_km = 1e-3 * distance_m(row)};
@@ -83,10 +84,10 @@ glm::vec4& texel(Air& air, int layer, int column, int row) {
 
 class DaylightAir final : public AirModel {
   public:
-    DaylightAir(std::shared_ptr<const Atmosphere> atmosphere, double sun_elevation_rad, double sun_azimuth_rad)
-        : atmosphere_(std::move(atmosphere)),
-          azimuth_(std::cos(sun_azimuth_rad), std::sin(sun_azimuth_rad)),
-          to_sun_(azimuth_ * std::cos(sun_elevation_rad), std::sin(sun_elevation_rad)) {
+    DaylightAir(std::shared_ptr<const Atmosphere> atmosphere, double azimuth_rad)
+        : low_(std::move(atmosphere)), azimuth_(std::cos(azimuth_rad), std::sin(azimuth_rad)) {
+        const double elevation = low_->sun_elevation_rad();
+        to_sun_ = glm::dvec3(azimuth_ * std::cos(elevation), std::sin(elevation));
         BandValues all;
         all.fill(1.0);
         white_ = colour_of(all);
@@ -94,6 +95,7 @@ class DaylightAir final : public AirModel {
 
     Air seen_from(double height_m) const override {
         const Rows rows(height_m);
+        const Atmosphere& atmosphere = before(1e-3 * rows.height_m());
         Air air;
         rows.set(air);
         air.azimuth = azimuth_;
@@ -104,10 +106,10 @@ class DaylightAir final : public AirModel {
         tbb::parallel_for(0, Air::kRows, [&](int row) {
             const SightLine line = rows.line(row);
             // Of light with the sun's spectrum.
-            const glm::dvec3 left = glm::clamp(colour_of(atmosphere_->transmittance(line)) / white_,
+            const glm::dvec3 left = glm::clamp(colour_of(atmosphere.transmittance(line)) / white_,
                                                glm::dvec3(kLeastTransmittance), glm::dvec3(1.0));
             const glm::dvec3 extinction = -glm::log(left) / rows.distance_m(row);
-            const auto all = atmosphere_->scattered(line, azimuths);
+            const auto all = atmosphere.scattered(line, azimuths);
             for (int column = 0; column < Air::kColumns; ++column) {
                 const auto& from = all[static_cast<std::size_t>(std::min(column, Air::kColumns - column))];
                 const auto set = [&](int layer, const BandValues& light, double part) {
@@ -123,7 +125,19 @@ class DaylightAir final : public AirModel {
     }
 
   private:
-    std::shared_ptr<const Atmosphere> atmosphere_;
+    // The atmosphere for an eye so high up.
+    const Atmosphere& before(double height_km) const {
+        if (height_km <= low_->highest_km()) return *low_;
+        std::call_once(high_made_, [&] {
+            high_ = std::make_unique<const Atmosphere>(low_->turbidity(), low_->sun_elevation_rad(),
+                                                       std::numeric_limits<double>::infinity());
+        });
+        return *high_;
+    }
+
+    std::shared_ptr<const Atmosphere> low_;
+    mutable std::once_flag high_made_;
+    mutable std::unique_ptr<const Atmosphere> high_;
     glm::dvec2 azimuth_;
     glm::dvec3 to_sun_, white_;
 };
@@ -197,9 +211,8 @@ std::shared_ptr<const AirModel> picture_air(const SkyMap& map, double visibility
     return std::make_shared<const PictureAir>(map, visibility_m);
 }
 
-std::shared_ptr<const AirModel> daylight_air(std::shared_ptr<const Atmosphere> atmosphere, double sun_elevation_rad,
-                                             double sun_azimuth_rad) {
-    return std::make_shared<const DaylightAir>(std::move(atmosphere), sun_elevation_rad, sun_azimuth_rad);
+std::shared_ptr<const AirModel> daylight_air(std::shared_ptr<const Atmosphere> atmosphere, double azimuth_rad) {
+    return std::make_shared<const DaylightAir>(std::move(atmosphere), azimuth_rad);
 }
 
 void see_through(const Air& air, std::span<const glm::vec3> to_eye, std::span<const float> distance_m,

@@ -168,7 +168,9 @@ double haze_phase(double cosine) {
 class Atmosphere::Tables {
   public:
     Tables(double turbidity, double sun_elevation_rad, double highest_km)
-        : sun_elevation_(sun_elevation_rad),
+        : turbidity_(turbidity),
+          sun_elevation_(sun_elevation_rad),
+          highest_km_(highest_km),
           outer_(highest_km > kNear_km ? kOuter : 0),
           elevations_(kInner + 2 * outer_),
           more_(kHeights * elevations_) {
@@ -182,6 +184,10 @@ class Atmosphere::Tables {
         const std::vector<double> turns = haze_turns();
         tbb::parallel_for(std::size_t{0}, kHeights, [&](std::size_t i) { gather(i, turns); });
     }
+
+    double turbidity() const { return turbidity_; }
+    double sun_elevation() const { return sun_elevation_; }
+    double highest_km() const { return highest_km_; }
 
     BandValues transmittance(const Matter& column) const {
         BandValues out;
@@ -456,7 +462,7 @@ class Atmosphere::Tables {
         return out;
     }
 
-    double sun_elevation_;
+    double turbidity_, sun_elevation_, highest_km_;
     std::size_t outer_, elevations_;
     BandValues air_{}, haze_{}, ozone_{};  // vertical optical thickness
     Columns columns_;
@@ -466,6 +472,16 @@ class Atmosphere::Tables {
 Atmosphere::Atmosphere(double turbidity, double sun_elevation_rad, double highest_km)
     : tables_(std::make_unique<const Tables>(turbidity, sun_elevation_rad, highest_km)) {}
 Atmosphere::~Atmosphere() = default;
+
+double Atmosphere::turbidity() const {
+    return tables_->turbidity();
+}
+double Atmosphere::sun_elevation_rad() const {
+    return tables_->sun_elevation();
+}
+double Atmosphere::highest_km() const {
+    return tables_->highest_km();
+}
 
 BandValues Atmosphere::transmittance(double elevation_rad) const {
     const double cosine = std::sin(std::max(elevation_rad, 0.0));

@@ -17,12 +17,13 @@
 #include <span>
 #include <vector>
 
+#include "core/base/constants.h"
 #include "core/lighting/sunlight.h"
 
 namespace pelagic {
 
 // Of the model's spherical earth and of its air, of which 1e-6 lies higher.
-inline constexpr double kEarthRadius_km = 6371.0, kAirTop_km = 100.0;
+inline constexpr double kEarthRadius_km = 1e-3 * kEarthRadius_m, kAirTop_km = 100.0;
 inline constexpr double kHazeScale_km = 1.2;  // of height, in which haze thins out e-fold
 
 // A straight line of sight, without refraction. It ends at the latest on the ground or in space.
@@ -35,8 +36,12 @@ struct SightLine {
 class Atmosphere {
   public:
     // turbidity T ≥ 1: at 0.55 μm, air and haze together have T times the optical thickness of air alone. The
-    // sun's elevation is as seen by the observer at sea level. highest_km: from how high up the air will be looked at.
-    Atmosphere(double turbidity, double sun_elevation_rad, double highest_km = 0.0);
+    // sun's elevation is as seen by the observer at sea level. highest_km: from how high up the air will be looked at;
+    // above 1 km it takes twice as long. What is seen from further down is the same.
+    Atmosphere(double turbidity, double sun_elevation_rad, double highest_km = 1.0);
+    double turbidity() const;
+    double sun_elevation_rad() const;
+    double highest_km() const;
 
     // Transmittance from space to sea level at this elevation ≥ 0, along a straight ray (no refraction).
     BandValues transmittance(double elevation_rad) const;

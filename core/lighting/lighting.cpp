@@ -30,6 +30,7 @@ struct Shading {
 // The order matters: each file uses those before it.
 // clang-format off
 #include "core/lighting/special.glsl"
+#include "core/lighting/level.glsl"
 #include "core/lighting/fresnel.glsl"
 #include "core/lighting/slopes.glsl"
 #include "core/lighting/sun.glsl"
@@ -57,12 +58,13 @@ void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoin
                  std::span<SeaRadiance> radiance) {
     using Variant = Shading<kChoice>;
     Variant shading(sky.map);
-    const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
+    typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
                                            sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
+        light.sun_direction = shading.levelled(sky.sun_direction, p.up);
         const typename Variant::SeaTerms terms =
-            shading.sea_radiance(p.to_eye, p.normal, p.slope_variance, p.coverage, light);
+            shading.sea_radiance(shading.levelled(p.to_eye, p.up), p.normal, p.slope_variance, p.coverage, light);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }

@@ -44,6 +44,8 @@ struct SeaPoint {
     glm::vec3 normal{0.0f, 0.0f, 1.0f};  // unit, of the resolved waves; may face away from the eye
     glm::vec3 slope_variance{0.0f};      // (σxx, σyy, σxy) of the hidden waves [-], world axes
     float coverage = 0.0f;               // of whitecaps, 0 … 1
+    // Unit: the vertical at the point, in the axes of to_eye and of the sky. Normal and slope variance are relative to it.
+    glm::vec3 up{0.0f, 0.0f, 1.0f};
 };
 
 // The sea as a diffuse surface, linear Rec. 709, for hosts that bring their own optics: the share of the

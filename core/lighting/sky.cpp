@@ -114,13 +114,12 @@ Sky daylight_sky(const Daylight& daylight, int map_size) {
 
     const double elevation = daylight.sun_elevation_deg * kDegree;
     const double azimuth = std::remainder(daylight.sun_azimuth_deg, 360.0) * kDegree;
-    const auto atmosphere =
-        std::make_shared<const Atmosphere>(daylight.turbidity, elevation, 1e-3 * daylight.highest_eye_m);
+    const auto atmosphere = std::make_shared<const Atmosphere>(daylight.turbidity, elevation);
     const Atmosphere& air = *atmosphere;
     const ScatteredTable table(air);
 
     Sky sky;
-    sky.air = daylight_air(atmosphere, elevation, azimuth);
+    sky.air = daylight_air(atmosphere, azimuth);
     const double radius = static_cast<double>(sky.sun_angular_radius);
     const Disc disc = disc_at(air, elevation, radius);
     const glm::dvec2 heading(std::cos(azimuth), std::sin(azimuth));

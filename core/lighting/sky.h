@@ -38,7 +38,6 @@ struct Daylight {
     double sun_elevation_deg = 20.0;  // −90 … 90
     double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
     double turbidity = 3.0;  // 1.7 … 10: extinction of air and haze over that of air alone, at 0.55 μm
-    double highest_eye_m = 0.0;  // from how high up the air will be looked at, for air.h
 };
 
 // Clear daylight at sea level (model: atmosphere.h), without stars and moon: night is black. Finite and

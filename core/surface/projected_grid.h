@@ -45,6 +45,7 @@ struct ProjectedGridOptions {
     double cell_px = 8.0;
     SurfaceBounds bounds;
     double significant_height_m = 0.0;  // Hs
+    double curvature_per_m = 0.0;       // of the earth on which the sea lies (earth.h); 0: flat
     // 0: as many as this pose needs (projected_grid_needs). Others, for poses that are to share a topology.
     ProjectedGridSize size{};
 };
@@ -53,6 +54,7 @@ struct ProjectedGridOptions {
 struct ProjectedGrid {
     int columns = 0, rows = 0;
     glm::dvec2 origin_m{0.0};         // the camera's nadir; the points are relative to it
+    double curvature_per_m = 0.0;     // as asked for: the points are laid round the nadir (earth.h)
     std::vector<glm::vec2> rest_m{};  // finite, inside the horizon's circle
     std::vector<float> cell_m{};      // larger of the distances to the neighbouring rows and columns
     std::vector<float> pixel_m{};     // pixel footprint along its longer side

@@ -4,7 +4,8 @@ in vec2 rest_in;  // [m], relative to the grid's origin
 in float cell_in;
 in float pixel_in;
 
-uniform float eye_height_m;  // above the grid's origin
+uniform float eye_height_m;     // above the grid's origin
+uniform float curvature_per_m;  // of the earth, 0: flat
 uniform mat4 clip_from_grid;  // the host's
 
 out vec2 rest_m;
@@ -15,7 +16,8 @@ void main() {
     vec3 displacement = query_cell(rest_in, cell_in);
     rest_m = rest_in;
     pixel_m = pixel_in;
-    vec3 place = vec3(rest_in.x + displacement.y, rest_in.y + displacement.z, displacement.x);
+    EarthPoint at = on_earth(rest_in.x + displacement.y, rest_in.y + displacement.z, displacement.x, curvature_per_m);
+    vec3 place = vec3(at.x, at.y, at.z);
     from_eye_m = place - vec3(0.0, 0.0, eye_height_m);
     vec4 clip = clip_from_grid * vec4(place, 1.0);
     // Beyond the host's far plane the sea goes on, as far away as a depth buffer of 24 bits can tell from

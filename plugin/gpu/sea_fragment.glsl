@@ -4,6 +4,8 @@ in vec2 rest_m;
 in float pixel_m;
 in vec3 from_eye_m;
 
+uniform float curvature_per_m;
+
 void main() {
     if (kWireframe) {
         write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), vec3(0.0), 1.0);
@@ -14,9 +16,11 @@ void main() {
         write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), vec3(0.0), 1.0);
         return;
     }
-    SeaTerms terms = sea_radiance(-pixel_ray(), answer.normal,
+    EarthPoint vertical = earth_up(rest_m.x, rest_m.y, curvature_per_m);
+    vec3 up = vec3(vertical.x, vertical.y, vertical.z);
+    SeaTerms terms = sea_radiance(levelled(-pixel_ray(), up), answer.normal,
                                   vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy), answer.coverage,
-                                  SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance,
+                                  SeaLight(levelled(sun_direction, up), sun_radiance, sun_angular_radius, sun_irradiance,
                                            sky_irradiance, water_reflectance));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)

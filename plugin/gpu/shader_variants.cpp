@@ -40,7 +40,7 @@ std::string picture_constants(const DrawOptions& options) {
 
 const std::vector<std::string_view>& lighting_files() {
     static const std::vector<std::string_view> files{
-        "core/lighting/fresnel.glsl", "core/lighting/slopes.glsl", "core/lighting/sun.glsl",
+        "core/lighting/level.glsl",   "core/lighting/fresnel.glsl", "core/lighting/slopes.glsl", "core/lighting/sun.glsl",
         "core/lighting/sky.glsl",     "core/lighting/water.glsl",  "core/lighting/foam.glsl",
         "core/lighting/sea.glsl"};
     return files;
@@ -50,7 +50,7 @@ const std::vector<std::string_view>& query_files() {
     static const std::vector<std::string_view> files{
         "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",  "core/plan/filter.inl",
         "core/waves/spline.inl",      "core/waves/whitecaps.inl", "core/evaluate/surface.inl",
-        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "plugin/gpu/places.glsl",
+        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "core/surface/earth.inl", "plugin/gpu/places.glsl",
         "plugin/gpu/cascades.glsl",   "plugin/gpu/trains.glsl",   "plugin/gpu/query.glsl"};
     return files;
 }

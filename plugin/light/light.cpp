@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "core/lighting/air.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/text.h"
 #include "plugin/exr/read.h"
@@ -46,7 +47,9 @@ Sky make_sky(const Scene& scene) {
                          .read = [&](int first_row, std::span<glm::vec3> radiance) {
                              file.read(first_row, {&radiance.data()->x, 3 * radiance.size()});
                          }};
-        return picture_sky(rows);
+        Sky sky = picture_sky(rows);
+        if (light.visibility_km) sky.air = picture_air(sky.map, 1e3 * *light.visibility_km);
+        return sky;
     } catch (const exr::ReadError& error) {
         throw std::invalid_argument(text_of(sky_problem(scene, error.problem(), error.accepted())));
     } catch (const std::invalid_argument& error) {

@@ -12,6 +12,7 @@
 #include "core/evaluate/values.h"
 #include "core/plan/plan.h"
 #include "core/plan/quality.h"
+#include "core/surface/earth.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
@@ -56,6 +57,7 @@ std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea
                            .rest_m = {grid.rest_m.data()},
                            .cell_m = {grid.cell_m.data()}},
              results);
+    for (glm::vec3& position : positions) position = on_earth(position, grid.curvature_per_m);
     return positions;
 }
 
@@ -91,8 +93,8 @@ double finest_pixel_in_view(const View& view, const ProjectedGrid& grid,
 // [bytes] of a point of the grid: itself and while it is made, as a vertex, and in triangles, here and at the driver's.
 constexpr std::size_t kPointBytes = sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double) +
                                     2 * (sizeof(glm::vec4) + 6 * sizeof(std::uint32_t)) + sizeof(glm::vec3);
-// [bytes/pixel] of the driver's pictures of four terms and their depth; of what is read back from it.
-constexpr std::size_t kDrawnBytes = 4 * sizeof(glm::vec4) + sizeof(float),
+// [bytes/pixel] of the driver's pictures of five terms and their depth; of what is read back from it.
+constexpr std::size_t kDrawnBytes = 5 * sizeof(glm::vec4) + sizeof(float),
                       kReadBytes = sizeof(SeaRadiance) + 1 + sizeof(glm::vec4);
 // Mesa's driver in software, with its compiler and the programs of this sea.
 constexpr std::size_t kDriverBytes = std::size_t{64} << 20;

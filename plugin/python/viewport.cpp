@@ -18,7 +18,6 @@
 #include <vector>
 
 #include "core/lighting/air.h"
-#include "core/lighting/tone.h"
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
@@ -28,6 +27,7 @@
 #include "plugin/gpu/shader_variants.h"
 #include "plugin/gpu/sky_atlas.h"
 #include "plugin/gpu/uniforms.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
@@ -62,31 +62,28 @@ py::dict dict_of(const std::vector<Uniform>& uniforms) {
 
 struct GpuLight {
     explicit GpuLight(const Scene& scene) : made_from(canonical(scene, kFeeds)) {
-        const Sky sky = make_sky(scene);
+        sky = make_sky(scene);
         map_size = sky.map.size();
         uniforms = light_uniforms(sky, make_water(scene));
-        air = sky.air;
-        exposure = exposure_for(sky);
         atlas = sky_atlas(sky.map);
     }
     bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from; }
 
     static constexpr FeedSet kFeeds = feeds(Feed::Light, Feed::Water);
     std::string made_from;
+    Sky sky;
     int map_size = 0;
     std::vector<Uniform> uniforms;
-    float exposure = 1.0f;
     SkyAtlas atlas;
-    std::shared_ptr<const AirModel> air;
 };
 
 // The uniforms and the texture of the air before an eye; of none without a height.
 py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
     if (height_m && !std::isfinite(*height_m)) throw py::value_error("height_m: accepted: a finite height [m], or None");
     Air air;
-    if (height_m && light.air) {
+    if (height_m && light.sky.air) {
         const OthersMayRun others_may_run;
-        air = light.air->seen_from(*height_m);
+        air = light.sky.air->seen_from(*height_m);
     }
     air.texels.resize(std::size_t{Air::kLayers} * Air::kColumns * Air::kRows, glm::vec4(0.0f));
     py::dict uniforms = dict_of(air_uniforms(air));
@@ -167,7 +164,7 @@ class GpuSea {
 
     py::dict shaders(const GpuLight& light) const {
         DrawOptions options{.lighting = lighting_, .for_host = true};
-        options.lighting.air = options.lighting.air && light.air;
+        options.lighting.air = options.lighting.air && light.sky.air;
         const auto pair = [](const ShaderVariant& variant) {
             return py::make_tuple(std::string(variant.vertex().body()),
                                   std::string(variant.fragment().body()));
@@ -312,9 +309,13 @@ void add_gpu_light(py::module_& module) {
             "shader by name, and the texture air_table, float32 (height, width, 4), texels as they are. None: no air, "
             "for views without an eye. Takes some milliseconds.")
         .def(
-            "exposure", [](const GpuLight& self, float stops) { return self.exposure * std::exp2(stops); },
-            py::arg("stops") = 0.0f,
-            "The uniform exposure, of both shaders: the light's own, and so many stops more.");
+            "exposure",
+            [](const GpuLight& self, const Scene& scene, double stops) {
+                require_valid(scene);
+                return shot_exposure(scene, self.sky, stops);
+            },
+            py::arg("scene"), py::arg("stops") = 0.0,
+            "The uniform exposure, of both shaders: that of a scene that this light serves, as Sky.exposure() has it.");
 }
 
 void add_gpu_grid(py::module_& module) {

@@ -18,6 +18,7 @@
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
 #include "core/plan/quality.h"
+#include "core/surface/earth.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
@@ -52,7 +53,7 @@ struct Batch {
     std::vector<std::size_t> sea;          // which samples show the sea, rising
     std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
     std::vector<T> pixel_m;
-    std::vector<glm::vec3> to_eye;
+    std::vector<glm::vec3> to_eye, up;
     std::vector<float> distance_m;  // of the eye
     Values answers;
     std::vector<SeaPoint> points;
@@ -153,6 +154,8 @@ class RendererOf final : public Impl {
                            .cell_m = {cell_m_.data()}},
                  results);
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
+        for (glm::vec<3, T>& position : position_)
+            position = glm::vec<3, T>(on_earth(glm::dvec3(position), grid_.curvature_per_m));
         const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
         clip_.resize(count);
         for (std::size_t i = 0; i < count; ++i) clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
@@ -232,7 +235,8 @@ class RendererOf final : public Impl {
                                   batch_.points[i] = {.to_eye = batch_.to_eye[i],
                                                       .normal = normal[i],
                                                       .slope_variance = slope_variance[i],
-                                                      .coverage = coverage.empty() ? 0.0f : coverage[i]};
+                                                      .coverage = coverage.empty() ? 0.0f : coverage[i],
+                                                      .up = batch_.up[i]};
                               const auto points =
                                   std::span(batch_.points).subspan(range.begin(), range.size());
                               const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
@@ -251,6 +255,7 @@ class RendererOf final : public Impl {
         batch_.rest.resize(count);
         batch_.pixel_m.resize(count);
         batch_.to_eye.resize(count);
+        batch_.up.resize(count);
         batch_.distance_m.resize(count);
         const glm::dvec3 eye = view_.position_m - glm::dvec3(grid_.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
@@ -266,6 +271,7 @@ class RendererOf final : public Impl {
                 pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
+            batch_.up[i] = glm::vec3(earth_up(rest, grid_.curvature_per_m));
             // Rounding must not reach the rung below the frame's first.
             batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
             const glm::dvec3 way = eye - position;
@@ -394,7 +400,7 @@ constexpr std::size_t kPointBytes = 2 * (sizeof(glm::vec2) + 2 * sizeof(float)) 
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
-                                     3 * sizeof(T) + sizeof(glm::vec3) + sizeof(float) + sizeof(SeaPoint) +
+                                     3 * sizeof(T) + 2 * sizeof(glm::vec3) + sizeof(float) + sizeof(SeaPoint) +
                                      7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
 
 }  // namespace

@@ -143,7 +143,7 @@ class Drawing:
         """Whether a view's last picture was of its coarse grid."""
         return any(grid.key[1] != self._cell_px for grid in self._grids.values())
 
-    def draw(self, region, camera, time_s, cell_px, exposure_stops, with_sky):
+    def draw(self, region, camera, time_s, cell_px, exposure, with_sky):
         """The sea at a time [s] into the bound framebuffer, where it is nearer than what is there; the sky where nothing
         is. region: what tells views apart. cell_px: the side of the cells, larger while the view moves."""
         self._cell_px = cell_px
@@ -151,7 +151,7 @@ class Drawing:
         self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
         if self.is_under_water:
             return
-        light = {**self.light.uniforms, **camera.uniforms(), "exposure": self.light.exposure(exposure_stops)}
+        light = {**self.light.uniforms, **camera.uniforms(), "exposure": exposure}
         depth_test, blend = gpu.state.depth_test_get(), gpu.state.blend_get()
         depth_mask = gpu.state.depth_mask_get()
         gpu.state.blend_set("NONE")

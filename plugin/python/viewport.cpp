@@ -17,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/lighting/tone.h"
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
@@ -27,6 +26,7 @@
 #include "plugin/gpu/shader_variants.h"
 #include "plugin/gpu/sky_atlas.h"
 #include "plugin/gpu/uniforms.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
@@ -61,19 +61,18 @@ py::dict dict_of(const std::vector<Uniform>& uniforms) {
 
 struct GpuLight {
     explicit GpuLight(const Scene& scene) : made_from(canonical(scene, kFeeds)) {
-        const Sky sky = make_sky(scene);
+        sky = make_sky(scene);
         map_size = sky.map.size();
         uniforms = light_uniforms(sky, make_water(scene));
-        exposure = exposure_for(sky);
         atlas = sky_atlas(sky.map);
     }
     bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from; }
 
     static constexpr FeedSet kFeeds = feeds(Feed::Light, Feed::Water);
     std::string made_from;
+    Sky sky;
     int map_size = 0;
     std::vector<Uniform> uniforms;
-    float exposure = 1.0f;
     SkyAtlas atlas;
 };
 
@@ -291,9 +290,13 @@ void add_gpu_light(py::module_& module) {
             },
             "The texture sky_map: float32 (height, width, 4), all its levels in one picture. Read-only.")
         .def(
-            "exposure", [](const GpuLight& self, float stops) { return self.exposure * std::exp2(stops); },
-            py::arg("stops") = 0.0f,
-            "The uniform exposure, of both shaders: the light's own, and so many stops more.");
+            "exposure",
+            [](const GpuLight& self, const Scene& scene, double stops) {
+                require_valid(scene);
+                return shot_exposure(scene, self.sky, stops);
+            },
+            py::arg("scene"), py::arg("stops") = 0.0,
+            "The uniform exposure, of both shaders: that of a scene that this light serves, as Sky.exposure() has it.");
 }
 
 void add_gpu_grid(py::module_& module) {

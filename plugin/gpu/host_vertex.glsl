@@ -1,15 +1,15 @@
 // The sea's geometry for a host that has its own projection and draws its own objects by depth.
 
 in vec2 rest_in;  // [m], relative to the grid's origin
-in float cell_in;
-in float pixel_in;
+in vec3 cell_in;   // footprints: width and long axis [m]
+in vec3 pixel_in;
 
 uniform float eye_height_m;     // above the grid's origin
 uniform float curvature_per_m;  // of the earth, 0: flat
 uniform mat4 clip_from_grid;  // the host's
 
 out vec2 rest_m;
-out float pixel_m;
+out vec3 pixel_m;
 out vec3 from_eye_m;
 
 void main() {

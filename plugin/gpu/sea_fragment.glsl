@@ -1,7 +1,7 @@
 // A pixel of the sea: the query at the point at rest that it shows, and the light from there.
 
 in vec2 rest_m;
-in float pixel_m;
+in vec3 pixel_m;  // width and long axis
 in vec3 from_eye_m;
 
 uniform float curvature_per_m;

@@ -227,5 +227,5 @@ class Drawing:
             self._sky_batch = gpu.types.GPUBatch(type="TRIS", buf=vertices)
         shader.bind()
         _set(shader, {**light, "farthest": 1.0})
-        _bind(shader, {"sky_map": self._textures["sky_map"]})
+        _bind(shader, {name: self._textures[name] for name in ("sky_map", "air_table")})
         self._sky_batch.draw(shader)

@@ -23,7 +23,7 @@ namespace shading {
 using namespace glm;
 
 struct Shading {
-    static constexpr int kAirColumns = Air::kColumns, kAirRows = Air::kRows, kAirHorizonRow = Air::kHorizonRow;
+    static constexpr int kAirColumns = Air::kColumns, kAirRows = Air::kRows, kAirSkyRows = Air::kSkyRows, kAirHorizonRow = Air::kHorizonRow;
     const glm::vec4* texels;
 
     glm::vec4 air_texel(int column, int row) const {
@@ -65,11 +65,27 @@ class Rows {
                 .elevation_rad = std::asin(std::max(sine, -1.0)),
                 .length_km = 1e-3 * distance_m(row)};
     }
+    // The root of a small share of the earth's radius, however low the eye.
+    double dip_rad() const { return std::atan(horizon_m_ / kEarthRadius_m); }
+    // Of the sky, above the horizon.
+    SightLine sky_line(int row) const {
+        const double x = static_cast<double>(row) / (Air::kSkyRows - 1);
+        const double grazing = 1e-7;  // [rad] beside the ground
+        return {.height_km = 1e-3 * height_m_,
+                .elevation_rad = sky_span_rad() * x * x * x - dip_rad() + (row == 0 ? grazing : 0.0)};
+    }
+    double sky_span_rad() const {
+        constexpr double top_m = kEarthRadius_m + 1e3 * kAirTop_km;
+        const double eye_m = kEarthRadius_m + height_m_;
+        return eye_m > top_m ? dip_rad() - std::acos(top_m / eye_m) : 0.5 * kPi + dip_rad();
+    }
     void set(Air& air) const {
+        air.sky_span = static_cast<float>(sky_span_rad());
         air.nearest_m = static_cast<float>(height_m_);
         air.horizon_m = static_cast<float>(horizon_m_);
         air.farthest_m = static_cast<float>(farthest_m_);
-        air.texels.resize(std::size_t{Air::kLayers} * Air::kColumns * Air::kRows);
+        air.dip = static_cast<float>(dip_rad());
+        air.texels.resize(std::size_t{Air::kLayers} * Air::kColumns * (Air::kRows + Air::kSkyRows));
     }
 
   private:
@@ -103,18 +119,23 @@ class DaylightAir final : public AirModel {
         std::vector<double> azimuths;  // the other half of the circle is the same
         for (int column = 0; column <= Air::kColumns / 2; ++column)
             azimuths.push_back(kTwoPi * column / Air::kColumns);
-        tbb::parallel_for(0, Air::kRows, [&](int row) {
-            const SightLine line = rows.line(row);
-            // Of light with the sun's spectrum.
-            const glm::dvec3 left = glm::clamp(colour_of(atmosphere.transmittance(line)) / white_,
-                                               glm::dvec3(kLeastTransmittance), glm::dvec3(1.0));
-            const glm::dvec3 extinction = -glm::log(left) / rows.distance_m(row);
+        air.has_sky = has_sky();
+        tbb::parallel_for(0, Air::kRows + Air::kSkyRows, [&](int row) {
+            const bool is_sky = row >= Air::kRows;
+            const SightLine line = is_sky ? rows.sky_line(row - Air::kRows) : rows.line(row);
+            glm::dvec3 extinction(0.0), share(1.0);
+            if (!is_sky) {
+                // Of light with the sun's spectrum.
+                const glm::dvec3 left = glm::clamp(colour_of(atmosphere.transmittance(line)) / white_,
+                                                   glm::dvec3(kLeastTransmittance), glm::dvec3(1.0));
+                extinction = -glm::log(left) / rows.distance_m(row);
+                share = glm::max(1.0 - left, 1e-30);
+            }
             const auto all = atmosphere.scattered(line, azimuths);
             for (int column = 0; column < Air::kColumns; ++column) {
                 const auto& from = all[static_cast<std::size_t>(std::min(column, Air::kColumns - column))];
                 const auto set = [&](int layer, const BandValues& light, double part) {
-                    texel(air, layer, column, row) =
-                        glm::dvec4(colour_of(light) / glm::max(1.0 - left, 1e-30), part);
+                    texel(air, layer, column, row) = glm::dvec4(colour_of(light) / share, part);
                 };
                 set(0, from.by_air, extinction.x);
                 set(1, from.by_haze, extinction.y);
@@ -123,6 +144,8 @@ class DaylightAir final : public AirModel {
         });
         return air;
     }
+
+    bool has_sky() const override { return true; }
 
   private:
     // The atmosphere for an eye so high up.
@@ -178,6 +201,8 @@ class PictureAir final : public AirModel {
         return air;
     }
 
+    bool has_sky() const override { return false; }
+
   private:
     // At the least contrast that an eye sees, 2 %: −ln 0.02.
     static constexpr double kKoschmieder = 3.912;
@@ -215,13 +240,27 @@ std::shared_ptr<const AirModel> daylight_air(std::shared_ptr<const Atmosphere> a
     return std::make_shared<const DaylightAir>(std::move(atmosphere), azimuth_rad);
 }
 
+namespace {
+
+shading::Shading::AirView view_of(const Air& air) {
+    return {air.azimuth, air.to_sun, air.nearest_m, air.horizon_m, air.farthest_m, air.dip, air.sky_span};
+}
+
+}  // namespace
+
+glm::vec3 sky_through(const Air& air, glm::vec3 direction) {
+    if (!air.has_sky) throw std::invalid_argument("sky_through: this air has no sky");
+    shading::Shading shading{air.texels.data()};
+    return shading.air_sky(direction, view_of(air));
+}
+
 void see_through(const Air& air, std::span<const glm::vec3> to_eye, std::span<const float> distance_m,
                  std::span<SeaRadiance> radiance) {
     if (to_eye.size() != radiance.size() || distance_m.size() != radiance.size())
         throw std::invalid_argument("see_through: give one direction and one distance for each SeaRadiance");
     if (air.empty()) return;
     shading::Shading shading{air.texels.data()};
-    const shading::Shading::AirView view{air.azimuth, air.to_sun, air.nearest_m, air.horizon_m, air.farthest_m};
+    const shading::Shading::AirView view = view_of(air);
     for (std::size_t i = 0; i < radiance.size(); ++i) {
         const auto path = shading.air_path(to_eye[i], distance_m[i], view);
         SeaRadiance& at = radiance[i];

@@ -17,11 +17,12 @@ namespace pelagic {
 
 // Empty: there is no air.
 struct Air {
-    static constexpr int kLayers = 3, kColumns = 32, kRows = 48, kHorizonRow = 39;
+    static constexpr int kLayers = 3, kColumns = 32, kRows = 48, kHorizonRow = 39, kSkyRows = 40;
     glm::vec2 azimuth{1.0f, 0.0f};
     glm::vec3 to_sun{0.0f, 0.0f, 1.0f};
-    float nearest_m = 0.0f, horizon_m = 0.0f, farthest_m = 0.0f;
-    // (kLayers · kColumns) × kRows, x fastest: in-scattered light by air, by haze, and more than once, each with one
+    float nearest_m = 0.0f, horizon_m = 0.0f, farthest_m = 0.0f, dip = 0.0f, sky_span = 1.0f;
+    bool has_sky = false;  // otherwise the sky is the map's alone
+    // (kLayers · kColumns) × (kRows + kSkyRows), x fastest: in-scattered light by air, by haze, and more than once, each with one
     // channel of the mean extinction [1/m] as its fourth number.
     std::vector<glm::vec4> texels;
     bool empty() const { return texels.empty(); }
@@ -34,6 +35,7 @@ class AirModel {
     // height_m: of the eye above the sea at rest; below 0.1 m it counts as 0.1 m. Milliseconds. Finite, whatever the
     // finite height.
     virtual Air seen_from(double height_m) const = 0;
+    virtual bool has_sky() const = 0;  // Air::has_sky of each
 };
 
 // The air of daylight, by the atmosphere's own model. azimuth_rad: the sun's, counter-clockwise from +x. The first
@@ -50,5 +52,8 @@ std::shared_ptr<const AirModel> picture_air(const SkyMap& map, double visibility
 // std::invalid_argument if the spans differ in length. Without air nothing changes.
 void see_through(const Air& air, std::span<const glm::vec3> to_eye, std::span<const float> distance_m,
                  std::span<SeaRadiance> radiance);
+
+// The sky in a direction (unit) from the air's eye, without the sun's disc; of an air that has it. Finite.
+glm::vec3 sky_through(const Air& air, glm::vec3 direction);
 
 }  // namespace pelagic

@@ -45,6 +45,7 @@ struct SurfaceNeeds {
 template <class T>
 struct RestPoints {
     glm::dvec2 origin_m{0.0};
+    double curvature_per_m = 0.0;  // of the earth: displaced points are laid on it round the origin (earth.h)
     std::vector<glm::vec<2, T>> rest_m{};
     // Footprints as in Points (core/evaluate/evaluate.h); empty: the query's own.
     std::vector<T> cell_m{}, pixel_m{};

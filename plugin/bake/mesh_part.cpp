@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/scene/names.h"
+#include "core/surface/earth.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/usd/crate.h"
 #include "plugin/usd/layers.h"
@@ -176,9 +177,24 @@ class MeshPart final : public OutputPart {
         if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
         if (!at.pixel_axis_m.empty()) points.pixel_axis_m = {at.pixel_axis_m.data()};
         state.runner.run(sea, output_.query, points, slot.values);
+        if (at.curvature_per_m != 0.0) lay_on_earth(at, slot.values);
         if (attributes_.origin) slot.origin_m = local_origin(at.origin_m, finest_of(at.cell_m));
         move_by(slot.values.vectors(Product::Position), at.origin_m - slot.origin_m);
         scale_by(slot.values.vectors(Product::Velocity), scene().shot.time_scale);
+    }
+
+    // What a flat sea's answers are on the earth.
+    template <class T>
+    static void lay_on_earth(const RestPoints<T>& at, Values& values) {
+        const auto turn = [&](std::vector<glm::vec3>& directions) {
+            for (std::size_t i = 0; i < directions.size(); ++i)
+                directions[i] = from_level(glm::dvec3(directions[i]),
+                                           earth_up(glm::dvec2(at.rest_m[i]), at.curvature_per_m));
+        };
+        for (glm::vec3& position : values.vectors(Product::Position))
+            position = on_earth(glm::dvec3(position), at.curvature_per_m);
+        turn(values.vectors(Product::Normal));
+        turn(values.vectors(Product::Velocity));
     }
 
     usd::MeshSample sample(int frame, const std::string& made_of, const MeshSlot& slot) const {

@@ -25,7 +25,7 @@ void main() {
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)
         path = air_path(-pixel_ray(), length(from_eye_m),
-                        AirView(air_azimuth, air_to_sun, air_reach_m.x, air_reach_m.y, air_reach_m.z));
+                        AirView(air_azimuth, air_to_sun, air_reach_m.x, air_reach_m.y, air_reach_m.z, air_sky_rows.x, air_sky_rows.y));
     write_terms(terms.sun * path.transmittance, terms.sky * path.transmittance, terms.sea * path.transmittance,
                 terms.foam * path.transmittance, path.scattered, 1.0);
 }

@@ -33,7 +33,8 @@ std::vector<std::string_view> output_files(const DrawOptions& options) {
 // The constants that the shaders of sea and sky share.
 std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
-           constant("kFalseColour", static_cast<int>(options.false_colour));
+           constant("kFalseColour", static_cast<int>(options.false_colour)) +
+           constant("kAirSky", options.sky_from_air);
 }
 
 }  // namespace
@@ -73,7 +74,7 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
     return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
            constant("kWhitecaps", choice.whitecaps) + constant("kAir", choice.air) +
            constant("kAirColumns", Air::kColumns) + constant("kAirRows", Air::kRows) +
-           constant("kAirHorizonRow", Air::kHorizonRow) + constant("kSkyLookups", lookups) +
+           constant("kAirHorizonRow", Air::kHorizonRow) + constant("kAirSkyRows", Air::kSkyRows) + constant("kSkyLookups", lookups) +
            constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
            "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
 }
@@ -117,7 +118,8 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
             {"plugin/gpu/full_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/gpu/light_uniforms.glsl", sky_file(options)},
                     lighting_files(),
-                    {"core/lighting/background.glsl", "plugin/gpu/rays.glsl"},
+                    {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "core/lighting/background.glsl",
+                     "plugin/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/gpu/sky_fragment.glsl"}})};
 }

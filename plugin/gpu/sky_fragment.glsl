@@ -6,7 +6,11 @@ void main() {
     }
     vec3 direction = pixel_ray();
     vec3 sky = vec3(0.0);
-    if (kSky) sky += sky_lookup(background_place(sky_place(direction), kSkyMapSize), 0.0);
+    if (kSky && kAirSky)
+        sky += air_sky(direction, AirView(air_azimuth, air_to_sun, air_reach_m.x, air_reach_m.y, air_reach_m.z,
+                                          air_sky_rows.x, air_sky_rows.y));
+    else if (kSky)
+        sky += sky_lookup(background_place(sky_place(direction), kSkyMapSize), 0.0);
     if (kSun) {
         float width = pixel_angle(view_pixel_tangent, dot(direction, view_forward));
         sky += sun_disc(direction, sun_direction, sun_angular_radius, width) * sun_radiance;

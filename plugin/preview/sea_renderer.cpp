@@ -69,7 +69,7 @@ struct SeaRenderer::Implementation {
     void make_dither();
     void set_common(const ShaderProgram& program, const View& view) const;
     void set_air(double height_m);
-    void draw_sea(const View& view, const ProjectedGrid& grid, DrawOptions options);
+    void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
 
@@ -225,23 +225,21 @@ void SeaRenderer::Implementation::set_air(double height_m) {
     const Air seen = air_model->seen_from(height_m);
     texels_as_they_are();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kLayers * Air::kColumns, Air::kRows, 0, GL_RGBA, GL_FLOAT,
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kLayers * Air::kColumns,
+                 Air::kRows + Air::kSkyRows, 0, GL_RGBA, GL_FLOAT,
                  seen.texels.data());
     air = air_uniforms(seen);
     air_height_m = height_m;
 }
 
-void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid, DrawOptions options) {
+void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
+                                           const DrawOptions& options) {
     const SeaLayout& layout = sea.layout();
-    options.lighting.air = options.lighting.air && air_model != nullptr;
     const ShaderProgram& program = program_of(ShaderVariant::of_sea(layout, options, sky_map_size));
     program.use();
     set_common(program, view);
     sea.bind(program, grid.origin_m);
-    if (options.lighting.air) {
-        set_air(view.position_m.z);
-        set_uniforms(program, air);
-    }
+    set_uniforms(program, air);
     glUniform1f(program.uniform("eye_height_m"), static_cast<float>(view.position_m.z));
     glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
     upload_grid(grid);
@@ -262,6 +260,7 @@ void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& 
     const ShaderProgram& program = program_of(ShaderVariant::of_sky(options, sky_map_size));
     program.use();
     set_common(program, view);
+    set_uniforms(program, air);
     glUniform1f(program.uniform("farthest"), reversed_depth ? 0.0f : 1.0f);
     glBindVertexArray(no_array.name());
     glDepthFunc(reversed_depth ? GL_GEQUAL : GL_LEQUAL);
@@ -314,6 +313,10 @@ void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOp
     const auto started = std::chrono::steady_clock::now();
     Implementation& of = *implementation_;
     const KeptFramebuffer kept;
+    DrawOptions drawn = options;
+    drawn.lighting.air = options.lighting.air && of.air_model;
+    drawn.sky_from_air = of.air_model && of.air_model->has_sky();
+    if (of.air_model) of.set_air(view.position_m.z);
     of.make_pictures(view.resolution, options.layers);
     of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
     glViewport(0, 0, view.resolution.x, view.resolution.y);
@@ -331,11 +334,11 @@ void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOp
 
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sea);
-        if (!of.sea.empty()) of.draw_sea(view, grid, options);
+        if (!of.sea.empty()) of.draw_sea(view, grid, drawn);
     }
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sky);
-        of.draw_sky(view, options);
+        of.draw_sky(view, drawn);
     }
 
     glDisable(GL_DEPTH_TEST);

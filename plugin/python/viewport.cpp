@@ -81,14 +81,16 @@ struct GpuLight {
 py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
     if (height_m && !std::isfinite(*height_m)) throw py::value_error("height_m: accepted: a finite height [m], or None");
     Air air;
-    if (height_m && light.sky.air) {
+    if (light.sky.air) {
         const OthersMayRun others_may_run;
-        air = light.sky.air->seen_from(*height_m);
+        air = light.sky.air->seen_from(height_m.value_or(0.0));
     }
-    air.texels.resize(std::size_t{Air::kLayers} * Air::kColumns * Air::kRows, glm::vec4(0.0f));
+    constexpr std::size_t kRow = std::size_t{Air::kLayers} * Air::kColumns;
+    air.texels.resize(kRow * (Air::kRows + Air::kSkyRows), glm::vec4(0.0f));
+    if (!height_m) std::fill_n(air.texels.begin(), kRow * Air::kRows, glm::vec4(0.0f));
     py::dict uniforms = dict_of(air_uniforms(air));
     uniforms["eye_height_m"] = height_m.value_or(0.0);
-    return py::make_tuple(uniforms, array_of<float>(std::move(air.texels), {Air::kRows, Air::kLayers * Air::kColumns, 4}));
+    return py::make_tuple(uniforms, array_of<float>(std::move(air.texels), {Air::kRows + Air::kSkyRows, Air::kLayers * Air::kColumns, 4}));
 }
 
 double checked_footprint(double finest_m) {
@@ -165,6 +167,7 @@ class GpuSea {
     py::dict shaders(const GpuLight& light) const {
         DrawOptions options{.lighting = lighting_, .for_host = true};
         options.lighting.air = options.lighting.air && light.sky.air;
+        options.sky_from_air = light.sky.air && light.sky.air->has_sky();
         const auto pair = [](const ShaderVariant& variant) {
             return py::make_tuple(std::string(variant.vertex().body()),
                                   std::string(variant.fragment().body()));
@@ -308,8 +311,8 @@ void add_gpu_light(py::module_& module) {
         .def(
             "air", &air_of, py::arg("height_m"),
             "(uniforms, air_table) of the air before an eye so high above the sea at rest [m]: uniforms of the sea's "
-            "shader by name, and the texture air_table, float32 (height, width, 4), texels as they are. None: no air, "
-            "for views without an eye. Takes some milliseconds.")
+            "shader by name, and the texture air_table, float32 (height, width, 4), texels as they are. None: no air "
+            "before the sea, for views without an eye. Takes some milliseconds.")
         .def(
             "exposure",
             [](const GpuLight& self, const Scene& scene, double stops) {

@@ -102,7 +102,7 @@ class RendererOf final : public Impl {
         frame_.set(scene_.shot.time_s(frame));
         refuse_under_water(frame_, scene_, frame, grid_options_);
         view_ = view_at(scene_.camera, frame);
-        air_ = options_.lighting.air && sky_.air ? sky_.air->seen_from(view_.position_m.z) : Air{};
+        air_ = sky_.air ? sky_.air->seen_from(view_.position_m.z) : Air{};
         lay_out_grid();
         picture.resolution = scene_.camera.resolution / options_.samples;
         const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
@@ -210,7 +210,8 @@ class RendererOf final : public Impl {
             const Background behind =
                 background(sky_, glm::vec3(direction),
                            pixel_angle(static_cast<float>(view_.pixel_tangent()), cos_off_axis));
-            if (lighting.sky) batch_.radiance[i].sky += behind.sky;
+            if (lighting.sky)
+                batch_.radiance[i].sky += air_.has_sky ? sky_through(air_, glm::vec3(direction)) : behind.sky;
             if (lighting.sun) batch_.radiance[i].sky += behind.sun;
         });
     }
@@ -245,7 +246,8 @@ class RendererOf final : public Impl {
                                   std::span(batch_.points).subspan(range.begin(), range.size());
                               const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
                               shade_sea(options_.lighting, sky_, water_, points, lit);
-                              see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
+                              if (options_.lighting.air)
+                                  see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
                                           std::span(batch_.distance_m).subspan(range.begin(), range.size()),
                                           lit);
                               for (std::size_t i = range.begin(); i < range.end(); ++i)

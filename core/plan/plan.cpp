@@ -13,6 +13,7 @@
 #include "core/plan/products.h"
 #include "core/plan/quality.h"
 #include "core/scene/cascade_bands.h"
+#include "core/surface/earth.h"
 #include "core/surface/rungs.h"
 
 namespace pelagic {
@@ -229,7 +230,9 @@ ProjectedGridOptions projected_grid_options(const PreparedScene& prepared) {
     const Extent& extent = prepared.extent;
     return {.cell_px = prepared.scene.surface.cell_px,
             .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
-            .significant_height_m = extent.significant_height_m};
+            .significant_height_m = extent.significant_height_m,
+            .hidden = extent.hidden,
+            .curvature_per_m = prepared.scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0};
 }
 
 namespace {
@@ -331,7 +334,8 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
     const std::shared_ptr<const RestSurface> surface =
         make_surface(prepared->scene, {.height_m = extent.height_m,
                                        .reach_m = extent.reach_m,
-                                       .significant_height_m = extent.significant_height_m});
+                                       .significant_height_m = extent.significant_height_m,
+                                       .hidden = extent.hidden});
     const OutputContext context{
         .prepared = *prepared, .surface = *surface, .frames = frames, .gone = products_gone(prepared->scene)};
     std::vector<OutputRequest> requests;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/base/constants.h"
+#include "core/surface/earth_view.h"
 
 namespace pelagic {
 namespace {
@@ -37,6 +38,11 @@ constexpr double kSlack = 0.92;
 // crests come before the lens, gets no more rows than kBeside diagonals have cells, and columns are no more than
 // kAcross diagonals have. kSpare cells more let small pictures have a round grid.
 constexpr double kFine = 4.0, kBeside = 1.0, kAcross = 6.0, kSpare = 64.0;
+// Rows are so close together that cells of their length hide heights of kHeight_px (standard deviation), if cells are no
+// larger than kHeightCell_px across; otherwise of more in proportion. The skyline of a gale is then within a pixel of the
+// sea's own in 99 % of a picture's columns (tests/bench, "skyline"). Rows that heights alone ask for are no more than
+// kHigh diagonals have cells: a telephoto lens sees crests behind crests for tens of kilometres.
+constexpr double kHeight_px = 0.3, kHeightCell_px = 8.0, kHigh = 6.0;
 // Counts are multiples of kCountStep. The largest serves an 8K picture with one cell per pixel.
 constexpr int kCountStep = 16, kLargestCount = 8192;
 
@@ -77,6 +83,7 @@ struct Station {
     double corner_cos;          // cosine of the angle between the optical axis and a corner of the picture
     double diagonal;            // the angle between opposite corners
     glm::dvec2 ahead;           // unit vector of azimuth 0
+    EarthView earth{0.0, 0.0, 0.0};
 };
 
 Station station_of(const View& view, const ProjectedGridOptions& options) {
@@ -92,6 +99,7 @@ Station station_of(const View& view, const ProjectedGridOptions& options) {
     at.farthest_m = std::min(at.effective_height_m / (kHorizon_px * view.pixel_tangent() *
                                                       std::max(at.corner_cos * at.corner_cos, 1e-6)),
                              kFarthest_m);
+    at.earth = EarthView(at.height_m, options.curvature_per_m, options.bounds.height_m);
     // The azimuth of `forward`; where that is vertical, the azimuth of the picture's upper or lower edge.
     // This expression goes from one to the other without a jump.
     const glm::dvec3 middle = view.forward - view.forward.z * view.up;
@@ -233,64 +241,174 @@ bool is_narrow(const Station& at) {
     return kFine * at.diagonal < 0.5 * kPi;
 }
 
+// Where rows are: how many cells lie between the first one and a radius, which need not be a whole number. It is summed
+// over short steps, each of which has as many cells as its angle asks for, or as the waves' heights do, whichever are
+// more. All of it changes smoothly with the pose, and so do the rows.
+class RowSpacing {
+  public:
+    // From radii.first to radii.last; the sea at rest is in view within `seen`. `count`: how many cells there will be;
+    // 0: as many as are asked for.
+    RowSpacing(Interval radii, Interval seen, const ProjectedGridOptions& options, const Station& at,
+               double cell_angle, int count)
+        : earth_(at.earth), height_m_(at.effective_height_m), first_m_(radii.first) {
+        const double height_angle =
+            kHeight_px / options.cell_px * cell_angle * std::max(options.cell_px / kHeightCell_px, 1.0);
+        const auto part = [&](double last_m, Group group, double cell) {
+            add_steps(last_m, group, cell * cell_angle, options.hidden, height_angle);
+        };
+        // A narrow lens begins to have small cells here.
+        double fine_m = radii.first;
+        if (is_narrow(at)) {
+            const double angle = earth_.angle_between(height_m_, 0.0, seen.last) - kFine * at.diagonal;
+            const double flat_m = height_m_ * std::tan(std::clamp(angle, 0.0, 0.4999 * kPi));
+            fine_m = std::clamp(at.earth.arc_of(flat_m), radii.first, seen.last);
+        }
+        part(std::min(fine_m, seen.first), kNearby, kMargin);
+        if (fine_m < seen.first)
+            part(seen.first, kFineOnes, kMargin);
+        else
+            part(fine_m, kNearby, 1.0);
+        part(seen.last, kFineOnes, 1.0);
+        part(radii.last, kBeyond, kMargin);
+
+        const double diagonal = at.diagonal / cell_angle;
+        if (is_narrow(at)) most_[kNearby] = most_[kBeyond] = kBeside * diagonal + kSpare;
+        const double most =
+            std::min(total(counts(0.0)) + kHigh * diagonal, 1.0 * (count > 0 ? count : kLargestCount));
+        double share = 1.0;  // of the cells that heights ask for
+        if (total(counts(share)) > most) {
+            double least = 0.0;
+            for (double half = 0.5; half > 1e-12; half *= 0.5)
+                if (total(counts(least + half)) <= most) least += half;
+            share = least;
+        }
+        const Counts wanted = counts(share);
+        double sum = 0.0;
+        for (Step& step : steps_) {
+            const double cells = std::max(step.by_angle, share * step.by_height);
+            sum += cells * std::min(most_[step.group] / wanted[step.group], 1.0);
+            step.cells = sum;
+        }
+    }
+
+    double cells() const { return steps_.empty() ? 0.0 : steps_.back().cells; }
+
+    // 0 ≤ cells ≤ cells()
+    double radius_m(double cells) const {
+        if (steps_.empty()) return first_m_;  // all that is in view is one place
+        const auto step = std::upper_bound(steps_.begin(), steps_.end() - 1, cells,
+                                           [](double value, const Step& s) { return value < s.cells; });
+        const double first_m = step == steps_.begin() ? first_m_ : (step - 1)->last_m;
+        const double before = step == steps_.begin() ? 0.0 : (step - 1)->cells;
+        // Even in angle: tan(a + b) of the step's first angle and a part of its own.
+        const double part = (cells - before) / (step->cells - before);
+        if (earth_.is_round()) {  // along the chord
+            const double angle = angle_between(first_m, step->last_m);
+            const double near_part = std::sin(part * angle) * earth_.distance_m(height_m_, first_m);
+            const double far_part = std::sin((1.0 - part) * angle) * earth_.distance_m(height_m_, step->last_m);
+            const double chord = near_part + far_part > 0.0 ? near_part / (near_part + far_part) : part;
+            return first_m + (step->last_m - first_m) * chord;
+        }
+        const double rise = std::tan(part * angle_between(first_m, step->last_m));
+        return (first_m + height_m_ * rise) / (1.0 - first_m / height_m_ * rise);
+    }
+
+  private:
+    enum Group { kNearby, kFineOnes, kBeyond, kGroups };
+    using Counts = std::array<double, kGroups>;
+
+    struct Step {
+        double last_m;
+        Group group;
+        double by_angle, by_height;  // cells
+        double cells = 0.0;          // up to last_m
+    };
+
+    // The difference of two angles from the nadir. At the horizon these themselves differ by less than they are rounded.
+    double angle_between(double first_m, double last_m) const {
+        if (earth_.is_round()) return earth_.angle_between(height_m_, first_m, last_m);
+        return std::atan2(height_m_ * (last_m - first_m), height_m_ * height_m_ + first_m * last_m);
+    }
+
+    // Up to last_m, even in asinh(r/h): in r below the camera, in log r far away.
+    void add_steps(double last_m, Group group, double cell_angle, const HiddenHeight& hidden,
+                   double height_angle) {
+        constexpr int kSteps = 256;
+        double from_m = steps_.empty() ? first_m_ : steps_.back().last_m;
+        if (!(last_m > from_m)) return;
+        const double first = std::asinh(from_m / height_m_),
+                     step = (std::asinh(last_m / height_m_) - first) / kSteps;
+        for (int i = 1; i <= kSteps; ++i) {
+            const double to_m = i == kSteps ? last_m : height_m_ * std::sinh(first + step * i);
+            const double r_m = 0.5 * (from_m + to_m);
+            // A height z is seen at an angle of z cos(elevation)/distance.
+            const double height_m = height_angle * (r_m + height_m_ * (height_m_ / r_m));
+            steps_.push_back({.last_m = to_m,
+                              .group = group,
+                              .by_angle = angle_between(from_m, to_m) / cell_angle,
+                              .by_height = (to_m - from_m) / hidden.longest_cell_m(height_m)});
+            from_m = to_m;
+        }
+    }
+
+    Counts counts(double share) const {
+        Counts sum{};
+        for (const Step& step : steps_) sum[step.group] += std::max(step.by_angle, share * step.by_height);
+        return sum;
+    }
+    double total(const Counts& wanted) const {
+        double sum = 0.0;
+        for (int group = 0; group < kGroups; ++group) sum += std::min(wanted[group], most_[group]);
+        return sum;
+    }
+
+    EarthView earth_;
+    double height_m_, first_m_;
+    Counts most_{1e300, 1e300, 1e300};
+    std::vector<Step> steps_;
+};
+
+// Moves the nearest row to the horizon of the sea at rest, which is in the picture whatever the waves do.
+void keep_horizon(std::vector<Row>& rows, double horizon_m) {
+    if (!(horizon_m > rows.front().radius_m && horizon_m < rows.back().radius_m)) return;
+    std::size_t nearest = 1;
+    for (std::size_t i = 1; i + 1 < rows.size(); ++i)
+        if (std::abs(rows[i].radius_m - horizon_m) < std::abs(rows[nearest].radius_m - horizon_m)) nearest = i;
+    if (nearest + 1 < rows.size()) rows[nearest].radius_m = horizon_m;
+}
+
 // The rows of a pose: count + 1 of them, or as many as the pose needs if count is 0.
 std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, const Station& at,
                          double cell_angle, int count) {
     const double reach_m = options.bounds.reach_m;
     const Polygon slab = in_view(view, at, options.bounds.height_m), plane = in_view(view, at, 0.0);
-    Interval radii{0.5 * at.farthest_m, at.farthest_m}, seen = radii;
+    const double farthest_m = std::min(at.farthest_m, at.earth.farthest_m());
+    Interval radii{0.5 * farthest_m, farthest_m}, seen = radii;
     if (!slab.empty()) {
+        // A crest lies before the place at rest that its ray would meet, and no nearer than on a flat sea.
         const Interval reached = distances(slab);
-        radii.last = std::min(reached.last + reach_m, at.farthest_m);
+        radii.last = std::min(at.earth.arc_of(reached.last) + reach_m, farthest_m);
         radii.first = std::clamp(reached.first - reach_m, 0.0, 0.5 * radii.last);
     }
     if (!plane.empty()) {
         seen = distances(plane);
+        seen = {at.earth.arc_of(seen.first), std::min(at.earth.arc_of(seen.last), at.earth.horizon_m())};
         seen.first = std::clamp(seen.first, radii.first, radii.last);
         seen.last = std::clamp(seen.last, radii.first, radii.last);
     } else {
         seen = radii;
     }
-    const auto angle_at = [&](double radius_m) { return std::atan2(radius_m, at.effective_height_m); };
-    // Cell count from the first row to a given angle. Margins have larger cells.
-    const Interval angles{angle_at(radii.first), angle_at(radii.last)};
-    const Interval core{angle_at(seen.first), angle_at(seen.last)};
-    const double before = (core.first - angles.first) / (kMargin * cell_angle);
-    const double inside = (core.last - core.first) / cell_angle;
-    const double after = (angles.last - core.last) / (kMargin * cell_angle);
-    const auto angle_of_small = [&](double cells) {
-        if (cells < before) return angles.first + cells * kMargin * cell_angle;
-        if (cells < before + inside) return core.first + (cells - before) * cell_angle;
-        return std::min(core.last + (cells - before - inside) * kMargin * cell_angle, angles.last);
-    };
-    // A narrow lens has larger cells on both sides of those that it looks at: so many small ones each.
-    double near_cells = 0.0, near_rows = 0.0, far_rows = after;
-    if (is_narrow(at)) {
-        const double most = kBeside * at.diagonal / cell_angle + kSpare;
-        const double first = core.last - kFine * at.diagonal;  // of those that stay small
-        near_cells = first > core.first     ? before + (first - core.first) / cell_angle
-                     : first > angles.first ? (first - angles.first) / (kMargin * cell_angle)
-                                            : 0.0;
-        near_rows = std::min(near_cells, most);
-        far_rows = std::min(after, most);
-    }
-    const double fine_rows = before + inside - near_cells, all = near_rows + fine_rows + far_rows;
-    const auto angle_of = [&](double cells) {
-        if (cells < near_rows) return angle_of_small(cells * (near_cells / near_rows));
-        const double beyond = cells - near_rows - fine_rows;
-        if (beyond > 0.0 && far_rows < after)
-            return angle_of_small(before + inside + beyond * (after / far_rows));
-        return angle_of_small(cells - near_rows + near_cells);
-    };
+    const RowSpacing spacing(radii, seen, options, at, cell_angle, count);
     if (count == 0) {
-        const double needed = std::ceil(all / kCountStep) * kCountStep;
+        const double needed = std::ceil(spacing.cells() / kCountStep) * kCountStep;
         count = static_cast<int>(std::clamp(needed, 1.0 * kCountStep, 1.0 * kLargestCount));
     }
     std::vector<Row> rows(static_cast<std::size_t>(count) + 1);
     for (int i = 0; i <= count; ++i)
         rows[i].radius_m = i == 0       ? radii.first
                            : i == count ? radii.last
-                                        : at.effective_height_m * std::tan(angle_of(all * i / count));
+                                        : spacing.radius_m(spacing.cells() * i / count);
+    keep_horizon(rows, at.earth.horizon_m());
     // A chord between two points of a row comes this much nearer than the row's radius.
     const int least_columns = options.size.columns > 0 ? options.size.columns : kCountStep;
     const double sagitta = std::cos(kPi / std::max(least_columns, 3));
@@ -298,7 +416,13 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
         // Covering the ring up to both neighbouring rows leaves no gap between the rows' ends.
         const Interval ring{rows[std::max(i - 1, 0)].radius_m * sagitta,
                             rows[std::min(i + 1, count)].radius_m};
-        const Interval reached{std::max(ring.first - reach_m, 0.0), ring.last + reach_m};
+        Interval reached{std::max(ring.first - reach_m, 0.0), ring.last + reach_m};
+        if (at.earth.is_round()) {
+            reached.first = std::min(at.earth.flat_of(reached.first), at.farthest_m);
+            if (reached.last >= at.earth.horizon_m()) reached.last = 8.0 * at.farthest_m;
+        }
+        // Where their rays meet a flat sea.
+        const Interval flat{at.earth.flat_of(ring.first), std::min(at.earth.flat_of(ring.last), 8.0 * at.farthest_m)};
         std::optional<double> half;
         if (ring.first <= reach_m && reach_m > 0.0)
             half = kPi;
@@ -307,7 +431,7 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
         rows[i].half_width = std::min(half.value_or(std::atan(view.tan_half_width)), kPi);
         rows[i].in_view = rows[i].radius_m >= seen.first && rows[i].radius_m <= seen.last;
         rows[i].fine = rows[i].in_view && rows[i].radius_m >= kNear * reach_m;
-        rows[i].seen_width = rows[i].in_view ? half_width(plane, ring).value_or(0.0) : 0.0;
+        rows[i].seen_width = rows[i].in_view ? half_width(plane, flat).value_or(0.0) : 0.0;
     }
     // Columns must stay nearly straight where they are in view: a row follows a wider neighbour. A narrow lens
     // sees the columns in the middle, which shift by a small part of what the outermost do.
@@ -320,7 +444,7 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
     for (int i = count; i-- > 0;) follow(rows[i], rows[i + 1]);
     for (int i = 1; i <= count; ++i)
         if (rows[i - 1].fine) follow(rows[i], rows[i - 1]);
-    if (radii.last < at.farthest_m) rows.back().radius_m /= sagitta;
+    if (radii.last < farthest_m) rows.back().radius_m /= sagitta;
     return rows;
 }
 
@@ -382,7 +506,8 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
     const double cell_angle = cell_angle_of(view, options, at);
     const std::vector<Row> rows = rows_of(view, sized, at, cell_angle, row_count);
 
-    ProjectedGrid grid{.columns = columns, .rows = row_count, .origin_m = glm::dvec2(view.position_m)};
+    ProjectedGrid grid{.columns = columns, .rows = row_count, .origin_m = glm::dvec2(view.position_m),
+                       .curvature_per_m = options.curvature_per_m};
     const std::size_t stride = static_cast<std::size_t>(columns) + 1;
     const std::size_t count = stride * rows.size();
     grid.rest_m.resize(count);

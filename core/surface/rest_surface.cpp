@@ -11,6 +11,7 @@
 
 #include "core/scene/names.h"
 #include "core/scene/text.h"
+#include "core/surface/earth.h"
 #include "core/surface/patch.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
@@ -66,7 +67,9 @@ class CameraGrid final : public RestSurface {
           first_frame_(scene.shot.first_frame),
           options_{.cell_px = scene.surface.cell_px,
                    .bounds = {.height_m = reach.height_m, .reach_m = reach.reach_m},
-                   .significant_height_m = reach.significant_height_m} {}
+                   .significant_height_m = reach.significant_height_m,
+                   .hidden = reach.hidden,
+                   .curvature_per_m = scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0} {}
 
     std::string describe() const override {
         const ProjectedGridSize size = projected_grid_needs(view_at(camera_, first_frame_), options_).size;

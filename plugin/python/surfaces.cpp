@@ -146,7 +146,9 @@ ProjectedGridSize checked_size(const std::optional<std::array<int, 2>>& size) {
 }
 
 ProjectedGridOptions options_of(const PythonSea& sea) {
-    return projected_grid_options(*sea.plan().from);
+    ProjectedGridOptions options = projected_grid_options(*sea.plan().from);
+    options.curvature_per_m = 0.0;  // hosts' own meshes of it stay flat
+    return options;
 }
 
 PythonGrid grid_of(const PythonSea& sea, const View& view, const std::optional<std::array<int, 2>>& size) {

@@ -99,10 +99,11 @@ def _bind(shader, textures):
 class Grid:
     """A region's projected grid on the GPU."""
 
-    def __init__(self, sea, view, cell_px, before):
-        """before: the region's last Grid, whose triangles may serve again, or None."""
-        grid = sea.grid(view, cell_px)
-        self.key, self.size, self.origin_m = (view, cell_px), grid.size, grid.origin_m
+    def __init__(self, sea, view, cell_px, on_earth, before):
+        """on_earth: False for views that no eye sees, which are of a flat sea. before: the region's last Grid, whose triangles may serve again, or None."""
+        grid = sea.grid(view, cell_px, on_earth)
+        self.curvature_per_m = grid.curvature_per_m
+        self.key, self.size, self.origin_m = (view, cell_px, on_earth), grid.size, grid.origin_m
         form = gpu.types.GPUVertFormat()
         for name, length in (("rest_in", 2), ("cell_in", 3), ("pixel_in", 3)):
             form.attr_add(id=name, comp_type="F32", len=length, fetch_mode="FLOAT")
@@ -196,7 +197,7 @@ class Drawing:
         """The region's grid: coarse where the view isn't that of its last picture."""
         view, before = camera.view(), self._grids.pop(region, None)
         moved = before is not None and before.key[0] != view
-        key = (view, self._cell_px * (COARSE if moved else 1))
+        key = (view, self._cell_px * (COARSE if moved else 1), camera.is_perspective)
         grid = before if before is not None and before.key == key else Grid(self.sea, *key, before)
         self._grids[region] = grid  # the last one now
         while len(self._grids) > KEPT_GRIDS:
@@ -210,7 +211,8 @@ class Drawing:
         tables = gpu.types.GPUUniformBuf(tables)
         shader.bind()
         shader.uniform_block("SeaTables", tables)
-        _set(shader, {**self.sea.uniforms, **light, "clip_from_grid": camera.clip_from_grid(grid.origin_m)})
+        _set(shader, {**self.sea.uniforms, **light, "clip_from_grid": camera.clip_from_grid(grid.origin_m),
+                      "curvature_per_m": grid.curvature_per_m})
         textures = dict(self._textures)
         if cycles is not None:
             textures["train_cycles"] = _texture(cycles)

@@ -112,6 +112,7 @@ std::shared_ptr<Made> make_beside_others(const Scene& scene, More... more) {
 struct GpuGrid {
     ProjectedGridSize size;
     glm::dvec2 origin_m{0.0};
+    double curvature_per_m = 0.0;
     py::array vertices;
 };
 
@@ -215,8 +216,9 @@ class GpuSea {
         return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin)), cycles);
     }
 
-    GpuGrid grid(const View& view, std::optional<double> cell_px) const {
+    GpuGrid grid(const View& view, std::optional<double> cell_px, bool on_earth) const {
         ProjectedGridOptions options = projected_grid_options(*prepared_);
+        if (!on_earth) options.curvature_per_m = 0.0;
         if (cell_px) {
             if (!(*cell_px > 0.0 && *cell_px <= std::numeric_limits<double>::max()))
                 throw py::value_error("cell_px: accepted: a number above 0");
@@ -239,6 +241,7 @@ class GpuSea {
         }
         return {{.columns = grid.columns, .rows = grid.rows},
                 grid.origin_m,
+                grid.curvature_per_m,
                 array_of<float>(std::move(vertices))};
     }
 
@@ -331,6 +334,8 @@ void add_gpu_grid(py::module_& module) {
         .def_property_readonly(
             "origin_m", [](const GpuGrid& self) { return py::make_tuple(self.origin_m.x, self.origin_m.y); },
             "(x, y) [m], in double precision: vertices are relative to it.")
+        .def_readonly("curvature_per_m", &GpuGrid::curvature_per_m,
+                      "The uniform of that name [1/m]: of the earth, round which the shader lays the grid; 0: flat.")
         .def_readonly(
             "vertices", &GpuGrid::vertices,
             "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
@@ -391,9 +396,10 @@ void add_viewport(py::module_& module) {
             "depend on time, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
             "None.")
         .def(
-            "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
+            "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(), py::arg("on_earth") = true,
             "The projected grid of a view, a GpuGrid. cell_px: the cells' side on the screen; by default the "
-            "scene's surface.cell_px. At most 1024 cells a side: where a view needs more, they are larger.")
+            "scene's surface.cell_px. At most 1024 cells a side: where a view needs more, they are larger. on_earth: "
+            "False for a flat sea, whatever the scene's surface.earth_curvature.")
         .def_property_readonly("bytes", &GpuSea::bytes, "Memory that it holds [bytes].");
 }
 

@@ -23,7 +23,8 @@ namespace shading {
 using namespace glm;
 
 struct Shading {
-    static constexpr int kAirColumns = Air::kColumns, kAirRows = Air::kRows, kAirSkyRows = Air::kSkyRows, kAirHorizonRow = Air::kHorizonRow;
+    static constexpr int kAirColumns = Air::kColumns, kAirRows = Air::kRows, kAirSkyRows = Air::kSkyRows,
+                         kAirHorizonRow = Air::kHorizonRow;
     const glm::vec4* texels;
 
     glm::vec4 air_texel(int column, int row) const {
@@ -59,8 +60,8 @@ class Rows {
     }
     SightLine line(int row) const {
         const double reached_m = std::min(distance_m(row), horizon_m_);
-        const double sine =
-            -(horizon_m_ * horizon_m_ + reached_m * reached_m) / (2.0 * reached_m * (kEarthRadius_m + height_m_));
+        const double sine = -(horizon_m_ * horizon_m_ + reached_m * reached_m) /
+                            (2.0 * reached_m * (kEarthRadius_m + height_m_));
         return {.height_km = 1e-3 * height_m_,
                 .elevation_rad = std::asin(std::max(sine, -1.0)),
                 .length_km = 1e-3 * distance_m(row)};
@@ -170,7 +171,8 @@ class PictureAir final : public AirModel {
     PictureAir(const SkyMap& map, double visibility_m) : extinction_(kKoschmieder / visibility_m) {
         // Above the band along the horizon where texels are partly below it.
         const double elevation = std::max(kPi / 180.0, 3.0 * static_cast<double>(kSkyMapExtent) / map.size());
-        constexpr int kSamples = 16;  // a column is a mean over its share of the circle, and over its neighbours'
+        constexpr int kSamples =
+            16;  // a column is a mean over its share of the circle, and over its neighbours'
         for (int column = 0; column < Air::kColumns; ++column) {
             glm::dvec3 sum(0.0);
             double weights = 0.0;
@@ -193,7 +195,8 @@ class PictureAir final : public AirModel {
         for (int row = 0; row < Air::kRows; ++row) {
             const auto extinction = static_cast<float>(extinction_ * mean_density(rows.line(row)));
             for (int column = 0; column < Air::kColumns; ++column) {
-                texel(air, 0, column, row) = texel(air, 1, column, row) = glm::vec4(glm::vec3(0.0f), extinction);
+                texel(air, 0, column, row) = texel(air, 1, column, row) =
+                    glm::vec4(glm::vec3(0.0f), extinction);
                 texel(air, 2, column, row) =
                     glm::vec4(glm::vec3(horizon_[static_cast<std::size_t>(column)]), extinction);
             }
@@ -218,7 +221,8 @@ class PictureAir final : public AirModel {
             for (int i = 0; i < kSteps; ++i) {
                 const double a = static_cast<double>(i) / kSteps, b = (i + 1.0) / kSteps;
                 const double t = lowest + part * 0.5 * (a * a + b * b);
-                const double height = std::sqrt(radius * radius + t * (t + 2.0 * radius * up)) - kEarthRadius_km;
+                const double height =
+                    std::sqrt(radius * radius + t * (t + 2.0 * radius * up)) - kEarthRadius_km;
                 sum += std::abs(part) * (b * b - a * a) * std::exp(-std::max(height, 0.0) / kHazeScale_km);
             }
         return sum / length;
@@ -236,7 +240,8 @@ std::shared_ptr<const AirModel> picture_air(const SkyMap& map, double visibility
     return std::make_shared<const PictureAir>(map, visibility_m);
 }
 
-std::shared_ptr<const AirModel> daylight_air(std::shared_ptr<const Atmosphere> atmosphere, double azimuth_rad) {
+std::shared_ptr<const AirModel> daylight_air(std::shared_ptr<const Atmosphere> atmosphere,
+                                             double azimuth_rad) {
     return std::make_shared<const DaylightAir>(std::move(atmosphere), azimuth_rad);
 }
 

@@ -40,7 +40,8 @@ class AirModel {
 
 // The air of daylight, by the atmosphere's own model. azimuth_rad: the sun's, counter-clockwise from +x. The first
 // eye from higher up than the atmosphere is made for waits for another one.
-std::shared_ptr<const AirModel> daylight_air(std::shared_ptr<const Atmosphere> atmosphere, double azimuth_rad);
+std::shared_ptr<const AirModel> daylight_air(std::shared_ptr<const Atmosphere> atmosphere,
+                                             double azimuth_rad);
 
 // The air of a picture of a sky, in which a black object is visible against the horizon at most this far [m], > 0.
 // Koschmieder 1924: its contrast has fallen to 2 %, so extinction at sea level is 3.912/visibility. It falls with height as

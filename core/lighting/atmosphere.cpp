@@ -291,7 +291,8 @@ class Atmosphere::Tables {
             const double inside2 = top * top - radius * radius * across * across;
             const double empty = inside2 > 0.0 && up < 0.0 ? -radius * up - std::sqrt(inside2) : length;
             start = turn_at(radius, across, up, empty);
-            elevation = std::atan2(radius * up + empty, radius * across);  // at the place where it enters the air
+            elevation =
+                std::atan2(radius * up + empty, radius * across);  // at the place where it enters the air
             radius = top;
             length = std::max(0.0, length - empty);
         }

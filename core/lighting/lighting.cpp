@@ -59,12 +59,12 @@ void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoin
     using Variant = Shading<kChoice>;
     Variant shading(sky.map);
     typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
-                                           sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
+                                     sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
         light.sun_direction = shading.levelled(sky.sun_direction, p.up);
-        const typename Variant::SeaTerms terms =
-            shading.sea_radiance(shading.levelled(p.to_eye, p.up), p.normal, p.slope_variance, p.coverage, light);
+        const typename Variant::SeaTerms terms = shading.sea_radiance(
+            shading.levelled(p.to_eye, p.up), p.normal, p.slope_variance, p.coverage, light);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }

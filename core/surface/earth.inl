@@ -15,7 +15,8 @@ struct EarthTurn {
 template <class T>
 inline EarthTurn<T> earth_turn(T x, T y, T curvature) {
     const T a = (x * x + y * y) * curvature * curvature;
-    const T sine = T(1) - a / T(6) * (T(1) - a / T(20) * (T(1) - a / T(42) * (T(1) - a / T(72) * (T(1) - a / T(110)))));
+    const T sine =
+        T(1) - a / T(6) * (T(1) - a / T(20) * (T(1) - a / T(42) * (T(1) - a / T(72) * (T(1) - a / T(110)))));
     const T versed =
         T(1) - a / T(12) * (T(1) - a / T(30) * (T(1) - a / T(56) * (T(1) - a / T(90) * (T(1) - a / T(132)))));
     return EarthTurn<T>(sine, versed, a);

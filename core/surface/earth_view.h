@@ -55,7 +55,8 @@ class EarthView {
   private:
     double to_horizon_m(double height_m) const {
         if (height_m <= 0.0) return 0.0;
-        return std::atan(std::sqrt(height_m * curvature_per_m_ * (2.0 + height_m * curvature_per_m_))) / curvature_per_m_;
+        return std::atan(std::sqrt(height_m * curvature_per_m_ * (2.0 + height_m * curvature_per_m_))) /
+               curvature_per_m_;
     }
     // Of a place at rest: its distance from the vertical through the eye, and its depth below the nadir.
     double across_m(double arc_m) const {

@@ -305,7 +305,8 @@ class RowSpacing {
         if (earth_.is_round()) {  // along the chord
             const double angle = angle_between(first_m, step->last_m);
             const double near_part = std::sin(part * angle) * earth_.distance_m(height_m_, first_m);
-            const double far_part = std::sin((1.0 - part) * angle) * earth_.distance_m(height_m_, step->last_m);
+            const double far_part =
+                std::sin((1.0 - part) * angle) * earth_.distance_m(height_m_, step->last_m);
             const double chord = near_part + far_part > 0.0 ? near_part / (near_part + far_part) : part;
             return first_m + (step->last_m - first_m) * chord;
         }
@@ -373,7 +374,8 @@ void keep_horizon(std::vector<Row>& rows, double horizon_m) {
     if (!(horizon_m > rows.front().radius_m && horizon_m < rows.back().radius_m)) return;
     std::size_t nearest = 1;
     for (std::size_t i = 1; i + 1 < rows.size(); ++i)
-        if (std::abs(rows[i].radius_m - horizon_m) < std::abs(rows[nearest].radius_m - horizon_m)) nearest = i;
+        if (std::abs(rows[i].radius_m - horizon_m) < std::abs(rows[nearest].radius_m - horizon_m))
+            nearest = i;
     if (nearest + 1 < rows.size()) rows[nearest].radius_m = horizon_m;
 }
 
@@ -422,7 +424,8 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
             if (reached.last >= at.earth.horizon_m()) reached.last = 8.0 * at.farthest_m;
         }
         // Where their rays meet a flat sea.
-        const Interval flat{at.earth.flat_of(ring.first), std::min(at.earth.flat_of(ring.last), 8.0 * at.farthest_m)};
+        const Interval flat{at.earth.flat_of(ring.first),
+                            std::min(at.earth.flat_of(ring.last), 8.0 * at.farthest_m)};
         std::optional<double> half;
         if (ring.first <= reach_m && reach_m > 0.0)
             half = kPi;
@@ -506,7 +509,9 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
     const double cell_angle = cell_angle_of(view, options, at);
     const std::vector<Row> rows = rows_of(view, sized, at, cell_angle, row_count);
 
-    ProjectedGrid grid{.columns = columns, .rows = row_count, .origin_m = glm::dvec2(view.position_m),
+    ProjectedGrid grid{.columns = columns,
+                       .rows = row_count,
+                       .origin_m = glm::dvec2(view.position_m),
                        .curvature_per_m = options.curvature_per_m};
     const std::size_t stride = static_cast<std::size_t>(columns) + 1;
     const std::size_t count = stride * rows.size();

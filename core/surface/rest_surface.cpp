@@ -59,7 +59,7 @@ class Patch final : public RestSurface {
 
 // What the camera sees. Each frame's grid has the size that its own pose asks for: a grid that served the
 // whole shot would make each frame depend on all others.
-class CameraGrid final : public RestSurface {
+class CameraGrid : public RestSurface {
   public:
     CameraGrid(const Scene& scene, const SeaReach& reach)
         : camera_(scene.camera),
@@ -72,7 +72,7 @@ class CameraGrid final : public RestSurface {
                    .curvature_per_m = scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0} {}
 
     std::string describe() const override {
-        const ProjectedGridSize size = projected_grid_needs(view_at(camera_, first_frame_), options_).size;
+        const ProjectedGridSize size = projected_grid_needs(seen(first_frame_), options_).size;
         return "the camera's projected grid, cells of at most " + number_text(options_.cell_px) +
                " pixels: " + std::to_string(size.columns) + " × " + std::to_string(size.rows) + " quads" +
                (camera_.keys.empty() ? ""
@@ -86,9 +86,7 @@ class CameraGrid final : public RestSurface {
 
     SurfaceNeeds needs(std::span<const int> frames) const override {
         if (frames.empty()) return {.own_footprints = true};
-        const auto needs_at = [&](std::size_t i) {
-            return projected_grid_needs(view_at(camera_, frames[i]), options_);
-        };
+        const auto needs_at = [&](std::size_t i) { return projected_grid_needs(seen(frames[i]), options_); };
         // Where the camera stands still, one frame answers for its neighbours.
         const auto still = [&](std::size_t i) {
             const auto& keys = camera_.keys;
@@ -112,18 +110,22 @@ class CameraGrid final : public RestSurface {
     void points_at(int frame, RestPoints<float>& points) const override { lay_out(frame, points); }
     void points_at(int frame, RestPoints<double>& points) const override { lay_out(frame, points); }
     void faces_at(int frame, Faces& faces) const override {
-        const ProjectedGridSize size = projected_grid_needs(view_at(camera_, frame), options_).size;
+        const ProjectedGridSize size = projected_grid_needs(seen(frame), options_).size;
         set_grid_faces(size.columns, size.rows, faces);
     }
 
-  private:
+  protected:
+    // The camera over its nadir.
+    virtual View seen(int frame) const { return view_at(camera_, frame); }
+
     template <class T>
     void lay_out(int frame, RestPoints<T>& points) const {
-        const View view = view_at(camera_, frame);
+        const View view = seen(frame);
         ProjectedGrid grid = projected_grid(view, options_);
         if (has_ladder_) keep_to_rungs(grid, projected_grid_needs(view, options_));
         points.origin_m = grid.origin_m;
         points.curvature_per_m = grid.curvature_per_m;
+        points.touches_at_m = grid.origin_m;
         points.rest_m.assign(grid.rest_m.begin(), grid.rest_m.end());
         points.cell_m.assign(grid.cell_m.begin(), grid.cell_m.end());
         points.cell_axis_m.assign(grid.cell_axis_m.begin(), grid.cell_axis_m.end());
@@ -132,9 +134,39 @@ class CameraGrid final : public RestSurface {
     }
 
     Camera camera_;
+
+  private:
     bool has_ladder_;  // wave trains alone have none: they see each point's own footprints
     int first_frame_;
+
+  protected:
     ProjectedGridOptions options_;
+};
+
+// The same on one earth that stays: it touches z = 0 at the origin, where the shot's axes are its own, and points rest
+// where the plane's lie as far from the origin in the same direction (azimuthal equidistant projection).
+class Planet final : public CameraGrid {
+  public:
+    Planet(const Scene& scene, const SeaReach& reach) : CameraGrid(scene, reach) {
+        options_.curvature_per_m = kEarthCurvature_per_m;
+    }
+    std::string describe() const override { return CameraGrid::describe() + ", on the earth's sphere"; }
+    void points_at(int frame, RestPoints<float>& points) const override { lay_round(frame, points); }
+    void points_at(int frame, RestPoints<double>& points) const override { lay_round(frame, points); }
+
+  private:
+    View seen(int frame) const override { return over_nadir(view_at(camera_, frame)); }
+
+    template <class T>
+    void lay_round(int frame, RestPoints<T>& points) const {
+        lay_out(frame, points);
+        const glm::dvec3 up = earth_up(points.origin_m, kEarthCurvature_per_m);
+        for (glm::vec<2, T>& rest : points.rest_m) {
+            const glm::dvec3 there = from_level(earth_up(glm::dvec2(rest), kEarthCurvature_per_m), up);
+            rest = glm::vec<2, T>(earth_place(there) - points.origin_m);
+        }
+        points.touches_at_m = glm::dvec2(0.0);
+    }
 };
 
 template <class Kind>
@@ -150,6 +182,7 @@ struct SurfaceRow {
 constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
     {SurfaceKind::Patch, make<Patch>},
     {SurfaceKind::ProjectedGrid, make<CameraGrid>},
+    {SurfaceKind::Planet, make<Planet>},
 });
 
 }  // namespace

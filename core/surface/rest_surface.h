@@ -47,7 +47,9 @@ struct SurfaceNeeds {
 template <class T>
 struct RestPoints {
     glm::dvec2 origin_m{0.0};
-    double curvature_per_m = 0.0;  // of the earth: displaced points are laid on it round the origin (earth.h)
+    // Of the earth on which displaced points are laid (earth.h), round the place where it touches z = 0.
+    double curvature_per_m = 0.0;
+    glm::dvec2 touches_at_m{0.0};
     std::vector<glm::vec<2, T>> rest_m{};
     // Footprints as in Points (core/evaluate/evaluate.h); empty: the query's own.
     std::vector<T> cell_m{}, pixel_m{};

@@ -67,7 +67,8 @@ const char* const kTrustTimes =
 const char* const kRender =
     "Render pictures of a shot through its camera: OpenEXR with layers, and PNG.\n"
     "The same sea as in the preview, computed on the CPU. Each frame gives DIR/NAME.####.png\n"
-    "and DIR/NAME.####.exr with R, G, B and the layers sun, sky, sea and foam, which add up to them.";
+    "and DIR/NAME.####.exr with R, G, B and the layers sun, sky, sea, foam and air, which add up to\n"
+    "them.";
 const char* const kRenderFooter =
     "Examples:\n"
     "  pelagic render storm.toml --out storm             every frame\n"
@@ -90,7 +91,7 @@ const char* const kSkyQuality =
     "How the sky's reflection is computed: one (lookup), nine, integral.\n"
     "Default: from the shot's quality.level: one for draft, integral for reference, otherwise nine";
 const char* const kTerms =
-    "The terms of the light: sun, sky, sea, foam, separated by commas.\n"
+    "The terms of the light: sun, sky, sea, foam, and the air before them, separated by commas.\n"
     "Default: all of them";
 
 const char* const kTrustPictures =

@@ -57,17 +57,20 @@ struct WrongUsage : std::runtime_error {
 
 // "sun,sea": those alone.
 void parse_terms(const std::string& text, LightingChoice& choice) {
-    choice.sun = choice.sky = choice.water = false;
+    choice.sun = choice.sky = choice.water = choice.air = false;
     bool foam = false;
-    const std::array<std::pair<std::string_view, bool*>, 4> terms{
-        {{"sun", &choice.sun}, {"sky", &choice.sky}, {"sea", &choice.water}, {"foam", &foam}}};
+    const std::array<std::pair<std::string_view, bool*>, 5> terms{{{"sun", &choice.sun},
+                                                                   {"sky", &choice.sky},
+                                                                   {"sea", &choice.water},
+                                                                   {"foam", &foam},
+                                                                   {"air", &choice.air}}};
     std::istringstream words(text + ',');  // an empty text is a word that is none
     for (std::string word; std::getline(words, word, ',');) {
         const auto term =
             std::find_if(terms.begin(), terms.end(), [&](const auto& t) { return t.first == word; });
         if (term == terms.end())
             throw WrongUsage("terms \"" + text + "\": \"" + word +
-                             "\" is none; accepted: any of sun, sky, sea, foam with commas between");
+                             "\" is none; accepted: any of sun, sky, sea, foam, air with commas between");
         *term->second = true;
     }
     choice.whitecaps = choice.whitecaps && foam;

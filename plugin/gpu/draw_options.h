@@ -17,7 +17,7 @@ struct DrawOptions {
     LightingChoice lighting;
     FalseColour false_colour = FalseColour::None;
     bool sky_from_air = false;  // the sky beside the sea is the air's table's (air.h), otherwise the map's
-    bool wireframe = false;  // the grid's edges on black
+    bool wireframe = false;     // the grid's edges on black
     // Each term in a separate texture, for read_layers(). Otherwise only their sum is written, which is
     // faster.
     bool layers = false;

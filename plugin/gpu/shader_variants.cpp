@@ -41,9 +41,9 @@ std::string picture_constants(const DrawOptions& options) {
 
 const std::vector<std::string_view>& lighting_files() {
     static const std::vector<std::string_view> files{
-        "core/lighting/level.glsl",   "core/lighting/fresnel.glsl", "core/lighting/slopes.glsl", "core/lighting/sun.glsl",
-        "core/lighting/sky.glsl",     "core/lighting/water.glsl",  "core/lighting/foam.glsl",
-        "core/lighting/sea.glsl"};
+        "core/lighting/level.glsl", "core/lighting/fresnel.glsl", "core/lighting/slopes.glsl",
+        "core/lighting/sun.glsl",   "core/lighting/sky.glsl",     "core/lighting/water.glsl",
+        "core/lighting/foam.glsl",  "core/lighting/sea.glsl"};
     return files;
 }
 
@@ -51,8 +51,9 @@ const std::vector<std::string_view>& query_files() {
     static const std::vector<std::string_view> files{
         "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",  "core/plan/filter.inl",
         "core/waves/spline.inl",      "core/waves/whitecaps.inl", "core/evaluate/surface.inl",
-        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "core/surface/earth.inl", "plugin/gpu/places.glsl",
-        "plugin/gpu/cascades.glsl",   "plugin/gpu/trains.glsl",   "plugin/gpu/query.glsl"};
+        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "core/surface/earth.inl",
+        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl", "plugin/gpu/trains.glsl",
+        "plugin/gpu/query.glsl"};
     return files;
 }
 
@@ -74,8 +75,8 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
     return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
            constant("kWhitecaps", choice.whitecaps) + constant("kAir", choice.air) +
            constant("kAirColumns", Air::kColumns) + constant("kAirRows", Air::kRows) +
-           constant("kAirHorizonRow", Air::kHorizonRow) + constant("kAirSkyRows", Air::kSkyRows) + constant("kSkyLookups", lookups) +
-           constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
+           constant("kAirHorizonRow", Air::kHorizonRow) + constant("kAirSkyRows", Air::kSkyRows) +
+           constant("kSkyLookups", lookups) + constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
            "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
 }
 

@@ -225,9 +225,8 @@ void SeaRenderer::Implementation::set_air(double height_m) {
     const Air seen = air_model->seen_from(height_m);
     texels_as_they_are();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kLayers * Air::kColumns,
-                 Air::kRows + Air::kSkyRows, 0, GL_RGBA, GL_FLOAT,
-                 seen.texels.data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kLayers * Air::kColumns, Air::kRows + Air::kSkyRows, 0,
+                 GL_RGBA, GL_FLOAT, seen.texels.data());
     air = air_uniforms(seen);
     air_height_m = height_m;
 }
@@ -383,9 +382,8 @@ Picture SeaRenderer::read_layers() const {
                height = static_cast<std::size_t>(of.picture_size.y);
     Picture picture{of.picture_size, std::vector<SeaRadiance>(width * height),
                     std::vector<std::uint8_t>(width * height)};
-    constexpr std::array<glm::vec3 SeaRadiance::*, kTerms> kTerm{&SeaRadiance::sea, &SeaRadiance::sun,
-                                                                 &SeaRadiance::sky, &SeaRadiance::foam,
-                                                                 &SeaRadiance::air};
+    constexpr std::array<glm::vec3 SeaRadiance::*, kTerms> kTerm{
+        &SeaRadiance::sea, &SeaRadiance::sun, &SeaRadiance::sky, &SeaRadiance::foam, &SeaRadiance::air};
     std::vector<glm::vec4> texels(width * height);
     for (int i = 0; i < (of.picture_layers ? kTerms : 1); ++i) {
         glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));

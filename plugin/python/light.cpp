@@ -27,7 +27,8 @@ namespace py = pybind11;
 using Range = tbb::blocked_range<std::size_t>;
 
 constexpr std::size_t kGrain = 256;  // points a task computes
-constexpr std::size_t kShaded = kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
+constexpr std::size_t kShaded =
+    kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
 
 py::tuple tuple_of(glm::vec3 v) {
     return py::make_tuple(v.x, v.y, v.z);

@@ -79,7 +79,8 @@ struct GpuLight {
 
 // The uniforms and the texture of the air before an eye; of none without a height.
 py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
-    if (height_m && !std::isfinite(*height_m)) throw py::value_error("height_m: accepted: a finite height [m], or None");
+    if (height_m && !std::isfinite(*height_m))
+        throw py::value_error("height_m: accepted: a finite height [m], or None");
     Air air;
     if (light.sky.air) {
         const OthersMayRun others_may_run;
@@ -90,7 +91,9 @@ py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
     if (!height_m) std::fill_n(air.texels.begin(), kRow * Air::kRows, glm::vec4(0.0f));
     py::dict uniforms = dict_of(air_uniforms(air));
     uniforms["eye_height_m"] = height_m.value_or(0.0);
-    return py::make_tuple(uniforms, array_of<float>(std::move(air.texels), {Air::kRows + Air::kSkyRows, Air::kLayers * Air::kColumns, 4}));
+    return py::make_tuple(uniforms,
+                          array_of<float>(std::move(air.texels),
+                                          {Air::kRows + Air::kSkyRows, Air::kLayers * Air::kColumns, 4}));
 }
 
 double checked_footprint(double finest_m) {
@@ -334,8 +337,9 @@ void add_gpu_grid(py::module_& module) {
         .def_property_readonly(
             "origin_m", [](const GpuGrid& self) { return py::make_tuple(self.origin_m.x, self.origin_m.y); },
             "(x, y) [m], in double precision: vertices are relative to it.")
-        .def_readonly("curvature_per_m", &GpuGrid::curvature_per_m,
-                      "The uniform of that name [1/m]: of the earth, round which the shader lays the grid; 0: flat.")
+        .def_readonly(
+            "curvature_per_m", &GpuGrid::curvature_per_m,
+            "The uniform of that name [1/m]: of the earth, round which the shader lays the grid; 0: flat.")
         .def_readonly(
             "vertices", &GpuGrid::vertices,
             "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
@@ -396,7 +400,8 @@ void add_viewport(py::module_& module) {
             "depend on time, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
             "None.")
         .def(
-            "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(), py::arg("on_earth") = true,
+            "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
+            py::arg("on_earth") = true,
             "The projected grid of a view, a GpuGrid. cell_px: the cells' side on the screen; by default the "
             "scene's surface.cell_px. At most 1024 cells a side: where a view needs more, they are larger. on_earth: "
             "False for a flat sea, whatever the scene's surface.earth_curvature.")

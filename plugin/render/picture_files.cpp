@@ -108,8 +108,8 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add(plan_text(plan, 0))
         .add(source.sky_content)
         .add("samples " + std::to_string(source.options.samples) + " terms " + digit(lighting.sun) +
-             digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + digit(lighting.air) + " sky " +
-             digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
+             digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + digit(lighting.air) +
+             " sky " + digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
         .add("exposure " + number_text(source.exposure_stops));
     for (const View& view : metered_views(source.scene))
         hash.add(pose_text(view));  // what the exposure comes from

@@ -234,25 +234,24 @@ class RendererOf final : public Impl {
         const std::vector<float>& coverage = batch_.answers.numbers(Product::Coverage);
         batch_.points.resize(count);
         batch_.lit.resize(count);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
-                          [&](const tbb::blocked_range<std::size_t>& range) {
-                              for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  batch_.points[i] = {.to_eye = batch_.to_eye[i],
-                                                      .normal = normal[i],
-                                                      .slope_variance = slope_variance[i],
-                                                      .coverage = coverage.empty() ? 0.0f : coverage[i],
-                                                      .up = batch_.up[i]};
-                              const auto points =
-                                  std::span(batch_.points).subspan(range.begin(), range.size());
-                              const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
-                              shade_sea(options_.lighting, sky_, water_, points, lit);
-                              if (options_.lighting.air)
-                                  see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
-                                          std::span(batch_.distance_m).subspan(range.begin(), range.size()),
-                                          lit);
-                              for (std::size_t i = range.begin(); i < range.end(); ++i)
-                                  batch_.radiance[batch_.sea[i]] = batch_.lit[i];
-                          });
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
+            [&](const tbb::blocked_range<std::size_t>& range) {
+                for (std::size_t i = range.begin(); i < range.end(); ++i)
+                    batch_.points[i] = {.to_eye = batch_.to_eye[i],
+                                        .normal = normal[i],
+                                        .slope_variance = slope_variance[i],
+                                        .coverage = coverage.empty() ? 0.0f : coverage[i],
+                                        .up = batch_.up[i]};
+                const auto points = std::span(batch_.points).subspan(range.begin(), range.size());
+                const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
+                shade_sea(options_.lighting, sky_, water_, points, lit);
+                if (options_.lighting.air)
+                    see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
+                                std::span(batch_.distance_m).subspan(range.begin(), range.size()), lit);
+                for (std::size_t i = range.begin(); i < range.end(); ++i)
+                    batch_.radiance[batch_.sea[i]] = batch_.lit[i];
+            });
     }
 
     // The place at rest that each sample of the sea shows, its footprint and the way to the eye.
@@ -310,8 +309,8 @@ class RendererOf final : public Impl {
                         sum.foam += sample.foam;
                         sum.air += sample.air;
                     }
-                picture.layers[to + x] = {sum.sun * share, sum.sky * share, sum.sea * share,
-                                          sum.foam * share, sum.air * share};
+                picture.layers[to + x] = {sum.sun * share, sum.sky * share, sum.sea * share, sum.foam * share,
+                                          sum.air * share};
                 const std::size_t middle = sample_width * (row * n + n / 2) + x * n + n / 2;
                 picture.sea[to + x] = batch_.triangles[middle] != Rasteriser::kNone;
             }
@@ -410,8 +409,9 @@ constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(floa
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
-                                     5 * sizeof(T) + 2 * sizeof(glm::vec3) + sizeof(float) + sizeof(SeaPoint) +
-                                     7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
+                                     5 * sizeof(T) + 2 * sizeof(glm::vec3) + sizeof(float) +
+                                     sizeof(SeaPoint) + 7 * sizeof(float) +
+                                     (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
 
 }  // namespace
 

@@ -24,19 +24,20 @@ constexpr double kDegree = kPi / 180.0, kRadius_m = 1e3 * kEarthRadius_km;
 // The ray from an eye to a place on the sea at a distance: its elevation.
 double elevation_to(double height_m, double distance_m) {
     const double horizon2 = height_m * (2.0 * kRadius_m + height_m);
-    return std::asin(std::max(
-        -1.0, -(horizon2 + distance_m * distance_m) / (2.0 * distance_m * (kRadius_m + height_m))));
+    return std::asin(
+        std::max(-1.0, -(horizon2 + distance_m * distance_m) / (2.0 * distance_m * (kRadius_m + height_m))));
 }
 double horizon_of(double height_m) {
     return std::sqrt(height_m * (2.0 * kRadius_m + height_m));
 }
 glm::dvec3 towards(double elevation, double azimuth) {
-    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+            std::sin(elevation)};
 }
 
 glm::dvec3 light_of(const Atmosphere::Scattered& scattered, double cosine) {
-    return colour_of(scattered.by_air) * air_phase(cosine) + colour_of(scattered.by_haze) * haze_phase(cosine) +
-           colour_of(scattered.more);
+    return colour_of(scattered.by_air) * air_phase(cosine) +
+           colour_of(scattered.by_haze) * haze_phase(cosine) + colour_of(scattered.more);
 }
 glm::dvec3 colour_left(const BandValues& left) {
     BandValues all;
@@ -85,11 +86,12 @@ TEST(Air, IsTheModelsIntegralAlongTheRay) {
                     glm::dvec3 added(0.0);
                     for (int i = 0; i < kPieces; ++i) {
                         const double t = piece_m * i, up = std::sin(elevation);
-                        const double radius =
-                            std::sqrt(std::pow(kRadius_m + height_m, 2) + t * (t + 2.0 * up * (kRadius_m + height_m)));
-                        const SightLine line{.height_km = 1e-3 * (radius - kRadius_m),
-                                             .elevation_rad = std::asin(((kRadius_m + height_m) * up + t) / radius),
-                                             .length_km = 1e-3 * piece_m};
+                        const double radius = std::sqrt(std::pow(kRadius_m + height_m, 2) +
+                                                        t * (t + 2.0 * up * (kRadius_m + height_m)));
+                        const SightLine line{
+                            .height_km = 1e-3 * (radius - kRadius_m),
+                            .elevation_rad = std::asin(((kRadius_m + height_m) * up + t) / radius),
+                            .length_km = 1e-3 * piece_m};
                         const std::array azimuths{azimuth};
                         Atmosphere::Scattered own = atmosphere->scattered(line, azimuths)[0];
                         const BandValues through = atmosphere->transmittance(line);
@@ -103,13 +105,15 @@ TEST(Air, IsTheModelsIntegralAlongTheRay) {
                     }
                     const SeaRadiance found = seen(air, towards(elevation, 0.3 + azimuth), distance_m);
                     const auto said = [&] {
-                        return testing::Message() << "turbidity " << turbidity << " sun " << sun_deg << " from "
-                                                  << height_m << " m, " << distance_m << " m far, azimuth " << azimuth;
+                        return testing::Message()
+                               << "turbidity " << turbidity << " sun " << sun_deg << " from " << height_m
+                               << " m, " << distance_m << " m far, azimuth " << azimuth;
                     };
                     for (int c = 0; c < 3; ++c) {
                         EXPECT_NEAR(found.sky[c], colour_left(left)[c], 2e-4) << said();
                         // At 2° the sun's own light changes by a tenth with each degree that it turns.
-                        EXPECT_NEAR(found.air[c], added[c], (sun_deg < 5.0 ? 0.03 : 0.005) * luminance(added)) << said();
+                        EXPECT_NEAR(found.air[c], added[c], (sun_deg < 5.0 ? 0.03 : 0.005) * luminance(added))
+                            << said();
                     }
                 }
         }
@@ -129,13 +133,15 @@ TEST(Air, IsInterpolatedWell) {
                     const double elevation = elevation_to(height_m, distance_m);
                     const SightLine line{1e-3 * height_m, elevation, 1e-3 * distance_m};
                     const std::array azimuths{azimuth};
-                    const double cosine = glm::dot(towards(elevation, azimuth), towards(sun_deg * kDegree, 0.0));
+                    const double cosine =
+                        glm::dot(towards(elevation, azimuth), towards(sun_deg * kDegree, 0.0));
                     const glm::dvec3 added = light_of(atmosphere->scattered(line, azimuths)[0], cosine);
                     const glm::dvec3 left = colour_left(atmosphere->transmittance(line));
                     const SeaRadiance found = seen(air, towards(elevation, azimuth - 2.0), distance_m);
                     // From orbit a sun near the horizon has its terminator in view: finer than the table's columns.
                     const double tolerance = height_m > 50e3 && sun_deg < 10.0 ? 0.12 : 0.005;
-                    EXPECT_NEAR(luminance(glm::dvec3(found.air)), luminance(added), tolerance * luminance(added) + 1e-4)
+                    EXPECT_NEAR(luminance(glm::dvec3(found.air)), luminance(added),
+                                tolerance * luminance(added) + 1e-4)
                         << turbidity << " " << sun_deg << " " << height_m << " " << part << " " << azimuth;
                     EXPECT_NEAR(luminance(glm::dvec3(found.sky)), luminance(left), 2e-3);
                 }
@@ -162,12 +168,14 @@ TEST(Air, HidesTheHorizonFromHighUp) {
             const std::array azimuths{azimuth};
             const double cosine = glm::dot(towards(dip, azimuth), towards(sun_deg * kDegree, 0.0));
             const double above = luminance(
-                light_of(atmosphere->scattered({8.0, dip + 1e-6, std::numeric_limits<double>::infinity()}, azimuths)[0],
+                light_of(atmosphere->scattered({8.0, dip + 1e-6, std::numeric_limits<double>::infinity()},
+                                               azimuths)[0],
                          cosine));
             const SeaRadiance found = seen(air, towards(dip, azimuth), horizon_of(8e3));
             // Of a sea as bright as that sky, or black.
             for (const double sea : {0.0, above}) {
-                const double below = luminance(glm::dvec3(found.air)) + sea * luminance(glm::dvec3(found.sky));
+                const double below =
+                    luminance(glm::dvec3(found.air)) + sea * luminance(glm::dvec3(found.sky));
                 EXPECT_LT(std::abs(below - above) / (below + above), 0.05) << sun_deg << " " << azimuth;
             }
         }

@@ -424,8 +424,7 @@ TEST(Validate, TilesOfTrainsAreThoseOfTheCascadesBesideThem) {
 
 TEST(Validate, WhatIsNotBuiltYetIsRefused) {
     for (const auto& [kind, word] :
-         {std::pair{SurfaceKind::NearFar, "\"near-far\""}, std::pair{SurfaceKind::Cage, "\"cage\""},
-          std::pair{SurfaceKind::Planet, "\"planet\""}}) {
+         {std::pair{SurfaceKind::NearFar, "\"near-far\""}, std::pair{SurfaceKind::Cage, "\"cage\""}}) {
         expect_refused([&, k = kind](Scene& s) { s.surface.kind = k; }, {"surface.kind", word, "\"patch\""});
     }
     expect_refused([](Scene& s) { s.output.mesh_scheme = MeshScheme::CatmullClark; },

@@ -10,6 +10,7 @@
 
 #include "core/surface/earth_view.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/rest_surface.h"
 #include "core/surface/view.h"
 
 namespace pelagic {
@@ -46,7 +47,8 @@ TEST(Earth, IsSeenWhereItsRaysMeetIt) {
         for (const double part : {0.001, 0.1, 0.5, 0.9, 0.999}) {
             const double arc_m = part * earth.horizon_m(), flat_m = earth.flat_of(arc_m);
             EXPECT_NEAR(earth.arc_of(flat_m), arc_m, 1e-6 * earth.horizon_m());
-            const glm::dvec3 way = on_earth({arc_m, 0.0, 0.0}, kEarthCurvature_per_m) - glm::dvec3(0.0, 0.0, height_m);
+            const glm::dvec3 way =
+                on_earth({arc_m, 0.0, 0.0}, kEarthCurvature_per_m) - glm::dvec3(0.0, 0.0, height_m);
             EXPECT_NEAR(std::atan2(-way.z, way.x), std::atan2(height_m, flat_m), 1e-9);
         }
         EXPECT_EQ(earth.arc_of(1e15), earth.farthest_m());
@@ -61,8 +63,9 @@ View looking(double height_m, double elevation, double fov_deg) {
     camera.resolution = {640, 360};
     camera.fov_deg = fov_deg;
     camera.position_m = {1e5, -2e5, height_m};
-    camera.look_at_m = camera.position_m + height_m * glm::dvec3(0.6 * std::cos(elevation), 0.8 * std::cos(elevation),
-                                                                  std::sin(elevation));
+    camera.look_at_m =
+        camera.position_m +
+        height_m * glm::dvec3(0.6 * std::cos(elevation), 0.8 * std::cos(elevation), std::sin(elevation));
     return view_at(camera, 1);
 }
 
@@ -88,6 +91,42 @@ TEST(Earth, GivesTheGridsHorizonItsDip) {
             }
             EXPECT_NEAR((highest + dip) / view.pixel_tangent(), 0.0, 0.05) << height_m << " " << crest_m;
         }
+}
+
+// A planet's points rest about the origin. On its sphere they are those that the camera's own grid has over its nadir.
+TEST(Planet, IsTheCamerasGridOnOneSphere) {
+    for (const double away_m : {0.0, 40.0, 300e3, 3000e3}) {
+        Scene scene;
+        scene.camera.resolution = {160, 90};
+        scene.surface.kind = SurfaceKind::Planet;
+        const glm::dvec2 place_m = away_m * glm::dvec2(0.8, -0.6);
+        const glm::dvec3 up = earth_up(place_m, kEarthCurvature_per_m);
+        scene.camera.position_m = on_earth(glm::dvec3(place_m, 100.0), kEarthCurvature_per_m);
+        scene.camera.look_at_m = scene.camera.position_m + 1e3 * from_level(glm::dvec3(0.6, 0.79, -0.05), up);
+        const SeaReach reach{.height_m = 2.0, .reach_m = 2.0, .significant_height_m = 1.0, .hidden = {}};
+        const auto planet = make_surface(scene, reach);
+        RestPoints<double> points;
+        planet->points_at(1, points);
+        EXPECT_EQ(points.touches_at_m, glm::dvec2(0.0));
+        EXPECT_NEAR(glm::distance(points.origin_m, place_m), 0.0, 1e-3);
+
+        Scene plain = scene;
+        plain.surface.kind = SurfaceKind::ProjectedGrid;
+        plain.camera.position_m = {0.0, 0.0, 100.0};
+        plain.camera.look_at_m = {600.0, 790.0, 50.0};
+        RestPoints<double> local;
+        make_surface(plain, reach)->points_at(1, local);
+        ASSERT_EQ(points.rest_m.size(), local.rest_m.size());
+        for (std::size_t i = 0; i < local.rest_m.size(); i += 7) {
+            const glm::dvec3 there =
+                on_earth(glm::dvec3(points.origin_m + points.rest_m[i], 0.0), kEarthCurvature_per_m);
+            const glm::dvec3 expected =
+                on_earth(glm::dvec3(place_m, 0.0), kEarthCurvature_per_m) +
+                from_level(on_earth(glm::dvec3(local.rest_m[i], 0.0), kEarthCurvature_per_m), up);
+            ASSERT_LT(glm::distance(there, expected), 0.02 + 1e-6 * glm::length(local.rest_m[i]))
+                << away_m << " " << i;
+        }
+    }
 }
 
 }  // namespace

@@ -63,9 +63,9 @@ std::set<std::string> exr_channels(const fs::path& file) {
 }
 
 // The picture, and a layer for each term.
-const std::set<std::string> kChannels{"R",     "G",     "B",      "sun.R",  "sun.G",
-                                      "sun.B", "sky.R", "sky.G",  "sky.B",  "sea.R",
-                                      "sea.G", "sea.B", "foam.R", "foam.G", "foam.B"};
+const std::set<std::string> kChannels{"R",      "G",      "B",      "sun.R", "sun.G", "sun.B",
+                                      "sky.R",  "sky.G",  "sky.B",  "sea.R", "sea.G", "sea.B",
+                                      "foam.R", "foam.G", "foam.B", "air.R", "air.G", "air.B"};
 
 // The largest value in a layer; 0 means black.
 float brightest(const fs::path& file, const std::string& layer) {
@@ -140,7 +140,7 @@ TEST_F(Pictures, RenderTakesSizeSamplesTermsAndExposure) {
     EXPECT_EQ(exr_channels(sea), kChannels) << "layers that are off are black, not missing";
     EXPECT_EQ(exr_size(sea), std::pair(20, 11));
     EXPECT_GT(brightest(sea, "sea"), 0.0f);
-    for (const char* off : {"sun", "sky", "foam"}) EXPECT_EQ(brightest(sea, off), 0.0f) << off;
+    for (const char* off : {"sun", "sky", "foam", "air"}) EXPECT_EQ(brightest(sea, off), 0.0f) << off;
 
     // The exposure applies to the PNG; the radiance is unchanged.
     ASSERT_EQ(cli({"render", "small.toml", "--frames", "2", "--out", "dark", "--size", "20x11", "--terms",

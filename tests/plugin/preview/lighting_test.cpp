@@ -78,6 +78,7 @@ struct Functions {
 
 // clang-format off
 #include "core/lighting/special.glsl"
+#include "core/lighting/level.glsl"
 #include "core/lighting/fresnel.glsl"
 #include "core/lighting/slopes.glsl"
 #include "core/lighting/sun.glsl"
@@ -108,6 +109,7 @@ struct Functions {
     PELAGIC_BOTH(water, return vec4(water_radiance(ll, vec3(80.0f, 70.0f, 60.0f), vec3(10.0f, 12.0f, 15.0f),
                                                    vec3(0.01f, 0.03f, ww)),
                                     0.0f);)
+    PELAGIC_BOTH(level, return vec4(levelled(vv, ll.z < -0.9f ? nn : ll), 0.0f);)
     PELAGIC_BOTH(foam, SlopeFrame f = slope_frame(facing_normal(nn, vv), ss);
                  return vec4(foam_radiance(vv, ll, f, vec3(1e4f, 9e3f, 8e3f), 0.00465f,
                                            vec3(10.0f, 12.0f, 15.0f),
@@ -285,6 +287,7 @@ TEST(LightingOnTheGpu, IsCPlusPluses) {
     EXPECT_LE(PELAGIC_COMPARE(on, sun, 1e-4f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, sky, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, water, 1e-3f).worst, kBound);
+    EXPECT_LE(PELAGIC_COMPARE(on, level, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, foam, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, whole_sea, 1e-2f).worst, kBound);
     EXPECT_LE(PELAGIC_COMPARE(on, screen, 1e-3f).worst, kBound);

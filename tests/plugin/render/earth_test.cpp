@@ -48,14 +48,13 @@ TEST(Earth, IsWhereThePixelsRaysMeetIt) {
                 camera.fov_deg = fov_deg;
                 camera.position_m = {3e4, -2e5, height_m};
                 camera.look_at_m =
-                    camera.position_m + height_m * glm::dvec3(0.6 * std::cos(elevation), 0.8 * std::cos(elevation),
-                                                              std::sin(elevation));
+                    camera.position_m + height_m * glm::dvec3(0.6 * std::cos(elevation),
+                                                              0.8 * std::cos(elevation), std::sin(elevation));
                 const View view = view_at(camera, 1);
-                const ProjectedGrid grid =
-                    projected_grid(view, {.cell_px = 4.0,
-                                          .bounds = {.height_m = 3.0, .reach_m = 3.0},
-                                          .significant_height_m = 2.0,
-                                          .curvature_per_m = kEarthCurvature_per_m});
+                const ProjectedGrid grid = projected_grid(view, {.cell_px = 4.0,
+                                                                 .bounds = {.height_m = 3.0, .reach_m = 3.0},
+                                                                 .significant_height_m = 2.0,
+                                                                 .curvature_per_m = kEarthCurvature_per_m});
                 const std::vector<std::uint32_t> shown = drawn(view, grid);
                 int wrong = 0;
                 for (int y = 0; y < kSize.y; ++y)
@@ -63,7 +62,8 @@ TEST(Earth, IsWhereThePixelsRaysMeetIt) {
                         const glm::dvec3 way = view.direction({x + 0.5, y + 0.5});
                         const double over = std::asin(way.z) + dip;
                         if (std::abs(over) < 0.1 * view.pixel_tangent()) continue;  // a tenth of a pixel
-                        const bool sea = shown[static_cast<std::size_t>(y) * kSize.x + x] != Rasteriser::kNone;
+                        const bool sea =
+                            shown[static_cast<std::size_t>(y) * kSize.x + x] != Rasteriser::kNone;
                         if (sea != (over < 0.0)) ++wrong;
                     }
                 EXPECT_EQ(wrong, 0) << "from " << height_m << " m, " << below << " below, lens " << fov_deg;

@@ -79,7 +79,8 @@ Picture pattern(glm::ivec2 resolution) {
         picture.layers.push_back({.sun = glm::vec3(100.0f + f, 0.0f, 3.0f),
                                   .sky = glm::vec3(0.1f * f, 1.0f, 2.0f),
                                   .sea = glm::vec3(0.01f, 0.02f, 0.03f * f),
-                                  .foam = glm::vec3(0.5f, 0.25f * f, 0.125f)});
+                                  .foam = glm::vec3(0.5f, 0.25f * f, 0.125f),
+                                  .air = glm::vec3(0.25f, 0.5f, 0.125f * f)});
         picture.sea.push_back(1);
     }
     return picture;
@@ -104,7 +105,7 @@ TEST(PictureFiles, LayersAreInPlaceAndAddUp) {
         const Sky sky = some_sky(sun);
         const PictureContext context{scene, options, sky, "0123456789abcdef"};
         const Read file = read(encode_exr(context, picture, 12), resolution);
-        EXPECT_EQ(file.channels.size(), 15u);
+        EXPECT_EQ(file.channels.size(), 18u);
         EXPECT_EQ(file.fingerprint, "0123456789abcdef");
         // The sun's own radiance is beyond a half's range.
         EXPECT_EQ(file.types.at("sky.G"), sun > 65504.0f ? Imf::FLOAT : Imf::HALF);
@@ -126,7 +127,9 @@ TEST(PictureFiles, LayersAreInPlaceAndAddUp) {
                 near(value("sky."), layers.sky[c]);
                 near(value("sea."), layers.sea[c]);
                 near(value("foam."), layers.foam[c]);
-                const double sum = value("sun.") + value("sky.") + value("sea.") + value("foam.");
+                near(value("air."), layers.air[c]);
+                const double sum =
+                    value("sun.") + value("sky.") + value("sea.") + value("foam.") + value("air.");
                 EXPECT_NEAR(value(""), sum, 2.0 * kHalf * sum);
             }
     }

@@ -77,7 +77,7 @@ double largest_difference(const Picture& a, const Picture& b) {
 
 void expect_finite(const Picture& picture) {
     for (const SeaRadiance& layers : picture.layers)
-        for (const glm::vec3& layer : {layers.sun, layers.sky, layers.sea, layers.foam})
+        for (const glm::vec3& layer : {layers.sun, layers.sky, layers.sea, layers.foam, layers.air})
             for (int c = 0; c < 3; ++c) ASSERT_TRUE(std::isfinite(layer[c]) && layer[c] >= 0.0f);
 }
 
@@ -125,20 +125,23 @@ TEST(Render, FlatSeaUnderUniformSkyIsFresnelsAndTheWaters) {
     EXPECT_GT(colour, 0.0);
 }
 
-// The horizon of a calm sea lies where level rays go, on a row of its own.
+// The horizon of a calm sea lies where rays graze the sphere, and of a flat one where level rays go, on a row of its own.
 TEST(Render, HorizonIsLevelAndInItsPlace) {
     Scene scene = calm_scene();
-    for (const double height_m : {0.5, 60.0, 20e3}) {
-        scene.camera.position_m = {3.0, -60.0, height_m};
-        scene.camera.look_at_m = {3.0, 1e6, height_m - 1e5 * 0.73};
-        const Picture picture = picture_of(scene);
-        const View view = view_at(scene.camera, 1);
-        for (int y = 0; y < picture.resolution.y; ++y)
-            for (int x = 0; x < picture.resolution.x; ++x)
-                EXPECT_EQ(picture.sea[static_cast<std::size_t>(y) * picture.resolution.x + x],
-                          view.direction({x + 0.5, y + 0.5}).z < 0.0)
-                    << height_m << " m: " << x << ", " << y;
-    }
+    for (const bool is_round : {true, false})
+        for (const double height_m : {0.5, 60.0, 20e3}) {
+            scene.surface.earth_curvature = is_round;
+            const double dip = is_round ? std::acos(kEarthRadius_m / (kEarthRadius_m + height_m)) : 0.0;
+            scene.camera.position_m = {3.0, -60.0, height_m};
+            scene.camera.look_at_m = {3.0, 1e6, height_m - 1e5 * 0.73};
+            const Picture picture = picture_of(scene);
+            const View view = view_at(scene.camera, 1);
+            for (int y = 0; y < picture.resolution.y; ++y)
+                for (int x = 0; x < picture.resolution.x; ++x)
+                    EXPECT_EQ(picture.sea[static_cast<std::size_t>(y) * picture.resolution.x + x],
+                              view.direction({x + 0.5, y + 0.5}).z < -std::sin(dip))
+                        << is_round << " " << height_m << " m: " << x << ", " << y;
+        }
 }
 
 // However little lies between the eye and the water along the line of sight.

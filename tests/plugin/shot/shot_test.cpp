@@ -372,7 +372,7 @@ TEST(Shot, WhatIsWrongInAPictureIsToldWithItsPlace) {
 }
 
 TEST(Shot, WhatIsNotBuiltYetIsRefused) {
-    expect_refused("[surface]\nkind = \"planet\"\n", "2:8: surface.kind = \"planet\": is not built yet",
+    expect_refused("[surface]\nkind = \"near-far\"\n", "2:8: surface.kind = \"near-far\": is not built yet",
                    "\"patch\"");
     expect_refused("[output]\nvolumes = [\"level-set\"]\n",
                    "2:12: output.volumes[0] = \"level-set\": is not built yet", "[]");

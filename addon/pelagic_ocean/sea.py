@@ -124,8 +124,10 @@ class BuiltSea:
         wanted = {name: array for name, array in self._arrays.items()
                   if name != "slope_variance" or before is None or surface is not self._surface}
         self._surface, self._seen_from = surface, (moment.view, moment.share)
-        self._task, self._coming = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, cell_m=surface.cell_m,
-                                                     pixel_m=surface.cell_m, **wanted), moment
+        self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, cell_m=surface.cell_m,
+                                       pixel_m=surface.cell_m, cell_axis_m=surface.cell_axis_m,
+                                       pixel_axis_m=surface.cell_axis_m, **wanted)
+        self._coming = moment
 
     def _finish(self):
         """Waits for what was begun, if anything was."""

@@ -35,7 +35,7 @@ namespace py = pybind11;
 constexpr Range kRest_m = limits::kCameraCoordinate_m;
 
 struct Arguments {
-    py::object cell_m, pixel_m;
+    py::object cell_m, pixel_m, cell_axis_m, pixel_axis_m;
     std::array<py::object, kProductCount> arrays;  // in the order of kProductTable
     std::optional<std::vector<std::string>> outputs;
 };
@@ -67,6 +67,18 @@ struct Evaluation {
     Footprints cell, pixel;
     Results<float> results;
 };
+
+// None, or an array of each point's own.
+Strided<const glm::vec2> axes(const py::object& object, const Asked& asked) {
+    if (object.is_none()) return {};
+    const Strided<const glm::vec2> view = readable_points(object, asked).view;
+    for (py::ssize_t i = 0; i < *asked.count; ++i) {
+        const glm::vec2 axis = view[static_cast<std::size_t>(i)];
+        if (!std::isfinite(axis.x) || !std::isfinite(axis.y))
+            throw py::value_error(asked.name + ": accepted: finite numbers");
+    }
+    return view;
+}
 
 // Of an array that lives as long as they do.
 Points<float> points_of(const py::object& array, std::array<double, 2> origin_m, const char* name) {
@@ -126,7 +138,8 @@ class PythonFrame {
                 frame.run(*asked);
                 return {};
             },
-            py::make_tuple(self, rest, given.cell_m, given.pixel_m), written);
+            py::make_tuple(self, rest, given.cell_m, given.pixel_m, given.cell_axis_m, given.pixel_axis_m),
+            written);
     }
 
     py::dict heights(const py::object& xy, std::array<double, 2> origin_m, const py::object& footprint_m,
@@ -226,6 +239,8 @@ class PythonFrame {
         read_footprints(asked.pixel, given.pixel_m, {"pixel_m", count});
         asked.points.cell_m = asked.cell.view;
         asked.points.pixel_m = asked.pixel.view;
+        asked.points.cell_axis_m = axes(given.cell_axis_m, {"cell_axis_m", count});
+        asked.points.pixel_axis_m = axes(given.pixel_axis_m, {"pixel_axis_m", count});
 
         const auto arrays = with_fresh(given, count);
         py::dict written;
@@ -290,7 +305,9 @@ const std::string kEvaluateDoc =
     "rest: float32 (n, 2), the points at rest [m], relative to origin.\n"
     "origin: (x, y) [m], in double precision: a sea a million metres away loses nothing.\n"
     "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's ladder; default its "
-    "first.\n" +
+    "first.\n"
+    "cell_axis_m, pixel_axis_m: float32 (n, 2), for footprints that are ellipses: the long axis [m], where it is "
+    "longer than cell_m or pixel_m, which then is the short one's length.\n" +
     product_lines() +
     "Velocities are per second of the frame's time; shot.time_scale of those make a second of the screen.\n"
     "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
@@ -312,23 +329,29 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kProducts.
     frame.def(
         "evaluate",
         [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
-           const py::object& cell_m, const py::object& pixel_m, ArrayArgument<kProducts>... arrays,
+           const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
+           const py::object& pixel_axis_m, ArrayArgument<kProducts>... arrays,
            const std::optional<std::vector<std::string>>& outputs) {
-            return self.evaluate(rest, origin, {cell_m, pixel_m, {arrays...}, outputs});
+            return self.evaluate(rest, origin,
+                                 {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs});
         },
         py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(), py::arg("cell_m") = none(),
-        py::arg("pixel_m") = none(), (py::arg(kProductTable[kProducts].identifier) = none())...,
-        py::arg("outputs") = none(), kEvaluateDoc.c_str());
+        py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(), py::arg("pixel_axis_m") = none(),
+        (py::arg(kProductTable[kProducts].identifier) = none())..., py::arg("outputs") = none(),
+        kEvaluateDoc.c_str());
     frame.def(
         "begin",
         [](const py::object& self, double t, const py::object& rest, std::array<double, 2> origin,
-           const py::object& cell_m, const py::object& pixel_m, ArrayArgument<kProducts>... arrays,
+           const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
+           const py::object& pixel_axis_m, ArrayArgument<kProducts>... arrays,
            const std::optional<std::vector<std::string>>& outputs) {
-            return PythonFrame::begin(self, t, rest, origin, {cell_m, pixel_m, {arrays...}, outputs});
+            return PythonFrame::begin(self, t, rest, origin,
+                                      {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs});
         },
         py::arg("t"), py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(),
-        py::arg("cell_m") = none(), py::arg("pixel_m") = none(),
-        (py::arg(kProductTable[kProducts].identifier) = none())..., py::arg("outputs") = none(),
+        py::arg("cell_m") = none(), py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(),
+        py::arg("pixel_axis_m") = none(), (py::arg(kProductTable[kProducts].identifier) = none())...,
+        py::arg("outputs") = none(),
         "Begins set(t) and evaluate() with the rest: a Task whose result is evaluate()'s. It keeps the arrays alive; "
         "nobody may write to them meanwhile.");
 }

@@ -110,19 +110,19 @@ TEST(Planet, IsTheCamerasGridOnOneSphere) {
         EXPECT_EQ(points.touches_at_m, glm::dvec2(0.0));
         EXPECT_NEAR(glm::distance(points.origin_m, place_m), 0.0, 1e-3);
 
-        Scene plain = scene;
-        plain.surface.kind = SurfaceKind::ProjectedGrid;
-        plain.camera.position_m = {0.0, 0.0, 100.0};
-        plain.camera.look_at_m = {600.0, 790.0, 50.0};
-        RestPoints<double> local;
-        make_surface(plain, reach)->points_at(1, local);
+        const ProjectedGrid local =
+            projected_grid(over_nadir(view_at(scene.camera, 1)),
+                           {.cell_px = scene.surface.cell_px,
+                            .bounds = {.height_m = reach.height_m, .reach_m = reach.reach_m},
+                            .significant_height_m = reach.significant_height_m,
+                            .curvature_per_m = kEarthCurvature_per_m});
         ASSERT_EQ(points.rest_m.size(), local.rest_m.size());
         for (std::size_t i = 0; i < local.rest_m.size(); i += 7) {
             const glm::dvec3 there =
                 on_earth(glm::dvec3(points.origin_m + points.rest_m[i], 0.0), kEarthCurvature_per_m);
             const glm::dvec3 expected =
                 on_earth(glm::dvec3(place_m, 0.0), kEarthCurvature_per_m) +
-                from_level(on_earth(glm::dvec3(local.rest_m[i], 0.0), kEarthCurvature_per_m), up);
+                from_level(on_earth(glm::dvec3(glm::dvec2(local.rest_m[i]), 0.0), kEarthCurvature_per_m), up);
             ASSERT_LT(glm::distance(there, expected), 0.02 + 1e-6 * glm::length(local.rest_m[i]))
                 << away_m << " " << i;
         }

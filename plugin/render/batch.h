@@ -41,6 +41,7 @@ struct Batch {
     std::vector<std::size_t> sea;          // which samples show the sea, rising
     std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
     std::vector<T> pixel_m;
+    std::vector<glm::vec<2, T>> pixel_axis_m;
     std::vector<glm::vec3> to_eye;
     Values answers;
     std::vector<SeaPoint> points;

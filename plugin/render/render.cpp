@@ -91,16 +91,15 @@ class RendererOf final : public Impl {
     }
 
     bool check_cameras(std::span<const int> frames, const RenderWatch& watch) override {
-        for (std::size_t i = 0; i < frames.size(); ++i) {
+        for (std::size_t i = 0; i < frames.size(); ++i)
             for (const double moment : moments_of(frames[i], options_)) {
                 if (!is_among_waves(view_at(scene_.camera, moment), grid_options_)) continue;
                 frame_.set(scene_.shot.time_s(moment));
                 refuse_under_water(frame_, scene_, moment, grid_options_);
+                if (watch.progress)
+                    watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
                 if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
             }
-            if (watch.progress)
-                watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
-        }
         return true;
     }
 
@@ -137,6 +136,7 @@ class RendererOf final : public Impl {
         const std::size_t count = grid_.rest_m.size();
         rest_.assign(grid_.rest_m.begin(), grid_.rest_m.end());
         cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());
+        cell_axis_m_.assign(grid_.cell_axis_m.begin(), grid_.cell_axis_m.end());
         position_.resize(count);
         Results<T> results;
         results.set(Product::Position, {position_.data()});
@@ -148,7 +148,8 @@ class RendererOf final : public Impl {
                  Points<T>{.origin_m = grid_.origin_m,
                            .count = count,
                            .rest_m = {rest_.data()},
-                           .cell_m = {cell_m_.data()}},
+                           .cell_m = {cell_m_.data()},
+                           .cell_axis_m = {cell_axis_m_.data()}},
                  results);
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
@@ -228,7 +229,8 @@ class RendererOf final : public Impl {
                     Points<T>{.origin_m = grid_.origin_m,
                               .count = count,
                               .rest_m = {batch_.rest.data()},
-                              .pixel_m = {batch_.pixel_m.data()}},
+                              .pixel_m = {batch_.pixel_m.data()},
+                              .pixel_axis_m = {batch_.pixel_axis_m.data()}},
                     wanted, batch_.answers);
     }
 
@@ -261,12 +263,13 @@ class RendererOf final : public Impl {
         const std::size_t count = batch_.sea.size();
         batch_.rest.resize(count);
         batch_.pixel_m.resize(count);
+        batch_.pixel_axis_m.resize(count);
         batch_.to_eye.resize(count);
         const glm::dvec3 eye = view_.position_m - glm::dvec3(grid_.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
             const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, batch_.sea[i]));
-            glm::dvec2 rest(0.0);
+            glm::dvec2 rest(0.0), pixel_axis_m(0.0);
             glm::dvec3 position(0.0);
             double pixel_m = 0.0;
             for (int corner = 0; corner < 3; ++corner) {
@@ -274,8 +277,10 @@ class RendererOf final : public Impl {
                 rest += weights[corner] * glm::dvec2(rest_[vertex]);
                 position += weights[corner] * glm::dvec3(position_[vertex]);
                 pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
+                pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
+            batch_.pixel_axis_m[i] = glm::vec<2, T>(pixel_axis_m);
             // Rounding must not reach the rung below the frame's first.
             batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
             const glm::dvec3 way = eye - position;
@@ -394,6 +399,7 @@ class RendererOf final : public Impl {
     std::vector<std::uint32_t> triangles_;  // vertex indices
     std::vector<glm::vec<2, T>> rest_;      // the grid's own, in T
     std::vector<T> cell_m_;
+    std::vector<glm::vec<2, T>> cell_axis_m_;
     std::vector<glm::vec<3, T>> position_;
     std::vector<glm::vec<3, T>> velocity_;  // where motion vectors are asked for
     std::vector<glm::dvec4> clip_;

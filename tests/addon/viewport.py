@@ -50,7 +50,7 @@ def settle():
         if preview is None:
             return
         if preview._job is not None:
-            preview._job.join()
+            preview._job.finish()
         viewport._tend()
         now = (preview.drawing.sea, preview.drawing.light, list(preview.hidden_in), preview.drawing.is_coarse())
         if now == before and not preview.is_building and not now[-1]:

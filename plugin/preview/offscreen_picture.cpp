@@ -58,7 +58,8 @@ std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea
                            .cell_m = {grid.cell_m.data()},
                            .cell_axis_m = {grid.cell_axis_m.data()}},
              results);
-    for (glm::vec3& position : positions) position = on_earth(position, grid.curvature_per_m);
+    for (glm::vec3& position : positions)
+        position = glm::vec3(on_earth(glm::dvec3(position), grid.curvature_per_m));
     return positions;
 }
 

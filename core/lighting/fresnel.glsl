@@ -43,10 +43,10 @@ float fresnel_effective_paper(float cosine, float sigma_v) {
 float fresnel_effective_exact(float cosine, float sigma_v, float along2, float across2) {
     float c = clamp(cosine, 0.0f, 1.0f);
     float tau = max(sigma_v * sqrt(1.0f - c * c), 1.0e-6f);
-    RampMoments moments = ramp_moments(min(c / tau, 1.0e3f));
+    VisibleMoments moments = visible_moments(min(c / tau, 1.0e3f));
     float mean = c + tau * moments.first;
     float spread = max(1.0f + moments.second - square(moments.first), 0.0f) * square(tau / mean);
-    float tilt = 1.0f + 1.2762f * along2 + 0.7902f * across2;
-    float convex = 1.0f + mean * spread * (3.8696f - mean * (1.0257f + 0.2706f * mean) - 2.1919f * spread);
+    float tilt = 1.0f + 2.5056f * along2 + 0.8512f * across2;
+    float convex = 1.0f + mean * spread * (3.7392f - mean * (2.2684f + 0.0681f * mean) - 1.4996f * spread);
     return fresnel_exact(mean * inversesqrt(tilt) / convex, kWaterIndex);
 }

@@ -61,8 +61,9 @@ vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radianc
     float density =
         disc_density(slope_distance(vec2(h.x, h.y) / -h.z, sum, determinant), disc_root / root, root);
     // The disc's spread blurs the horizon of the frame, too.
-    float seen = visible_area(v, sum) + max(v.z, 0.0f) * smith_lambda(smith_argument(l, sum));
-    float part = kPi * square(angular_radius) * density / (4.0f * square(square(h.z)) * max(seen, 1.0e-6f));
+    float facing = cosine / h.z;
+    float lit = lit_part(masked_view(v, sum), facing, facing, l, sum);
+    float part = kPi * square(angular_radius) * density * lit / (4.0f * square(square(h.z)));
     float risen = smoothstep(0.0f, angular_radius, to_sun.z);
     return sun_radiance * (min(part, 1.0f) * risen * fresnel_exact(dot(v, h), kWaterIndex));
 }

@@ -16,11 +16,8 @@ build release pelagic >/dev/null
 mkdir -p "$out"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-# Each picture with its exposure correction in stops.
-for picture in noon:0.5 low-sun:-0.5 overcast:0.4 storm:0.4 from-8-km:-0.4; do
-    shot=${picture%%:*}
-    "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$shot.toml" --frames 12 --samples 2 \
-        --exposure "${picture##*:}" --out "$scratch"
+for shot in noon low-sun overcast storm from-8-km; do
+    "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$shot.toml" --frames 12 --samples 2 --out "$scratch"
     blender -b --factory-startup --python-exit-code 1 --python "$here/contact-sheet.py" -- \
         --columns 1 --out "$out/$shot.jpg" "$scratch/$shot.0012.png" >/dev/null
 done

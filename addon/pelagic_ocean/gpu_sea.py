@@ -104,11 +104,11 @@ class Grid:
         grid = sea.grid(view, cell_px)
         self.key, self.size, self.origin_m = (view, cell_px), grid.size, grid.origin_m
         form = gpu.types.GPUVertFormat()
-        for name, length in (("rest_in", 2), ("cell_in", 1), ("pixel_in", 1)):
+        for name, length in (("rest_in", 2), ("cell_in", 3), ("pixel_in", 3)):
             form.attr_add(id=name, comp_type="F32", len=length, fetch_mode="FLOAT")
         vertices = gpu.types.GPUVertBuf(format=form, len=len(grid.vertices))
-        for name, part in (("rest_in", grid.vertices[:, :2]), ("cell_in", grid.vertices[:, 2]),
-                           ("pixel_in", grid.vertices[:, 3])):
+        for name, part in (("rest_in", grid.vertices[:, :2]), ("cell_in", grid.vertices[:, 2:5]),
+                           ("pixel_in", grid.vertices[:, 5:])):
             vertices.attr_fill(id=name, data=np.ascontiguousarray(part))
         self.triangles = (before.triangles if before is not None and before.size == grid.size
                           else gpu.types.GPUIndexBuf(type="TRIS", seq=grid.triangles))
@@ -143,7 +143,7 @@ class Drawing:
         """Whether a view's last picture was of its coarse grid."""
         return any(grid.key[1] != self._cell_px for grid in self._grids.values())
 
-    def draw(self, region, camera, time_s, cell_px, exposure_stops, with_sky):
+    def draw(self, region, camera, time_s, cell_px, exposure, with_sky):
         """The sea at a time [s] into the bound framebuffer, where it is nearer than what is there; the sky where nothing
         is. region: what tells views apart. cell_px: the side of the cells, larger while the view moves."""
         self._cell_px = cell_px
@@ -151,7 +151,7 @@ class Drawing:
         self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
         if self.is_under_water:
             return
-        light = {**self.light.uniforms, **camera.uniforms(), "exposure": self.light.exposure(exposure_stops)}
+        light = {**self.light.uniforms, **camera.uniforms(), "exposure": exposure}
         depth_test, blend = gpu.state.depth_test_get(), gpu.state.blend_get()
         depth_mask = gpu.state.depth_mask_get()
         gpu.state.blend_set("NONE")

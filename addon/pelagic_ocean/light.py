@@ -65,7 +65,7 @@ def update_light(bpy_scene, scene):
     if world is not None and MARK in world:
         _put_sky(world, sky)
         if EXPOSURE in world and math.isclose(world[EXPOSURE], bpy_scene.view_settings.exposure, abs_tol=1e-4):
-            bpy_scene.view_settings.exposure = world[EXPOSURE] = exposure_stops(sky)
+            bpy_scene.view_settings.exposure = world[EXPOSURE] = exposure_stops(sky, scene)
     if lamp is not None:
         _put_sun(lamp, sky)
 
@@ -126,13 +126,13 @@ def _put_sun(lamp, sky):
     lamp.rotation_quaternion = Vector(sky.sun_direction).to_track_quat("Z", "Y")  # a lamp shines along its -z
 
 
-def exposure_stops(sky):
-    """The stops at which the core shows the light: radiance · 2^stops = 0.18 is middle grey, here as there."""
-    return math.log2(sky.exposure)
+def exposure_stops(sky, scene):
+    """The stops at which the core shows the scene in its light: radiance · 2^stops = 0.18 is middle grey, here as there."""
+    return math.log2(sky.exposure(scene))
 
 
 def stops_by_hand(bpy_scene):
-    """How many stops brighter the picture is than the light's own exposure has it."""
+    """How many stops brighter the picture is than the exposure that was metered has it."""
     world = bpy_scene.world
     own = world[EXPOSURE] if world is not None and EXPOSURE in world else 0.0
     return bpy_scene.view_settings.exposure - own

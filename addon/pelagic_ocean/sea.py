@@ -112,7 +112,8 @@ class BuiltSea:
                   if name != "slope_variance" or before is None or surface is not self._surface}
         self._surface = surface
         self._frame.set(moment.time_s)
-        self._frame.evaluate(surface.rest, surface.origin_m, cell_m=surface.cell_m, pixel_m=surface.cell_m, **wanted)
+        self._frame.evaluate(surface.rest, surface.origin_m, cell_m=surface.cell_m, pixel_m=surface.cell_m,
+                             cell_axis_m=surface.cell_axis_m, pixel_axis_m=surface.cell_axis_m, **wanted)
         position, velocity = self._arrays["position"], self._arrays["velocity"]
         if surface.origin_m != (0.0, 0.0):
             position[:, :2] += np.array(surface.origin_m, np.float32)

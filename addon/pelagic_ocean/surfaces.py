@@ -19,7 +19,8 @@ class Surface:
     """Points at rest.
 
     signature: which faces they have, in words. rest: float32 (n, 2) [m], relative to origin_m. cell_m: float32 (n,), the
-    distance to the neighbours, or a number for all. faces: a function that gives (corners, starts), int32: the faces'
+    distance to the neighbours, or a number for all. cell_axis_m: float32 (n, 2), the cells' long sides where they have
+    such, cell_m then being the short ones, or None. faces: a function that gives (corners, starts), int32: the faces'
     vertices one after another, and where each face begins; None for a mesh that has its own. height_m: float32 (n,),
     what is added to z, or None. uv_m: the length that is 1 in the UV map. moves: whether the next frame has other points.
     lattice: (first_m, spacing_m) where all points lie at first + i·spacing in x and in y.
@@ -34,6 +35,7 @@ class Surface:
     uv_m: float = 1.0
     moves: bool = False
     lattice: tuple = None
+    cell_axis_m: np.ndarray = None
 
     def __len__(self):
         return len(self.rest)
@@ -83,7 +85,7 @@ def projected_grid(sea, view, share, uv_m):
         grid = sea.projected_grid(view, fewer)
     columns, rows = grid.columns, grid.rows
     return Surface(f"grid {columns} {rows}", grid.rest_m, grid.cell_m, lambda: _quads(pelagic.grid_quads(columns, rows)),
-                   grid.origin_m, uv_m=uv_m, moves=True)
+                   grid.origin_m, uv_m=uv_m, moves=True, cell_axis_m=grid.cell_axis_m)
 
 
 def _with_rings(rest, quads, size_m, resolution):

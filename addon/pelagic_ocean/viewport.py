@@ -122,7 +122,8 @@ class Preview:
             camera = Camera(gpu.matrix.get_projection_matrix(), gpu.matrix.get_model_view_matrix(),
                             gpu.state.viewport_get()[2:], obj.matrix_world)
             self.drawing.draw(context.region.as_pointer(), camera, scene.shot.time_s(context.scene.frame_current_final),
-                              scene.surface.cell_px, light.stops_by_hand(context.scene),
+                              scene.surface.cell_px,
+                              self.drawing.light.exposure(scene, light.stops_by_hand(context.scene)),
                               context.window_manager.pelagic_preview.show_sky)
         if self.is_building or not is_hidden or self.drawing.is_coarse():
             _tend_soon()

@@ -20,6 +20,9 @@ struct Points {
     // Each point's footprints [m]; empty: the query's first one for all. Cascades hold them within the
     // query's ladder; trains follow them from its first rung on, however large.
     Strided<const T> cell_m{}, pixel_m{};
+    // Footprints that are ellipses: the direction of the long axis times its length [m], cell_m or pixel_m being
+    // the length of the short one. Empty, or no longer than the short axis: round.
+    Strided<const glm::vec<2, T>> cell_axis_m{}, pixel_axis_m{};
 };
 
 // `query`: index into the plan's queries; decides what is computed and how finely. Sums the components, then

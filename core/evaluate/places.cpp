@@ -67,6 +67,7 @@ struct Batch {
     std::array<std::size_t, kAtOnce> place;
     std::array<glm::vec<2, T>, kAtOnce> rest_m;
     std::array<T, kAtOnce> cell_m;
+    std::array<glm::vec<2, T>, kAtOnce> cell_axis_m;
     std::array<glm::vec<3, T>, kAtOnce> displacement_m;
 };
 
@@ -80,9 +81,11 @@ void find_some(const PreparedQuery<T>& query, const Points<T>& places, const Pla
         for (std::size_t i = 0; i < left; ++i) {
             batch.rest_m[i] = glm::vec<2, T>(searches[batch.place[i]].next_m());
             if (places.cell_m) batch.cell_m[i] = places.cell_m[first + batch.place[i]];
+            if (places.cell_axis_m) batch.cell_axis_m[i] = places.cell_axis_m[first + batch.place[i]];
         }
         Points<T> points{.origin_m = places.origin_m, .count = left, .rest_m = {batch.rest_m.data()}};
         if (places.cell_m) points.cell_m = {batch.cell_m.data()};
+        if (places.cell_axis_m) points.cell_axis_m = {batch.cell_axis_m.data()};
         Results<T> results;
         results.set(Product::Displacement, {batch.displacement_m.data()});
         query.evaluate(points, results);

@@ -22,10 +22,21 @@ struct Rung {
     T t;
 };
 
+// The long side of a point's footprint; no number where that is none.
 template <class T>
-Rung<T> rung_of(const std::vector<double>& ladder_m, const Strided<const T>& footprint_m, std::size_t point) {
+T long_side(const Strided<const T>& width_m, const Strided<const glm::vec<2, T>>& axis_m, std::size_t point) {
+    const T width = width_m[point];
+    if (!axis_m) return width;
+    const T length = std::hypot(axis_m[point].x, axis_m[point].y);
+    return length > width ? length : width;
+}
+
+template <class T>
+Rung<T> rung_of(const std::vector<double>& ladder_m, const Strided<const T>& footprint_m,
+                const Strided<const glm::vec<2, T>>& axis_m, std::size_t point) {
     if (!footprint_m || ladder_m.size() == 1) return {0, T(0)};
-    const double wanted = std::min(static_cast<double>(footprint_m[point]), ladder_m.back());
+    const double wanted =
+        std::min(static_cast<double>(long_side(footprint_m, axis_m, point)), ladder_m.back());
     if (!(wanted > ladder_m.front()))
         return {0, T(0)};  // the finest rung, for a footprint that is no number, too
     const auto above = std::upper_bound(ladder_m.begin() + 1, ladder_m.end() - 1, wanted);
@@ -262,8 +273,8 @@ void PreparedQuery<T>::add_ladder(const Call& call, std::size_t first, Chunk<T>&
     const std::size_t padded = chunk.padded();
     std::array<Rung<T>, Chunk<T>::kPoints> cell, pixel;
     for (std::size_t i = 0; i < chunk.count; ++i) {
-        cell[i] = rung_of(query.cell_m, call.points.cell_m, first + i);
-        pixel[i] = rung_of(query.pixel_m, call.points.pixel_m, first + i);
+        cell[i] = rung_of(query.cell_m, call.points.cell_m, call.points.cell_axis_m, first + i);
+        pixel[i] = rung_of(query.pixel_m, call.points.pixel_m, call.points.pixel_axis_m, first + i);
     }
     typename Chunk<T>::Values cell_weight, pixel_weight;
     const auto shares = [&](const std::vector<int>& levels, int level, const auto& rungs,
@@ -302,17 +313,17 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, C
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     typename Chunk<T>::Values cell, pixel;
-    const auto own = [&](const Strided<const T>& footprint_m, double finest_m,
-                         typename Chunk<T>::Values& of) {
+    const auto own = [&](const Strided<const T>& footprint_m, const Strided<const glm::vec<2, T>>& axis_m,
+                         double finest_m, typename Chunk<T>::Values& of) {
         const T finest = static_cast<T>(finest_m);
         for (std::size_t i = 0; i < padded; ++i) {
-            const T wanted = i < chunk.count ? footprint_m[first + i] : finest;
+            const T wanted = i < chunk.count ? long_side(footprint_m, axis_m, first + i) : finest;
             of[i] = wanted > finest ? wanted : finest;  // the finest for one that is no number, too
         }
     };
     const Query& query = planned_->query;
-    if (points.cell_m) own(points.cell_m, query.cell_m.front(), cell);
-    if (points.pixel_m) own(points.pixel_m, query.pixel_m.front(), pixel);
+    if (points.cell_m) own(points.cell_m, points.cell_axis_m, query.cell_m.front(), cell);
+    if (points.pixel_m) own(points.pixel_m, points.pixel_axis_m, query.pixel_m.front(), pixel);
     const Plan& plan = frame_->sea().plan();
     const bool varied = call.wants_hidden && call.differ_in_hidden;
     if (varied)
@@ -333,8 +344,8 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, C
         HiddenMoments<double> whole;
         for (std::size_t m = 0; m < whole.size(); ++m)
             whole[m] = static_cast<double>(hidden_of.moments[m][i]);
-        const HiddenMoments<T> left =
-            hidden_at<T>(*statistics_, rung_of(query.pixel_m, points.pixel_m, first + i), whole);
+        const HiddenMoments<T> left = hidden_at<T>(
+            *statistics_, rung_of(query.pixel_m, points.pixel_m, points.pixel_axis_m, first + i), whole);
         for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
     }
 }

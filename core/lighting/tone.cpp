@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <glm/glm.hpp>
 
-#include "core/base/constants.h"
-#include "core/lighting/colour.h"
+#include "core/base/random.h"
 
 namespace pelagic {
 namespace tone {
@@ -19,19 +19,29 @@ glm::vec3 display_colour(glm::vec3 radiance, float exposure) {
     return tone::display_colour(radiance, exposure);
 }
 
-float exposure_for(const Sky& sky) {
-    // Mean radiance of a clear sky at noon, in kcd/m², and its display value: bright, well above middle grey.
-    constexpr double kNoon = 6.0, kNoonShown = 0.5;
-    // The exposure compensates for the light's changes to this power only: less light should look darker.
-    constexpr double kAdaptation = 0.25;
-    constexpr double kDarkest = 1e-3;  // [kcd/m²] deep dusk: the exposure is constant below
-    const double mean = luminance(glm::dvec3(sky.sky_irradiance)) / kPi;  // radiance of the upper hemisphere
-    const double seen = std::max(mean, kDarkest) / kNoon;
-    return static_cast<float>(kNoonShown / kNoon * std::pow(seen, -kAdaptation));
+glm::vec3 dither(glm::ivec2 pixel) {
+    constexpr std::uint64_t kKey = 0x646974686572;  // "dither": no other use of philox() shares its numbers
+    const auto bits =
+        philox({static_cast<std::uint32_t>(pixel.x), static_cast<std::uint32_t>(pixel.y), 0, 0}, kKey);
+    constexpr float kUnit = 0x1p-24f;
+    return {static_cast<float>(bits[0] >> 8) * kUnit, static_cast<float>(bits[1] >> 8) * kUnit,
+            static_cast<float>(bits[2] >> 8) * kUnit};
 }
 
-float exposure_for(const Sky& sky, double stops) {
-    return static_cast<float>(static_cast<double>(exposure_for(sky)) * std::exp2(stops));
+std::array<std::uint8_t, 3> display_bytes(glm::vec3 radiance, float exposure, glm::ivec2 pixel) {
+    const glm::vec3 shown = 255.0f * display_colour(radiance, exposure) + dither(pixel);
+    std::array<std::uint8_t, 3> bytes{};
+    for (int c = 0; c < 3; ++c)
+        bytes[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::min(shown[c], 255.0f));
+    return bytes;
+}
+
+double exposure_for(double log_mean_luminance) {
+    // The display value of a mean of 1 kcd/m², a little above middle grey, since the bright sky is part of the
+    // mean; and how much of a change of the light is left in the picture: civil twilight, eight stops below noon,
+    // is one stop darker.
+    constexpr double kShown = 0.24, kLeft = 0.13;
+    return kShown * std::pow(log_mean_luminance, kLeft - 1.0);
 }
 
 }  // namespace pelagic

@@ -1,20 +1,26 @@
-// Tone mapping for C++, and a light's exposure.
+// Tone mapping for C++, and the exposure for what a picture shows.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-
-#include "core/lighting/sky.h"
 
 namespace pelagic {
 
 // The sRGB display value, 0 … 1, of a radiance. radiance · exposure = 0.18 is middle grey (tone.glsl).
 glm::vec3 display_colour(glm::vec3 radiance, float exposure);
 
-// The exposure for a light, > 0 and finite. It depends on the light and not on the picture, so that a camera
-// that turns keeps its brightness. A brighter light always gives a brighter picture.
-float exposure_for(const Sky& sky);
+// The same in 8 bits, dithered: rounded up or down with the probability that keeps the mean. Smooth skies would show
+// the steps. The random numbers belong to the pixel, and are the same in every frame and picture; black and white
+// stay what they are.
+std::array<std::uint8_t, 3> display_bytes(glm::vec3 radiance, float exposure, glm::ivec2 pixel);
 
-// That exposure, brighter by `stops`: a factor of 2 for each.
-float exposure_for(const Sky& sky, double stops);
+// Those random numbers, 0 … 1 (1 excluded), one for each component.
+glm::vec3 dither(glm::ivec2 pixel);
+
+// The exposure for pictures whose luminance has this logarithmic mean [kcd/m²], > 0. A brighter light gives a brighter
+// picture, but by far less than it is brighter, as the eye adapts.
+double exposure_for(double log_mean_luminance);
 
 }  // namespace pelagic

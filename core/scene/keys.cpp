@@ -236,9 +236,11 @@ void add_surface(Built& out) {
                                 .range = limits::kCell_px,
                                 .soft = SoftRange{2.0, 32.0},
                                 .feeds = feeds(Feed::Grid)}),
-        not_built<Surface>(
-            {.name = "earth_curvature", .help = "whether the far sea bends away", .feeds = kSurface},
-            kMeanwhile),
+        row<&Surface::earth_curvature>({.name = "earth_curvature",
+                                        .help =
+                                            "whether the projected grid lies on the earth's sphere: the far "
+                                            "sea bends away, and the horizon has its dip",
+                                        .feeds = feeds(Feed::Grid)}),
         not_built<Surface>({.name = "cage_file", .help = "a coarse surface to refine", .feeds = kSurface},
                            kMeanwhile),
         not_built<Surface>({.name = "cage_level", .help = "how often it is refined", .feeds = kSurface},
@@ -258,7 +260,7 @@ void add_camera(Built& out) {
                                  .feeds = kView}),
         entries<&Camera::keys>(
             {.name = "keys",
-             .help = "for a moving camera: linear between keys, still outside",
+             .help = "for a moving camera: between them as interpolation says, still outside",
              .feeds = kView,
              .are_entries_independent = false,
              .entry_name = "CameraKey"},
@@ -278,6 +280,10 @@ void add_camera(Built& out) {
                  .unit = "degrees",
                  .range = limits::kAngle_deg,
                  .soft = kTurn})),
+        row<&Camera::interpolation>({.name = "interpolation",
+                                     .help = "between keys: straight from one to the next, or a smooth curve "
+                                             "through all of them",
+                                     .feeds = kView}),
         row<&Camera::fov_deg>({.name = "fov_deg",
                                .help = "horizontal angle of view",
                                .unit = "degrees",
@@ -317,7 +323,15 @@ void add_light_and_water(Built& out) {
         row<&Light::turbidity>({.name = "turbidity",
                                 .help = "haze of the daylight's air; 2 is very clear, 6 is hazy",
                                 .range = limits::kTurbidity,
-                                .feeds = kLight}));
+                                .feeds = kLight}),
+        row<&Light::visibility_km>(
+            {.name = "visibility_km",
+             .help = "with a picture of a sky: how far one sees through its air; without it "
+                     "the air is clear",
+             .unit = "km",
+             .range = limits::kVisibility_km,
+             .soft = SoftRange{1.0, 200.0, true},
+             .feeds = kLight}));
     add_table<&Scene::water>(
         out.tables, out.keys, {"water", "the water body", {}, {}},
         row<&Water::type>({.name = "type",

@@ -34,6 +34,10 @@ constexpr std::array kSurfaces = std::to_array<Word<SurfaceKind>>({
     {SurfaceKind::Cage, "cage"},
     {SurfaceKind::Planet, "planet"},
 });
+constexpr std::array kInterpolations = std::to_array<Word<CameraInterpolation>>({
+    {CameraInterpolation::Linear, "linear"},
+    {CameraInterpolation::Smooth, "smooth"},
+});
 constexpr std::array kWaters = std::to_array<Word<WaterType>>({
     {WaterType::Ocean, "ocean"},
     {WaterType::Coastal, "coastal"},
@@ -114,6 +118,9 @@ std::span<const Word<WaveModel>> words_of(WaveModel) {
 }
 std::span<const Word<SurfaceKind>> words_of(SurfaceKind) {
     return kSurfaces;
+}
+std::span<const Word<CameraInterpolation>> words_of(CameraInterpolation) {
+    return kInterpolations;
 }
 std::span<const Word<WaterType>> words_of(WaterType) {
     return kWaters;

@@ -25,6 +25,7 @@ std::span<const Word<SpectrumKind>> words_of(SpectrumKind);
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind);
 std::span<const Word<WaveModel>> words_of(WaveModel);
 std::span<const Word<SurfaceKind>> words_of(SurfaceKind);
+std::span<const Word<CameraInterpolation>> words_of(CameraInterpolation);
 std::span<const Word<WaterType>> words_of(WaterType);
 std::span<const Word<QualityLevel>> words_of(QualityLevel);
 std::span<const Word<MeshFormat>> words_of(MeshFormat);

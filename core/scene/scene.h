@@ -21,6 +21,7 @@ enum class SpectrumKind { PiersonMoskowitz, Jonswap, Tma, Elfouhaily, Omega2, Ph
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
+enum class CameraInterpolation { Linear, Smooth };
 enum class WaterType { Ocean, Coastal, Turbid };
 enum class QualityLevel { Draft, Preview, Final, Reference };
 enum class MeshFormat { Usda, Usdc, None };
@@ -117,6 +118,7 @@ struct Surface {
     double size_m = 200.0;  // > 0
     int resolution = 256;   // quads a side, 1 … 8192; (N+1)² vertices
     double cell_px = 8.0;   // of the projected grid, which pictures of the sea always use: a cell's side
+    bool earth_curvature = true;  // of the projected grid: it lies on the earth's sphere
 };
 
 struct CameraKey {
@@ -130,10 +132,11 @@ struct CameraKey {
 // [camera]
 struct Camera {
     glm::dvec3 position_m{0.0, -60.0, 4.0};
-    glm::dvec3 look_at_m{0.0, 0.0, 0.0};  // up is z; looking along z, +y
-    std::vector<CameraKey> keys;          // by rising frame, linear between, constant outside
-    double fov_deg = 50.0;                // horizontal, 1 … 179
-    glm::ivec2 resolution{1280, 720};     // 1 … 65536 each
+    glm::dvec3 look_at_m{0.0, 0.0, 0.0};                              // up is z; looking along z, +y
+    std::vector<CameraKey> keys;                                      // by rising frame, constant outside
+    CameraInterpolation interpolation = CameraInterpolation::Linear;  // between keys
+    double fov_deg = 50.0;                                            // horizontal, 1 … 179
+    glm::ivec2 resolution{1280, 720};                                 // 1 … 65536 each
 };
 
 // [light]
@@ -142,7 +145,8 @@ struct Light {
     double sun_azimuth_deg = 90.0;    // towards the sun, counter-clockwise from +x
     // "daylight", or the path of a lat-long picture, as the host that loaded the scene finds it.
     std::string sky = "daylight";
-    double turbidity = 3.0;  // of the daylight: 1.7 … 10, haze
+    double turbidity = 3.0;                 // of the daylight: 1.7 … 10, haze
+    std::optional<double> visibility_km{};  // of the air under a picture's sky; without: clear
 };
 
 // [water]

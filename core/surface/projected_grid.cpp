@@ -329,11 +329,18 @@ double cell_angle_of(const View& view, const ProjectedGridOptions& options, cons
            std::max(at.corner_cos * at.corner_cos, kStretched);
 }
 
-// A pixel's footprint along its longer side, at a distance from the nadir. `cosine` is that of the angle
-// between the optical axis and the direction to the point.
-double pixel_footprint_m(const View& view, const Station& at, double radius_m, double cosine) {
-    return view.pixel_tangent() * cosine *
-           (radius_m * radius_m / at.effective_height_m + at.effective_height_m);
+// A pixel's footprint across the view, at a distance from the nadir. `cosine` is that of the angle between the
+// optical axis and the direction to the point. Away from the eye it is longer by foreshortening().
+double pixel_width_m(const View& view, const Station& at, double radius_m, double cosine) {
+    return view.pixel_tangent() * cosine * std::hypot(radius_m, at.effective_height_m);
+}
+double foreshortening(const Station& at, double radius_m) {
+    return std::hypot(radius_m, at.effective_height_m) / at.effective_height_m;
+}
+
+// What a cell is across the view where the sea at rest is in view [m].
+double cell_width_m(const Station& at, double cell_angle, double radius_m) {
+    return cell_angle * std::hypot(radius_m, at.effective_height_m);
 }
 
 }  // namespace
@@ -359,10 +366,11 @@ ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOpt
         std::clamp(std::ceil(cells / kCountStep) * kCountStep, 1.0 * kCountStep, 1.0 * kLargestCount);
     double finest_cell_m = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i + 1 < rows.size(); ++i)
-        finest_cell_m = std::min(finest_cell_m, rows[i + 1].radius_m - rows[i].radius_m);
+        finest_cell_m = std::min({finest_cell_m, rows[i + 1].radius_m - rows[i].radius_m,
+                                  cell_width_m(at, cell_angle, rows[i].radius_m)});
     return {.size = {static_cast<int>(columns), static_cast<int>(rows.size()) - 1},
             .finest_cell_m = finest_cell_m,
-            .finest_pixel_m = pixel_footprint_m(view, at, rows[0].radius_m, at.corner_cos)};
+            .finest_pixel_m = pixel_width_m(view, at, rows[0].radius_m, at.corner_cos)};
 }
 
 ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options) {
@@ -371,7 +379,8 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
     if (sized.size.columns <= 0 || sized.size.rows <= 0)
         sized.size = projected_grid_needs(view, options).size;
     const auto [columns, row_count] = sized.size;
-    const std::vector<Row> rows = rows_of(view, sized, at, cell_angle_of(view, options, at), row_count);
+    const double cell_angle = cell_angle_of(view, options, at);
+    const std::vector<Row> rows = rows_of(view, sized, at, cell_angle, row_count);
 
     ProjectedGrid grid{.columns = columns, .rows = row_count, .origin_m = glm::dvec2(view.position_m)};
     const std::size_t stride = static_cast<std::size_t>(columns) + 1;
@@ -379,34 +388,46 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
     grid.rest_m.resize(count);
     grid.cell_m.resize(count);
     grid.pixel_m.resize(count);
+    grid.cell_axis_m.resize(count);
+    grid.pixel_axis_m.resize(count);
     std::vector<glm::dvec2> previous(stride), row(stride);
-    std::vector<double> cell_m(count, 0.0);
+    std::vector<double> across_m(count, 0.0), away_m(count, 0.0);  // to the neighbouring columns and rows
     for (std::size_t j = 0; j < rows.size(); ++j) {
         const double r = rows[j].radius_m;
         for (std::size_t i = 0; i < stride; ++i) {
             const double azimuth = rows[j].half_width * (2.0 * static_cast<double>(i) / columns - 1.0);
             const glm::dvec2 unit(std::cos(azimuth), std::sin(azimuth));
             // To the right in the picture, which is clockwise seen from above.
-            row[i] = r * glm::dvec2(at.ahead.x * unit.x + at.ahead.y * unit.y,
-                                    at.ahead.y * unit.x - at.ahead.x * unit.y);
+            const glm::dvec2 away(at.ahead.x * unit.x + at.ahead.y * unit.y,
+                                  at.ahead.y * unit.x - at.ahead.x * unit.y);
+            row[i] = r * away;
             const std::size_t here = j * stride + i;
             grid.rest_m[here] = glm::vec2(row[i]);
             // A pixel's angle shrinks with the cosine of its distance from the axis, down to the corner's.
             const glm::dvec3 way =
                 glm::normalize(glm::dvec3(row[i], -std::copysign(at.effective_height_m, at.height_m)));
             const double cosine = std::max(glm::dot(way, view.forward), at.corner_cos);
-            grid.pixel_m[here] = static_cast<float>(pixel_footprint_m(view, at, r, cosine));
-            const auto join = [&](std::size_t other, double distance_m) {
-                cell_m[here] = std::max(cell_m[here], distance_m);
-                cell_m[other] = std::max(cell_m[other], distance_m);
+            const double pixel_m = pixel_width_m(view, at, r, cosine);
+            grid.pixel_m[here] = static_cast<float>(pixel_m);
+            grid.pixel_axis_m[here] = glm::vec2(pixel_m * foreshortening(at, r) * away);
+            grid.cell_axis_m[here] = glm::vec2(away);  // its length follows below
+            const auto join = [&](std::vector<double>& distances_m, std::size_t other, double distance_m) {
+                distances_m[here] = std::max(distances_m[here], distance_m);
+                distances_m[other] = std::max(distances_m[other], distance_m);
             };
-            if (i > 0) join(here - 1, glm::length(row[i] - row[i - 1]));
-            if (j > 0) join(here - stride, glm::length(row[i] - previous[i]));
+            if (i > 0) join(across_m, here - 1, glm::length(row[i] - row[i - 1]));
+            if (j > 0) join(away_m, here - stride, glm::length(row[i] - previous[i]));
         }
         previous.swap(row);
     }
-    std::transform(cell_m.begin(), cell_m.end(), grid.cell_m.begin(),
-                   [](double metres) { return static_cast<float>(metres); });
+    for (std::size_t i = 0; i < count; ++i) {
+        const double long_m = std::max(across_m[i], away_m[i]), short_m = std::min(across_m[i], away_m[i]);
+        const double width_m = cell_width_m(at, cell_angle, rows[i / stride].radius_m);
+        const glm::vec2 away = grid.cell_axis_m[i];
+        grid.cell_m[i] = static_cast<float>(std::min(std::max(short_m, width_m), long_m));
+        grid.cell_axis_m[i] =
+            static_cast<float>(long_m) * (away_m[i] >= across_m[i] ? away : glm::vec2(-away.y, away.x));
+    }
     return grid;
 }
 

@@ -54,8 +54,11 @@ struct ProjectedGrid {
     int columns = 0, rows = 0;
     glm::dvec2 origin_m{0.0};         // the camera's nadir; the points are relative to it
     std::vector<glm::vec2> rest_m{};  // finite, inside the horizon's circle
-    std::vector<float> cell_m{};      // larger of the distances to the neighbouring rows and columns
-    std::vector<float> pixel_m{};     // pixel footprint along its longer side
+    // Footprints as in Points (core/evaluate/evaluate.h): the short axis of each, and the long one as a vector.
+    // A cell's are its distances to the neighbouring rows and columns, the shorter no less than a cell is wide on
+    // the screen; a pixel's long axis points away from the camera's nadir.
+    std::vector<float> cell_m{}, pixel_m{};
+    std::vector<glm::vec2> cell_axis_m{}, pixel_axis_m{};
 };
 
 // The requirements of a pose.

@@ -122,7 +122,9 @@ class CameraGrid final : public RestSurface {
         points.origin_m = grid.origin_m;
         points.rest_m.assign(grid.rest_m.begin(), grid.rest_m.end());
         points.cell_m.assign(grid.cell_m.begin(), grid.cell_m.end());
+        points.cell_axis_m.assign(grid.cell_axis_m.begin(), grid.cell_axis_m.end());
         points.pixel_m = points.cell_m;
+        points.pixel_axis_m = points.cell_axis_m;
     }
 
     Camera camera_;

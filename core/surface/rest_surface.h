@@ -46,7 +46,9 @@ template <class T>
 struct RestPoints {
     glm::dvec2 origin_m{0.0};
     std::vector<glm::vec<2, T>> rest_m{};
-    std::vector<T> cell_m{}, pixel_m{};  // empty: the query's own
+    // Footprints as in Points (core/evaluate/evaluate.h); empty: the query's own.
+    std::vector<T> cell_m{}, pixel_m{};
+    std::vector<glm::vec<2, T>> cell_axis_m{}, pixel_axis_m{};
 };
 
 // Where a mesh that floats hold has its origin: the world's own for points round a place near that, and otherwise a

@@ -173,6 +173,8 @@ class MeshPart final : public OutputPart {
         Points<T> points{.origin_m = at.origin_m, .count = at.rest_m.size(), .rest_m = {at.rest_m.data()}};
         if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};
         if (!at.pixel_m.empty()) points.pixel_m = {at.pixel_m.data()};
+        if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
+        if (!at.pixel_axis_m.empty()) points.pixel_axis_m = {at.pixel_axis_m.data()};
         state.runner.run(sea, output_.query, points, slot.values);
         if (attributes_.origin) slot.origin_m = local_origin(at.origin_m, finest_of(at.cell_m));
         move_by(slot.values.vectors(Product::Position), at.origin_m - slot.origin_m);

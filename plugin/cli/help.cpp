@@ -75,7 +75,8 @@ const char* const kRenderFooter =
     "                                                    one frame, small and fast\n"
     "  pelagic render storm.toml --frames 12 --terms sun only the glitter\n"
     "\n"
-    "The PNG's exposure depends on the light, so that a turning camera keeps its brightness.\n"
+    "The PNG's exposure is metered from the light and the sea in view, once for the whole shot\n"
+    "(at the camera's keys), so that a turning camera keeps its brightness.\n"
     "A frame doesn't depend on other frames or on the number of threads.";
 const char* const kSize =
     "The pictures' width and height in pixels.\n"

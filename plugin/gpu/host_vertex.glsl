@@ -1,13 +1,13 @@
 // The sea's geometry for a host that has its own projection and draws its own objects by depth.
 
 in vec2 rest_in;  // [m], relative to the grid's origin
-in float cell_in;
-in float pixel_in;
+in vec3 cell_in;   // footprints: width and long axis [m]
+in vec3 pixel_in;
 
 uniform mat4 clip_from_grid;  // the host's
 
 out vec2 rest_m;
-out float pixel_m;
+out vec3 pixel_m;
 
 void main() {
     vec3 displacement = query_cell(rest_in, cell_in);

@@ -3,8 +3,11 @@
 uniform float whitecap_threshold;
 uniform vec2 finest_m;  // the finest footprints of cells and pixels; trains are filtered no finer
 
+float long_side(vec3 footprint_m) { return max(footprint_m.x, length(footprint_m.yz)); }
+
 // Height, Dx, Dy of the point that rests at x.
-vec3 query_cell(vec2 rest_m, float cell_m) {
+vec3 query_cell(vec2 rest_m, vec3 cell) {
+    float cell_m = long_side(cell);
     SplitMetres x = split_metres(rest_m);
     vec3 sum = cell_cascades(x, cell_m);
     if (kTrains) sum += cell_trains(x, cell_m > finest_m.x ? cell_m : finest_m.x);
@@ -18,7 +21,8 @@ struct PixelAnswer {
     float rung;  // lower + t
 };
 
-PixelAnswer query_pixel(vec2 rest_m, float pixel_m) {
+PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
+    float pixel_m = long_side(pixel);
     SplitMetres x = split_metres(rest_m);
     Rung rung = rung_of(kCellRungs, kPixelRungs, pixel_m);
     TrainSums sums = TrainSums(pixel_cascades(x, rung), hidden_of(rung));

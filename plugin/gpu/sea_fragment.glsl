@@ -1,7 +1,7 @@
 // A pixel of the sea: the query at the point at rest that it shows, and the light from there.
 
 in vec2 rest_m;
-in float pixel_m;
+in vec3 pixel_m;  // width and long axis
 
 void main() {
     if (kWireframe) {

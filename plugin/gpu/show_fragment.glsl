@@ -6,6 +6,7 @@ uniform sampler2D foam_picture;
 uniform vec2 picture_from_window;  // picture pixels per viewport pixel
 uniform vec2 window_first;
 uniform float exposure;
+uniform sampler2D dither;  // the beginning of dither() in core/lighting/tone.h, repeated
 
 out vec4 colour_out;
 
@@ -16,5 +17,11 @@ void main() {
     if (kLayers)
         radiance += texelFetch(sun_picture, at, 0) + texelFetch(sky_picture, at, 0) +
                     texelFetch(foam_picture, at, 0);
-    colour_out = vec4(kPlain ? radiance.xyz : display_colour(radiance.xyz, exposure), 1.0);
+    if (kPlain) {
+        colour_out = vec4(radiance.xyz, 1.0);
+        return;
+    }
+    // As display_bytes(), for a framebuffer of 8 bits, which rounds to the nearest.
+    vec4 noise = texelFetch(dither, ivec2(gl_FragCoord.xy - window_first) % textureSize(dither, 0), 0);
+    colour_out = vec4(display_colour(radiance.xyz, exposure) + (noise.xyz - 0.5) / 255.0, 1.0);
 }

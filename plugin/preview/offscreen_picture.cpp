@@ -54,7 +54,8 @@ std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea
              Points<float>{.origin_m = grid.origin_m,
                            .count = positions.size(),
                            .rest_m = {grid.rest_m.data()},
-                           .cell_m = {grid.cell_m.data()}},
+                           .cell_m = {grid.cell_m.data()},
+                           .cell_axis_m = {grid.cell_axis_m.data()}},
              results);
     return positions;
 }
@@ -89,8 +90,9 @@ double finest_pixel_in_view(const View& view, const ProjectedGrid& grid,
 }
 
 // [bytes] of a point of the grid: itself and while it is made, as a vertex, and in triangles, here and at the driver's.
-constexpr std::size_t kPointBytes = sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double) +
-                                    2 * (sizeof(glm::vec4) + 6 * sizeof(std::uint32_t)) + sizeof(glm::vec3);
+constexpr std::size_t kPointBytes = 3 * sizeof(glm::vec2) + 2 * sizeof(float) + 2 * sizeof(double) +
+                                    2 * (2 * sizeof(glm::vec4) + 6 * sizeof(std::uint32_t)) +
+                                    sizeof(glm::vec3);
 // [bytes/pixel] of the driver's pictures of four terms and their depth; of what is read back from it.
 constexpr std::size_t kDrawnBytes = 4 * sizeof(glm::vec4) + sizeof(float),
                       kReadBytes = sizeof(SeaRadiance) + 1 + sizeof(glm::vec4);

@@ -14,6 +14,7 @@
 #include <span>
 #include <utility>
 
+#include "core/lighting/tone.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/gpu/shader_variants.h"
 #include "plugin/gpu/uniforms.h"
@@ -27,7 +28,7 @@ namespace pelagic {
 namespace {
 
 // Texture units. SeaTextures has the first ones.
-enum Unit : int { kSkyMap = SeaTextures::kUnits, kPictures };
+enum Unit : int { kSkyMap = SeaTextures::kUnits, kDither, kPictures };
 
 constexpr int kTerms = 4;  // sea, sun, sky, foam: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
@@ -65,6 +66,7 @@ struct SeaRenderer::Implementation {
 
     void upload_grid(const ProjectedGrid& grid);
     void make_pictures(glm::ivec2 size, bool layers);
+    void make_dither();
     void set_common(const ShaderProgram& program, const View& view) const;
     void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
@@ -75,7 +77,7 @@ struct SeaRenderer::Implementation {
 
     SeaTextures sea;
 
-    GlTexture sky_map;
+    GlTexture sky_map, dither_tile;
     int sky_map_size = 0;
     std::vector<Uniform> light;
 
@@ -104,6 +106,17 @@ SeaRenderer::Implementation::Implementation() {
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture);
     reversed_depth = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
     make_pictures(glm::ivec2(4), true);
+    make_dither();
+}
+
+void SeaRenderer::Implementation::make_dither() {
+    constexpr int kSide = 64;
+    std::vector<glm::vec4> texels;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) texels.emplace_back(dither({x, y}), 1.0f);
+    edit_texture(dither_tile);
+    texels_as_they_are();
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kSide, kSide, 0, GL_RGBA, GL_FLOAT, texels.data());
 }
 
 // Shaders.
@@ -114,6 +127,7 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     ShaderProgram program(variant.vertex(), variant.fragment());
     program.use();
     glUniform1i(program.uniform("sky_map"), kSkyMap);
+    glUniform1i(program.uniform("dither"), kDither);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
     return programs.emplace(variant.key(), std::move(program)).first->second;
 }
@@ -121,11 +135,15 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
 void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
     struct Vertex {
         glm::vec2 rest_m;
-        float cell_m, pixel_m;
+        float cell_m;
+        glm::vec2 cell_axis_m;
+        float pixel_m;
+        glm::vec2 pixel_axis_m;
     };
     std::vector<Vertex> vertices(grid.rest_m.size());
     for (std::size_t i = 0; i < vertices.size(); ++i)
-        vertices[i] = {grid.rest_m[i], grid.cell_m[i], grid.pixel_m[i]};
+        vertices[i] = {grid.rest_m[i], grid.cell_m[i], grid.cell_axis_m[i], grid.pixel_m[i],
+                       grid.pixel_axis_m[i]};
     glBindVertexArray(grid_array.name());
     glBindBuffer(GL_ARRAY_BUFFER, grid_vertices.name());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
@@ -136,8 +154,8 @@ void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
                               reinterpret_cast<const void*>(offset));
     };
     attribute(0, 2, offsetof(Vertex, rest_m));
-    attribute(1, 1, offsetof(Vertex, cell_m));
-    attribute(2, 1, offsetof(Vertex, pixel_m));
+    attribute(1, 3, offsetof(Vertex, cell_m));
+    attribute(2, 3, offsetof(Vertex, pixel_m));
     if (grid_size == glm::ivec2(grid.columns, grid.rows)) return;
     grid_size = {grid.columns, grid.rows};
     const std::vector<std::uint32_t> triangles =
@@ -312,6 +330,7 @@ void SeaRenderer::show(float exposure) {
     const GlStageTimer::Measured measured(of.timer, GlStageTimer::Show);
     program.use();
     for (int i = 0; i < kTerms; ++i) bind_texture(kPictures + i, of.pictures[i]);
+    bind_texture(kDither, of.dither_tile);
     glUniform2f(program.uniform("picture_from_window"),
                 static_cast<float>(of.picture_size.x) / static_cast<float>(viewport[2]),
                 static_cast<float>(of.picture_size.y) / static_cast<float>(viewport[3]));

@@ -1,6 +1,5 @@
 // The preview's window. See window.h.
 #include "plugin/preview/window.h"
-#include "plugin/light/light.h"
 
 // Included before GLFW, which then leaves OpenGL's declarations to it.
 #include <epoxy/gl.h>
@@ -22,12 +21,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/lighting/tone.h"
 #include "core/scene/canonical.h"
 #include "core/scene/shot_text.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/files/files.h"
+#include "plugin/light/exposure.h"
+#include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/png/png.h"
 #include "plugin/preview/controls.h"
@@ -196,14 +196,12 @@ std::filesystem::path picture_name(const std::filesystem::path& folder, const st
 struct LiveSky {
     Sky sky;
     WaterBody water;
-    float exposure = 1.0f;
 };
 
 std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
     LiveSky made;
     made.sky = make_sky(scene);
     made.water = make_water(scene);
-    made.exposure = exposure_for(made.sky);
     return std::make_shared<const LiveSky>(std::move(made));
 }
 
@@ -231,7 +229,7 @@ class Preview {
         camera_.take(view_at(scene.camera, scene.shot.first_frame));
         // Synchronises with the screen, except for a screenshot.
         glfwSwapInterval(options.screenshot ? 0 : 1);
-        show_sky(*build_sky(scene));
+        show_sky(build_sky(scene));
         lit_ = scene;
         sea_.ask(scene);
     }
@@ -420,9 +418,15 @@ class Preview {
         return readout_.follows_shot ? lens : camera_.view(lens);
     }
 
-    void show_sky(const LiveSky& sky) {
-        renderer_.set_sky(sky.sky, sky.water);
-        exposure_ = sky.exposure;
+    void show_sky(const std::shared_ptr<const LiveSky>& sky) {
+        renderer_.set_sky(sky->sky, sky->water);
+        sky_ = sky;
+        meter();
+    }
+
+    void meter() {
+        metered_wind_mps_ = controls_.scene.sea.wind_speed_mps;
+        exposure_ = shot_exposure(controls_.scene, sky_->sky);
     }
 
     // Requests what the panel asks for and takes finished results, without waiting.
@@ -431,7 +435,8 @@ class Preview {
             lit_ = controls_.scene;
             skies_.ask(lit_);
         }
-        if (const auto sky = skies_.take()) show_sky(*sky);
+        if (const auto sky = skies_.take()) show_sky(sky);
+        if (sky_ && metered_wind_mps_ != controls_.scene.sea.wind_speed_mps) meter();
         sea_.ask(controls_.scene);
         const View view = view_now();
         const bool may_be_wet = frame_ == nullptr || is_among_waves(view, frame_->build->grid);
@@ -527,6 +532,8 @@ class Preview {
     Readout readout_;
     SeaRenderer renderer_;
     OrbitCamera camera_;
+    std::shared_ptr<const LiveSky> sky_;  // the one that is shown
+    double metered_wind_mps_ = 0.0;
     float exposure_ = 1.0f;
     Scene lit_;  // the scene whose light was requested last
     const LiveFrame* frame_ = nullptr;

@@ -34,7 +34,7 @@ namespace py = pybind11;
 constexpr Range kRest_m = limits::kCameraCoordinate_m;
 
 struct Arguments {
-    py::object cell_m, pixel_m;
+    py::object cell_m, pixel_m, cell_axis_m, pixel_axis_m;
     std::array<py::object, kProductCount> arrays;  // in the order of kProductTable
     std::optional<std::vector<std::string>> outputs;
 };
@@ -58,6 +58,18 @@ void read_footprints(Footprints& footprints, const py::object& object, const Ask
     for (py::ssize_t i = 0; i < numbers; ++i)
         if (!(footprints.view[static_cast<std::size_t>(i)] >= 0.0f))
             throw py::value_error(asked.name + ": accepted: numbers from 0 up");
+}
+
+// None, or an array of each point's own.
+Strided<const glm::vec2> axes(const py::object& object, const Asked& asked) {
+    if (object.is_none()) return {};
+    const Strided<const glm::vec2> view = readable_points(object, asked).view;
+    for (py::ssize_t i = 0; i < *asked.count; ++i) {
+        const glm::vec2 axis = view[static_cast<std::size_t>(i)];
+        if (!std::isfinite(axis.x) || !std::isfinite(axis.y))
+            throw py::value_error(asked.name + ": accepted: finite numbers");
+    }
+    return view;
 }
 
 // Of an array that lives as long as they do.
@@ -102,6 +114,8 @@ class PythonFrame {
         read_footprints(pixel, given.pixel_m, {"pixel_m", count});
         points.cell_m = cell.view;
         points.pixel_m = pixel.view;
+        points.cell_axis_m = axes(given.cell_axis_m, {"cell_axis_m", count});
+        points.pixel_axis_m = axes(given.pixel_axis_m, {"pixel_axis_m", count});
 
         const auto arrays = with_fresh(given, count);
         Results<float> results;
@@ -258,7 +272,9 @@ const std::string kEvaluateDoc =
     "rest: float32 (n, 2), the points at rest [m], relative to origin.\n"
     "origin: (x, y) [m], in double precision: a sea a million metres away loses nothing.\n"
     "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's ladder; default its "
-    "first.\n" +
+    "first.\n"
+    "cell_axis_m, pixel_axis_m: float32 (n, 2), for footprints that are ellipses: the long axis [m], where it is "
+    "longer than cell_m or pixel_m, which then is the short one's length.\n" +
     product_lines() +
     "Velocities are per second of the frame's time; shot.time_scale of those make a second of the screen.\n"
     "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
@@ -280,13 +296,16 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kProducts.
     frame.def(
         "evaluate",
         [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
-           const py::object& cell_m, const py::object& pixel_m, ArrayArgument<kProducts>... arrays,
+           const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
+           const py::object& pixel_axis_m, ArrayArgument<kProducts>... arrays,
            const std::optional<std::vector<std::string>>& outputs) {
-            return self.evaluate(rest, origin, {cell_m, pixel_m, {arrays...}, outputs});
+            return self.evaluate(rest, origin,
+                                 {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs});
         },
         py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(), py::arg("cell_m") = none(),
-        py::arg("pixel_m") = none(), (py::arg(kProductTable[kProducts].identifier) = none())...,
-        py::arg("outputs") = none(), kEvaluateDoc.c_str());
+        py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(), py::arg("pixel_axis_m") = none(),
+        (py::arg(kProductTable[kProducts].identifier) = none())..., py::arg("outputs") = none(),
+        kEvaluateDoc.c_str());
 }
 
 }  // namespace

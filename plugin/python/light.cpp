@@ -1,5 +1,6 @@
 // The lighting on arrays: pelagic.Sky, pelagic.WaterBody and pelagic.shade.
 #include "plugin/light/light.h"
+#include "plugin/light/exposure.h"
 #include "plugin/python/light.h"
 
 #include <pybind11/numpy.h>
@@ -14,7 +15,6 @@
 #include <vector>
 
 #include "core/lighting/background.h"
-#include "core/lighting/tone.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/watch.h"
@@ -90,9 +90,16 @@ void add_sky(py::module_& module) {
         .def_property_readonly(
             "sky_irradiance", [](const PythonSky& self) { return tuple_of(self.sky->sky_irradiance); },
             "Of the sky without the sun, on a horizontal plane.")
-        .def_property_readonly(
-            "exposure", [](const PythonSky& self) { return exposure_for(*self.sky); },
-            "For pictures of this light: radiance · exposure = 0.18 is middle grey.")
+        .def(
+            "exposure",
+            [](const PythonSky& self, const Scene& scene, double stops) {
+                require_valid(scene);
+                return shot_exposure(scene, *self.sky, stops);
+            },
+            py::arg("scene"), py::arg("stops") = 0.0,
+            "For pictures of a scene in this light, which should be its own: radiance · exposure = 0.18 is middle "
+            "grey. Metered from the light and a mean sea in the scene's camera, at its keys where it has any; stops "
+            "brighter.")
         .def(
             "image", &image_of, py::arg("width"),
             "float32 (width/2, width, 3): the sky without the sun's disc as a lat-long picture, rows from the "

@@ -18,8 +18,8 @@ PROGRESS, CANCEL = "Callable[..., object] | None", "Cancel | Callable[[], bool] 
 PARAMETERS = {
     "progress": PROGRESS, "cancel": CANCEL, "rest": ARRAY, "xy": "ArrayLike", "directions": ARRAY, "to_eye": ARRAY,
     **{name: f"float | {ARRAY} | None" for name in ("cell_m", "pixel_m", "footprint_m")},
-    **{name: f"{ARRAY} | None" for name in ("out", "sun_layer", "sky_layer", "sea_layer", "foam_layer", "displacement",
-                                            "position", "velocity", "jacobian", "coverage")},
+    **{name: f"{ARRAY} | None" for name in ("cell_axis_m", "pixel_axis_m", "out", "sun_layer", "sky_layer", "sea_layer",
+                                            "foam_layer", "displacement", "position", "velocity", "jacobian", "coverage")},
 }
 # The same where a name means another thing in one place.
 PARAMETERS_OF = {("shade", name): ARRAY for name in ("normal", "slope_variance")} | {
@@ -28,7 +28,7 @@ PARAMETERS_OF = {("shade", name): ARRAY for name in ("normal", "slope_variance")
 # Results that are objects, dictionaries and tuples to pybind11, by the name after the last dot.
 RESULTS = {
     "patch": f"tuple[{ARRAY}, NDArray[np.int32]]", "grid_quads": "NDArray[np.int32]", "quads": "NDArray[np.int32]",
-    "rest_m": ARRAY, "cell_m": ARRAY, "pixel_m": ARRAY, "image": ARRAY, "radiance": ARRAY, "faces": "NDArray[np.int32]",
+    "rest_m": ARRAY, "cell_m": ARRAY, "pixel_m": ARRAY, "cell_axis_m": ARRAY, "pixel_axis_m": ARRAY, "image": ARRAY, "radiance": ARRAY, "faces": "NDArray[np.int32]",
     "evaluate": f"dict[str, {ARRAY}]", "heights": f"dict[str, {ARRAY}]", "shade": f"dict[str, {ARRAY}]",
     "render": "dict[str, NDArray[Any]]", "read_mesh": "dict[str, NDArray[Any]]", "at": f"tuple[dict[str, {ARRAY}], "
     f"list[dict[str, {ARRAY}]]]", "keys": "list[dict[str, Any]]", "presets": "list[dict[str, Any]]",

@@ -134,7 +134,7 @@ constexpr int kMostCells = 8192;  // as many as a view asks for at most
 struct PythonGrid {
     int columns = 0, rows = 0;
     glm::dvec2 origin_m{0.0};
-    py::array rest_m, cell_m, pixel_m;
+    py::array rest_m, cell_m, pixel_m, cell_axis_m, pixel_axis_m;
 };
 
 ProjectedGridSize checked_size(const std::optional<std::array<int, 2>>& size) {
@@ -163,7 +163,9 @@ PythonGrid grid_of(const PythonSea& sea, const View& view, const std::optional<s
             .origin_m = grid.origin_m,
             .rest_m = array_of<float>(std::move(grid.rest_m)),
             .cell_m = array_of<float>(std::move(grid.cell_m)),
-            .pixel_m = array_of<float>(std::move(grid.pixel_m))};
+            .pixel_m = array_of<float>(std::move(grid.pixel_m)),
+            .cell_axis_m = array_of<float>(std::move(grid.cell_axis_m)),
+            .pixel_axis_m = array_of<float>(std::move(grid.pixel_axis_m))};
 }
 
 // Whether the sea's ladder begins no coarser than the view's own grid would have it.
@@ -178,12 +180,14 @@ bool serves(const PythonSea& sea, const View& view) {
 }  // namespace
 
 void add_grids(py::module_& module, py::class_<PythonSea>& sea) {
-    py::class_<PythonGrid>(module, "ProjectedGrid",
-                           "The points at rest that a view shows, to the horizon: cells of about "
-                           "surface.cell_px pixels, by row from the innermost outwards.\n\n"
-                           "As a bake writes them: frame.evaluate(grid.rest_m, grid.origin_m, "
-                           "cell_m=grid.cell_m, pixel_m=grid.cell_m), since a mesh's vertices are its only "
-                           "samples. With pixel_m=grid.pixel_m instead normals are as fine as pixels.")
+    py::class_<PythonGrid>(
+        module, "ProjectedGrid",
+        "The points at rest that a view shows, to the horizon: cells of about "
+        "surface.cell_px pixels, by row from the innermost outwards.\n\n"
+        "As a bake writes them: frame.evaluate(grid.rest_m, grid.origin_m, "
+        "cell_m=grid.cell_m, cell_axis_m=grid.cell_axis_m, pixel_m=grid.cell_m, "
+        "pixel_axis_m=grid.cell_axis_m), since a mesh's vertices are its only samples. With "
+        "grid.pixel_m and grid.pixel_axis_m instead normals are as fine as pixels.")
         .def_readonly("columns", &PythonGrid::columns, "Quads a row.")
         .def_readonly("rows", &PythonGrid::rows, "Rows of quads.")
         .def_property_readonly(
@@ -192,10 +196,13 @@ void add_grids(py::module_& module, py::class_<PythonSea>& sea) {
             "(x, y) below the camera [m], in double precision: the points are relative to it.")
         .def_readonly("rest_m", &PythonGrid::rest_m,
                       "float32 ((columns+1)·(rows+1), 2) [m], columns fastest.")
-        .def_readonly("cell_m", &PythonGrid::cell_m,
-                      "float32, of each point: the distance to its neighbours [m].")
+        .def_readonly("cell_m", &PythonGrid::cell_m, "float32, of each point: its cell's short side [m].")
+        .def_readonly("cell_axis_m", &PythonGrid::cell_axis_m,
+                      "float32 (n, 2), of each point: its cell's long side, as a vector [m].")
         .def_readonly("pixel_m", &PythonGrid::pixel_m,
-                      "float32, of each point: what a pixel covers there [m].")
+                      "float32, of each point: what a pixel covers there across the view [m].")
+        .def_readonly("pixel_axis_m", &PythonGrid::pixel_axis_m,
+                      "float32 (n, 2), of each point: what a pixel covers along the view, as a vector [m].")
         .def_property_readonly(
             "quads", [](const PythonGrid& self) { return grid_quads(self.columns, self.rows); },
             "int32 (columns·rows, 4), made anew: grid_quads(columns, rows). They depend on the size alone.");

@@ -17,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/lighting/tone.h"
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
@@ -27,6 +26,7 @@
 #include "plugin/gpu/shader_variants.h"
 #include "plugin/gpu/sky_atlas.h"
 #include "plugin/gpu/uniforms.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
@@ -61,19 +61,18 @@ py::dict dict_of(const std::vector<Uniform>& uniforms) {
 
 struct GpuLight {
     explicit GpuLight(const Scene& scene) : made_from(canonical(scene, kFeeds)) {
-        const Sky sky = make_sky(scene);
+        sky = make_sky(scene);
         map_size = sky.map.size();
         uniforms = light_uniforms(sky, make_water(scene));
-        exposure = exposure_for(sky);
         atlas = sky_atlas(sky.map);
     }
     bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from; }
 
     static constexpr FeedSet kFeeds = feeds(Feed::Light, Feed::Water);
     std::string made_from;
+    Sky sky;
     int map_size = 0;
     std::vector<Uniform> uniforms;
-    float exposure = 1.0f;
     SkyAtlas atlas;
 };
 
@@ -205,7 +204,7 @@ class GpuSea {
             options.cell_px = *cell_px;
         }
         ProjectedGrid grid;
-        std::vector<glm::vec4> vertices;
+        std::vector<std::array<float, 8>> vertices;
         {
             const OthersMayRun others_may_run;
             const ProjectedGridNeeds needs = projected_grid_needs(view, options);
@@ -215,7 +214,9 @@ class GpuSea {
             if (packed_.layout()->pixels().footprints_m.size() > 1) keep_to_rungs(grid, needs);
             vertices.resize(grid.rest_m.size());
             for (std::size_t i = 0; i < vertices.size(); ++i)
-                vertices[i] = glm::vec4(grid.rest_m[i].x, grid.rest_m[i].y, grid.cell_m[i], grid.pixel_m[i]);
+                vertices[i] = {grid.rest_m[i].x,       grid.rest_m[i].y,      grid.cell_m[i],
+                               grid.cell_axis_m[i].x,  grid.cell_axis_m[i].y, grid.pixel_m[i],
+                               grid.pixel_axis_m[i].x, grid.pixel_axis_m[i].y};
         }
         return {{.columns = grid.columns, .rows = grid.rows},
                 grid.origin_m,
@@ -289,9 +290,13 @@ void add_gpu_light(py::module_& module) {
             },
             "The texture sky_map: float32 (height, width, 4), all its levels in one picture. Read-only.")
         .def(
-            "exposure", [](const GpuLight& self, float stops) { return self.exposure * std::exp2(stops); },
-            py::arg("stops") = 0.0f,
-            "The uniform exposure, of both shaders: the light's own, and so many stops more.");
+            "exposure",
+            [](const GpuLight& self, const Scene& scene, double stops) {
+                require_valid(scene);
+                return shot_exposure(scene, self.sky, stops);
+            },
+            py::arg("scene"), py::arg("stops") = 0.0,
+            "The uniform exposure, of both shaders: that of a scene that this light serves, as Sky.exposure() has it.");
 }
 
 void add_gpu_grid(py::module_& module) {
@@ -302,8 +307,9 @@ void add_gpu_grid(py::module_& module) {
         .def_property_readonly(
             "origin_m", [](const GpuGrid& self) { return py::make_tuple(self.origin_m.x, self.origin_m.y); },
             "(x, y) [m], in double precision: vertices are relative to it.")
-        .def_readonly("vertices", &GpuGrid::vertices,
-                      "float32 (n, 4): the attributes rest_in (the first two) [m], cell_in and pixel_in [m].")
+        .def_readonly(
+            "vertices", &GpuGrid::vertices,
+            "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
         .def_property_readonly("triangles", &triangles_of,
                                "uint32 (m, 3), made anew; the nearest first. They depend on the size alone.");
 }

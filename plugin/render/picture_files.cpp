@@ -19,6 +19,7 @@
 #include "plugin/exr/exr.h"
 #include "plugin/exr/read.h"
 #include "plugin/files/files.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/png/png.h"
 
@@ -68,7 +69,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"cameraForward", packed(glm::vec3(view.forward))},
         {"horizontalFieldOfView_deg", view.fov_deg()},
         {"sunDirection", packed(context.sky.sun_direction)},
-        {"exposure", static_cast<double>(exposure_for(context.sky, context.exposure_stops))},
+        {"exposure", static_cast<double>(shot_exposure(context.scene, context.sky, context.exposure_stops))},
         {"samplesPerPixel", context.options.samples * context.options.samples},
         {"fingerprint", context.made_of},
         {"instructionSet", std::string(instruction_set())},
@@ -99,18 +100,20 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
     const auto digit = [](auto value) { return std::to_string(static_cast<int>(value)); };
     // What the plan says of a view is the same whichever frames it is for.
     const Plan plan = picture_plan(source.scene, std::array{source.scene.shot.first_frame});
-    source_ = Fingerprint()
-                  .add(source.drawn_by_gpu ? "drawn picture" : "picture")
-                  .add("revision " + std::to_string(kPictureRevision))
-                  .add(source.scene.shot.name)  // a picture says its own file's name
-                  .add(canonical(portable(source.scene), kFeedsBesideTheView))
-                  .add(plan_text(plan, 0))
-                  .add(source.sky_content)
-                  .add("samples " + std::to_string(source.options.samples) + " terms " + digit(lighting.sun) +
-                       digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + " sky " +
-                       digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
-                  .add("exposure " + number_text(source.exposure_stops))
-                  .text();
+    Fingerprint hash;
+    hash.add(source.drawn_by_gpu ? "drawn picture" : "picture")
+        .add("revision " + std::to_string(kPictureRevision))
+        .add(source.scene.shot.name)  // a picture says its own file's name
+        .add(canonical(portable(source.scene), kFeedsBesideTheView))
+        .add(plan_text(plan, 0))
+        .add(source.sky_content)
+        .add("samples " + std::to_string(source.options.samples) + " terms " + digit(lighting.sun) +
+             digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + " sky " +
+             digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
+        .add("exposure " + number_text(source.exposure_stops));
+    for (const View& view : metered_views(source.scene))
+        hash.add(pose_text(view));  // what the exposure comes from
+    source_ = hash.text();
 }
 
 std::string PictureFingerprint::of(int frame) const {
@@ -198,14 +201,15 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
 }
 
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame) {
-    const float exposure = exposure_for(context.sky, context.exposure_stops);
+    const float exposure = shot_exposure(context.scene, context.sky, context.exposure_stops);
     std::vector<std::uint8_t> bytes(picture.layers.size() * 3);
     tbb::parallel_for(0, picture.resolution.y, [&](int row) {
         const auto width = static_cast<std::size_t>(picture.resolution.x);
-        for (std::size_t i = width * row; i < width * (row + std::size_t{1}); ++i) {
-            const glm::vec3 colour = display_colour(radiance_of(picture.layers[i]), exposure);
-            for (int c = 0; c < 3; ++c)
-                bytes[3 * i + c] = static_cast<std::uint8_t>(std::lround(255.0f * colour[c]));
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t i = width * row + x;
+            const auto shown =
+                display_bytes(radiance_of(picture.layers[i]), exposure, {static_cast<int>(x), row});
+            std::copy(shown.begin(), shown.end(), bytes.begin() + static_cast<std::ptrdiff_t>(3 * i));
         }
     });
     return png::encode(

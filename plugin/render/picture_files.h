@@ -67,7 +67,7 @@ std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const 
 // EXR: scan lines; R, G, B and the layers sun.R … foam.B, in the sky's units; halves where no value that the
 // light can give is beyond their range, floats for the others; what it was made of and a checksum of the whole file in
 // the header. The layers add up to R, G, B.
-// PNG: display_colour() of the whole, at the light's own exposure and so many stops more.
+// PNG: display_bytes() of the whole, at the shot's exposure (plugin/light/exposure.h) and so many stops more.
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame);
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame);
 

@@ -51,6 +51,7 @@ struct Batch {
     std::vector<std::size_t> sea;          // which samples show the sea, rising
     std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
     std::vector<T> pixel_m;
+    std::vector<glm::vec<2, T>> pixel_axis_m;
     std::vector<glm::vec3> to_eye;
     Values answers;
     std::vector<SeaPoint> points;
@@ -140,6 +141,7 @@ class RendererOf final : public Impl {
         const std::size_t count = grid_.rest_m.size();
         rest_.assign(grid_.rest_m.begin(), grid_.rest_m.end());
         cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());
+        cell_axis_m_.assign(grid_.cell_axis_m.begin(), grid_.cell_axis_m.end());
         position_.resize(count);
         Results<T> results;
         results.set(Product::Position, {position_.data()});
@@ -147,7 +149,8 @@ class RendererOf final : public Impl {
                  Points<T>{.origin_m = grid_.origin_m,
                            .count = count,
                            .rest_m = {rest_.data()},
-                           .cell_m = {cell_m_.data()}},
+                           .cell_m = {cell_m_.data()},
+                           .cell_axis_m = {cell_axis_m_.data()}},
                  results);
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
@@ -216,7 +219,8 @@ class RendererOf final : public Impl {
                     Points<T>{.origin_m = grid_.origin_m,
                               .count = count,
                               .rest_m = {batch_.rest.data()},
-                              .pixel_m = {batch_.pixel_m.data()}},
+                              .pixel_m = {batch_.pixel_m.data()},
+                              .pixel_axis_m = {batch_.pixel_axis_m.data()}},
                     wanted, batch_.answers);
         const std::vector<glm::vec3>& normal = batch_.answers.vectors(Product::Normal);
         const std::vector<glm::vec3>& slope_variance = batch_.answers.vectors(Product::SlopeVariance);
@@ -244,12 +248,13 @@ class RendererOf final : public Impl {
         const std::size_t count = batch_.sea.size();
         batch_.rest.resize(count);
         batch_.pixel_m.resize(count);
+        batch_.pixel_axis_m.resize(count);
         batch_.to_eye.resize(count);
         const glm::dvec3 eye = view_.position_m - glm::dvec3(grid_.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
             const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, batch_.sea[i]));
-            glm::dvec2 rest(0.0);
+            glm::dvec2 rest(0.0), pixel_axis_m(0.0);
             glm::dvec3 position(0.0);
             double pixel_m = 0.0;
             for (int corner = 0; corner < 3; ++corner) {
@@ -257,8 +262,10 @@ class RendererOf final : public Impl {
                 rest += weights[corner] * glm::dvec2(rest_[vertex]);
                 position += weights[corner] * glm::dvec3(position_[vertex]);
                 pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
+                pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
+            batch_.pixel_axis_m[i] = glm::vec<2, T>(pixel_axis_m);
             // Rounding must not reach the rung below the frame's first.
             batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
             const glm::dvec3 way = eye - position;
@@ -310,6 +317,7 @@ class RendererOf final : public Impl {
     std::vector<std::uint32_t> triangles_;  // vertex indices
     std::vector<glm::vec<2, T>> rest_;      // the grid's own, in T
     std::vector<T> cell_m_;
+    std::vector<glm::vec<2, T>> cell_axis_m_;
     std::vector<glm::vec<3, T>> position_;
     std::vector<glm::dvec4> clip_;
     Rasteriser raster_;
@@ -377,14 +385,14 @@ namespace {
 // and in triangles. Of the rasteriser's pieces of triangles, which are fewer where most lie outside the picture, and
 // need more room while their vector grows, as many as there are triangles.
 template <class T>
-constexpr std::size_t kPointBytes = 2 * (sizeof(glm::vec2) + 2 * sizeof(float)) + sizeof(double) +
-                                    6 * sizeof(std::uint32_t) + 6 * sizeof(T) + sizeof(glm::dvec4) +
+constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(float)) + 2 * sizeof(double) +
+                                    6 * sizeof(std::uint32_t) + 8 * sizeof(T) + sizeof(glm::dvec4) +
                                     2 * (Rasteriser::kPieceBytes + sizeof(std::uint32_t));
 
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
-                                     3 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) +
+                                     5 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) +
                                      7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
 
 }  // namespace

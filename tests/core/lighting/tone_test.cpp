@@ -1,4 +1,4 @@
-// Tone mapping, the exposure for a light, and the background.
+// Tone mapping, dither, the exposure for a brightness, and the background.
 #include "core/lighting/tone.h"
 
 #include <gtest/gtest.h>
@@ -66,32 +66,45 @@ TEST(Tone, KeepsTheHue) {
     }
 }
 
-Sky sky_of(float radiance) {
-    Sky sky;
-    sky.sky_irradiance = glm::vec3(radiance * static_cast<float>(kPi));
-    return sky;
-}
-
-// A brighter light looks brighter, but less than proportionally. The night is dark, and nothing is infinite.
-TEST(Exposure, FollowsTheLightPartOfTheWay) {
-    float exposure_before = std::numeric_limits<float>::infinity(), shown_before = 0.0f;
-    for (float radiance = 1e-2f; radiance < 1e3f; radiance *= 1.5f) {
-        const float exposure = exposure_for(sky_of(radiance));
+// A brighter light looks brighter, but far less than it is: from noon to deep dusk, 18 stops, by two and a third.
+TEST(Exposure, FollowsTheLightALittle) {
+    double exposure_before = std::numeric_limits<double>::infinity(), shown_before = 0.0;
+    for (double mean = 1e-5; mean < 1e3; mean *= 1.5) {
+        const double exposure = exposure_for(mean);
         EXPECT_LT(exposure, exposure_before);
-        EXPECT_GT(exposure * radiance, shown_before);
+        EXPECT_GT(exposure * mean, shown_before);
         exposure_before = exposure;
-        shown_before = exposure * radiance;
+        shown_before = exposure * mean;
     }
-    const float night = exposure_for(Sky{});
-    EXPECT_TRUE(std::isfinite(night) && night > 0.0f);
-    EXPECT_EQ(night, exposure_for(sky_of(1e-6f)));
+    EXPECT_NEAR(std::log2(4.0 * exposure_for(4.0) / (4.0 * 0x1p-18 * exposure_for(4.0 * 0x1p-18))), 2.34,
+                0.01);
 }
 
-TEST(Exposure, StopsAreFactorsOfTwo) {
-    const Sky sky = sky_of(4.0f);
-    EXPECT_FLOAT_EQ(exposure_for(sky, 3.0), 8.0f * exposure_for(sky));
-    EXPECT_FLOAT_EQ(exposure_for(sky, -1.0), 0.5f * exposure_for(sky));
-    EXPECT_EQ(exposure_for(sky, 0.0), exposure_for(sky));
+// 8-bit values have the mean of the light, where rounding would show a step; the ends stay clean. The same pixel
+// always rounds the same way, and neighbours don't.
+TEST(Dither, KeepsTheMeanAndTheEnds) {
+    constexpr int kSide = 128;
+    for (const float light : {0.002f, 0.0107f, 0.18f, 0.5f}) {
+        const glm::vec3 shown = display_colour(glm::vec3(light), 1.0f);
+        double sum = 0.0;
+        int least = 255, most = 0;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const int value = display_bytes(glm::vec3(light), 1.0f, {x, y})[1];
+                sum += value;
+                least = std::min(least, value);
+                most = std::max(most, value);
+            }
+        // 4 deviations of the mean of so many.
+        EXPECT_NEAR(sum / (kSide * kSide), 255.0 * static_cast<double>(shown.y), 4.0 * 0.5 / kSide) << light;
+        EXPECT_EQ(most - least, 1);
+    }
+    for (int x = 0; x < 1000; ++x) {
+        EXPECT_EQ(display_bytes(glm::vec3(0.0f), 1.0f, {x, 3})[0], 0);
+        EXPECT_EQ(display_bytes(glm::vec3(1e30f), 1.0f, {x, 3})[0], 255);
+        EXPECT_EQ(dither({x, 7}), dither({x, 7}));
+        EXPECT_NE(dither({x, 7}), dither({x + 1, 7}));
+    }
 }
 
 // Summed over a picture's pixels the disc has its solid angle π ρ², for pixels much smaller or larger than

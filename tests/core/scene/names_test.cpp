@@ -24,6 +24,7 @@ TEST(Names, AreTheShotFilesWords) {
     expect_words<SpreadingKind>({"hasselmann", "donelan-banner", "cosine", "elfouhaily"});
     expect_words<WaveModel>({"fft", "trochoid"});
     expect_words<SurfaceKind>({"patch", "projected-grid", "near-far", "cage", "planet"});
+    expect_words<CameraInterpolation>({"linear", "smooth"});
     expect_words<WaterType>({"ocean", "coastal", "turbid"});
     expect_words<QualityLevel>({"draft", "preview", "final", "reference"});
     expect_words<MeshFormat>({"usda", "usdc", "none"});

@@ -304,10 +304,13 @@ TEST(ProjectedGrid, FootprintsAreDistancesAndPixels) {
             const double largest_m =
                 std::max({glm::length(at(row - 1, column) - p), glm::length(at(row + 1, column) - p),
                           glm::length(at(row, column - 1) - p), glm::length(at(row, column + 1) - p)});
-            EXPECT_NEAR(grid.cell_m[row * stride + column] / largest_m, 1.0, 1e-4);
+            const glm::dvec2 cell_axis_m(grid.cell_axis_m[row * stride + column]);
+            EXPECT_NEAR(glm::length(cell_axis_m) / largest_m, 1.0, 1e-4);
+            EXPECT_LE(grid.cell_m[row * stride + column], 1.0001 * largest_m);
             // Half a footprint outwards and half inwards span a pixel on the screen; off the axis less, but
             // more than half a pixel within this lens.
-            const double half_m = 0.5 * static_cast<double>(grid.pixel_m[row * stride + column]);
+            const glm::dvec2 along_m = 0.5 * glm::dvec2(grid.pixel_axis_m[row * stride + column]);
+            const double half_m = glm::length(along_m);
             const auto screen = [&](glm::dvec2 q) {
                 const glm::dvec3 d(q, -6.0);
                 return glm::dvec2(glm::dot(d, view.right), glm::dot(d, view.up)) /
@@ -316,9 +319,14 @@ TEST(ProjectedGrid, FootprintsAreDistancesAndPixels) {
             if (half_m > 0.1 * glm::length(p)) continue;
             if (std::abs(screen(p).x) > 640.0 || std::abs(screen(p).y) > 360.0) continue;
             const glm::dvec2 out = glm::normalize(p);
-            const double px = glm::length(screen(p + half_m * out) - screen(p - half_m * out));
-            EXPECT_GT(px, 0.95);
-            EXPECT_LT(px, 1.2);
+            EXPECT_NEAR(glm::dot(along_m, out) / half_m, 1.0, 1e-6);
+            const glm::dvec2 across_m =
+                0.5 * static_cast<double>(grid.pixel_m[row * stride + column]) * glm::dvec2(-out.y, out.x);
+            for (const glm::dvec2 side_m : {along_m, across_m}) {
+                const double px = glm::length(screen(p + side_m) - screen(p - side_m));
+                EXPECT_GT(px, 0.95);
+                EXPECT_LT(px, 1.2);
+            }
         }
 }
 

@@ -38,7 +38,9 @@ Points<float> points_of_grid(const ProjectedGrid& grid) {
             .count = grid.rest_m.size(),
             .rest_m = {grid.rest_m.data()},
             .cell_m = {grid.cell_m.data()},
-            .pixel_m = {grid.pixel_m.data()}};
+            .pixel_m = {grid.pixel_m.data()},
+            .cell_axis_m = {grid.cell_axis_m.data()},
+            .pixel_axis_m = {grid.pixel_axis_m.data()}};
 }
 
 TEST(ViewQuery, DoublesFromTheFinestUpToWhereNothingPasses) {

@@ -59,7 +59,7 @@ TEST(MachineMemory, IsTheLeastOfAGroupAndThoseAboveIt) {
     system.write("process/cgroup", "0::/batch/job/step");
     system.write("groups/batch/job/step/memory.max", "max");
     system.write("groups/batch/job/memory.max", std::to_string(700 * kMebi));
-    system.write("groups/farm/memory.max", std::to_string(900 * kMebi));
+    system.write("groups/batch/memory.max", std::to_string(900 * kMebi));
     EXPECT_EQ(system.limit().bytes, 700 * kMebi);
     EXPECT_NE(system.limit().whose.find("control group"), std::string::npos);
     system.write("groups/batch/job/step/memory.max", std::to_string(64 * kMebi));

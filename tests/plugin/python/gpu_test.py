@@ -164,8 +164,10 @@ class Lights(unittest.TestCase):
             np.testing.assert_allclose(atlas[whole - 2 * size:whole - size, whole:whole + size, :3], fine, rtol=1e-4)
 
     def test_exposure_is_in_stops(self):
-        light = pelagic.GpuLight(pelagic.Scene())
-        self.assertAlmostEqual(light.exposure(2.0) / light.exposure(), 4.0, places=5)
+        scene = pelagic.Scene()
+        light = pelagic.GpuLight(scene)
+        self.assertAlmostEqual(light.exposure(scene, 2.0) / light.exposure(scene), 4.0, places=5)
+        self.assertEqual(light.exposure(scene), pelagic.Sky(scene).exposure(scene))
 
 
 if __name__ == "__main__":

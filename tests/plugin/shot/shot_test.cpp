@@ -376,8 +376,7 @@ TEST(Shot, WhatIsNotBuiltYetIsRefused) {
                    "\"patch\"");
     expect_refused("[output]\nvolumes = [\"level-set\"]\n",
                    "2:12: output.volumes[0] = \"level-set\": is not built yet", "[]");
-    for (const auto& [table, key] : {std::pair{"surface", "earth_curvature"},
-                                     {"surface", "cage_file"},
+    for (const auto& [table, key] : {std::pair{"surface", "cage_file"},
                                      {"surface", "cage_level"},
                                      {"quality", "max_error"},
                                      {"quality", "frame_ms"}}) {

@@ -1,0 +1,23 @@
+// The exposure of a shot's pictures on a screen, metered as a camera would.
+#pragma once
+
+#include <vector>
+
+#include "core/lighting/sky.h"
+#include "core/scene/scene.h"
+#include "core/surface/view.h"
+
+namespace pelagic {
+
+// The views that are metered: the shot's camera, or where it moves up to 16 of its keys, evenly chosen. They depend on
+// the shot alone, not on the frames that are asked for, so that a shot has one exposure: a camera that turns does not
+// change the sea's brightness.
+std::vector<View> metered_views(const Scene& scene);
+
+// The exposure for display_colour() (core/lighting/tone.h), brighter by `stops`: a factor of 2 for each. > 0 and
+// finite. Metered is the logarithmic mean of the luminance in those views: the sky without the sun's disc, and a sea
+// that is flat in the mean with the slopes that Cox and Munk 1954 saw at the shot's wind. So nothing has to be
+// rendered. `sky` is the shot's own (make_sky()).
+float shot_exposure(const Scene& scene, const Sky& sky, double stops = 0.0);
+
+}  // namespace pelagic

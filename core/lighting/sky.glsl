@@ -35,8 +35,7 @@ float effective_fresnel(vec3 v, vec3 variance) {
     float sine2 = v.x * v.x + v.y * v.y;
     float sigma_v = sqrt(variance_towards(v, variance) / max(sine2, 1.0e-12f));
     if (!kExactFresnel) return fresnel_effective_paper(v.z, sigma_v);
-    VisibleSlopes seen = visible_slopes(v, variance);
-    return fresnel_effective_exact(v.z, sigma_v, dot(seen.along, seen.along), dot(seen.across, seen.across));
+    return fresnel_effective_exact(v.z, sigma_v, max(variance.x + variance.y - square(sigma_v), 0.0f));
 }
 
 // Fresnel's term of one facet, the one that the effective term averages.
@@ -56,7 +55,7 @@ vec3 sky_at_mean_normal(vec3 to_eye, SlopeFrame frame) {
 
 // What a ray that a facet mirrors onto the sea meets there: the sea seen along its mean plane, in the same
 // azimuth, since such rays are nearly level. Here its reflection of the sky: F̄ of that view, and one lookup where
-// the facets mirror it that are seen so. Their slope towards the ray is 1.1 σ on average, weighted by Fresnel's
+// the facets mirror it that are seen so. Their slope towards the ray is 1.2 σ on average, weighted by Fresnel's
 // term; reflections are twice as high, and spread by twice the slopes' deviation there, 0.6 σ, and, across, by
 // twice σ times the cosine of incidence, 1.4 σ_v.
 vec3 grazing_view(vec3 v) {
@@ -67,7 +66,7 @@ vec3 grazing_view(vec3 v) {
 vec3 sky_seen_again(vec3 v, SlopeFrame frame) {
     vec3 grazing = grazing_view(v);
     float variance = max(variance_towards(grazing, frame.variance), 0.0f);
-    float slope = 1.1f * sqrt(variance);
+    float slope = 1.2f * sqrt(variance);
     float upright = 1.0f / (1.0f + square(slope));
     vec3 r = grazing * (upright * (square(slope) - 1.0f)) + vec3(0.0f, 0.0f, 2.0f * slope * upright);
     float level = sky_level(3.4f * variance * sqrt(frame.variance.x + frame.variance.y - min(variance, frame.variance.x + frame.variance.y)));
@@ -163,8 +162,14 @@ vec3 sky_integral(vec3 to_eye, SlopeFrame frame) {
     return (sum + again * sky_seen_again(v, frame)) / total;
 }
 
+// What the sea shows of a uniform sky of radiance 1, by one and two reflections. The rest of it is the water's.
+float shown_of_uniform_sky(vec3 v, vec3 variance) {
+    float reflected = effective_fresnel(v, variance);
+    return reflected * (1.0f - reflected_again(v, variance) * (1.0f - effective_fresnel(grazing_view(v), variance)));
+}
+
 vec3 sky_reflection(vec3 to_eye, SlopeFrame frame) {
     if (kSkyLookups == 0) return sky_integral(to_eye, frame);
     if (kSkyLookups == 9) return sky_of_nine(to_eye, frame);
-    return effective_fresnel(into_frame(frame, to_eye), frame.variance) * sky_at_mean_normal(to_eye, frame);
+    return shown_of_uniform_sky(into_frame(frame, to_eye), frame.variance) * sky_at_mean_normal(to_eye, frame);
 }

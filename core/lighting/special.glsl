@@ -66,7 +66,7 @@ float decay_mean(float x) {
 // What the eye sees of normal slopes x (slopes.glsl), k ≥ 0, with the normal density φ and its integral Φ. The
 // mean is `first`, the second moment is 1 + `second`.
 //
-// Smith's half has the density (k + x)₊ φ(x)/whole, the nested half (k + x)/k (φ(x) − φ(x + 2k))₊: the noncentral
+// Smith's part has the density (k + x)₊ φ(x)/whole, the nested part (k + x)/k (φ(x) − φ(x + 2k))₊: the noncentral
 // χ distribution of three degrees of freedom.
 struct VisibleMoments {
     float whole;  // kΦ + φ

@@ -105,9 +105,8 @@ double reflected(dvec3 v, dvec3 l, dvec3 s) {
         -std::expm1(-y) / y /
         (oracle::kPi * width * (-std::expm1(-y) + std::exp(factor.distance(half_slope(v, l)) / width - y))) /
         factor.root_of_determinant();
-    const double part =
-        kSolidAngle * density /
-        (4.0 * std::pow(h.z, 4) * v.z * (1.0 + oracle::lambda(v, sum) + oracle::lambda(l, sum)));
+    const double w = dot(v, h) / h.z;
+    const double part = kSolidAngle * density * oracle::lit(w, w, v, l, sum) / (4.0 * std::pow(h.z, 4));
     const double rise = std::clamp(l.z / kRadius, 0.0, 1.0);
     return std::min(part, 1.0) * rise * rise * (3.0 - 2.0 * rise) * oracle::fresnel(dot(v, h));
 }
@@ -165,9 +164,9 @@ TEST(Sun, WideWavesSeeTheAverageOverTheDisc) {
                         const dvec3 half = normalize(v + d);
                         const double p = std::exp(-0.5 * factor.distance(half_slope(v, d))) /
                                          (2.0 * oracle::kPi * factor.root_of_determinant());
-                        sum += p * oracle::fresnel(dot(v, half)) /
-                               (4.0 * std::pow(half.z, 4) * v.z *
-                                (1.0 + oracle::lambda(v, s) + oracle::lambda(d, s)));
+                        const double w = dot(v, half) / half.z;
+                        sum += p * oracle::fresnel(dot(v, half)) * oracle::lit(w, w, v, d, s) /
+                               (4.0 * std::pow(half.z, 4));
                     }
                 const double expected = kSolidAngle * sum / (kSteps * kSteps);
                 const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), vec3(s));
@@ -209,6 +208,24 @@ TEST(Sun, MirrorShowsTheDisc) {
         const double expected = kSolidAngle * oracle::fresnel(std::sin(height));
         EXPECT_NEAR(sum, expected, 0.03 * expected) << elevation;
     }
+}
+
+// Reciprocity: exchanging eye and sun changes the radiance by the ratio of their cosines. Where the peak isn't
+// limited to the sun's own radiance, and both are above the disc's rise.
+TEST(Sun, EyeAndSunMayBeExchanged) {
+    Optics optics;
+    Inputs inputs(13);
+    int bright = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const vec3 v = inputs.direction(0.01), l = inputs.direction(0.01),
+                   s = inputs.variance(0.05, 0.5, 0.8);
+        const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), s);
+        const float there = v.z * optics.sun_reflection(v, l, frame, vec3(1.0f), float(kRadius)).x,
+                    back = l.z * optics.sun_reflection(l, v, frame, vec3(1.0f), float(kRadius)).x;
+        ASSERT_NEAR(there, back, 1e-4f * there + 1e-9f) << i;
+        bright += there > 1e-6f;
+    }
+    EXPECT_GT(bright, 1000);
 }
 
 // No facet is brighter than the sun itself, for any waves.

@@ -41,9 +41,9 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, float cover
     float again = reflected * reflected_again(v, frame.variance);
     vec3 level = grazing_view(v);
     if (kSun) {
-        terms.sun = sun_reflection(to_eye, light.sun_direction, frame, light.sun_radiance, light.sun_angular_radius);
+        terms.sun = sun_seen_from(v, light.sun_direction, frame, light.sun_radiance, light.sun_angular_radius);
         if (again > 1.0e-5f) {
-            terms.sun += again * sun_reflection(out_of_frame(frame, level), light.sun_direction, frame,
+            terms.sun += again * sun_seen_from(level, light.sun_direction, frame,
                                                 light.sun_radiance, light.sun_angular_radius);
         }
         terms.sun *= clear;

@@ -41,8 +41,8 @@ double foam(dvec3 v, dvec3 l, dvec3 waves) {
                           spread * std::exp(-0.5 * x * x) / std::sqrt(2.0 * oracle::kPi);
     const double up = 1.0 / std::sqrt(1.0 + dot(mean, mean) + dot(across, across) + dot(along, along));
     const double w = v.z - mean.x * v.x - mean.y * v.y;
-    const double sun = oracle::kPi * kRadius * kRadius * facing * up *
-                       oracle::lit(w, facing, v, l, s) / oracle::visible(w, v, s);
+    const double sun = oracle::kPi * kRadius * kRadius * facing * up * oracle::lit(w, facing, v, l, s) /
+                       oracle::visible(w, v, s);
     return (1e5 * sun + 0.5 + 0.5 * up) / oracle::kPi;
 }
 

@@ -254,7 +254,7 @@ double over_the_disc(double elevation, double view, double azimuth, dvec3 s) {
     const dvec3 v(-std::cos(view), 0.0, std::sin(view));
     const oracle::Factor factor(s);
     constexpr int kSteps = 120;
-    const double step = 2.0 * kRadius / kSteps, lambda_v = oracle::lambda(v, s);
+    const double step = 2.0 * kRadius / kSteps;
     double sum = 0.0;
     for (int j = 0; j < kSteps; ++j) {
         const double up = (j + 0.5) * step - kRadius, e = elevation + up;
@@ -266,9 +266,9 @@ double over_the_disc(double elevation, double view, double azimuth, dvec3 s) {
             const dvec3 half = normalize(v + d);
             const double distance = factor.distance(half_slope(v, d));
             if (distance > 100.0) continue;
-            sum += std::exp(-0.5 * distance) * oracle::fresnel(dot(v, half)) /
-                   (2.0 * oracle::kPi * factor.root_of_determinant() * 4.0 * std::pow(half.z, 4) * v.z *
-                    (1.0 + lambda_v + oracle::lambda(d, s)));
+            const double w = dot(v, half) / half.z;
+            sum += std::exp(-0.5 * distance) * oracle::fresnel(dot(v, half)) * oracle::lit(w, w, v, d, s) /
+                   (2.0 * oracle::kPi * factor.root_of_determinant() * 4.0 * std::pow(half.z, 4));
         }
     }
     return sum * step * step;

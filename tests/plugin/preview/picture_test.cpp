@@ -57,6 +57,12 @@ TEST(PreviewsPicture, IsTheCpusFromAPlaneFarFromTheOrigin) {
     scene.sea.wind_speed_mps = 16.0;
     compare_frame("from a plane", scene);
 }
+// Haze, the horizon's dip, and the sky as it looks from there.
+TEST(PreviewsPicture, IsTheCpusFromTheStratosphere) {
+    Scene scene = scene_of({0.0, 0.0, 20e3}, {0.0, 30e3, 15e3});
+    scene.light.turbidity = 6.0;
+    compare_frame("from 20 km", scene);
+}
 TEST(PreviewsPicture, IsTheCpusOfTrains) {
     Scene scene = scene_of({0.0, -60.0, 12.0}, {0.0, 0.0, 2.0});
     scene.waves.model = WaveModel::Trochoid;

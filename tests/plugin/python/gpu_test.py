@@ -84,7 +84,7 @@ class Seas(unittest.TestCase):
             self.assertNotIn("#version", vertex + fragment)
             self.assertIn("host_colour(", fragment)
         text = "".join(shaders["sea"])
-        for name in (*self.sea.uniforms, *light.uniforms, "exposure", "clip_from_grid", "view_centre", "sky_map", "SeaTables",
+        for name in (*self.sea.uniforms, *light.uniforms, *light.air(2.0)[0], "exposure", "clip_from_grid", "view_centre", "sky_map", "SeaTables",
                      "rest_in", "cell_in", "pixel_in"):
             self.assertIn(name, text)
         self.assertIn("farthest", shaders["sky"][0])
@@ -130,10 +130,23 @@ class Seas(unittest.TestCase):
 
 
 class Grids(unittest.TestCase):
+    def test_air_is_that_before_an_eye(self):
+        light = pelagic.GpuLight(pelagic.Scene())
+        uniforms, table = light.air(100.0)
+        self.assertEqual((uniforms["eye_height_m"], table.dtype, table.shape[2]), (100.0, np.float32, 4))
+        self.assertTrue(np.isfinite(table).all() and (table[0] != 0.0).any())
+        none = light.air(None)[1]
+        self.assertTrue((none[:48] == 0.0).all() and (none[48:] != 0.0).any())
+        with self.assertRaises(ValueError):
+            light.air(float("nan"))
+
     def test_is_the_seas_projected_grid(self):
         scene = small_scene()
         own = pelagic.Sea(scene, views=[view()]).projected_grid(view())
-        grid = pelagic.GpuSea(scene).grid(view())
+        sea = pelagic.GpuSea(scene)
+        grid = sea.grid(view(), on_earth=False)
+        self.assertEqual(grid.curvature_per_m, 0.0)
+        self.assertAlmostEqual(sea.grid(view()).curvature_per_m * 6371e3, 1.0)
         self.assertEqual((grid.size, grid.origin_m), ((own.columns, own.rows), (7.0, -3.0)))
         np.testing.assert_array_equal(grid.vertices[:, :2], own.rest_m)
         self.assertEqual((grid.triangles.dtype, len(grid.triangles)), (np.uint32, 2 * own.columns * own.rows))

@@ -289,7 +289,12 @@ class Atmosphere::Tables {
         if (radius > top) {
             const double across = std::cos(elevation), up = std::sin(elevation);
             const double inside2 = top * top - radius * radius * across * across;
-            const double empty = inside2 > 0.0 && up < 0.0 ? -radius * up - std::sqrt(inside2) : length;
+            if (!(inside2 > 0.0 && up < 0.0)) {  // nothing but space
+                Ray none;
+                none.passed.fill(1.0);
+                return none;
+            }
+            const double empty = -radius * up - std::sqrt(inside2);
             start = turn_at(radius, across, up, empty);
             elevation =
                 std::atan2(radius * up + empty, radius * across);  // at the place where it enters the air

@@ -31,15 +31,15 @@ struct EarthPoint {
 template <class T>
 inline EarthPoint<T> on_earth(T x, T y, T z, T curvature) {
     const EarthTurn<T> turn = earth_turn(x, y, curvature);
-    const T out = turn.sine * (T(1) + z * curvature);
+    const T outwards = turn.sine * (T(1) + z * curvature);
     const T drop = T(0.5) * curvature * (x * x + y * y) * turn.versed;
-    return EarthPoint<T>(x * out, y * out, z * (T(1) - T(0.5) * turn.versed * turn.angle2) - drop);
+    return EarthPoint<T>(x * outwards, y * outwards, z * (T(1) - T(0.5) * turn.versed * turn.angle2) - drop);
 }
 
 // The vertical there.
 template <class T>
 inline EarthPoint<T> earth_up(T x, T y, T curvature) {
     const EarthTurn<T> turn = earth_turn(x, y, curvature);
-    const T out = turn.sine * curvature;
-    return EarthPoint<T>(x * out, y * out, T(1) - T(0.5) * turn.versed * turn.angle2);
+    const T outwards = turn.sine * curvature;
+    return EarthPoint<T>(x * outwards, y * outwards, T(1) - T(0.5) * turn.versed * turn.angle2);
 }

@@ -190,6 +190,10 @@ TEST(Air, IsFiniteEverywhere) {
         const Sky sky = daylight_sky({.sun_elevation_deg = sun_deg, .turbidity = 10.0}, 16);
         for (const double height_m : {-1e3, 0.0, 1e-9, 0.5, 99999.0, 100001.0, 400e3, 1e9, 1e15}) {
             const Air air = sky.air->seen_from(height_m);
+            for (int i = 0; i <= 64; ++i) {
+                const glm::vec3 sky = sky_through(air, glm::vec3(towards(kPi * (i / 64.0 - 0.5), 1.0)));
+                ASSERT_TRUE(is_finite(sky) && sky.x >= 0.0f) << sun_deg << " " << height_m << " " << i;
+            }
             for (const double elevation : {-0.5 * kPi, -1.0, -1e-6, 0.0, 0.4, 0.5 * kPi})
                 for (const double azimuth : {0.0, kPi, -kPi, 1.0})
                     for (const double distance_m : {0.0, 1e-6, 1.0, 1e4, 1e7, 1e15, 3e38}) {

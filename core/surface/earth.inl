@@ -30,7 +30,7 @@ struct EarthPoint {
 // Where the point (x, y, z) of the flat sea is, relative to the same place.
 template <class T>
 inline EarthPoint<T> on_earth(T x, T y, T z, T curvature) {
-    const EarthTurn<T> turn = earth_turn(x, y, curvature);
+    EarthTurn<T> turn = earth_turn(x, y, curvature);
     const T outwards = turn.sine * (T(1) + z * curvature);
     const T drop = T(0.5) * curvature * (x * x + y * y) * turn.versed;
     return EarthPoint<T>(x * outwards, y * outwards, z * (T(1) - T(0.5) * turn.versed * turn.angle2) - drop);
@@ -39,7 +39,7 @@ inline EarthPoint<T> on_earth(T x, T y, T z, T curvature) {
 // The vertical there.
 template <class T>
 inline EarthPoint<T> earth_up(T x, T y, T curvature) {
-    const EarthTurn<T> turn = earth_turn(x, y, curvature);
+    EarthTurn<T> turn = earth_turn(x, y, curvature);
     const T outwards = turn.sine * curvature;
     return EarthPoint<T>(x * outwards, y * outwards, T(1) - T(0.5) * turn.versed * turn.angle2);
 }

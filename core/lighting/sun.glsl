@@ -107,3 +107,16 @@ vec3 sun_seen_from(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, flo
 vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
     return sun_seen_from(into_frame(frame, to_eye), to_sun, frame, sun_radiance, angular_radius);
 }
+
+// The same where it adds a twentieth: the disc is a Gaussian in the slopes.
+vec3 sun_seen_again(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
+    vec3 l = into_frame(frame, to_sun);
+    vec3 h = v + l;
+    if (to_sun.z <= 0.0f || h.z <= 1.0e-2f) return vec3(0.0f);
+    float blur = square(0.25f * angular_radius / h.z);
+    vec3 variance = frame.variance + vec3(blur, blur, 0.0f);
+    float facing = 0.5f * dot(h, h) / h.z;
+    float density = slope_density(vec2(h.x, h.y) / -h.z, variance) * square(facing / h.z);
+    float part = kPi * square(angular_radius) * density * lit_part(masked_view(v, variance), facing, facing, l, variance);
+    return sun_radiance * (min(part, 1.0f) * fresnel_exact(0.5f * length(h), kWaterIndex));
+}

@@ -43,7 +43,7 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, float cover
     if (kSun) {
         terms.sun = sun_seen_from(v, light.sun_direction, frame, light.sun_radiance, light.sun_angular_radius);
         if (again > 1.0e-5f) {
-            terms.sun += again * sun_seen_from(level, light.sun_direction, frame,
+            terms.sun += again * sun_seen_again(level, light.sun_direction, frame,
                                                 light.sun_radiance, light.sun_angular_radius);
         }
         terms.sun *= clear;

@@ -6,7 +6,7 @@ void main() {
         write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), 1.0);
         return;
     }
-    PixelAnswer answer = query_pixel(rest_m, pixel_m);
+    PixelAnswer answer = query_pixel(rest_m, pixel_on_mesh());
     if (kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), 1.0);
         return;

@@ -56,8 +56,9 @@ const std::vector<std::string_view>& query_files() {
     static const std::vector<std::string_view> files{
         "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",  "core/plan/filter.inl",
         "core/waves/spline.inl",      "core/waves/whitecaps.inl", "core/evaluate/surface.inl",
-        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "plugin/gpu/places.glsl",
-        "plugin/gpu/cascades.glsl",   "plugin/gpu/trains.glsl",   "plugin/gpu/query.glsl"};
+        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "core/surface/pixel_footprint.inl",
+        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl", "plugin/gpu/trains.glsl",
+        "plugin/gpu/query.glsl"};
     return files;
 }
 
@@ -119,9 +120,10 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
 }
 
 ShaderVariant ShaderVariant::of_points(const SeaLayout& layout) {
-    return {query_constants(layout, false),
-            joined({query_files(), {vertex_file({})}}),
-            {"plugin/gpu/sea_points_fragment.glsl"}};
+    return {query_constants(layout, false), joined({query_files(), {vertex_file({})}}),
+            joined({query_files(),
+                    {"plugin/gpu/rays.glsl", "plugin/gpu/sea_points_in.glsl",
+                     "plugin/gpu/sea_points_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size) {

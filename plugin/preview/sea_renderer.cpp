@@ -242,6 +242,7 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
 void SeaRenderer::Implementation::draw_grid(const ShaderProgram& program, const View& view,
                                             const ProjectedGrid& grid) {
     program.use();
+    set_common(program, view);
     sea.bind(program, grid.origin_m);
     upload_grid(grid);
     const glm::mat4 clip(view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m));
@@ -266,8 +267,6 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid
     const SeaLayout& layout = sea.layout();
     const ShaderProgram& program = program_of(ShaderVariant::of_sea(layout, options, sky_map_size));
     if (!is_lit_afterwards(options)) {
-        program.use();
-        set_common(program, view);
         glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
         draw_grid(program, view, grid);
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);

@@ -118,6 +118,7 @@ class GpuSea {
           frame_(sea_),
           packed_(sea_, 0) {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
+        ellipse_table_ = packed_.layout()->ellipse_texels();
     }
 
     bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
@@ -172,6 +173,10 @@ class GpuSea {
             made[kNames[p]] =
                 view_of(self, sea.packed_.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
         }
+        const int columns = sea.packed_.layout()->ellipse_columns();
+        made["ellipse_table"] =
+            view_of(self, &sea.ellipse_table_[0].x,
+                    {static_cast<py::ssize_t>(sea.ellipse_table_.size()) / columns, columns, 4});
         if (!sea.train_table_.empty())
             made["train_table"] =
                 view_of(self, &sea.train_table_[0].x,
@@ -204,7 +209,7 @@ class GpuSea {
             options.cell_px = *cell_px;
         }
         ProjectedGrid grid;
-        std::vector<std::array<float, 8>> vertices;
+        std::vector<std::array<float, 6>> vertices;
         {
             const OthersMayRun others_may_run;
             const ProjectedGridNeeds needs = projected_grid_needs(view, options);
@@ -214,9 +219,8 @@ class GpuSea {
             if (packed_.layout()->pixels().footprints_m.size() > 1) keep_to_rungs(grid, needs);
             vertices.resize(grid.rest_m.size());
             for (std::size_t i = 0; i < vertices.size(); ++i)
-                vertices[i] = {grid.rest_m[i].x,       grid.rest_m[i].y,      grid.cell_m[i],
-                               grid.cell_axis_m[i].x,  grid.cell_axis_m[i].y, grid.pixel_m[i],
-                               grid.pixel_axis_m[i].x, grid.pixel_axis_m[i].y};
+                vertices[i] = {grid.rest_m[i].x,      grid.rest_m[i].y,      grid.cell_m[i],
+                               grid.cell_axis_m[i].x, grid.cell_axis_m[i].y, grid.pixel_m[i]};
         }
         return {{.columns = grid.columns, .rows = grid.rows},
                 grid.origin_m,
@@ -266,7 +270,7 @@ class GpuSea {
     std::shared_ptr<const Sea<float>> sea_;
     Frame<float> frame_;
     PackedFrame packed_;
-    std::vector<glm::vec4> train_table_;
+    std::vector<glm::vec4> train_table_, ellipse_table_;
     mutable std::mutex mutex_;
 };
 
@@ -309,7 +313,7 @@ void add_gpu_grid(py::module_& module) {
             "(x, y) [m], in double precision: vertices are relative to it.")
         .def_readonly(
             "vertices", &GpuGrid::vertices,
-            "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
+            "float32 (n, 6): the attributes rest_in (the first two), cell_in (three) and pixel_in [m].")
         .def_property_readonly("triangles", &triangles_of,
                                "uint32 (m, 3), made anew; the nearest first. They depend on the size alone.");
 }

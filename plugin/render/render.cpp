@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "core/base/number.h"
 #include "core/base/precision.h"
 #include "core/evaluate/values.h"
 #include "core/lighting/background.h"
@@ -26,6 +27,8 @@
 
 namespace pelagic {
 namespace {
+
+#include "core/evaluate/pixel.inl"
 
 // Samples that are computed at once: enough to keep all threads busy, little enough to stay near the caches.
 constexpr int kBatch = 1 << 16;
@@ -143,14 +146,18 @@ class RendererOf final : public Impl {
         cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());
         cell_axis_m_.assign(grid_.cell_axis_m.begin(), grid_.cell_axis_m.end());
         position_.resize(count);
+        normal_.resize(count);
         Results<T> results;
         results.set(Product::Position, {position_.data()});
+        results.set(Product::Normal, {normal_.data()});  // as smooth as the cells: how the pixels lie on them
         evaluate(frame_, kQuery,
                  Points<T>{.origin_m = grid_.origin_m,
                            .count = count,
                            .rest_m = {rest_.data()},
                            .cell_m = {cell_m_.data()},
-                           .cell_axis_m = {cell_axis_m_.data()}},
+                           .pixel_m = {cell_m_.data()},
+                           .cell_axis_m = {cell_axis_m_.data()},
+                           .pixel_axis_m = {cell_axis_m_.data()}},
                  results);
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
@@ -254,24 +261,26 @@ class RendererOf final : public Impl {
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
             const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, batch_.sea[i]));
-            glm::dvec2 rest(0.0), pixel_axis_m(0.0);
-            glm::dvec3 position(0.0);
+            glm::dvec2 rest(0.0);
+            glm::dvec3 position(0.0), normal(0.0);
             double pixel_m = 0.0;
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t vertex = triangles_[3 * std::size_t{triangle} + corner];
                 rest += weights[corner] * glm::dvec2(rest_[vertex]);
                 position += weights[corner] * glm::dvec3(position_[vertex]);
                 pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
-                pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
+                normal += weights[corner] * glm::dvec3(normal_[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
-            batch_.pixel_axis_m[i] = glm::vec<2, T>(pixel_axis_m);
-            // Rounding must not reach the rung below the frame's first.
-            batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
             const glm::dvec3 way = eye - position;
             const double distance = glm::length(way);
             // At the eye itself, which the near plane keeps from happening, up is as good as any.
             batch_.to_eye[i] = distance > 0.0 ? glm::vec3(way / distance) : glm::vec3(0.0f, 0.0f, 1.0f);
+            const glm::dvec3 to_eye(batch_.to_eye[i]), tilt = normal / std::max(glm::length(normal), 1e-9);
+            const auto axis = pixel_axis(pixel_m, tilt.x, tilt.y, tilt.z, to_eye.x, to_eye.y, to_eye.z);
+            batch_.pixel_axis_m[i] = glm::vec<2, T>(axis.x_m, axis.y_m);
+            // Rounding must not reach the rung below the frame's first.
+            batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
         });
     }
 
@@ -318,7 +327,7 @@ class RendererOf final : public Impl {
     std::vector<glm::vec<2, T>> rest_;      // the grid's own, in T
     std::vector<T> cell_m_;
     std::vector<glm::vec<2, T>> cell_axis_m_;
-    std::vector<glm::vec<3, T>> position_;
+    std::vector<glm::vec<3, T>> position_, normal_;
     std::vector<glm::dvec4> clip_;
     Rasteriser raster_;
     QueryRunner<T> runner_;
@@ -386,7 +395,7 @@ namespace {
 // need more room while their vector grows, as many as there are triangles.
 template <class T>
 constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(float)) + 2 * sizeof(double) +
-                                    6 * sizeof(std::uint32_t) + 8 * sizeof(T) + sizeof(glm::dvec4) +
+                                    6 * sizeof(std::uint32_t) + 11 * sizeof(T) + sizeof(glm::dvec4) +
                                     2 * (Rasteriser::kPieceBytes + sizeof(std::uint32_t));
 
 // [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.

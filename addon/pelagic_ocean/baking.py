@@ -4,8 +4,6 @@
 What is whole on disk already is kept, so that a bake that was stopped goes on the next time.
 """
 
-import atexit
-import threading
 from pathlib import Path
 
 import bpy
@@ -29,37 +27,32 @@ def folder_of(obj):
     return Path(bpy.path.abspath(folder)) / ocean.clean_name(obj.name)
 
 
-class Baking(threading.Thread):
-    """One bake, from start() until it isn't alive."""
+class Baking:
+    """One bake, which begins at once."""
 
     def __init__(self, scene, out):
-        super().__init__(daemon=True)
-        self.cancel = pelagic.Cancel()
-        self.text = "Bake: planning"
-        self.report, self.problem = None, ""
-        self._scene, self._out = scene, out
+        self.task = pelagic.begin_bake(scene, out)
 
-    def run(self):
-        try:
-            self.report = pelagic.bake(self._scene, self._out, progress=self._tell, cancel=self.cancel)
-        except (ValueError, OSError, MemoryError, RuntimeError) as error:
-            self.problem = str(error) or type(error).__name__
-
-    def _tell(self, stage, _frame, done, kept, total, built):
+    @property
+    def text(self):
+        """How far it is."""
+        stage, _frame, done, kept, total, built = self.task.progress or ("planning", 0, 0, 0, 0, 0.0)
         if stage == "frames":
-            self.text = f"Bake: {done + kept} of {total} frames"
-        elif stage == "building":
-            self.text = f"Bake: the sea, {100 * built:.0f} %"
-        elif stage == "checking":
-            self.text = f"Bake: reading what is there, {100 * built:.0f} %"
-        elif stage == "waiting":
-            self.text = "Bake: waiting for another one in this folder"
+            return f"Bake: {done + kept} of {total} frames"
+        if stage == "building":
+            return f"Bake: the sea, {100 * built:.0f} %"
+        if stage == "checking":
+            return f"Bake: reading what is there, {100 * built:.0f} %"
+        if stage == "waiting":
+            return "Bake: waiting for another one in this folder"
+        return "Bake: planning"
 
     def outcome(self):
-        """The kind of a report, and its words."""
-        if self.problem:
-            return "ERROR", self.problem
-        report = self.report
+        """The kind of a report, and its words, once it has ended."""
+        try:
+            report = self.task.result()
+        except (ValueError, OSError, MemoryError, RuntimeError) as error:
+            return "ERROR", str(error) or type(error).__name__
         text = f"{report.done} frames baked" + (f", {report.kept} were there" if report.kept else "")
         if report.cancelled:
             return "WARNING", f"Stopped: {text}, of {report.total}. The next bake goes on from there"
@@ -99,10 +92,7 @@ class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
 
     def execute(self, context):
         baking = self._begin(context)
-        if baking is None:
-            return {"CANCELLED"}
-        baking.run()
-        return self._end(baking)
+        return {"CANCELLED"} if baking is None else self._end(baking)
 
     def invoke(self, context, _event):
         global _baking
@@ -111,7 +101,6 @@ class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
         _baking = self._begin(context)
         if _baking is None:
             return {"CANCELLED"}
-        _baking.start()
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
@@ -125,13 +114,13 @@ class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
     def modal(self, context, event):
         global _baking
         if event.type == "ESC" and event.value == "PRESS":
-            _baking.cancel.set()
+            _baking.task.cancel()
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         context.workspace.status_text_set(f"{_baking.text}   Esc: stop")
         _redraw(context)
-        if _baking.is_alive():
+        if not _baking.task.is_done:
             return {"PASS_THROUGH"}
         ended, _baking = _baking, None
         context.window_manager.event_timer_remove(self._timer)
@@ -151,7 +140,7 @@ class PELAGIC_OT_stop_bake(bpy.types.Operator):
         return _baking is not None
 
     def execute(self, _context):
-        _baking.cancel.set()
+        _baking.task.cancel()
         return {"FINISHED"}
 
 
@@ -164,11 +153,11 @@ def _redraw(context):
 
 @persistent
 def _stop(*_):
-    """Another file is coming, or the add-on or Blender goes: nobody would look after the bake any more."""
+    """Another file is coming, or the add-on goes: nobody would look after the bake any more."""
     global _baking
     if _baking is not None:
-        _baking.cancel.set()
-        _baking.join()
+        _baking.task.cancel()
+        _baking.task.wait()
         _baking = None
 
 
@@ -199,7 +188,6 @@ def register():
         bpy.utils.register_class(made)
     bpy.types.Object.pelagic_bake = PointerProperty(type=PELAGIC_PG_bake, name="Bake")
     bpy.app.handlers.load_pre.append(_stop)
-    atexit.register(_stop)
     for name in PANELS:
         getattr(bpy.types, name).append(_draw)
 
@@ -208,7 +196,6 @@ def unregister():
     _stop()
     for name in PANELS:
         getattr(bpy.types, name).remove(_draw)
-    atexit.unregister(_stop)
     bpy.app.handlers.load_pre.remove(_stop)
     del bpy.types.Object.pelagic_bake
     for made in reversed(CLASSES):

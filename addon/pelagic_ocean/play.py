@@ -5,7 +5,7 @@ Everything happens in two handlers, after a frame change and after an evaluation
 what is in a mesh may be old. How buffers reach a mesh, and why in this way: examples/blender-buffers.md.
 
 A sea is built from what its settings say, and found again by them: nothing here holds an object of Blender's, so undo,
-renaming and duplicates need no care, and oceans with the same settings share a sea. A new one is built in a thread
+renaming and duplicates need no care, and oceans with the same settings share a sea. A new one is built beside
 while the old one plays on; without a window, and during renders, whoever asks waits for it.
 """
 
@@ -20,7 +20,7 @@ from . import handlers, meshes, surfaces
 from .module import pelagic
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of
 from .properties import FIELDS
-from .sea import BuiltSea, Moment, Worker
+from .sea import BuiltSea, Moment
 
 # A change of a key that feeds these is another sea. The rest only looks different; the clock matters to loops.
 SEA_FEEDS = {"waves", "foam", "quality", "surface", "grid"}
@@ -29,20 +29,6 @@ CLOCK_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "clock" in f
 PLACE = {field.path: place for place, field in enumerate(FIELDS)}
 
 POLL_S = 0.02  # how often a window looks whether a sea is ready
-
-
-class Job(Worker):
-    """Builds a sea beside everything else."""
-
-    def __init__(self, key, make, view=None):
-        self.key, self.view, self.made, self.problem = key, view, None, ""
-        super().__init__(lambda: self._build(make))
-
-    def _build(self, make):
-        try:
-            self.made = make()
-        except Exception as error:  # nobody else would hear of it
-            self.problem = str(error) or type(error).__name__
 
 
 _built = weakref.WeakValueDictionary()  # what a sea is made of → the sea, as long as an ocean plays it
@@ -104,7 +90,7 @@ class Simulation:
         settings = settings_of(obj.evaluated_get(depsgraph))
         asked = (settings, frame_rate(bpy_scene))
         try:
-            surface_key, prepare, view = _surface_of(obj, settings, bpy_scene, depsgraph)
+            surface_key, make_surface, view = _surface_of(obj, settings, bpy_scene, depsgraph)
             if asked != self._asked:
                 self.scene = scene_of(obj, bpy_scene, depsgraph, settings)
                 self._asked = asked
@@ -114,35 +100,37 @@ class Simulation:
         loop = asked[1:] + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] else ()
         key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key)
         if key != self._key or (view is not None and self._built and not self._built.serves(view)):
-            self._seek(key, prepare, view, wait)
+            self._seek(key, make_surface, view, wait)
         return view
 
-    def _seek(self, key, prepare, view, wait):
+    def _seek(self, key, make_surface, view, wait):
         known = _built.get(key)
         if known is not None and known.serves(view):
             self._adopt(key, known)
         elif wait or self._job is None:
             if self._job is None or (self._job.key, self._job.view) != (key, view):
-                scene, make_surface = self.scene, prepare()
-                self._job = Job(key, lambda: BuiltSea(scene, make_surface(), view), view)
+                self._job = BuiltSea.job(key, self.scene, make_surface(), view)
             if wait:
-                self._job.join()
-                self.poll()
+                self._take()
             elif not bpy.app.timers.is_registered(_poll):
                 bpy.app.timers.register(_poll, first_interval=POLL_S)
 
     def poll(self):
-        """Whether there is news from the thread."""
-        job = self._job
-        if job is None or job.is_alive():
+        """Whether there is news of the sea that is being built."""
+        if self._job is None or not self._job.is_done:
             return False
-        self._job = None
+        self._take()
+        return True
+
+    def _take(self):
+        """Waits for the sea that is being built."""
+        job, self._job = self._job, None
+        job.finish()
         if job.made is None:
             self._refuse(job.key, job.problem)
         else:
             _built[job.key] = job.made
             self._adopt(job.key, job.made)
-        return True
 
     def _adopt(self, key, built):
         self._key, self._built, self.problem = key, built, ""
@@ -166,8 +154,8 @@ def _share(obj, bpy_scene):
 
 
 def _surface_of(obj, settings, bpy_scene, depsgraph):
-    """What identifies the surface; a function that reads what it needs of Blender and returns another, for a thread, that
-    makes it; and the view, if it depends on one. ValueError if it can't be made."""
+    """What identifies the surface; a function that makes it; and the view, if it depends on one. ValueError if it can't be
+    made."""
     mesh, setting = obj.data, obj.pelagic
     if mesh.library:
         raise ValueError("The mesh is linked from another file, where Blender lets nobody write: append it, or make it local")
@@ -175,20 +163,15 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
         signature = mesh.get(meshes.SIGNATURE, "")
         if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))] or meshes.REST not in mesh.attributes:
             signature = meshes.capture(mesh)
-
-        def read_mesh():
-            rest, edges = meshes.rest_of(mesh), meshes.edges_of(mesh)
-            return lambda: surfaces.own_mesh(rest, edges, signature)
-
-        return signature, read_mesh, None
+        return signature, lambda: surfaces.own_mesh(meshes.rest_of(mesh), meshes.edges_of(mesh), signature), None
     if settings[PLACE["surface.kind"]] == "projected-grid":
         pinhole = pinhole_of(obj, bpy_scene, depsgraph)
         if pinhole is None:
             raise ValueError("The projected grid is what the scene's camera sees: the scene needs one, with perspective")
-        return "grid", lambda: lambda: None, pinhole.view()
+        return "grid", lambda: None, pinhole.view()
     resolution = max(1, round(settings[PLACE["surface.resolution"]] * _share(obj, bpy_scene)))
     patch = (settings[PLACE["surface.size_m"]], resolution, setting.horizon)
-    return patch, lambda: lambda: surfaces.patch(*patch), None
+    return patch, lambda: surfaces.patch(*patch), None
 
 
 def _is_seen(obj, depsgraph):

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A sea on a surface, and its buffers at a moment. Knows nothing of Blender, so it may be built and asked in any thread."""
+"""A sea on a surface, and its buffers at a moment. Knows nothing of Blender.
 
-import atexit
+No Python in threads of its own, in the whole add-on: before Blender enters Python it asks whether *some* thread is in it,
+not whether its own is, so that beside a thread of ours two would be in it at once, which ends in a crash. What runs beside
+Blender is a pelagic.Task, in a native thread of the module that never enters Python.
+"""
+
 import threading
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,51 +27,59 @@ class Moment:
     share: float = 1.0
 
 
-class Worker(threading.Thread):
-    """A thread that is waited for when Blender ends."""
+class Job:
+    """What Tasks of the module work out beside everything else: one thing, `made`, or `problem`, why not."""
 
-    _running = set()
+    def __init__(self, key, begin, make, view=None):
+        """key, view: what it is for. begin: gives the pelagic.Tasks. make: makes the thing of their results."""
+        self.key, self.view, self.made, self.problem = key, view, None, ""
+        self._make, self._tasks = make, []
+        with self._told():
+            self._tasks = begin()
 
-    def __init__(self, work):
-        super().__init__(daemon=True)
-        self._work = work
-        self._running.add(self)
-        self.start()
+    @property
+    def is_done(self):
+        return all(task.is_done for task in self._tasks)
 
-    def run(self):
+    def finish(self):
+        """Waits for it."""
+        with self._told():
+            if not self.problem:
+                self.made = self._make(*[task.result() for task in self._tasks])
+
+    @contextmanager
+    def _told(self):
         try:
-            self._work()
-        finally:
-            self._work = None  # whoever keeps the thread doesn't keep what it worked on
-            self._running.discard(self)
-
-    @classmethod
-    def join_all(cls):
-        for worker in list(cls._running):
-            worker.join()
-
-
-atexit.register(Worker.join_all)
+            yield
+        except Exception as error:  # a timer's function has nobody who would hear of it
+            self.problem = str(error) or type(error).__name__
 
 
 class BuiltSea:
     """A sea on a surface, and the buffers of one moment. While Blender copies the mesh, which keeps one thread busy, the
     next moment is computed."""
 
-    def __init__(self, scene, surface, view):
-        """surface: None for the projected grid, whose points are those of a pelagic.View."""
-        self._products = ["position", "velocity", "slope_variance"] + ["coverage"] * scene.effects.whitecaps
-        if surface is None:
-            self.sea = pelagic.Sea(scene, self._products, views=[view])
-        else:
+    @staticmethod
+    def job(key, scene, surface, view):
+        """A Job that builds one. surface: None for the projected grid, whose points are those of a pelagic.View."""
+        products = ["position", "velocity", "slope_variance"] + ["coverage"] * scene.effects.whitecaps
+
+        def begin():
+            if surface is None:
+                return [pelagic.Sea.begin(scene, products, views=[view])]
             ladder_m = surface.ladder_m()
-            self.sea = pelagic.Sea(scene, self._products, cell_m=ladder_m, pixel_m=ladder_m, lattice=surface.lattice)
-        self._fixed, self._uv_m = surface, scene.surface.size_m
-        self._lock = threading.RLock()
+            return [pelagic.Sea.begin(scene, products, cell_m=ladder_m, pixel_m=ladder_m, lattice=surface.lattice)]
+
+        return Job(key, begin, lambda sea: BuiltSea(sea, surface, scene.surface.size_m), view)
+
+    def __init__(self, sea, surface, uv_m):
+        self.sea = sea
+        self._fixed, self._uv_m = surface, uv_m
+        self._lock = threading.RLock()  # a render has a thread of its own
         self._frame = pelagic.Frame(self.sea)
         self._moment, self._surface, self._arrays = None, None, {}
         self._seen_from = None  # the view and the share that a surface that moves is of
-        self._worker, self._prepared = None, None
+        self._task, self._coming = None, None  # what is being computed, and the moment of that
         self._asked_frame = None
 
     @property
@@ -79,17 +92,14 @@ class BuiltSea:
     def buffers(self, moment):
         """The surface, and each product's array, at a Moment, until the next call of this or of prepare()."""
         with self._lock:
-            self._wait()
-            if moment != self._moment:
-                self._evaluate(moment)
+            self._begin(moment)
+            self._finish()
             return self._surface, self._arrays
 
     def prepare(self, moment):
         """Begins to compute a moment that is likely to be asked for next."""
         with self._lock:
-            if moment != self._prepared:
-                self._wait()
-                self._worker, self._prepared = Worker(lambda: self._evaluate(moment)), moment
+            self._begin(moment)
 
     def frame_at(self, time_s):
         """A pelagic.Frame at a time [s]; the next call may set it to another."""
@@ -101,28 +111,38 @@ class BuiltSea:
                 self._asked_frame.set(time_s)
             return self._asked_frame
 
-    def _evaluate(self, moment):
+    def _begin(self, moment):
+        if moment == (self._coming if self._task else self._moment):
+            return
+        self._finish()
         before, surface = self._moment, self._surface_at(moment)
         self._moment = None
         if self._surface is None or len(surface) != len(self._surface):
             self._arrays = {product: np.empty(len(surface) if product == "coverage" else (len(surface), 3), np.float32)
-                            for product in self._products}
+                            for product in self.sea.products}
         # What a cell hides of the slopes depends on the cell alone, not on the time.
         wanted = {name: array for name, array in self._arrays.items()
                   if name != "slope_variance" or before is None or surface is not self._surface}
-        self._surface = surface
-        self._frame.set(moment.time_s)
-        self._frame.evaluate(surface.rest, surface.origin_m, cell_m=surface.cell_m, pixel_m=surface.cell_m,
-                             cell_axis_m=surface.cell_axis_m, pixel_axis_m=surface.cell_axis_m, **wanted)
+        self._surface, self._seen_from = surface, (moment.view, moment.share)
+        self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, cell_m=surface.cell_m,
+                                       pixel_m=surface.cell_m, cell_axis_m=surface.cell_axis_m,
+                                       pixel_axis_m=surface.cell_axis_m, **wanted)
+        self._coming = moment
+
+    def _finish(self):
+        """Waits for what was begun, if anything was."""
+        if self._task is None:
+            return
+        task, self._task, surface = self._task, None, self._surface
+        task.result()
         position, velocity = self._arrays["position"], self._arrays["velocity"]
         if surface.origin_m != (0.0, 0.0):
             position[:, :2] += np.array(surface.origin_m, np.float32)
         if surface.height_m is not None:
             position[:, 2] += surface.height_m
-        if moment.time_scale != 1.0:
-            velocity *= np.float32(moment.time_scale)  # metres in a second of the screen
-        self._seen_from = (moment.view, moment.share)
-        self._moment = moment
+        if self._coming.time_scale != 1.0:
+            velocity *= np.float32(self._coming.time_scale)  # metres in a second of the screen
+        self._moment = self._coming
 
     def _surface_at(self, moment):
         if self._fixed is not None:
@@ -130,8 +150,3 @@ class BuiltSea:
         if self._surface is not None and self._seen_from == (moment.view, moment.share):
             return self._surface
         return surfaces.projected_grid(self.sea, moment.view, moment.share, self._uv_m)
-
-    def _wait(self):
-        if self._worker is not None:
-            self._worker.join()
-            self._worker, self._prepared = None, None

@@ -13,10 +13,11 @@ import gpu
 from bpy.app.handlers import persistent
 from bpy.props import BoolProperty, PointerProperty
 
-from . import compat, handlers, light, ocean, play
+from . import compat, handlers, light, ocean
 from .gpu_sea import Camera, Drawing
 from .module import pelagic
 from .panels import draw_words
+from .sea import Job
 
 SHADINGS = {"SOLID", "MATERIAL"}  # views that draw the preview; the others need the mesh
 # How fine a view's pixels count as: waves that only finer ones could show roughen the surface, so that a frame is cheap
@@ -84,17 +85,16 @@ class Preview:
             if keeps_sea and keeps_light:
                 self.problem = ""
             else:
-                self._job = play.Job(self._settings, lambda: (
-                    sea if keeps_sea else pelagic.GpuSea(scene, finest_m),
-                    lit if keeps_light else pelagic.GpuLight(scene)))
+                self._job = _job(self._settings, scene, sea if keeps_sea else None, lit if keeps_light else None, finest_m)
         return sea is not None
 
     def poll(self):
-        """Whether there is news from the thread."""
+        """Whether there is news of what is being built."""
         job = self._job
-        if job is None or job.is_alive():
+        if job is None or not job.is_done:
             return False
         self._job = None
+        job.finish()
         if job.made is None:
             self.problem, self._refused = job.problem, job.key
         else:
@@ -160,6 +160,20 @@ class Preview:
         obj = self.obj()
         return any(key in self.hidden_in and layer.objects.get(obj.name) == obj and not obj.hide_get(view_layer=layer)
                    for key, layer in _layers())
+
+
+def _job(key, scene, sea, lit, finest_m):
+    """Makes a pelagic.GpuSea and a pelagic.GpuLight of a scene, those that aren't there."""
+    def begin():
+        makers = [] if sea else [lambda: pelagic.GpuSea.begin(scene, finest_m)]
+        makers += [] if lit else [lambda: pelagic.GpuLight.begin(scene)]
+        return [make() for make in makers]
+
+    def together(*made):
+        rest = iter(made)
+        return sea or next(rest), lit or next(rest)
+
+    return Job(key, begin, together)
 
 
 _preview = None

@@ -1,5 +1,6 @@
 #include "core/lighting/background.h"
 
+#include <cmath>
 #include <glm/glm.hpp>
 
 namespace pelagic {
@@ -13,11 +14,27 @@ using namespace glm;
 
 }  // namespace behind
 
+SunDisc sun_disc(const Sky& sky) {
+    SunDisc disc{.centre = sky.sun_direction,
+                 .low = sky.limb_low * sky.sun_radiance,
+                 .middle = sky.limb_middle * sky.sun_radiance,
+                 .high = sky.limb_high * sky.sun_radiance};
+    const glm::vec2 across(sky.sun_direction.x, sky.sun_direction.y);
+    if (sky.sun_lower == 0.0f || glm::length(across) < 1e-3f) return disc;
+    const float elevation = std::asin(glm::clamp(sky.sun_direction.z, -1.0f, 1.0f)) - sky.sun_lower;
+    disc.centre = glm::vec3(glm::normalize(across) * std::cos(elevation), std::sin(elevation));
+    return disc;
+}
+
 Background background(const Sky& sky, glm::vec3 direction, float pixel_angle) {
-    const float share = behind::sun_disc(direction, sky.sun_direction, sky.sun_angular_radius, pixel_angle);
-    const glm::vec2 place =
-        behind::background_place(sky_map_place(direction), static_cast<float>(sky.map.size()));
-    return {sky.map.radiance(place, 0.0f), sky.sun_radiance * share};
+    Background seen{.sky = sky.map.open_radiance(behind::background_place(direction))};
+    if (sky.sun_radiance == glm::vec3(0.0f)) return seen;
+    const SunDisc disc = sun_disc(sky);
+    const float share = behind::sun_disc(direction, disc.centre, sky.sun_angular_radius, pixel_angle);
+    if (share > 0.0f)
+        seen.sun = share * behind::disc_radiance(direction, disc.centre, sky.sun_angular_radius, disc.low,
+                                                 disc.middle, disc.high);
+    return seen;
 }
 
 float pixel_angle(float pixel_tangent, float cos_off_axis) {

@@ -1,19 +1,28 @@
 // The background where a picture shows no sea: the sun's disc in front of the sky,
-//     sky_lookup(background_place(place of the direction in the map, kSkyMapSize), 0.0f)
-//         + sun_radiance · sun_disc(…).
-// Compiled as C++ and as GLSL; needs special.glsl before it.
+//     sky_smooth(background_place(direction)) + disc_radiance(…) · sun_disc(…).
+// Compiled as C++ and as GLSL; needs special.glsl and sky_map.glsl before it.
 
-// The place in the map where the background is looked up: the direction's own, except in a band along the
-// horizon, which takes the sky just above. Texels there mix radiance above and below the horizon. That is
-// right for reflections, but would show as a dark, jagged line. A lookup reaches 1½ texels to each side.
-vec2 background_place(vec2 u, float map_size) {
-    float texel = 2.0f * kSkyMapReach / map_size;
-    float radius = length(u);
-    if (radius < 0.5f) return u;  // far from the horizon |u| = 1 in any map fine enough to have one
-    vec2 outwards = u / radius;
-    float seam = 1.5f * texel * (abs(outwards.x) + abs(outwards.y));
-    if (abs(radius - 1.0f) > seam) return u;
-    return outwards * max(1.0f - seam, 0.5f);
+// The place in the map where the background is looked up: the direction's own, and below the horizon the horizon's.
+vec2 background_place(vec3 direction) {
+    if (direction.z >= 0.0f) return sky_place(direction);
+    vec2 across = vec2(direction.x, direction.y);
+    return across / max(length(across), 1.0e-6f);
+}
+
+// The disc's radiance at a direction, from that at the lowest place of it that isn't below the horizon, at the highest,
+// and in the middle between them: the air takes more from what is lower. Optical thickness is as good as quadratic
+// over the disc.
+vec3 disc_radiance(vec3 direction, vec3 sun_centre, float sun_angular_radius, vec3 low, vec3 middle, vec3 high) {
+    // Heights instead of elevations, whose cosines are alike.
+    float radius = sun_angular_radius * max(length(vec2(sun_centre.x, sun_centre.y)), 1.0e-3f);
+    float lowest = max(sun_centre.z - radius, 0.0f);
+    float half_range = max(0.5f * (sun_centre.z + radius - lowest), 1.0e-6f);
+    float x = clamp((direction.z - lowest) / half_range - 1.0f, -1.0f, 1.0f);
+    vec3 least = vec3(max(1.0e-6f * max(max(high.x, high.y), high.z), 1.0e-30f));  // logarithms are finite
+    vec3 a = log(max(low, least));
+    vec3 b = log(max(middle, least));
+    vec3 c = log(max(high, least));
+    return exp(b + x * (0.5f * (c - a) + x * (0.5f * (a + c) - b)));
 }
 
 // The angle [rad] subtended by the side of a square that is as large as the pixel. Pixels shrink towards the

@@ -8,8 +8,16 @@
 namespace pelagic {
 
 struct Background {
-    glm::vec3 sky{0.0f}, sun{0.0f};  // radiance of the map's finest level and of the sun's disc
+    glm::vec3 sky{0.0f},
+        sun{0.0f};  // radiance of the map's finest level, without the ground, and of the sun's disc
 };
+
+// The sun's disc as the shaders take it: towards its middle, and the radiance at its lowest place above
+// the horizon, at its highest, and half-way between them.
+struct SunDisc {
+    glm::vec3 centre{0.0f, 0.0f, 1.0f}, low{0.0f}, middle{0.0f}, high{0.0f};
+};
+SunDisc sun_disc(const Sky& sky);
 
 // Along a unit direction, for a pixel whose side subtends `pixel_angle` [rad].
 Background background(const Sky& sky, glm::vec3 direction, float pixel_angle);

@@ -49,8 +49,7 @@ vec3 foam_radiance(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance
     float facing = max(lit, 0.0f) * spread + tail;
     float up =
         inversesqrt(1.0f + dot(mean, mean) + dot(seen.across, seen.across) + dot(seen.along, seen.along));
-    float risen = smoothstep(0.0f, sun_angular_radius, to_sun.z);
     vec3 sun =
-        sun_radiance * (kPi * square(sun_angular_radius) * risen * facing * up * unblocked(v, l, variance));
+        sun_radiance * (kPi * square(sun_angular_radius) * facing * up * unblocked(v, l, variance));
     return reflectance / kPi * (sun + sky_irradiance * (0.5f + 0.5f * up));
 }

@@ -34,6 +34,7 @@ LatLong lat_long(const Sky& sky, int width) {
             const double azimuth = kPi - pixel * (column + (i + 0.5) / n);
             headings[static_cast<std::size_t>(column) * n + i] = {std::cos(azimuth), std::sin(azimuth)};
         }
+    const glm::vec3 below = sky.map.radiance(glm::vec2(kSkyMapExtent), 0.0f);
     tbb::parallel_for(0, picture.height, [&](int row) {
         std::vector<glm::dvec2> elevations;  // cosine and sine
         for (int j = 0; j < n; ++j) {
@@ -47,7 +48,8 @@ LatLong lat_long(const Sky& sky, int width) {
                 for (int i = 0; i < n; ++i) {
                     const glm::dvec2 heading = headings[static_cast<std::size_t>(column) * n + i];
                     const glm::vec3 direction(elevation.x * heading.x, elevation.x * heading.y, elevation.y);
-                    sum += static_cast<float>(elevation.x) * background(sky, direction, 1.0f).sky;
+                    sum += static_cast<float>(elevation.x) *
+                           (direction.z < 0.0f ? below : background(sky, direction, 1.0f).sky);
                     weights += elevation.x;  // of equal steps in angle
                 }
             picture.radiance[static_cast<std::size_t>(row) * width + column] =

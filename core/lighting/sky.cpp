@@ -79,14 +79,22 @@ class ScatteredTable {
 struct Disc {
     glm::dvec3 radiance{0.0};    // mean over the whole disc, the part below the horizon counted as black
     double elevation_rad = 0.0;  // of the visible part's centre
+    glm::dvec3 low{0.0}, middle{0.0}, high{0.0};  // radiance, at the limbs of the visible part and half-way
 };
 
 // Integrates strips of equal elevation: near the horizon the lower edge is redder and darker than the upper.
 Disc disc_at(const Atmosphere& air, double elevation_rad, double radius_rad) {
     constexpr int kStrips = 16;
     const double lowest = std::max(-radius_rad, -elevation_rad);
-    Disc disc{glm::dvec3(0.0), elevation_rad};
+    Disc disc;
+    disc.elevation_rad = elevation_rad;
     if (lowest >= radius_rad) return disc;
+    const auto at = [&](double up) {
+        return into_gamut(colour_of(air.transmittance(elevation_rad + up))) / (kPi * radius_rad * radius_rad);
+    };
+    disc.low = at(lowest);
+    disc.middle = at(0.5 * (lowest + radius_rad));
+    disc.high = at(radius_rad);
     const double height = (radius_rad - lowest) / kStrips;
     glm::dvec3 sum(0.0);
     double moment = 0.0;
@@ -126,6 +134,16 @@ Sky daylight_sky(const Daylight& daylight, int map_size) {
         disc.radiance * (kPi * radius * radius * std::max(0.0, std::sin(disc.elevation_rad)));
 
     const glm::dvec3 sun(heading * std::cos(elevation), std::sin(elevation));
+    sky.sun_lower = static_cast<float>(disc.elevation_rad - elevation);
+    const auto over_mean = [&](glm::dvec3 at) {
+        glm::vec3 ratio(1.0f);
+        for (int c = 0; c < 3; ++c)
+            if (disc.radiance[c] > 0.0) ratio[c] = static_cast<float>(at[c] / disc.radiance[c]);
+        return ratio;
+    };
+    sky.limb_low = over_mean(disc.low);
+    sky.limb_middle = over_mean(disc.middle);
+    sky.limb_high = over_mean(disc.high);
     SkyDome dome;
     dome.radiance = [&](glm::vec3 direction) {
         const glm::dvec3 to(direction);

@@ -26,6 +26,10 @@ struct Sky {
     float sun_angular_radius = 0.00465f;  // [rad]
     // Of the sun alone, on a horizontal plane: radiance · solid angle · sine of sun_direction's elevation.
     glm::vec3 sun_irradiance{0.0f};
+    // For pictures of the disc itself: how much lower than sun_direction the middle of all of it is [rad], and, over
+    // sun_radiance, the radiance at its lowest place above the horizon, at its highest, and half-way between them.
+    float sun_lower = 0.0f;
+    glm::vec3 limb_low{1.0f}, limb_middle{1.0f}, limb_high{1.0f};
     glm::vec3 sky_irradiance{0.0f};  // on a horizontal plane, of the upper hemisphere without the sun
 };
 

@@ -36,26 +36,48 @@ struct Texel {
     glm::dvec3 radiance{0.0};    // sum over the samples above the horizon
     glm::dvec3 irradiance{0.0};  // [radiance sr]
     int above = 0, samples = 0;
+    glm::dvec3 open{0.0};  // sum over all samples, with the sky extended past the horizon
+    bool is_open = false;
 };
+
+// Texels around the horizon to which the sky extends: a lookup reaches 1½ to each side.
+constexpr double kOpenTexels = 2.5;
+
+// The sky past the horizon goes on as it came, but isn't negative: what is at the horizon and by how much that above it,
+// mirrored there, is more or less.
+glm::dvec3 beyond_horizon(const SkyDome& dome, glm::dvec2 u, double distance) {
+    const auto at = [&](double place) {
+        return glm::dvec3(dome.radiance(sky_map_direction(glm::vec2(u * (place / distance)))));
+    };
+    const glm::dvec3 horizon = at(1.0 - 1e-7);
+    return glm::clamp(2.0 * horizon - at(2.0 - distance), glm::dvec3(0.0), 2.0 * horizon);
+}
 
 Texel sampled(const SkyDome& dome, glm::dvec2 corner, double side) {
     const glm::dvec2 middle = corner + 0.5 * side;
     const double distance = glm::length(middle), reach = side * std::sqrt(0.5);
     Texel texel;
-    if (distance - reach >= 1.0) {
+    texel.is_open = distance - reach < 1.0 + kOpenTexels * side && distance + reach < 2.0;
+    if (distance - reach >= 1.0 && !texel.is_open) {
         texel.samples = 1;
         return texel;
     }
     const auto angle = static_cast<float>(2.0 * side / (1.0 + distance * distance));
-    int n = dome.samples(sky_map_direction(glm::vec2(middle)), angle);
-    if (distance + reach > 1.0) n = std::max(n, kHorizonSamples);
+    const double nearest = std::min(distance, 1.0 - 1e-7);
+    int n = dome.samples(
+        sky_map_direction(glm::vec2(distance > 0.0 ? middle * (nearest / distance) : middle)), angle);
+    if (distance - reach < 1.0 && distance + reach > 1.0) n = std::max(n, kHorizonSamples);
     const double step = side / n;
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
             const glm::dvec2 u = corner + step * glm::dvec2(i + 0.5, j + 0.5);
             const double u2 = glm::dot(u, u);
-            if (u2 >= 1.0) continue;
+            if (u2 >= 1.0) {
+                if (texel.is_open) texel.open += beyond_horizon(dome, u, std::sqrt(u2));
+                continue;
+            }
             const glm::dvec3 radiance(dome.radiance(sky_map_direction(glm::vec2(u))));
+            texel.open += radiance;
             // Stereographic projection: dω = 4/(1 + u²)² d²u, and cosθ = (1 − u²)/(1 + u²).
             const double up = 1.0 + u2;
             texel.radiance += radiance;
@@ -83,6 +105,9 @@ std::vector<Ring> rings_of(std::size_t texels, double side, double height, const
         Ring& ring = rings[number];
         ring.texels.push_back(i);
         ring.from_zenith = std::min(ring.from_zenith, 2.0 * std::atan(std::max(0.0, distance - reach)));
+        if (distance > 1.0)  // what is past the horizon comes from as far above it
+            ring.from_zenith =
+                std::min(ring.from_zenith, 2.0 * std::atan(std::max(0.0, 2.0 - distance - reach)));
         ring.to_zenith = std::max(ring.to_zenith, 2.0 * std::atan(distance + reach));
     }
     return rings;
@@ -117,14 +142,15 @@ BakedSky bake_sky_map(int size, const SkyDome& dome) {
     for (const Texel& texel : texels) irradiance += texel.irradiance;
     const glm::dvec3 below = static_cast<double>(diffuse_fresnel()) / kPi * irradiance;
 
-    std::vector<glm::vec3> means(n * n);
+    std::vector<glm::vec3> means(n * n), open(n * n);
     for (std::size_t i = 0; i < means.size(); ++i) {
         const Texel& texel = texels[i];
         means[i] = (texel.radiance + below * static_cast<double>(texel.samples - texel.above)) /
                    static_cast<double>(texel.samples);
+        open[i] = texel.is_open ? glm::vec3(texel.open / static_cast<double>(texel.samples)) : means[i];
     }
     baked.irradiance = irradiance;
-    baked.map = SkyMap(size, std::move(means));
+    baked.map = SkyMap(size, std::move(means), std::move(open));
     return baked;
 }
 

@@ -16,6 +16,19 @@ namespace pelagic {
 namespace projection {
 using namespace glm;
 #include "core/lighting/special.glsl"
+
+struct Lookup {
+    const SkyMap& map;
+    const float kSkyMapSize;
+
+    vec3 sky_texel(ivec2 at) const {
+        return map.level(0)[static_cast<std::size_t>(at.y) * static_cast<std::size_t>(map.size()) +
+                            static_cast<std::size_t>(at.x)];
+    }
+    vec3 sky_filtered(vec2 u, float level) const { return map.trilinear(u, level); }
+
+#include "core/lighting/sky_map.glsl"
+};
 }  // namespace projection
 
 namespace {
@@ -77,7 +90,7 @@ void SkyMap::check_size(int size) {
                                     ": a power of two from 4 to 4096 is accepted");
 }
 
-SkyMap::SkyMap(int size, std::vector<glm::vec3> texels) : size_(size) {
+SkyMap::SkyMap(int size, std::vector<glm::vec3> texels, std::vector<glm::vec3> open) : size_(size) {
     check_size(size);
     const auto n = static_cast<std::size_t>(size);
     if (texels.size() != n * n)
@@ -89,11 +102,22 @@ SkyMap::SkyMap(int size, std::vector<glm::vec3> texels) : size_(size) {
         throw std::invalid_argument("sky map texel (" + std::to_string(i % n) + ", " + std::to_string(i / n) +
                                     ") is negative or not finite: a radiance is neither");
     }
+    if (!open.empty() && (open.size() != n * n || !std::all_of(open.begin(), open.end(), is_radiance)))
+        throw std::invalid_argument("a sky map's open texels are as many as the others, and radiances");
     levels_.push_back(std::move(texels));
     for (std::size_t s = n; s > 1; s /= 2) levels_.push_back(halved(levels_.back(), s));
+    if (!open.empty()) levels_.front() = std::move(open);
 }
 
 glm::vec3 SkyMap::radiance(glm::vec2 u, float level) const {
+    return projection::Lookup{*this, static_cast<float>(size_)}.sky_lookup(u, level);
+}
+
+glm::vec3 SkyMap::open_radiance(glm::vec2 u) const {
+    return projection::Lookup{*this, static_cast<float>(size_)}.sky_smooth(u);
+}
+
+glm::vec3 SkyMap::trilinear(glm::vec2 u, float level) const {
     const float l = bounded(level, 0.0f, static_cast<float>(level_count() - 1));
     const int fine = static_cast<int>(l);
     const int coarse = std::min(fine + 1, level_count() - 1);

@@ -21,7 +21,10 @@ class SkyMap {
     // texels: size × size, x fastest, y rising. Texel (i, j) is the mean over its square of u; (0, 0) begins
     // at −kSkyMapExtent. size is a power of two, 4 … 4096. Coarser levels are 2 × 2 means, down to 1 × 1.
     // Throws std::invalid_argument for another size or count, or a texel that is negative or not finite.
-    SkyMap(int size, std::vector<glm::vec3> texels);
+    //
+    // `open` is as large, and the finest level where it is given: the same without the ground, with the sky extended
+    // past the horizon by some texels (sky_map.glsl). The coarser levels are means of `texels`.
+    SkyMap(int size, std::vector<glm::vec3> texels, std::vector<glm::vec3> open = {});
 
     // Throws for a size that the constructor rejects, so that callers needn't fill the texels first.
     static void check_size(int size);
@@ -30,9 +33,14 @@ class SkyMap {
     int level_count() const { return static_cast<int>(levels_.size()); }
     const std::vector<glm::vec3>& level(int i) const { return levels_.at(i); }  // (size >> i)² texels
 
-    // Equivalent to OpenGL's textureLod with GL_LINEAR_MIPMAP_LINEAR and GL_CLAMP_TO_EDGE. u in units of the
-    // projection; level 0 (finest) … level_count() − 1, clamped.
+    // u in units of the projection; level 0 (finest) … level_count() − 1, clamped. From level 1 on equivalent to
+    // OpenGL's textureLod with GL_LINEAR_MIPMAP_LINEAR and GL_CLAMP_TO_EDGE; below that smooth (sky_map.glsl).
     glm::vec3 radiance(glm::vec2 u, float level) const;
+    // The finest level, smooth and without the ground; |u| ≤ 1.
+    glm::vec3 open_radiance(glm::vec2 u) const;
+
+    // All levels alike, trilinear.
+    glm::vec3 trilinear(glm::vec2 u, float level) const;
 
   private:
     int size_ = 0;

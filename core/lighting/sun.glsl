@@ -1,23 +1,13 @@
 // The reflected sun: Bruneton et al. 2010, §5.1, with the disc's angular width in place of the paper's lower
 // bound on the variance.
 
-// The slope variance that the disc's width adds. A uniform disc of radius ρ has the standard deviation ρ/2
-// along any axis. The half vector h follows the light at half its rate in the plane of incidence, and at 1/|v
-// + l| across it. So h spreads by (ρ/2)/2 in the plane and by (ρ/2)/2/(v·h) across. A small change dh changes
-// the slope ζ = −h_xy/h_z by −(dh_xy + ζ dh_z)/h_z.
-vec3 disc_slope_variance(vec3 to_eye, vec3 to_sun, vec3 halfway, float angular_radius) {
-    vec3 difference = to_sun - to_eye;
-    float apart = length(difference);
-    // If v and l coincide, any axis is in the plane: v·h is 1.
-    vec3 other = abs(halfway.x) < 0.5f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 1.0f, 0.0f);
-    vec3 inside = apart > 1.0e-3f ? difference / apart : normalize(cross(other, halfway));
-    vec3 beside = cross(halfway, inside);
-    float cosine = max(dot(to_eye, halfway), 1.0e-3f);
-    vec2 slope = vec2(halfway.x, halfway.y) / -halfway.z;
-    vec2 p = (vec2(inside.x, inside.y) + slope * inside.z) / halfway.z;
-    vec2 q = (vec2(beside.x, beside.y) + slope * beside.z) / (halfway.z * cosine);
-    return vec3(p.x * p.x + q.x * q.x, p.y * p.y + q.y * q.y, p.x * p.y + q.x * q.y) *
-           square(0.25f * angular_radius);
+// Standard deviations [rad], across and upwards, of the disc's visible part, given the height (sine of elevation) of
+// that part's centre. Of the whole disc both are ρ/2. What a set disc shows is lower than wide: of half of it the
+// centre is 0.42 ρ high and the deviation 0.26 ρ; of a thin segment 0.65 of the centre's height, and √(ρ height)
+// across. 5 % of each.
+vec2 disc_spread(float height, float angular_radius) {
+    float h = max(height, 1.0e-4f * angular_radius);
+    return min(vec2(sqrt(angular_radius * h), 0.625f * h), vec2(0.5f * angular_radius));
 }
 
 // The density of slopes that mirror part of the disc: a Gaussian convolved with a uniform disc. `share` is
@@ -38,31 +28,77 @@ float disc_density(float distance, float share, float root_of_determinant) {
     return mean / (kPi * width * (mean * y + exp(min(distance / width - y, 80.0f))) * root_of_determinant);
 }
 
-// Eq. 15 (its h_z⁴ is right: Eq. 12 with h_z³). At most L F: no facet is brighter than the sun itself. 0 for
-// a sun at or below the horizon, rising to its full value while the disc rises.
+// The half vector's horizontal part, and how it varies.
+struct HalfVector {
+    vec3 covariance;  // (xx, yy, xy)
+    float root;       // of its determinant
+    float disc_root;  // of the determinant of the disc's part in it
+    vec2 by_side;     // its change over a deviation of the disc, across and upwards
+    vec2 by_rise;
+};
+
+// of_side, of_rise: the disc's axes in the frame, as long as its deviations; slope: of the facets that matter.
+//
+// A facet of slope s mirrors the disc's point l + δ to the eye if (h + δ)_xy + s (h + δ)_z = 0, with h = v + l as it
+// is, not of unit length. So h_xy is the sum of −s h_z, of −(δ_xy + s δ_z), and of −(s − slope) δ_z.
+// Divided by h_z these would be slopes (Eq. 15), and at the horizon, where h_z is no larger than δ_z, infinite.
+//
+// The determinant is built from non-negative parts. At grazing angles the disc's ellipse is so long that the product
+// of its variances and its squared covariance differ by less than their rounding.
+HalfVector half_vector(vec3 h, vec3 variance, vec3 of_side, vec3 of_rise, vec2 slope) {
+    vec2 a = vec2(of_side.x, of_side.y) + slope * of_side.z;
+    vec2 b = vec2(of_rise.x, of_rise.y) + slope * of_rise.z;
+    vec3 disc = vec3(a.x * a.x + b.x * b.x, a.y * a.y + b.y * b.y, a.x * a.y + b.x * b.y);
+    vec3 waves = variance * (square(h.z) + square(of_side.z) + square(of_rise.z));
+    float disc_root = abs(a.x * b.y - a.y * b.x);
+    float mixed = waves.x * disc.y + waves.y * disc.x - 2.0f * waves.z * disc.z;
+    return HalfVector(waves + disc, sqrt(determinant_of(waves) + square(disc_root) + max(mixed, 0.0f)), disc_root, a,
+                      b);
+}
+
+// C⁻¹ h_xy: what the regression of anything on the half vector's horizontal part needs.
+vec2 pull_of(vec3 h, HalfVector of) {
+    vec3 c = of.covariance;
+    return vec2(c.y * h.x - c.z * h.y, c.x * h.y - c.z * h.x) / square(of.root);
+}
+
+// Eq. 15, with the disc in place of a point: π ρ² L F w² N(h_xy), w = v·f/f_z and N the density of the half vector's
+// horizontal part; without the disc's part in N that is Eq. 15, whose h_z⁴ is right (Eq. 12 with h_z³).
+//
+// sun_radiance is the mean over the whole disc, to_sun the centre of what is visible of it (core/lighting/sky.h). At
+// most the visible part's own radiance times F: no facet is brighter than the sun itself. 0 for a sun at or below
+// the horizon.
 vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
     vec3 v = into_frame(frame, to_eye);
     vec3 l = into_frame(frame, to_sun);
     vec3 h = v + l;
-    float size = length(h);
-    if (size < 1.0e-4f || h.z <= 1.0e-5f * size)
-        return vec3(0.0f);  // no visible facet mirrors the sun
-    h = h / size;
-    vec3 disc = disc_slope_variance(v, l, h, angular_radius);
-    vec3 sum = frame.variance + disc;
-    // √det of the disc's covariance: from its two axes, times 1/h_z³, the slopes' area per solid angle. The
-    // sum's determinant is built from non-negative parts. At grazing angles the disc's ellipse is so long
-    // that the product of its variances and its squared covariance differ by less than their rounding.
-    float cosine = max(dot(v, h), 1.0e-3f);
-    float disc_root = square(0.25f * angular_radius) / (cosine * h.z * h.z * h.z);
-    float mixed = frame.variance.x * disc.y + frame.variance.y * disc.x - 2.0f * frame.variance.z * disc.z;
-    float determinant = determinant_of(frame.variance) + square(disc_root) + max(mixed, 0.0f);
-    float root = sqrt(determinant);
-    float density =
-        disc_density(slope_distance(vec2(h.x, h.y) / -h.z, sum, determinant), disc_root / root, root);
-    // The disc's spread blurs the horizon of the frame, too.
-    float seen = visible_area(v, sum) + max(v.z, 0.0f) * smith_lambda(smith_argument(l, sum));
-    float part = kPi * square(angular_radius) * density / (4.0f * square(square(h.z)) * max(seen, 1.0e-6f));
-    float risen = smoothstep(0.0f, angular_radius, to_sun.z);
-    return sun_radiance * (min(part, 1.0f) * risen * fresnel_exact(dot(v, h), kWaterIndex));
+    if (to_sun.z <= 0.0f || h.z <= 1.0e-5f) return vec3(0.0f);  // no visible facet mirrors the sun
+    vec2 spread = disc_spread(to_sun.z, angular_radius);
+    float across = length(vec2(to_sun.x, to_sun.y));
+    vec3 side = across > 1.0e-3f ? vec3(-to_sun.y, to_sun.x, 0.0f) / across : vec3(1.0f, 0.0f, 0.0f);
+    vec3 of_side = spread.x * into_frame(frame, side);
+    vec3 of_rise = spread.y * into_frame(frame, normalize(cross(to_sun, side)));
+
+    // The mean slope of the facets that mirror some of the disc, first as if that were about 0.
+    vec2 pull = pull_of(h, half_vector(h, frame.variance, of_side, of_rise, vec2(0.0f)));
+    vec2 slope = -h.z * vec2(frame.variance.x * pull.x + frame.variance.z * pull.y,
+                             frame.variance.z * pull.x + frame.variance.y * pull.y);
+    HalfVector half_way = half_vector(h, frame.variance, of_side, of_rise, slope);
+    float distance = slope_distance(vec2(h.x, h.y), half_way.covariance, square(half_way.root));
+    float density = disc_density(distance, half_way.disc_root / half_way.root, half_way.root);
+
+    // The point of the disc that they mirror in the mean; its rim is two deviations away.
+    pull = pull_of(h, half_way);
+    vec3 point = l - clamp(dot(half_way.by_side, pull), -2.0f, 2.0f) * of_side -
+                 clamp(dot(half_way.by_rise, pull), -2.0f, 2.0f) * of_rise;
+    vec3 mirroring = v + normalize(point);
+    float size = length(mirroring);
+    float facing = 0.5f * square(size) / max(mirroring.z, 0.1f * h.z);  // w
+    float cosine = dot(v, mirroring) / max(size, 1.0e-6f);
+    // The disc's height blurs the horizon of the frame, too.
+    vec3 blurred = frame.variance + vec3(square(spread.y), square(spread.y), 0.0f);
+    float seen = visible_area(v, frame.variance) + max(v.z, 0.0f) * smith_lambda(smith_argument(l, blurred));
+    float part = kPi * square(angular_radius) * square(facing) * density / max(seen, 1.0e-6f);
+    float most = square(0.5f * angular_radius) / (spread.x * spread.y);  // the whole disc's share of what is visible
+    return sun_radiance * (min(part, most) * fresnel_exact(cosine, kWaterIndex));
 }

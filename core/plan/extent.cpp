@@ -2,23 +2,40 @@
 #include "core/plan/extent.h"
 
 #include <cmath>
+#include <cstddef>
 
+#include "core/plan/filter.h"
 #include "core/spectrum/gauss.h"
 
 namespace pelagic {
 
 Extent expected_extent(const DirectionalSpectrum& spectrum, double choppiness) {
-    // Var|D| = λ² ∫ S coth²(kd) dk (Tessendorf 2001, Eq. 29, in water of depth d).
-    double squares_m2 = 0.0;
+    const auto& rule = GaussLegendre<8>::rule();
+    const FootprintFilter filter;
+    double reach_m2 = 0.0;
+    std::array<double, HiddenHeight::kCells> hidden_m2{};
     const auto panels = spectrum.panels();
     for (std::size_t i = 0; i + 1 < panels.size(); ++i)
-        squares_m2 += GaussLegendre<8>::rule().integrate(panels[i], panels[i + 1], [&](double k) {
+        for (std::size_t node = 0; node < rule.node.size(); ++node) {
+            const double half = 0.5 * (panels[i + 1] - panels[i]);
+            const double k = panels[i] + half * (1.0 + rule.node[node]);
+            const double energy_m2 = half * rule.weight[node] * spectrum.omnidirectional(k);
+            // Var|D| = λ² ∫ S coth²(kd) dk (Tessendorf 2001, Eq. 29, in water of depth d).
             const double ratio = spectrum.dispersion().horizontal_ratio(k);
-            return spectrum.omnidirectional(k) * ratio * ratio;
-        });
-    return {.height_m = kExtentDeviations * std::sqrt(spectrum.m0()),
-            .reach_m = kExtentDeviations * choppiness * std::sqrt(squares_m2),
-            .significant_height_m = 4.0 * std::sqrt(spectrum.m0())};
+            reach_m2 += energy_m2 * ratio * ratio;
+            // ∫ S (1 − w)² dk: what a footprint w takes from each wave.
+            for (std::size_t cell = HiddenHeight::kCells; cell-- > 0;) {
+                const double lost = 1.0 - filter.weight(k, HiddenHeight::cell_m(cell));
+                if (lost == 0.0) break;  // nor do shorter cells
+                hidden_m2[cell] += energy_m2 * lost * lost;
+            }
+        }
+    Extent extent{.height_m = kExtentDeviations * std::sqrt(spectrum.m0()),
+                  .reach_m = kExtentDeviations * choppiness * std::sqrt(reach_m2),
+                  .significant_height_m = 4.0 * std::sqrt(spectrum.m0())};
+    for (std::size_t cell = 0; cell < HiddenHeight::kCells; ++cell)
+        extent.hidden.deviation_m[cell] = std::sqrt(hidden_m2[cell]);
+    return extent;
 }
 
 }  // namespace pelagic

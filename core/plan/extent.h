@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/spectrum/directional_spectrum.h"
+#include "core/surface/hidden_height.h"
 
 namespace pelagic {
 
@@ -14,6 +15,7 @@ struct Extent {
     double height_m = 0.0;              // |z|
     double reach_m = 0.0;               // of the horizontal displacement, choppiness included
     double significant_height_m = 0.0;  // Hs = 4 √m0
+    HiddenHeight hidden{};              // by the footprints of a mesh's cells
 };
 
 inline constexpr double kExtentDeviations = 5.0;

@@ -230,7 +230,8 @@ ProjectedGridOptions projected_grid_options(const PreparedScene& prepared) {
     const Extent& extent = prepared.extent;
     return {.cell_px = prepared.scene.surface.cell_px,
             .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
-            .significant_height_m = extent.significant_height_m};
+            .significant_height_m = extent.significant_height_m,
+            .hidden = extent.hidden};
 }
 
 namespace {
@@ -332,7 +333,8 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
     const std::shared_ptr<const RestSurface> surface =
         make_surface(prepared->scene, {.height_m = extent.height_m,
                                        .reach_m = extent.reach_m,
-                                       .significant_height_m = extent.significant_height_m});
+                                       .significant_height_m = extent.significant_height_m,
+                                       .hidden = extent.hidden});
     const OutputContext context{
         .prepared = *prepared, .surface = *surface, .frames = frames, .gone = products_gone(prepared->scene)};
     std::vector<OutputRequest> requests;

@@ -40,6 +40,11 @@ constexpr double kFine = 4.0, kBeside = 1.0, kAcross = 6.0, kSpare = 64.0;
 // The mean over a pixel halves waves that are 1.66 pixels long; a footprint those of three (core/plan/filter.h). So much
 // of a pixel is one that blurs as pixels do.
 constexpr double kPixel = 0.6;
+// Rows are so close together that cells of their length hide heights of kHeight_px (standard deviation), if cells are no
+// larger than kHeightCell_px across; otherwise of more in proportion. The skyline of a gale is then within a pixel of the
+// sea's own in 99 % of a picture's columns (tests/bench, "skyline"). Rows that heights alone ask for are no more than
+// kHigh diagonals have cells: a telephoto lens sees crests behind crests for tens of kilometres.
+constexpr double kHeight_px = 0.3, kHeightCell_px = 8.0, kHigh = 6.0;
 // Counts are multiples of kCountStep. The largest serves an 8K picture with one cell per pixel.
 constexpr int kCountStep = 16, kLargestCount = 8192;
 
@@ -236,6 +241,123 @@ bool is_narrow(const Station& at) {
     return kFine * at.diagonal < 0.5 * kPi;
 }
 
+// Where rows are: how many cells lie between the first one and a radius, which need not be a whole number. It is summed
+// over short steps, each of which has as many cells as its angle asks for, or as the waves' heights do, whichever are
+// more. All of it changes smoothly with the pose, and so do the rows.
+class RowSpacing {
+  public:
+    // From radii.first to radii.last; the sea at rest is in view within `seen`. `count`: how many cells there will be;
+    // 0: as many as are asked for.
+    RowSpacing(Interval radii, Interval seen, const ProjectedGridOptions& options, const Station& at,
+               double cell_angle, int count)
+        : height_m_(at.effective_height_m), first_m_(radii.first) {
+        const double height_angle =
+            kHeight_px / options.cell_px * cell_angle * std::max(options.cell_px / kHeightCell_px, 1.0);
+        const auto part = [&](double last_m, Group group, double cell) {
+            add_steps(last_m, group, cell * cell_angle, options.hidden, height_angle);
+        };
+        // A narrow lens begins to have small cells here.
+        double fine_m = radii.first;
+        if (is_narrow(at)) {
+            const double angle = std::atan2(seen.last, height_m_) - kFine * at.diagonal;
+            fine_m = std::clamp(height_m_ * std::tan(std::max(angle, 0.0)), radii.first, seen.last);
+        }
+        part(std::min(fine_m, seen.first), kNearby, kMargin);
+        if (fine_m < seen.first)
+            part(seen.first, kFineOnes, kMargin);
+        else
+            part(fine_m, kNearby, 1.0);
+        part(seen.last, kFineOnes, 1.0);
+        part(radii.last, kBeyond, kMargin);
+
+        const double diagonal = at.diagonal / cell_angle;
+        if (is_narrow(at)) most_[kNearby] = most_[kBeyond] = kBeside * diagonal + kSpare;
+        const double most =
+            std::min(total(counts(0.0)) + kHigh * diagonal, 1.0 * (count > 0 ? count : kLargestCount));
+        double share = 1.0;  // of the cells that heights ask for
+        if (total(counts(share)) > most) {
+            double least = 0.0;
+            for (double half = 0.5; half > 1e-12; half *= 0.5)
+                if (total(counts(least + half)) <= most) least += half;
+            share = least;
+        }
+        const Counts wanted = counts(share);
+        double sum = 0.0;
+        for (Step& step : steps_) {
+            const double cells = std::max(step.by_angle, share * step.by_height);
+            sum += cells * std::min(most_[step.group] / wanted[step.group], 1.0);
+            step.cells = sum;
+        }
+    }
+
+    double cells() const { return steps_.empty() ? 0.0 : steps_.back().cells; }
+
+    // 0 ≤ cells ≤ cells()
+    double radius_m(double cells) const {
+        if (steps_.empty()) return first_m_;  // all that is in view is one place
+        const auto step = std::upper_bound(steps_.begin(), steps_.end() - 1, cells,
+                                           [](double value, const Step& s) { return value < s.cells; });
+        const double first_m = step == steps_.begin() ? first_m_ : (step - 1)->last_m;
+        const double before = step == steps_.begin() ? 0.0 : (step - 1)->cells;
+        // Even in angle: tan(a + b) of the step's first angle and a part of its own.
+        const double part = (cells - before) / (step->cells - before);
+        const double rise = std::tan(part * angle_between(first_m, step->last_m));
+        return (first_m + height_m_ * rise) / (1.0 - first_m / height_m_ * rise);
+    }
+
+  private:
+    enum Group { kNearby, kFineOnes, kBeyond, kGroups };
+    using Counts = std::array<double, kGroups>;
+
+    struct Step {
+        double last_m;
+        Group group;
+        double by_angle, by_height;  // cells
+        double cells = 0.0;          // up to last_m
+    };
+
+    // The difference of two angles from the nadir. At the horizon these themselves differ by less than they are rounded.
+    double angle_between(double first_m, double last_m) const {
+        return std::atan2(height_m_ * (last_m - first_m), height_m_ * height_m_ + first_m * last_m);
+    }
+
+    // Up to last_m, even in asinh(r/h): in r below the camera, in log r far away.
+    void add_steps(double last_m, Group group, double cell_angle, const HiddenHeight& hidden,
+                   double height_angle) {
+        constexpr int kSteps = 256;
+        double from_m = steps_.empty() ? first_m_ : steps_.back().last_m;
+        if (!(last_m > from_m)) return;
+        const double first = std::asinh(from_m / height_m_),
+                     step = (std::asinh(last_m / height_m_) - first) / kSteps;
+        for (int i = 1; i <= kSteps; ++i) {
+            const double to_m = i == kSteps ? last_m : height_m_ * std::sinh(first + step * i);
+            const double r_m = 0.5 * (from_m + to_m);
+            // A height z is seen at an angle of z cos(elevation)/distance.
+            const double height_m = height_angle * (r_m + height_m_ * (height_m_ / r_m));
+            steps_.push_back({.last_m = to_m,
+                              .group = group,
+                              .by_angle = angle_between(from_m, to_m) / cell_angle,
+                              .by_height = (to_m - from_m) / hidden.longest_cell_m(height_m)});
+            from_m = to_m;
+        }
+    }
+
+    Counts counts(double share) const {
+        Counts sum{};
+        for (const Step& step : steps_) sum[step.group] += std::max(step.by_angle, share * step.by_height);
+        return sum;
+    }
+    double total(const Counts& wanted) const {
+        double sum = 0.0;
+        for (int group = 0; group < kGroups; ++group) sum += std::min(wanted[group], most_[group]);
+        return sum;
+    }
+
+    double height_m_, first_m_;
+    Counts most_{1e300, 1e300, 1e300};
+    std::vector<Step> steps_;
+};
+
 // The rows of a pose: count + 1 of them, or as many as the pose needs if count is 0.
 std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, const Station& at,
                          double cell_angle, int count) {
@@ -254,46 +376,16 @@ std::vector<Row> rows_of(const View& view, const ProjectedGridOptions& options, 
     } else {
         seen = radii;
     }
-    const auto angle_at = [&](double radius_m) { return std::atan2(radius_m, at.effective_height_m); };
-    // Cell count from the first row to a given angle. Margins have larger cells.
-    const Interval angles{angle_at(radii.first), angle_at(radii.last)};
-    const Interval core{angle_at(seen.first), angle_at(seen.last)};
-    const double before = (core.first - angles.first) / (kMargin * cell_angle);
-    const double inside = (core.last - core.first) / cell_angle;
-    const double after = (angles.last - core.last) / (kMargin * cell_angle);
-    const auto angle_of_small = [&](double cells) {
-        if (cells < before) return angles.first + cells * kMargin * cell_angle;
-        if (cells < before + inside) return core.first + (cells - before) * cell_angle;
-        return std::min(core.last + (cells - before - inside) * kMargin * cell_angle, angles.last);
-    };
-    // A narrow lens has larger cells on both sides of those that it looks at: so many small ones each.
-    double near_cells = 0.0, near_rows = 0.0, far_rows = after;
-    if (is_narrow(at)) {
-        const double most = kBeside * at.diagonal / cell_angle + kSpare;
-        const double first = core.last - kFine * at.diagonal;  // of those that stay small
-        near_cells = first > core.first     ? before + (first - core.first) / cell_angle
-                     : first > angles.first ? (first - angles.first) / (kMargin * cell_angle)
-                                            : 0.0;
-        near_rows = std::min(near_cells, most);
-        far_rows = std::min(after, most);
-    }
-    const double fine_rows = before + inside - near_cells, all = near_rows + fine_rows + far_rows;
-    const auto angle_of = [&](double cells) {
-        if (cells < near_rows) return angle_of_small(cells * (near_cells / near_rows));
-        const double beyond = cells - near_rows - fine_rows;
-        if (beyond > 0.0 && far_rows < after)
-            return angle_of_small(before + inside + beyond * (after / far_rows));
-        return angle_of_small(cells - near_rows + near_cells);
-    };
+    const RowSpacing spacing(radii, seen, options, at, cell_angle, count);
     if (count == 0) {
-        const double needed = std::ceil(all / kCountStep) * kCountStep;
+        const double needed = std::ceil(spacing.cells() / kCountStep) * kCountStep;
         count = static_cast<int>(std::clamp(needed, 1.0 * kCountStep, 1.0 * kLargestCount));
     }
     std::vector<Row> rows(static_cast<std::size_t>(count) + 1);
     for (int i = 0; i <= count; ++i)
         rows[i].radius_m = i == 0       ? radii.first
                            : i == count ? radii.last
-                                        : at.effective_height_m * std::tan(angle_of(all * i / count));
+                                        : spacing.radius_m(spacing.cells() * i / count);
     // A chord between two points of a row comes this much nearer than the row's radius.
     const int least_columns = options.size.columns > 0 ? options.size.columns : kCountStep;
     const double sagitta = std::cos(kPi / std::max(least_columns, 3));

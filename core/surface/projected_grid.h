@@ -1,9 +1,12 @@
 // The projected grid (Johanson 2004; Bruneton, Neyret, Holzschuch 2010, §4): points at rest, about one cell
 // apart on the screen, wherever the camera is.
 //
-// Rows are circles round the camera's nadir. They are evenly spaced in the angle at which they are seen from
-// the effective height √(h² + (Hs/2)²): nearly the camera's own high above the waves, and never 0 among them.
-// Columns are evenly spaced in azimuth; each row has its own range. For a camera that looks at the horizon,
+// Rows are circles round the camera's nadir. Near by they are evenly spaced in the angle at which they are seen
+// from the effective height √(h² + (Hs/2)²): nearly the camera's own high above the waves, and never 0 among
+// them. Such a cell is d²/h times as long as that angle at the distance d: 330 m away and from 4 m, 250 m. What
+// rises above the sea at rest is seen from the side there, however. So rows are no farther apart than what
+// hides, of the waves' heights, a third of a pixel. With waves of some steepness at every scale that is a
+// length in proportion to d, up to where all waves together are no higher: a few hundred rows. Columns are evenly spaced in azimuth; each row has its own range. For a camera that looks at the horizon,
 // cells align with the screen. Looking straight down, looking up and being below the crests are no special
 // cases.
 //
@@ -17,6 +20,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "core/surface/hidden_height.h"
 #include "core/surface/view.h"
 
 namespace pelagic {
@@ -45,6 +49,7 @@ struct ProjectedGridOptions {
     double cell_px = 8.0;
     SurfaceBounds bounds;
     double significant_height_m = 0.0;  // Hs
+    HiddenHeight hidden{};              // of the waves; without, rows are even in angle
     // 0: as many as this pose needs (projected_grid_needs). Others, for poses that are to share a topology.
     ProjectedGridSize size{};
 };

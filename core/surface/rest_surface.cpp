@@ -66,7 +66,8 @@ class CameraGrid final : public RestSurface {
           first_frame_(scene.shot.first_frame),
           options_{.cell_px = scene.surface.cell_px,
                    .bounds = {.height_m = reach.height_m, .reach_m = reach.reach_m},
-                   .significant_height_m = reach.significant_height_m} {}
+                   .significant_height_m = reach.significant_height_m,
+                   .hidden = reach.hidden} {}
 
     std::string describe() const override {
         const ProjectedGridSize size = projected_grid_needs(view_at(camera_, first_frame_), options_).size;

@@ -15,13 +15,15 @@
 
 #include "core/scene/keys.h"
 #include "core/scene/scene.h"
+#include "core/surface/hidden_height.h"
 #include "core/surface/view.h"
 
 namespace pelagic {
 
-// How far the sea that lies on the surface goes from its rest, by expectation [m].
+// How far the sea that lies on the surface goes from its rest, by expectation [m], and what cells hide of it.
 struct SeaReach {
     double height_m = 0.0, reach_m = 0.0, significant_height_m = 0.0;
+    HiddenHeight hidden{};
 };
 
 // Points that lie at first_m + i·spacing_m in x and in y, i ≥ 0, seen from the world's origin.

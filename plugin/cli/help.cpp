@@ -74,10 +74,25 @@ const char* const kRenderFooter =
     "  pelagic render storm.toml --frames 12 --size 640x360 --samples 1\n"
     "                                                    one frame, small and fast\n"
     "  pelagic render storm.toml --frames 12 --terms sun only the glitter\n"
+    "  pelagic render storm.toml --shutter 0.5 --samples 4 --alpha --layers all\n"
+    "                                                    for compositing\n"
     "\n"
     "The PNG's exposure is metered from the light and the sea in view, once for the whole shot\n"
     "(at the camera's keys), so that a turning camera keeps its brightness.\n"
-    "A frame doesn't depend on other frames or on the number of threads.";
+    "A frame doesn't depend on other frames or on the number of threads.\n"
+    "\n"
+    "Layers of the EXR, as Nuke and Blender read them:\n"
+    "  sun, sky, sea, foam  .R .G .B  the light by its source; their sum is R, G, B\n"
+    "  depth           Z              along the camera's axis, in metres; 1e10 in the sky\n"
+    "  position        P.X .Y .Z      in the world, z up, in metres\n"
+    "  normal          N.X .Y .Z      of the waves that the pixel resolves, in the world\n"
+    "  motion          forward.u .v, backward.u .v   in pixels, u right, v up: to where the\n"
+    "                                 next frame, and the one before, shows the same water (Nuke)\n"
+    "  vector          Vector.X … .W  the same for Blender's Vector Blur, as Speed\n"
+    "  coverage        coverage.X     the share of the sea that whitecaps cover\n"
+    "  slope_variance  slope_variance.X .Y .Z        xx, yy, xy of the slopes that the pixel hides\n"
+    "Light is a mean over the pixel and the shutter's time. The others are those of the sample in\n"
+    "the pixel's middle at the frame's own time: a mean of depths is a depth that isn't there.";
 const char* const kSize =
     "The pictures' width and height in pixels.\n"
     "Default: the shot's camera.resolution";
@@ -92,6 +107,17 @@ const char* const kSkyQuality =
 const char* const kTerms =
     "The terms of the light: sun, sky, sea, foam, separated by commas.\n"
     "Default: all of them";
+
+const char* const kShutter =
+    "How long the shutter is open, in frames: 0.5 is half a frame (180°), around the frame's own\n"
+    "time. Sea and camera move; each of a pixel's N × N samples has a moment of its own, so take\n"
+    "more --samples for fast cameras. 0 to 4. Default: 0, no motion blur";
+const char* const kAlpha =
+    "Transparent where there is no sea: no sky behind it, and A, by which the light is multiplied\n"
+    "(in the PNG it isn't, as that format wants)";
+const char* const kLayers =
+    "The layers of the EXR beside R, G, B, separated by commas; or all, or none. See below.\n"
+    "Default: sun,sky,sea,foam";
 
 const char* const kTrustPictures =
     "Don't read the pictures that are there in full: those with the right beginning and end\n"

@@ -28,6 +28,9 @@ extern const char* const kExposure;
 extern const char* const kSamples;
 extern const char* const kSkyQuality;
 extern const char* const kTerms;
+extern const char* const kShutter;
+extern const char* const kAlpha;
+extern const char* const kLayers;
 extern const char* const kTrustPictures;
 
 extern const char* const kPreview;

@@ -44,9 +44,10 @@ constexpr double kMostStops = 30.0;
 
 struct Arguments {
     std::string shot;
-    std::optional<std::string> out, frames, terms, sky_quality;
+    std::optional<std::string> out, frames, terms, sky_quality, layers;
     std::optional<int> samples;
-    double exposure_stops = 0.0;
+    double exposure_stops = 0.0, shutter_frames = 0.0;
+    bool alpha = false;
     std::string size, threads, max_memory;
     bool trust_times = false;
 };
@@ -100,6 +101,18 @@ Job job_of(const Arguments& arguments) {
         throw WrongUsage("samples " + std::to_string(job.options.samples) + "; accepted: 1 to " +
                          std::to_string(kMostSamples));
     if (arguments.terms) parse_terms(*arguments.terms, job.options.lighting);
+    if (!(arguments.shutter_frames >= 0.0 && arguments.shutter_frames <= kLongestShutter_frames))
+        throw WrongUsage("shutter " + number_text(arguments.shutter_frames) + "; accepted: frames, 0 to " +
+                         number_text(kLongestShutter_frames));
+    job.options.shutter_frames = arguments.shutter_frames;
+    job.options.alpha = arguments.alpha;
+    if (arguments.layers) {
+        try {
+            job.options.layers = parse_picture_layers(*arguments.layers);
+        } catch (const std::invalid_argument& error) {
+            throw WrongUsage(error.what());
+        }
+    }
     if (arguments.sky_quality) job.options.lighting.sky_quality = parse_sky_quality(*arguments.sky_quality);
     if (!(std::abs(arguments.exposure_stops) <= kMostStops))
         throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
@@ -324,6 +337,9 @@ Verb add_render(CLI::App& program) {
     command->add_option("--samples", arguments->samples, help::kSamples)->type_name("N");
     command->add_option("--sky-quality", arguments->sky_quality, help::kSkyQuality)->type_name("QUALITY");
     command->add_option("--terms", arguments->terms, help::kTerms)->type_name("TERMS");
+    command->add_option("--shutter", arguments->shutter_frames, help::kShutter)->type_name("FRAMES");
+    command->add_flag("--alpha", arguments->alpha, help::kAlpha);
+    command->add_option("--layers", arguments->layers, help::kLayers)->type_name("LAYERS");
     command->add_flag("--trust-times", arguments->trust_times, help::kTrustPictures);
     add_threads(*command, arguments->threads, help::kThreads);
     add_max_memory(*command, arguments->max_memory, help::kMaxMemory);

@@ -13,6 +13,7 @@
 #include "plugin/exr/exr.h"
 
 #include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
@@ -135,6 +136,11 @@ void insert(Imf::Header& header, const Attribute& attribute) {
         }
         void operator()(const std::array<float, 3>& v) const {
             header.insert(name, Imf::V3fAttribute({v[0], v[1], v[2]}));
+        }
+        void operator()(const Chromaticities& v) const {
+            const auto place = [](const std::array<float, 2>& xy) { return Imath::V2f(xy[0], xy[1]); };
+            header.insert(name, Imf::ChromaticitiesAttribute(
+                                    {place(v.red), place(v.green), place(v.blue), place(v.white)}));
         }
     } visitor{header, name};
     std::visit(visitor, attribute.value);

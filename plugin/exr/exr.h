@@ -47,9 +47,14 @@ struct Image {
 // All lossless. Auto is None, the best for maps of a sea; exr.cpp has the measurement.
 enum class Compression { Auto, None, Rle, Zips, Zip, Piz };
 
+// CIE x, y of a picture's primaries and of its white.
+struct Chromaticities {
+    std::array<float, 2> red{}, green{}, blue{}, white{};
+};
+
 // The format has 32-bit integers only: longer ones (seeds) are written as text.
 using AttributeValue =
-    std::variant<std::string, double, float, int, std::array<float, 2>, std::array<float, 3>>;
+    std::variant<std::string, double, float, int, std::array<float, 2>, std::array<float, 3>, Chromaticities>;
 
 struct Attribute {
     std::string name;  // 1 … 255 bytes, unique, and not one of the format's ("channels", "wrapmodes", …)

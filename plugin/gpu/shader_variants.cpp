@@ -105,7 +105,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
             joined({query_files(),
                     {options.for_host ? "plugin/gpu/host_vertex.glsl" : "plugin/gpu/sea_vertex.glsl"}}),
             joined({query_files(),
-                    {"plugin/gpu/light_uniforms.glsl", sky_file(options)},
+                    {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
                     {"plugin/gpu/rays.glsl"},
                     output_files(options),
@@ -117,7 +117,8 @@ ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size
     lighting.sky = lighting.sky && sky_map_size > 0;
     return {lighting_constants(lighting, sky_map_size) + picture_constants(options),
             {"plugin/gpu/full_vertex.glsl"},
-            joined({{"core/lighting/special.glsl", "plugin/gpu/light_uniforms.glsl", sky_file(options)},
+            joined({{"core/lighting/special.glsl", "plugin/gpu/light_uniforms.glsl", sky_file(options),
+                     "core/lighting/sky_map.glsl"},
                     lighting_files(),
                     {"core/lighting/background.glsl", "plugin/gpu/rays.glsl"},
                     output_files(options),

@@ -1,5 +1,5 @@
 // The sky's map for hosts whose textures have no mip levels: all levels side by side (sky_atlas.h), filtered
-// here, step by step as SkyMap::radiance().
+// here, step by step as SkyMap::trilinear(); for core/lighting/sky_map.glsl.
 
 uniform sampler2D sky_map;
 
@@ -18,7 +18,12 @@ vec3 sky_bilinear(vec2 u, int level) {
     return vec3(texel.x, texel.y, texel.z);
 }
 
-vec3 sky_lookup(vec2 u, float level) {
+vec3 sky_texel(ivec2 at) {
+    vec4 texel = texelFetch(sky_map, at, 0);
+    return vec3(texel.x, texel.y, texel.z);
+}
+
+vec3 sky_filtered(vec2 u, float level) {
     float coarsest = log2(kSkyMapSize);
     float held = clamp(level, 0.0, coarsest);
     float fine = floor(held);

@@ -1,5 +1,7 @@
 #include "plugin/gpu/uniforms.h"
 
+#include "core/lighting/background.h"
+
 namespace pelagic {
 namespace {
 
@@ -31,10 +33,15 @@ std::vector<Uniform> query_uniforms(const SeaLayout& layout) {
 }
 
 std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water) {
+    const SunDisc disc = sun_disc(sky);
     return {vector("sun_direction", sky.sun_direction),
             vector("sun_radiance", sky.sun_radiance),
             number("sun_angular_radius", static_cast<double>(sky.sun_angular_radius)),
             vector("sun_irradiance", sky.sun_irradiance),
+            vector("sun_centre", disc.centre),
+            vector("sun_low", disc.low),
+            vector("sun_middle", disc.middle),
+            vector("sun_high", disc.high),
             vector("sky_irradiance", sky.sky_irradiance),
             vector("water_reflectance", water.reflectance)};
 }

@@ -84,8 +84,12 @@ Scene portable(Scene scene) {
     return scene;
 }
 
+bool is_in_kcd_m2(const Scene& scene) {
+    return scene.light.sky == Light{}.sky;
+}
+
 std::string radiance_unit(const Scene& scene) {
-    return scene.light.sky == Light{}.sky ? "kcd/m2, linear Rec. 709" : "the sky picture's own, linear";
+    return is_in_kcd_m2(scene) ? "kcd/m2, linear Rec. 709" : "the sky picture's own, linear";
 }
 
 WaterBody make_water(const Scene& scene) {

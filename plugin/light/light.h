@@ -24,6 +24,7 @@ std::string sky_content(const Scene& scene);
 Scene portable(Scene scene);
 // The unit of the sky's radiance, as files say it.
 std::string radiance_unit(const Scene& scene);
+bool is_in_kcd_m2(const Scene& scene);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
 

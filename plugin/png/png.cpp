@@ -57,14 +57,19 @@ bool read(png_structp file, png_infop info, std::string_view& left, png_bytep ro
     return left.empty();
 }
 
+std::size_t bytes_a_pixel(const Image& image) {
+    return image.has_alpha ? 4 : 3;
+}
+
 // Returns false if the library failed. Has no local with a destructor, because the library uses longjmp().
 bool write(png_structp file, png_infop info, const Image& image) {
     if (setjmp(png_jmpbuf(file)) != 0) return false;
     const auto width = static_cast<png_uint_32>(image.width);
     png_set_user_limits(file, kLargest, kLargest);
     png_set_compression_level(file, kZipLevel);
-    png_set_IHDR(file, info, width, static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(file, info, width, static_cast<png_uint_32>(image.height), 8,
+                 image.has_alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(file, info, PNG_sRGB_INTENT_PERCEPTUAL);
     if (!image.comment.empty()) {
         png_text text{};
@@ -76,7 +81,7 @@ bool write(png_structp file, png_infop info, const Image& image) {
     }
     png_write_info(file, info);
     for (int y = 0; y < image.height; ++y)
-        png_write_row(file, image.rgb.data() + std::size_t{3} * width * static_cast<std::size_t>(y));
+        png_write_row(file, image.bytes.data() + bytes_a_pixel(image) * width * static_cast<std::size_t>(y));
     png_write_end(file, nullptr);
     return true;
 }
@@ -87,9 +92,10 @@ std::string encode(const Image& image) {
     const std::string size = std::to_string(image.width) + " x " + std::to_string(image.height);
     if (image.width < 1 || image.width > kLargest || image.height < 1 || image.height > kLargest)
         throw std::invalid_argument("a picture of " + size + " pixels: both must be 1 to 1000000");
-    if (image.rgb.size() != std::size_t{3} * image.width * image.height)
-        throw std::invalid_argument("a picture of " + size + " pixels with " +
-                                    std::to_string(image.rgb.size()) + " bytes: three a pixel are needed");
+    if (image.bytes.size() != bytes_a_pixel(image) * image.width * image.height)
+        throw std::invalid_argument(
+            "a picture of " + size + " pixels with " + std::to_string(image.bytes.size()) +
+            " bytes: " + std::to_string(bytes_a_pixel(image)) + " a pixel are needed");
     Sink sink;
     png_structp file = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr,
                                                [](png_structp, png_const_charp) {});  // warnings
@@ -106,18 +112,19 @@ std::string encode(const Image& image) {
 }
 
 bool is_whole(std::string_view bytes) {
-    // The signature, the header's length and name, and its content: width, height, 8 bits of red, green and blue.
+    // The signature, the header's length and name, and its content: width, height, 8 bits of red, green and
+    // blue, or of those and alpha.
     constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16);
-    constexpr std::string_view kColours("\x08\x02\0\0\0", 5);
+    constexpr std::string_view kColours("\x08\x02\0\0\0", 5), kWithAlpha("\x08\x06\0\0\0", 5);
     constexpr std::size_t kWidth = 16, kColoursAt = 24, kHeader = 33;
-    if (bytes.size() < kHeader || !bytes.starts_with(kSignature) ||
-        bytes.substr(kColoursAt, kColours.size()) != kColours)
-        return false;
+    if (bytes.size() < kHeader || !bytes.starts_with(kSignature)) return false;
+    const std::string_view colours = bytes.substr(kColoursAt, kColours.size());
+    if (colours != kColours && colours != kWithAlpha) return false;
     std::size_t width = 0;
     for (std::size_t i = kWidth; i < kWidth + 4; ++i)
         width = width << 8 | static_cast<std::uint8_t>(bytes[i]);
     if (width > kLargest) return false;
-    std::vector<std::uint8_t> row(3 * width);
+    std::vector<std::uint8_t> row(4 * width);
     // Neither errors nor warnings are printed.
     png_structp file = png_create_read_struct(
         PNG_LIBPNG_VER_STRING, nullptr, [](png_structp reader, png_const_charp) { png_longjmp(reader, 1); },

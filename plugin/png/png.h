@@ -10,10 +10,12 @@
 
 namespace pelagic::png {
 
-// Rows from the top, x fastest; three sRGB bytes per pixel: R, G, B.
+// Rows from the top, x fastest; three sRGB bytes per pixel: R, G, B; with alpha a fourth, how much of the pixel is
+// covered, by which the others are not multiplied.
 struct Image {
     int width = 0, height = 0;  // 1 … 1e6 each
-    std::span<const std::uint8_t> rgb;
+    std::span<const std::uint8_t> bytes;
+    bool has_alpha = false;
     std::string comment{};  // ASCII, kept in the file before the pixels; empty: none
 };
 

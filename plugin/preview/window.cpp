@@ -177,7 +177,7 @@ void save_window(glm::ivec2 size, const std::filesystem::path& file) {
     for (std::size_t y = 0; y < static_cast<std::size_t>(size.y); ++y)
         std::copy_n(upwards.begin() + static_cast<std::ptrdiff_t>(y * row), row,
                     rgb.end() - static_cast<std::ptrdiff_t>((y + 1) * row));
-    files::write_atomically(file, png::encode({.width = size.x, .height = size.y, .rgb = rgb}));
+    files::write_atomically(file, png::encode({.width = size.x, .height = size.y, .bytes = rgb}));
 }
 
 // The first free name: NAME.preview.0001.png, …

@@ -26,6 +26,7 @@
 #include "plugin/bake/verify.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/task.h"
 #include "plugin/python/values.h"
 #include "plugin/python/watch.h"
 
@@ -66,29 +67,56 @@ std::vector<int> frames_of(const std::optional<FramesAsked>& asked, const Shot& 
     return frames;
 }
 
+// A bake that was asked for; what is wrong with it is said before any work.
+struct BakeOrder {
+    Scene scene;  // a copy: other threads may change the caller's meanwhile
+    BakeOptions options;
+};
+
+BakeOrder order_of(const Scene& scene, const std::optional<std::filesystem::path>& out,
+                   const std::optional<FramesAsked>& frames, bool trust_times,
+                   std::optional<std::size_t> max_memory_bytes) {
+    require_valid(scene);
+    BakeOrder order{.scene = scene, .options = {}};
+    order.options.out = out.value_or(scene.shot.name);
+    order.options.frames = frames_of(frames, scene.shot);
+    order.options.max_memory_bytes = max_memory_bytes.value_or(0);
+    order.options.trust_times = trust_times;
+    return order;
+}
+
+// Without the interpreter. watch: a Watch or a Task.
+template <class Watching>
+BakeReport baked(BakeOrder order, Watching& watch) {
+    order.options.progress = [&](const BakeProgress& now) {
+        watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total,
+                   now.stage == BakeStage::Checking ? now.checked : now.built);
+    };
+    order.options.cancel = watch.flag();
+    return bake(order.scene, order.options);
+}
+
 BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
                     const std::optional<FramesAsked>& frames, const py::object& progress,
                     const py::object& cancel, bool trust_times, std::optional<std::size_t> max_memory_bytes) {
-    require_valid(scene);
+    BakeOrder order = order_of(scene, out, frames, trust_times, max_memory_bytes);
     Watch watch(progress, cancel);
-    const Scene kept = scene;
-    BakeOptions options{.out = out.value_or(kept.shot.name),
-                        .frames = frames_of(frames, kept.shot),
-                        .progress =
-                            [&](const BakeProgress& now) {
-                                watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total,
-                                           now.stage == BakeStage::Checking ? now.checked : now.built);
-                            },
-                        .max_memory_bytes = max_memory_bytes.value_or(0),
-                        .cancel = watch.flag(),
-                        .trust_times = trust_times};
     BakeReport report;
     {
         const OthersMayRun others_may_run;
-        report = bake(kept, options);
+        report = baked(std::move(order), watch);
     }
     watch.rethrow();
     return report;
+}
+
+std::unique_ptr<Task> begin_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
+                                 const std::optional<FramesAsked>& frames, bool trust_times,
+                                 std::optional<std::size_t> max_memory_bytes) {
+    return std::make_unique<Task>(
+        [order = order_of(scene, out, frames, trust_times, max_memory_bytes)](Task& task) -> Task::Made {
+            return [report = baked(order, task)] { return py::cast(report); };
+        });
 }
 
 std::optional<std::filesystem::path> path_or_none(const std::filesystem::path& path) {
@@ -283,6 +311,12 @@ void add_bake(py::module_& module) {
         "read, and its checksum compared.\n"
         "FileError where a file can't be written, ShotError for a scene that is refused, ValueError for "
         "frames outside the shot.");
+    module.def(
+        "begin_bake", &begin_bake, py::arg("scene"), py::arg("out") = py::none(),
+        py::arg("frames") = py::none(), py::kw_only(), py::arg("trust_times") = false,
+        py::arg("max_memory_bytes") = py::none(),
+        "Begins what bake() does: a Task whose result is the BakeReport, and whose progress is what bake() "
+        "calls progress with.");
     py::class_<Maps>(
         module, "Maps",
         "The maps of a scene as arrays, the values that a bake writes, in the quality's precision.\n\n"

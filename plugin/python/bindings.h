@@ -12,6 +12,7 @@ namespace pelagic::python {
 void add_scene(pybind11::module_& module);
 void add_presets(pybind11::module_& module, pybind11::class_<Scene, std::shared_ptr<Scene>>& scene);
 void add_watch(pybind11::module_& module);
+void add_task(pybind11::module_& module);
 void add_surfaces(pybind11::module_& module);
 void add_sea(pybind11::module_& module);
 void add_frame(pybind11::module_& module);

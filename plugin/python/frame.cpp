@@ -23,6 +23,7 @@
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/sea.h"
+#include "plugin/python/task.h"
 #include "plugin/python/watch.h"
 
 namespace pelagic::python {
@@ -59,6 +60,13 @@ void read_footprints(Footprints& footprints, const py::object& object, const Ask
         if (!(footprints.view[static_cast<std::size_t>(i)] >= 0.0f))
             throw py::value_error(asked.name + ": accepted: numbers from 0 up");
 }
+
+// What evaluate() was asked, without Python. It stays where it is: footprints point into it.
+struct Evaluation {
+    Points<float> points;
+    Footprints cell, pixel;
+    Results<float> results;
+};
 
 // None, or an array of each point's own.
 Strided<const glm::vec2> axes(const py::object& object, const Asked& asked) {
@@ -107,27 +115,31 @@ class PythonFrame {
     }
 
     py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given) const {
-        Points<float> points = points_of(rest, origin_m, "rest");
-        const auto count = static_cast<py::ssize_t>(points.count);
-        Footprints cell, pixel;
-        read_footprints(cell, given.cell_m, {"cell_m", count});
-        read_footprints(pixel, given.pixel_m, {"pixel_m", count});
-        points.cell_m = cell.view;
-        points.pixel_m = pixel.view;
-        points.cell_axis_m = axes(given.cell_axis_m, {"cell_axis_m", count});
-        points.pixel_axis_m = axes(given.pixel_axis_m, {"pixel_axis_m", count});
-
-        const auto arrays = with_fresh(given, count);
-        Results<float> results;
-        py::dict written;
-        for (const ProductRow& row : kProductTable) {
-            const py::object& array = arrays[index(row.product)];
-            if (array.is_none()) continue;
-            write_to(results, row, array, count);
-            written[row.identifier] = array;
-        }
-        run(points, results);
+        Evaluation asked;
+        py::dict written = read(asked, rest, origin_m, given);
+        const OthersMayRun others_may_run;
+        require_on_the_sea(asked.points, "rest");
+        const std::shared_lock reading(mutex_);
+        run(asked);
         return written;
+    }
+
+    // set() and evaluate() of the frame that `self` is.
+    static std::unique_ptr<Task> begin(const py::object& self, double t_s, const py::object& rest,
+                                       std::array<double, 2> origin_m, const Arguments& given) {
+        auto& frame = self.cast<PythonFrame&>();
+        const auto asked = std::make_shared<Evaluation>();
+        py::dict written = frame.read(*asked, rest, origin_m, given);
+        return std::make_unique<Task>(
+            [&frame, asked, t_s](Task&) -> Task::Made {
+                require_on_the_sea(asked->points, "rest");
+                const std::unique_lock writing(frame.mutex_);
+                alone([&] { frame.frame_.set(t_s); });
+                frame.run(*asked);
+                return {};
+            },
+            py::make_tuple(self, rest, given.cell_m, given.pixel_m, given.cell_axis_m, given.pixel_axis_m),
+            written);
     }
 
     py::dict heights(const py::object& xy, std::array<double, 2> origin_m, const py::object& footprint_m,
@@ -218,12 +230,33 @@ class PythonFrame {
                                   ": the sea was built without it; accepted: what its products name");
     }
 
-    void run(const Points<float>& points, const Results<float>& results) const {
-        const OthersMayRun others_may_run;
-        require_on_the_sea(points, "rest");
-        const std::shared_lock reading(mutex_);
+    // A dict of the arrays that will be written.
+    py::dict read(Evaluation& asked, const py::object& rest, std::array<double, 2> origin_m,
+                  const Arguments& given) const {
+        asked.points = points_of(rest, origin_m, "rest");
+        const auto count = static_cast<py::ssize_t>(asked.points.count);
+        read_footprints(asked.cell, given.cell_m, {"cell_m", count});
+        read_footprints(asked.pixel, given.pixel_m, {"pixel_m", count});
+        asked.points.cell_m = asked.cell.view;
+        asked.points.pixel_m = asked.pixel.view;
+        asked.points.cell_axis_m = axes(given.cell_axis_m, {"cell_axis_m", count});
+        asked.points.pixel_axis_m = axes(given.pixel_axis_m, {"pixel_axis_m", count});
+
+        const auto arrays = with_fresh(given, count);
+        py::dict written;
+        for (const ProductRow& row : kProductTable) {
+            const py::object& array = arrays[index(row.product)];
+            if (array.is_none()) continue;
+            write_to(asked.results, row, array, count);
+            written[row.identifier] = array;
+        }
+        return written;
+    }
+
+    // Whoever calls it holds the lock.
+    void run(const Evaluation& asked) const {
         require_time();
-        alone([&] { pelagic::evaluate(frame_, 0, points, results); });
+        alone([&] { pelagic::evaluate(frame_, 0, asked.points, asked.results); });
     }
 
     void require_time() const {
@@ -287,8 +320,8 @@ py::object none() {
     return py::none();
 }
 
-// evaluate() with an argument for each product's array, under its identifier: a parameter for each number in
-// the pack.
+// evaluate() and begin() with an argument for each product's array, under its identifier: a parameter for each
+// number in the pack.
 template <std::size_t>
 using ArrayArgument = const py::object&;
 template <std::size_t... kProducts>
@@ -306,6 +339,21 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kProducts.
         py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(), py::arg("pixel_axis_m") = none(),
         (py::arg(kProductTable[kProducts].identifier) = none())..., py::arg("outputs") = none(),
         kEvaluateDoc.c_str());
+    frame.def(
+        "begin",
+        [](const py::object& self, double t, const py::object& rest, std::array<double, 2> origin,
+           const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
+           const py::object& pixel_axis_m, ArrayArgument<kProducts>... arrays,
+           const std::optional<std::vector<std::string>>& outputs) {
+            return PythonFrame::begin(self, t, rest, origin,
+                                      {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs});
+        },
+        py::arg("t"), py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(),
+        py::arg("cell_m") = none(), py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(),
+        py::arg("pixel_axis_m") = none(), (py::arg(kProductTable[kProducts].identifier) = none())...,
+        py::arg("outputs") = none(),
+        "Begins set(t) and evaluate() with the rest: a Task whose result is evaluate()'s. It keeps the arrays alive; "
+        "nobody may write to them meanwhile.");
 }
 
 }  // namespace

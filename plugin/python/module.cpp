@@ -68,6 +68,7 @@ PYBIND11_MODULE(pelagic, module) {
         "A file or folder that can't be read or written: its path, why, and what would do.";
 
     pelagic::python::add_watch(module);
+    pelagic::python::add_task(module);
     pelagic::python::add_scene(module);
     pelagic::python::add_surfaces(module);
     pelagic::python::add_sea(module);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
@@ -31,8 +32,16 @@ py::array layer_of(const py::capsule& owner, const Picture& picture, glm::vec3 S
                               &(picture.layers.front().*layer).x, owner);
 }
 
+// Those beside the light's, which are there in any case.
+PictureLayerSet data_layers_of(const std::vector<std::string>& names) {
+    PictureLayerSet layers;
+    for (const std::string& name : names) layers |= parse_picture_layers(name);
+    return layers;
+}
+
 py::dict render_frame(const Scene& scene, int frame, const std::optional<std::array<int, 2>>& size,
                       std::optional<int> samples, const std::optional<std::string>& sky_quality,
+                      const std::vector<std::string>& layers, double shutter, bool alpha,
                       const py::object& progress, const py::object& cancel,
                       std::optional<std::size_t> max_memory_bytes) {
     Scene kept = scene;
@@ -41,6 +50,9 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     RenderOptions options = render_options(kept);
     if (samples) options.samples = *samples;
     if (sky_quality) options.lighting.sky_quality = sky_quality_of(*sky_quality);
+    options.layers = data_layers_of(layers);
+    options.shutter_frames = shutter;
+    options.alpha = alpha;
     check_render(kept, options);
     Watch watch(progress, cancel);
     auto picture = std::make_unique<Picture>();
@@ -62,13 +74,22 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     }
     watch.rethrow();
     if (!is_whole) throw Cancelled("rendering was cancelled");
-    py::dict layers;
+    py::dict answer;
     const Picture& made = *picture;
     const py::capsule owner(picture.release(), [](void* held) { delete static_cast<Picture*>(held); });
-    for (const auto& [name, layer] : kLayers) layers[name] = layer_of(owner, made, layer);
-    layers["is_sea"] = py::array_t<bool>({py::ssize_t{made.resolution.y}, py::ssize_t{made.resolution.x}},
-                                         reinterpret_cast<const bool*>(made.sea.data()), owner);
-    return layers;
+    for (const auto& [name, layer] : kLayers) answer[name] = layer_of(owner, made, layer);
+    const py::ssize_t height = made.resolution.y, width = made.resolution.x;
+    answer["is_sea"] =
+        py::array_t<bool>({height, width}, reinterpret_cast<const bool*>(made.sea.data()), owner);
+    if (alpha) answer["alpha"] = py::array_t<float>({height, width}, made.alpha.data(), owner);
+    for (const PictureLayerRow& row : kPictureLayers) {
+        const std::vector<float>& values = made.data[index(row.layer)];
+        if (values.empty()) continue;
+        std::vector<py::ssize_t> shape{height, width};
+        if (row.components > 1) shape.push_back(static_cast<py::ssize_t>(row.components));
+        answer[std::string(row.name).c_str()] = py::array_t<float>(shape, values.data(), owner);
+    }
+    return answer;
 }
 
 }  // namespace
@@ -77,6 +98,7 @@ void add_picture(py::module_& module) {
     module.def(
         "render", &render_frame, py::arg("scene"), py::arg("frame"), py::arg("size") = py::none(),
         py::arg("samples") = py::none(), py::kw_only(), py::arg("sky_quality") = py::none(),
+        py::arg("layers") = std::vector<std::string>(), py::arg("shutter") = 0.0, py::arg("alpha") = false,
         py::arg("progress") = py::none(), py::arg("cancel") = py::none(),
         py::arg("max_memory_bytes") = py::none(),
         "A frame through the scene's camera, as `pelagic render` draws it: a dict of float32 (height, width, 3), "
@@ -84,7 +106,11 @@ void add_picture(py::module_& module) {
         "the source of the light (beside the sea \"sky\" is the sky itself with the sun's disc); and "
         "\"is_sea\", bool (height, width).\n\n"
         "size: (width, height), by default the camera's. samples: N of N × N a pixel; sky_quality: \"one\", "
-        "\"nine\" or \"integral\"; by default the quality level's. progress: called with the share that is "
+        "\"nine\" or \"integral\"; by default the quality level's. layers: further ones, of \"depth\", \"position\", "
+        "\"normal\", \"motion\", \"vector\", \"coverage\" and \"slope_variance\", as `pelagic render --help` describes "
+        "them: float32 (height, width) or (height, width, components). shutter: how long it is open, in frames, 0 to 4. "
+        "alpha: no sky beside the sea, and \"alpha\", float32 (height, width), by which the light is multiplied. "
+        "progress: called with the share that is "
         "done, 0 … 1. cancel: a Cancel, or a callable; Cancelled is then raised. "
         "max_memory_bytes: MemoryError, before any work, for a picture that needs more; by default what the "
         "system gives this process.");

@@ -13,6 +13,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/task.h"
 #include "plugin/python/watch.h"
 
 namespace pelagic::python {
@@ -83,36 +84,53 @@ Query query_of_views(const PreparedScene& prepared, const SeaRequest& request, P
                        .points = points_of(needs.size)});
 }
 
-PythonSea build_sea(const Scene& scene, const SeaRequest& request, Watch& watch) {
+// What a sea is built from; bad requests throw before any work.
+struct SeaOrder {
+    Scene scene;  // a copy: other threads may change the caller's meanwhile
+    ProductSet asked, held;
+    std::optional<Query> plain;
+    SeaRequest request;
+};
+
+SeaOrder order_of(const Scene& scene, SeaRequest request) {
     require_valid(scene);
-    ProductSet products;
-    for (const std::string& name : request.products) products.set(index(product_of(name).product));
-    ProductSet held = products;
-    if (products[index(Product::Position)]) held.set(index(Product::Displacement));
-    if (!request.views.empty() && (request.cell_m || request.pixel_m || request.lattice))
+    SeaOrder order{.scene = scene, .asked = {}, .held = {}, .plain = {}, .request = std::move(request)};
+    for (const std::string& name : order.request.products) order.asked.set(index(product_of(name).product));
+    order.held = order.asked;
+    if (order.asked[index(Product::Position)]) order.held.set(index(Product::Displacement));
+    const SeaRequest& kept = order.request;
+    if (!kept.views.empty() && (kept.cell_m || kept.pixel_m || kept.lattice))
         throw py::value_error(
             "views: have footprints of their own; accepted: without cell_m, pixel_m and lattice");
-    // What is wrong with the request is said before any work.
-    std::optional<Query> plain;
-    if (request.views.empty()) plain = plain_query(scene, request);
-    const Scene kept = scene;  // other threads may change the caller's meanwhile
+    if (kept.views.empty()) order.plain = plain_query(scene, kept);
+    return order;
+}
+
+// Without the interpreter. BuildCancelled. watch: a Watch or a Task.
+template <class Watching>
+PythonSea built(const SeaOrder& order, Watching& watch) {
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
-    std::shared_ptr<const Sea<float>> sea;
+    const auto prepared = prepare(order.scene);
+    Query query = order.plain ? *order.plain : query_of_views(*prepared, order.request, order.held);
+    query.name = "python";
+    query.products = order.held;
+    // Whatever the level, arrays are float32.
+    return {std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}),
+                                               building),
+            order.asked};
+}
+
+PythonSea build_sea(const SeaOrder& order, Watch& watch) {
+    std::optional<PythonSea> sea;
     try {
         const OthersMayRun others_may_run;
-        const auto prepared = prepare(kept);
-        Query query = plain ? *plain : query_of_views(*prepared, request, held);
-        query.name = "python";
-        query.products = held;
-        // Whatever the level, arrays are float32.
-        sea = std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}),
-                                                 building);
+        sea = built(order, watch);
     } catch (const BuildCancelled& cancelled) {
         watch.rethrow();
         throw Cancelled(cancelled.what());
     }
     watch.rethrow();  // a small sea is there before it looks at the flag
-    return {sea, products};
+    return *sea;
 }
 
 const std::string kSeaDoc =
@@ -138,22 +156,37 @@ const std::string kSeaDoc =
 
 void add_sea(py::module_& module) {
     py::class_<PythonSea> sea(module, "Sea", kSeaDoc.c_str());
-    sea.def(
-        py::init([](const Scene& scene, std::vector<std::string> products, std::optional<Ladder> cell_m,
-                    std::optional<Ladder> pixel_m, std::optional<std::array<double, 2>> lattice,
-                    std::vector<View> views, bool pixels, const py::object& progress,
-                    const py::object& cancel) {
-            Watch watch(progress, cancel);
-            return build_sea(scene,
-                             {std::move(products), std::move(cell_m), std::move(pixel_m), lattice,
-                              std::move(views), pixels},
-                             watch);
-        }),
-        py::arg("scene"),
-        py::arg("products") = py::make_tuple("position", "normal", "velocity", "slope_variance", "coverage"),
-        py::kw_only(), py::arg("cell_m") = py::none(), py::arg("pixel_m") = py::none(),
-        py::arg("lattice") = py::none(), py::arg("views") = py::tuple(), py::arg("pixels") = false,
-        py::arg("progress") = py::none(), py::arg("cancel") = py::none());
+    const auto with_request = [&](const auto& define) {
+        define(py::arg("scene"),
+               py::arg("products") =
+                   py::make_tuple("position", "normal", "velocity", "slope_variance", "coverage"),
+               py::kw_only(), py::arg("cell_m") = py::none(), py::arg("pixel_m") = py::none(),
+               py::arg("lattice") = py::none(), py::arg("views") = py::tuple(), py::arg("pixels") = false);
+    };
+    with_request([&](const auto&... arguments) {
+        sea.def(py::init([](const Scene& scene, std::vector<std::string> products,
+                            std::optional<Ladder> cell_m, std::optional<Ladder> pixel_m,
+                            std::optional<std::array<double, 2>> lattice, std::vector<View> views,
+                            bool pixels, const py::object& progress, const py::object& cancel) {
+                    Watch watch(progress, cancel);
+                    return build_sea(order_of(scene, {std::move(products), std::move(cell_m),
+                                                      std::move(pixel_m), lattice, std::move(views), pixels}),
+                                     watch);
+                }),
+                arguments..., py::arg("progress") = py::none(), py::arg("cancel") = py::none());
+        sea.def_static(
+            "begin",
+            [](const Scene& scene, std::vector<std::string> products, std::optional<Ladder> cell_m,
+               std::optional<Ladder> pixel_m, std::optional<std::array<double, 2>> lattice,
+               std::vector<View> views, bool pixels) {
+                return std::make_unique<Task>(
+                    [order = order_of(scene, {std::move(products), std::move(cell_m), std::move(pixel_m),
+                                              lattice, std::move(views), pixels})](Task& task) -> Task::Made {
+                        return [sea = built(order, task)] { return py::cast(sea); };
+                    });
+            },
+            arguments..., "Begins to build one: a Task whose result is the Sea.");
+    });
     sea.def_property_readonly(
            "significant_height_m",
            [](const PythonSea& self) { return self.sea->total().significant_height_m(); },

@@ -23,7 +23,7 @@ PARAMETERS = {
 }
 # The same where a name means another thing in one place.
 PARAMETERS_OF = {("shade", name): ARRAY for name in ("normal", "slope_variance")} | {
-    ("evaluate", name): f"{ARRAY} | None" for name in ("normal", "slope_variance")}
+    (function, name): f"{ARRAY} | None" for function in ("evaluate", "begin") for name in ("normal", "slope_variance")}
 
 # Results that are objects, dictionaries and tuples to pybind11, by the name after the last dot.
 RESULTS = {
@@ -35,6 +35,7 @@ RESULTS = {
     "uniforms": "dict[str, Any]", "textures": "dict[str, Any]", "shaders": "dict[str, tuple[str, str]]", "vertices": ARRAY,
     "triangles": "NDArray[np.uint32]", "size": "tuple[int, int]", "at_origin": f"tuple[NDArray[np.uint8], {ARRAY} | None]",
     "products": "tuple[str, ...]", "origin_m": "tuple[float, float]", "resolution": "tuple[int, int]",
+    "progress": "tuple[Any, ...] | None", "result": "Any",
     **{name: "tuple[float, float, float]" for name in
        ("position_m", "right", "up", "forward", "sun_direction", "sun_radiance", "sun_irradiance", "sky_irradiance",
         "reflectance", "absorption_per_m", "backscatter_per_m")},

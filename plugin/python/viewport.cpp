@@ -14,6 +14,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,7 @@
 #include "plugin/light/light.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/task.h"
 #include "plugin/python/watch.h"
 #include "plugin/render/render.h"
 #include "plugin/render/under_water.h"
@@ -90,6 +92,19 @@ std::shared_ptr<Made> make_beside_others(const Scene& scene, More... more) {
     return std::make_shared<Made>(kept, more...);
 }
 
+template <class Made, class... More>
+std::unique_ptr<Task> begin_making(const Scene& scene, More... more) {
+    require_valid(scene);
+    return std::make_unique<Task>([kept = scene, more...](Task& task) -> Task::Made {
+        std::shared_ptr<Made> made;
+        if constexpr (std::is_constructible_v<Made, const Scene&, More..., const BuildWatch&>)
+            made = std::make_shared<Made>(kept, more..., BuildWatch{.cancel = task.flag()});
+        else
+            made = std::make_shared<Made>(kept, more...);
+        return [made] { return py::cast(made); };
+    });
+}
+
 // ---- Grid
 
 struct GpuGrid {
@@ -108,13 +123,13 @@ py::array triangles_of(const GpuGrid& grid) {
 
 class GpuSea {
   public:
-    GpuSea(const Scene& scene, double finest_m)
+    GpuSea(const Scene& scene, double finest_m, const BuildWatch& watch = {})
         : finest_m_(finest_m),
           made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(scene)),
           sea_(std::make_shared<const Sea<float>>(
-              make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}))),
+              make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}), watch)),
           frame_(sea_),
           packed_(sea_, 0) {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
@@ -280,6 +295,8 @@ void add_gpu_light(py::module_& module) {
         "Sky, sun and water of a scene for GpuSea's shaders. ShotError for an invalid scene, ValueError for a "
         "sky's picture that can't be read.")
         .def(py::init(&make_beside_others<GpuLight>), py::arg("scene"))
+        .def_static("begin", &begin_making<GpuLight>, py::arg("scene"),
+                    "Begins to make one: a Task whose result is the GpuLight.")
         .def("serves", &GpuLight::serves, py::arg("scene"), "Whether that scene has the same light.")
         .def_property_readonly(
             "uniforms", [](const GpuLight& self) { return dict_of(self.uniforms); },
@@ -335,6 +352,13 @@ void add_viewport(py::module_& module) {
                  return make_beside_others<GpuSea>(scene, checked_footprint(finest_m));
              }),
              py::arg("scene"), py::arg("finest_m") = 0.0)
+        .def_static(
+            "begin",
+            [](const Scene& scene, double finest_m) {
+                return begin_making<GpuSea>(scene, checked_footprint(finest_m));
+            },
+            py::arg("scene"), py::arg("finest_m") = 0.0,
+            "Begins to build one: a Task whose result is the GpuSea.")
         .def_property_readonly("finest_m", &GpuSea::finest_m, "As it was built [m].")
         .def("finest_for", &GpuSea::finest_for, py::arg("view"),
              "The finest_m that shows all waves that the pixels of this view can hold: a power of two [m].")

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "plugin/python/bindings.h"
+#include "plugin/python/task.h"
 
 namespace pelagic::python {
 
@@ -16,6 +17,7 @@ namespace {
 struct Work {
     int running = 0;
     std::vector<Watch*> watched;
+    std::vector<Task*> tasks;
     std::optional<std::thread::id> ending;  // the thread that ends the program, once it does
 };
 Work& work() {
@@ -23,10 +25,16 @@ Work& work() {
     return work;
 }
 
+bool is_at_work() {
+    return work().running > 0 ||
+           !std::all_of(work().tasks.begin(), work().tasks.end(), [](Task* task) { return task->is_done(); });
+}
+
 void end_all_work() {
     work().ending = std::this_thread::get_id();
     for (Watch* watch : work().watched) watch->stop();
-    while (work().running > 0) {
+    for (Task* task : work().tasks) task->cancel();
+    while (is_at_work()) {
         const py::gil_scoped_release others_may_run;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
@@ -65,6 +73,15 @@ OthersMayRun::~OthersMayRun() {
     --work().running;
 }
 
+Enlisted::Enlisted(Task& task) : task_(task) {
+    if (work().ending) throw Cancelled("the program ends");
+    work().tasks.push_back(&task);
+}
+
+Enlisted::~Enlisted() {
+    std::erase(work().tasks, &task_);
+}
+
 Watch::Watch(const py::object& progress, const py::object& cancel) : progress_(progress) {
     if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0)
         throw py::type_error("progress: accepted: a callable, or None");
@@ -92,8 +109,10 @@ void add_watch(py::module_& module) {
         .def_property_readonly("is_set", &Cancel::is_set, "Whether set() was called.");
     py::module_::import("atexit").attr("register")(py::cpp_function(&end_all_work));
     // A child has this thread alone.
-    py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") =
-                                                           py::cpp_function([] { work().running = 0; }));
+    py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] {
+                                                           work().running = 0;
+                                                           for (Task* task : work().tasks) task->abandon();
+                                                       }));
 }
 
 }  // namespace pelagic::python

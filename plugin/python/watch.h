@@ -54,6 +54,20 @@ class OthersMayRun {
     std::optional<pybind11::gil_scoped_release> released_;
 };
 
+class Task;
+
+// While it lives, the program's end cancels a task and waits for it. Throws Cancelled if that has begun.
+class Enlisted {
+  public:
+    explicit Enlisted(Task& task);
+    ~Enlisted();
+    Enlisted(const Enlisted&) = delete;
+    Enlisted& operator=(const Enlisted&) = delete;
+
+  private:
+    Task& task_;
+};
+
 // What a caller of long work passes: `progress`, a callable or None, and `cancel`, a Cancel, a callable that is
 // true when it is enough, or None. Made and destroyed with the interpreter held; everything else is called
 // without it, from any thread.

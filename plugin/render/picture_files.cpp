@@ -56,12 +56,17 @@ std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
+// ITU-R BT.709, whose white is D65.
+constexpr exr::Chromaticities kRec709{
+    .red = {0.64f, 0.33f}, .green = {0.30f, 0.60f}, .blue = {0.15f, 0.06f}, .white = {0.3127f, 0.3290f}};
+
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
     const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
     std::vector<exr::Attribute> attributes{
-        {"content", std::string("radiance; the layers add up to R, G, B")},
+        {"content", std::string("radiance; the layers sun, sky, sea and foam add up to R, G, B")},
         {"unit", radiance_unit(scene)},
+        {"chromaticities", kRec709},
         {"time", scene.shot.time_s(frame)},
         {"fps", scene.shot.fps},
         {"frame", frame},
@@ -71,9 +76,15 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"sunDirection", packed(context.sky.sun_direction)},
         {"exposure", static_cast<double>(shot_exposure(context.scene, context.sky, context.exposure_stops))},
         {"samplesPerPixel", context.options.samples * context.options.samples},
+        {"shutter_frames", context.options.shutter_frames},
         {"fingerprint", context.made_of},
         {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
+    // OpenEXR's own way to say the unit: cd/m² of (1, 1, 1).
+    if (is_in_kcd_m2(scene)) attributes.push_back({"whiteLuminance", 1000.0f});
+    for (const PictureLayerRow& row : kPictureLayers)
+        if (!row.light && context.options.layers[index(row.layer)])
+            attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});
     for (exr::Attribute& attribute : seal_attributes(picture_file(scene.shot, frame, "exr")))
         attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
@@ -95,11 +106,11 @@ std::string picture_file(const Shot& shot, int frame, const char* extension) {
 }
 
 PictureFingerprint::PictureFingerprint(const PictureSource& source)
-    : shot_(source.scene.shot), camera_(source.scene.camera) {
-    const LightingChoice& lighting = source.options.lighting;
+    : shot_(source.scene.shot), camera_(source.scene.camera), options_(source.options) {
+    const LightingChoice& lighting = options_.lighting;
     const auto digit = [](auto value) { return std::to_string(static_cast<int>(value)); };
     // What the plan says of a view is the same whichever frames it is for.
-    const Plan plan = picture_plan(source.scene, std::array{source.scene.shot.first_frame});
+    const Plan plan = picture_plan(source.scene, std::array{source.scene.shot.first_frame}, options_);
     Fingerprint hash;
     hash.add(source.drawn_by_gpu ? "drawn picture" : "picture")
         .add("revision " + std::to_string(kPictureRevision))
@@ -107,10 +118,12 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add(canonical(portable(source.scene), kFeedsBesideTheView))
         .add(plan_text(plan, 0))
         .add(source.sky_content)
-        .add("samples " + std::to_string(source.options.samples) + " terms " + digit(lighting.sun) +
+        .add("samples " + std::to_string(options_.samples) + " terms " + digit(lighting.sun) +
              digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + " sky " +
              digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
-        .add("exposure " + number_text(source.exposure_stops));
+        .add("exposure " + number_text(source.exposure_stops))
+        .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
+             " layers " + options_.layers.to_string());
     for (const View& view : metered_views(source.scene))
         hash.add(pose_text(view));  // what the exposure comes from
     source_ = hash.text();
@@ -118,9 +131,14 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
 
 std::string PictureFingerprint::of(int frame) const {
     Fingerprint hash;
-    hash.add(source_).add("frame " + std::to_string(frame)).add(pose_text(view_at(camera_, frame)));
+    hash.add(source_).add("frame " + std::to_string(frame));
+    std::vector<double> moments = moments_of(frame, options_);
+    const std::size_t shown = moments.size();
+    if (needs_motion(options_.layers)) moments.insert(moments.end(), {frame - 1.0, frame + 1.0});
+    for (const double moment : moments) hash.add(pose_text(view_at(camera_, moment)));
     // Which time of a loop a frame shows isn't in any key.
-    if (shot_.loop_s > 0.0) hash.add("time " + number_text(shot_.time_s(frame)));
+    if (shot_.loop_s > 0.0)
+        for (std::size_t i = 0; i < shown; ++i) hash.add("time " + number_text(shot_.time_s(moments[i])));
     return hash.text();
 }
 
@@ -174,25 +192,35 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
     const Ranges ranges = ranges_of(context.sky);
     exr::Image image{.width = picture.resolution.x, .height = picture.resolution.y, .channels = {}};
     // Rows from the top, where the writer counts from the bottom: from the last row backwards.
-    const auto add = [&](const std::string& layer, const glm::vec3& first, std::ptrdiff_t pixel_bytes,
+    const auto add = [&](std::span<const char* const> names, const float& first, std::ptrdiff_t pixel_bytes,
                          exr::PixelType type) {
-        const auto* last_row = reinterpret_cast<const float*>(reinterpret_cast<const char*>(&first.x) +
+        const auto* last_row = reinterpret_cast<const float*>(reinterpret_cast<const char*>(&first) +
                                                               pixel_bytes * width * (height - 1));
-        constexpr std::array kNames{"R", "G", "B"};
-        for (int c = 0; c < 3; ++c)
-            image.channels.push_back({.name = layer + kNames[c],
+        for (std::size_t c = 0; c < names.size(); ++c)
+            image.channels.push_back({.name = names[c],
                                       .data = last_row + c,
                                       .pixel_stride_bytes = pixel_bytes,
                                       .row_stride_bytes = -pixel_bytes * width,
                                       .type = type});
     };
-    constexpr std::ptrdiff_t kLayers = sizeof(SeaRadiance);
-    const SeaRadiance& first = picture.layers.front();
-    add("", sum.front(), sizeof(glm::vec3), ranges.sun);
-    add("sun.", first.sun, kLayers, ranges.sun);
-    add("sky.", first.sky, kLayers, ranges.sun);  // the disc beside the sea
-    add("sea.", first.sea, kLayers, ranges.whole);
-    add("foam.", first.foam, kLayers, ranges.whole);
+    constexpr std::array kColours{"R", "G", "B"};
+    constexpr std::array kAlpha{"A"};
+    add(kColours, sum.front().x, sizeof(glm::vec3), ranges.sun);
+    if (!picture.alpha.empty()) add(kAlpha, picture.alpha.front(), sizeof(float), exr::PixelType::Half);
+    for (const PictureLayerRow& row : kPictureLayers) {
+        if (!context.options.layers[index(row.layer)]) continue;
+        const std::span names(row.channels.data(), row.components);
+        if (row.light) {
+            // The sky's has the disc beside the sea.
+            const bool is_sun = row.layer == PictureLayer::Sun || row.layer == PictureLayer::Sky;
+            add(names, (picture.layers.front().*row.light).x, sizeof(SeaRadiance),
+                is_sun ? ranges.sun : ranges.whole);
+        } else {
+            add(names, picture.data[index(row.layer)].front(),
+                static_cast<std::ptrdiff_t>(sizeof(float) * row.components),
+                row.is_half ? exr::PixelType::Half : exr::PixelType::Float);
+        }
+    }
     const exr::Header header{.attributes = attributes_of(context, frame),
                              .compression = exr::Compression::Zip};
     std::string file = exr::encode_scanline(header, image);
@@ -202,20 +230,26 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
 
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame) {
     const float exposure = shot_exposure(context.scene, context.sky, context.exposure_stops);
-    std::vector<std::uint8_t> bytes(picture.layers.size() * 3);
+    const bool has_alpha = !picture.alpha.empty();
+    const std::size_t components = has_alpha ? 4 : 3;
+    std::vector<std::uint8_t> bytes(picture.layers.size() * components);
     tbb::parallel_for(0, picture.resolution.y, [&](int row) {
         const auto width = static_cast<std::size_t>(picture.resolution.x);
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t i = width * row + x;
-            const auto shown =
-                display_bytes(radiance_of(picture.layers[i]), exposure, {static_cast<int>(x), row});
-            std::copy(shown.begin(), shown.end(), bytes.begin() + static_cast<std::ptrdiff_t>(3 * i));
+            const float alpha = has_alpha ? picture.alpha[i] : 1.0f;
+            const glm::vec3 radiance = radiance_of(picture.layers[i]) / (alpha > 0.0f ? alpha : 1.0f);
+            const auto shown = display_bytes(radiance, exposure, {static_cast<int>(x), row});
+            std::copy(shown.begin(), shown.end(),
+                      bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
+            if (has_alpha) bytes[components * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * alpha));
         }
     });
     return png::encode(
         {.width = picture.resolution.x,
          .height = picture.resolution.y,
-         .rgb = bytes,
+         .bytes = bytes,
+         .has_alpha = has_alpha,
          .comment = png_comment(picture_file(context.scene.shot, frame, "png"), context.made_of)});
 }
 

@@ -28,8 +28,8 @@ struct PictureContext {
 inline constexpr int kPictureRevision = 3;
 
 // What the two files of a frame are made of: the keys that feed pictures, the camera's pose, the resolved
-// plan, the sky's picture, the samples, terms and lookups of the light, and the exposure. Pictures with the
-// same are the same, byte for byte, on one kind of CPU; each file carries it.
+// plan, the sky's picture, the samples, terms and lookups of the light, the shutter, alpha, the layers, and the
+// exposure. Pictures with the same are the same, byte for byte, on one kind of CPU; each file carries it.
 struct PictureSource {
     const Scene& scene;  // its resolution is the picture's
     const RenderOptions& options;
@@ -45,6 +45,7 @@ class PictureFingerprint {
   private:
     Shot shot_;
     Camera camera_;
+    RenderOptions options_;
     std::string source_;
 };
 
@@ -64,10 +65,12 @@ std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const 
                                      const PictureFingerprint& fingerprint, std::span<const int> frames,
                                      const PictureCheck& check = {});
 
-// EXR: scan lines; R, G, B and the layers sun.R … foam.B, in the sky's units; halves where no value that the
-// light can give is beyond their range, floats for the others; what it was made of and a checksum of the whole file in
-// the header. The layers add up to R, G, B.
-// PNG: display_bytes() of the whole, at the shot's exposure (plugin/light/exposure.h) and so many stops more.
+// EXR: scan lines; R, G, B, with alpha A, and the layers that the options name (kPictureLayers), those of the light in
+// the sky's units; halves where no value that the light can give is beyond their range, floats for the others. The
+// header says the colours' primaries, the luminance of (1, 1, 1) where it is known, what each layer holds, and what
+// the picture was made of, and has a checksum of the whole file. The light's layers add up to R, G, B.
+// PNG: display_bytes() of the whole, at the shot's exposure (plugin/light/exposure.h) and so many stops more; with
+// alpha of the light divided by it, as the format wants.
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame);
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame);
 

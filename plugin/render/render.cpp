@@ -5,23 +5,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/ext/vector_double1.hpp>
+#include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
-#include <optional>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "core/base/number.h"
 #include "core/base/precision.h"
-#include "core/evaluate/values.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
-#include "core/plan/quality.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
+#include "plugin/render/batch.h"
+#include "plugin/render/motion.h"
 #include "plugin/render/raster.h"
 #include "plugin/render/under_water.h"
 
@@ -29,37 +28,6 @@ namespace pelagic {
 namespace {
 
 #include "core/evaluate/pixel.inl"
-
-// Samples that are computed at once: enough to keep all threads busy, little enough to stay near the caches.
-constexpr int kBatch = 1 << 16;
-constexpr std::size_t kShadeGrain = 256;  // samples a task shades
-
-// Rows of samples that are computed at once: whole bands of the rasteriser that are whole rows of the picture.
-int rows_of_batch(int sample_width, int samples) {
-    const int rows_at_once = Rasteriser::kBandRows * samples;
-    return std::max(1, kBatch / (rows_at_once * sample_width)) * rows_at_once;
-}
-
-// [bytes/pixel] of a picture; of its two files, where layers that are packed take half of their halves; and of what
-// encode_exr() and encode_png() hold beside them.
-constexpr std::size_t kPictureBytes = sizeof(SeaRadiance) + 1;
-constexpr std::size_t kFileBytes = 15 * 2 / 2 + 2;
-constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 3;
-
-// What a batch of samples holds, by sample of the batch or by sample that shows the sea.
-template <class T>
-struct Batch {
-    std::vector<std::uint32_t> triangles;  // by sample
-    std::vector<SeaRadiance> radiance;     // by sample
-    std::vector<std::size_t> sea;          // which samples show the sea, rising
-    std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
-    std::vector<T> pixel_m;
-    std::vector<glm::vec<2, T>> pixel_axis_m;
-    std::vector<glm::vec3> to_eye;
-    Values answers;
-    std::vector<SeaPoint> points;
-    std::vector<SeaRadiance> lit;
-};
 
 }  // namespace
 
@@ -74,13 +42,11 @@ class Renderer::Impl {
 
 namespace {
 
-// Samples are pixels of a larger picture with cells as large as before.
-Scene of_samples(const Scene& scene, int samples) {
-    Scene sampled = scene;
-    sampled.camera.resolution *= samples;
-    sampled.surface.cell_px *= samples;
-    return sampled;
-}
+// Which samples are taken at once: all of them, or of each pixel the one in this column and row.
+struct Sampling {
+    int stride = 1;  // samples between two that are taken
+    glm::ivec2 first{0};
+};
 
 // Of a scene of samples, in the plan's precision; Impl is Renderer's own.
 template <class T, class Impl>
@@ -99,40 +65,72 @@ class RendererOf final : public Impl {
     const Sky& sky() const override { return sky_; }
 
     bool render(int frame, Picture& picture, const RenderWatch& watch) override {
-        frame_.set(scene_.shot.time_s(frame));
-        refuse_under_water(frame_, scene_, frame, grid_options_);
-        view_ = view_at(scene_.camera, frame);
-        lay_out_grid();
-        picture.resolution = scene_.camera.resolution / options_.samples;
-        const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
-        picture.layers.resize(pixels);
-        picture.sea.resize(pixels);
-        const int step = rows_of_batch(view_.resolution.x, options_.samples);
-        for (int row = 0; row < view_.resolution.y; row += step) {
-            const int rows = std::min(step, view_.resolution.y - row);
-            draw(row, rows);
-            light_sky(row);
-            light_sea(row);
-            average(row, rows, picture);
-            if (watch.progress) watch.progress(static_cast<double>(row + rows) / view_.resolution.y);
-            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
+        const int n = options_.samples;
+        clear(picture);
+        const std::vector<double> moments = moments_of(frame, options_);
+        const auto passes = static_cast<int>(moments.size());
+        const auto go_on = [&](int pass, double done) {
+            if (watch.progress) watch.progress((pass + done) / passes);
+            return !(watch.cancel && watch.cancel->load(std::memory_order_relaxed));
+        };
+        for (int pass = 0; pass < passes; ++pass) {
+            // With a shutter the first pass is for what isn't blurred, and each of the others takes one sample.
+            const bool is_own = pass == 0, is_lit = passes == 1 || !is_own;
+            const int sample = pass - 1;
+            sampling_ = passes == 1 ? Sampling{}
+                        : is_own    ? Sampling{n, glm::ivec2(n / 2)}
+                                    : Sampling{n, {sample % n, sample / n}};
+            begin(moments[pass]);
+            const int step = rows_of_batch(raster_size().x, n / sampling_.stride);
+            for (int row = 0; row < raster_size().y; row += step) {
+                const int rows = std::min(step, raster_size().y - row);
+                draw(row, rows);
+                if (is_lit) light_sky(row);
+                if (is_lit || has_data()) answer_sea(row);
+                if (is_lit) light_sea();
+                if (is_lit) average(row, rows, picture);
+                if (is_own) describe(row, rows, frame, picture);
+                if (!go_on(pass, static_cast<double>(row + rows) / raster_size().y)) return false;
+            }
         }
         return true;
     }
 
     bool check_cameras(std::span<const int> frames, const RenderWatch& watch) override {
-        for (std::size_t i = 0; i < frames.size(); ++i) {
-            if (!is_among_waves(view_at(scene_.camera, frames[i]), grid_options_)) continue;
-            frame_.set(scene_.shot.time_s(frames[i]));
-            refuse_under_water(frame_, scene_, frames[i], grid_options_);
-            if (watch.progress)
-                watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
-            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
-        }
+        for (std::size_t i = 0; i < frames.size(); ++i)
+            for (const double moment : moments_of(frames[i], options_)) {
+                if (!is_among_waves(view_at(scene_.camera, moment), grid_options_)) continue;
+                frame_.set(scene_.shot.time_s(moment));
+                refuse_under_water(frame_, scene_, moment, grid_options_);
+                if (watch.progress)
+                    watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
+                if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
+            }
         return true;
     }
 
   private:
+    bool has_data() const { return data_components(options_.layers) > 0; }
+    glm::ivec2 raster_size() const { return view_.resolution / sampling_.stride; }
+
+    void clear(Picture& picture) const {
+        picture.resolution = scene_.camera.resolution / options_.samples;
+        const auto pixels = static_cast<std::size_t>(picture.resolution.x) * picture.resolution.y;
+        picture.layers.assign(pixels, SeaRadiance{});
+        picture.sea.resize(pixels);
+        picture.alpha.assign(options_.alpha ? pixels : 0, 0.0f);
+        for (const PictureLayerRow& row : kPictureLayers)
+            picture.data[index(row.layer)].resize(
+                !row.light && options_.layers[index(row.layer)] ? pixels * row.components : 0);
+    }
+
+    void begin(double moment) {
+        frame_.set(scene_.shot.time_s(moment));
+        refuse_under_water(frame_, scene_, moment, grid_options_);
+        view_ = view_at(scene_.camera, moment);
+        lay_out_grid();
+    }
+
     void lay_out_grid() {
         grid_ = projected_grid(view_, grid_options_);
         first_pixel_m_ = T(0);
@@ -150,6 +148,10 @@ class RendererOf final : public Impl {
         Results<T> results;
         results.set(Product::Position, {position_.data()});
         results.set(Product::Normal, {normal_.data()});  // as smooth as the cells: how the pixels lie on them
+        if (needs_motion(options_.layers)) {
+            velocity_.resize(count);
+            results.set(Product::Velocity, {velocity_.data()});
+        }
         evaluate(frame_, kQuery,
                  Points<T>{.origin_m = grid_.origin_m,
                            .count = count,
@@ -162,16 +164,23 @@ class RendererOf final : public Impl {
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
         clip_.resize(count);
-        for (std::size_t i = 0; i < count; ++i) clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
+        // Moves the samples that are taken to the middles of the rasteriser's pixels.
+        const glm::dvec2 shift =
+            glm::dvec2(sampling_.stride - 1 - 2 * sampling_.first) / glm::dvec2(view_.resolution);
+        for (std::size_t i = 0; i < count; ++i) {
+            clip_[i] = clip_from * glm::dvec4(position_[i], 1.0);
+            clip_[i].x += shift.x * clip_[i].w;
+            clip_[i].y -= shift.y * clip_[i].w;
+        }
         const ProjectedGridSize size{grid_.columns, grid_.rows};
         if (size != triangles_size_) triangles_ = projected_grid_triangles(size);
         triangles_size_ = size;
-        raster_.set(clip_, triangles_, view_.resolution);
+        raster_.set(clip_, triangles_, raster_size());
     }
 
     // Which triangle each sample of the rows shows.
     void draw(int first_row, int rows) {
-        const auto width = static_cast<std::size_t>(view_.resolution.x);
+        const auto width = static_cast<std::size_t>(raster_size().x);
         batch_.triangles.resize(width * rows);
         batch_.radiance.assign(width * rows, SeaRadiance{});
         const int first_band = first_row / Rasteriser::kBandRows;
@@ -186,11 +195,15 @@ class RendererOf final : public Impl {
             if (batch_.triangles[i] != Rasteriser::kNone) batch_.sea.push_back(i);
     }
 
-    // The picture point of a sample of the batch.
+    // A sample of the batch in the rasteriser's pixels, and in those of the view.
     glm::dvec2 centre(int first_row, std::size_t sample) const {
-        const auto width = static_cast<std::size_t>(view_.resolution.x);
+        const auto width = static_cast<std::size_t>(raster_size().x);
         return {static_cast<double>(sample % width) + 0.5,
                 static_cast<double>(sample / width) + first_row + 0.5};
+    }
+    glm::dvec2 seen_at(int first_row, std::size_t sample) const {
+        return (centre(first_row, sample) - 0.5) * static_cast<double>(sampling_.stride) +
+               glm::dvec2(sampling_.first) + 0.5;
     }
 
     template <class Work>
@@ -203,10 +216,10 @@ class RendererOf final : public Impl {
 
     void light_sky(int first_row) {
         const LightingChoice& lighting = options_.lighting;
-        if (!lighting.sky && !lighting.sun) return;
+        if ((!lighting.sky && !lighting.sun) || options_.alpha) return;
         in_parallel(batch_.triangles.size(), [&](std::size_t i) {
             if (batch_.triangles[i] != Rasteriser::kNone) return;
-            const glm::dvec3 direction = view_.direction(centre(first_row, i));
+            const glm::dvec3 direction = view_.direction(seen_at(first_row, i));
             const auto cos_off_axis = static_cast<float>(glm::dot(direction, view_.forward));
             const Background behind =
                 background(sky_, glm::vec3(direction),
@@ -216,12 +229,12 @@ class RendererOf final : public Impl {
         });
     }
 
-    void light_sea(int first_row) {
+    void answer_sea(int first_row) {
         const std::size_t count = batch_.sea.size();
         if (count == 0) return;
         find_places(first_row);
         ProductSet wanted = plan().queries[kQuery].query.products;
-        wanted.reset(index(Product::Position));  // the triangles have them
+        wanted &= ~products(Product::Position, Product::Velocity);  // the triangles have them
         runner_.run(frame_, kQuery,
                     Points<T>{.origin_m = grid_.origin_m,
                               .count = count,
@@ -229,6 +242,11 @@ class RendererOf final : public Impl {
                               .pixel_m = {batch_.pixel_m.data()},
                               .pixel_axis_m = {batch_.pixel_axis_m.data()}},
                     wanted, batch_.answers);
+    }
+
+    void light_sea() {
+        const std::size_t count = batch_.sea.size();
+        if (count == 0) return;
         const std::vector<glm::vec3>& normal = batch_.answers.vectors(Product::Normal);
         const std::vector<glm::vec3>& slope_variance = batch_.answers.vectors(Product::SlopeVariance);
         const std::vector<float>& coverage = batch_.answers.numbers(Product::Coverage);
@@ -286,28 +304,94 @@ class RendererOf final : public Impl {
 
     // The batch's samples into the picture's pixels.
     void average(int first_row, int rows, Picture& picture) const {
-        const int n = options_.samples;
-        const auto sample_width = static_cast<std::size_t>(view_.resolution.x);
+        const int n = options_.samples / sampling_.stride;  // of this pass, a side
+        const auto sample_width = static_cast<std::size_t>(raster_size().x);
         const auto width = static_cast<std::size_t>(picture.resolution.x);
-        const float share = 1.0f / static_cast<float>(n * n);
+        const float share = 1.0f / static_cast<float>(options_.samples * options_.samples);
         tbb::parallel_for(0, rows / n, [&](int row) {
             const std::size_t to = width * (first_row / n + row);
             for (std::size_t x = 0; x < width; ++x) {
                 SeaRadiance sum;
+                int of_sea = 0;
                 for (int y = 0; y < n; ++y)
                     for (int i = 0; i < n; ++i) {
-                        const SeaRadiance& sample = batch_.radiance[sample_width * (row * n + y) + x * n + i];
+                        const std::size_t at = sample_width * (row * n + y) + x * n + i;
+                        const SeaRadiance& sample = batch_.radiance[at];
                         sum.sun += sample.sun;
                         sum.sky += sample.sky;
                         sum.sea += sample.sea;
                         sum.foam += sample.foam;
+                        of_sea += batch_.triangles[at] != Rasteriser::kNone;
                     }
-                picture.layers[to + x] = {sum.sun * share, sum.sky * share, sum.sea * share,
-                                          sum.foam * share};
-                const std::size_t middle = sample_width * (row * n + n / 2) + x * n + n / 2;
-                picture.sea[to + x] = batch_.triangles[middle] != Rasteriser::kNone;
+                SeaRadiance& pixel = picture.layers[to + x];
+                pixel.sun += sum.sun * share;
+                pixel.sky += sum.sky * share;
+                pixel.sea += sum.sea * share;
+                pixel.foam += sum.foam * share;
+                if (options_.alpha) picture.alpha[to + x] += static_cast<float>(of_sea) * share;
             }
         });
+    }
+
+    // What the middle of each pixel shows, beside its light.
+    void describe(int first_row, int rows, int frame, Picture& picture) const {
+        const int n = options_.samples / sampling_.stride;
+        const auto sample_width = static_cast<std::size_t>(raster_size().x);
+        const auto width = static_cast<std::size_t>(picture.resolution.x);
+        Scene pictured = scene_;
+        pictured.camera.resolution = picture.resolution;
+        const Motion motion(pictured, frame, glm::dvec3(grid_.origin_m, 0.0));
+        tbb::parallel_for(0, rows / n, [&](int row) {
+            const std::size_t to = width * (first_row / n + row);
+            for (std::size_t x = 0; x < width; ++x) {
+                const std::size_t middle = sample_width * (row * n + n / 2) + x * n + n / 2;
+                picture.sea[to + x] = batch_.triangles[middle] != Rasteriser::kNone;
+                if (has_data()) describe_sample(first_row, middle, motion, picture, to + x);
+            }
+        });
+    }
+
+    void describe_sample(int first_row, std::size_t sample, const Motion& motion, Picture& picture,
+                         std::size_t pixel) const {
+        const auto set = [&](PictureLayer layer, auto value) {
+            std::vector<float>& to = picture.data[index(layer)];
+            for (int c = 0; !to.empty() && c < value.length(); ++c)
+                to[pixel * value.length() + c] = static_cast<float>(value[c]);
+        };
+        const auto set_motion = [&](const glm::dvec4& way) {
+            set(PictureLayer::Motion, way);
+            // Cycles: the frame before less this one, and this one less the next.
+            set(PictureLayer::Vector, glm::dvec4(way.z, way.w, -way.x, -way.y));
+        };
+        const std::uint32_t triangle = batch_.triangles[sample];
+        if (triangle == Rasteriser::kNone) {
+            set(PictureLayer::Depth, glm::vec1(kSkyDepth_m));
+            for (const PictureLayer layer :
+                 {PictureLayer::Position, PictureLayer::Normal, PictureLayer::SlopeVariance})
+                set(layer, glm::vec3(0.0f));
+            set(PictureLayer::Coverage, glm::vec1(0.0f));
+            if (needs_motion(options_.layers))
+                set_motion(motion.of({view_.direction(seen_at(first_row, sample)), 0.0}, glm::dvec3(0.0)));
+            return;
+        }
+        const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, sample));
+        glm::dvec3 position(0.0), velocity(0.0);
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::uint32_t vertex = triangles_[3 * std::size_t{triangle} + corner];
+            position += weights[corner] * glm::dvec3(position_[vertex]);
+            if (!velocity_.empty()) velocity += weights[corner] * glm::dvec3(velocity_[vertex]);
+        }
+        const glm::dvec3 origin(grid_.origin_m, 0.0);
+        set(PictureLayer::Depth, glm::dvec1(glm::dot(view_.forward, position + origin - view_.position_m)));
+        set(PictureLayer::Position, position + origin);
+        if (needs_motion(options_.layers)) set_motion(motion.of({position, 1.0}, velocity));
+        // Samples that show the sea stand in rising order.
+        const std::size_t i =
+            std::lower_bound(batch_.sea.begin(), batch_.sea.end(), sample) - batch_.sea.begin();
+        const std::vector<float>& coverage = batch_.answers.numbers(Product::Coverage);
+        set(PictureLayer::Normal, batch_.answers.vectors(Product::Normal)[i]);
+        set(PictureLayer::SlopeVariance, batch_.answers.vectors(Product::SlopeVariance)[i]);
+        set(PictureLayer::Coverage, glm::vec1(coverage.empty() ? 0.0f : coverage[i]));
     }
 
     static constexpr int kQuery = 0;  // the plan's only one
@@ -320,6 +404,7 @@ class RendererOf final : public Impl {
     Frame<T> frame_;
     ProjectedGridOptions grid_options_;
     View view_;
+    Sampling sampling_;
     ProjectedGrid grid_;
     T first_pixel_m_ = T(0);  // the finest rung that the frame reads
     ProjectedGridSize triangles_size_;
@@ -328,6 +413,7 @@ class RendererOf final : public Impl {
     std::vector<T> cell_m_;
     std::vector<glm::vec<2, T>> cell_axis_m_;
     std::vector<glm::vec<3, T>> position_, normal_;
+    std::vector<glm::vec<3, T>> velocity_;  // where motion vectors are asked for
     std::vector<glm::dvec4> clip_;
     Rasteriser raster_;
     QueryRunner<T> runner_;
@@ -336,105 +422,10 @@ class RendererOf final : public Impl {
 
 }  // namespace
 
-RenderOptions render_options(const Scene& scene) {
-    const QualityRow& quality = quality_of(scene.quality.level);
-    RenderOptions options;
-    options.lighting.whitecaps = !products_gone(scene)[index(Product::Coverage)];
-    switch (quality.sky) {
-        case SkyLookups::One:
-            options.lighting.sky_quality = SkyQuality::One;
-            break;
-        case SkyLookups::Nine:
-            options.lighting.sky_quality = SkyQuality::Nine;
-            break;
-        case SkyLookups::Integral:
-            options.lighting.sky_quality = SkyQuality::Integral;
-            break;
-    }
-    options.lighting.fresnel = quality.fitted_fresnel ? FresnelFit::Exact : FresnelFit::Paper;
-    options.samples = quality.samples;
-    return options;
-}
-
-Plan picture_plan(const Scene& scene, std::span<const int> frames) {
-    auto prepared = prepare(scene);
-    const ProjectedGridOptions options = projected_grid_options(*prepared);
-    std::optional<ProjectedGridNeeds> needs;
-    std::optional<View> before;
-    for (const int frame : frames) {
-        const View view = view_at(scene.camera, frame);
-        if (before && *before == view) continue;  // the camera stands still
-        const ProjectedGridNeeds own = projected_grid_needs(view, options);
-        needs = needs ? together(*needs, own) : own;
-        before = view;
-    }
-    if (!needs) throw std::invalid_argument("a plan of pictures needs at least one frame");
-    const Query query = view_query(*prepared, {.products = {},
-                                               .finest_cell_m = needs->finest_cell_m,
-                                               .finest_pixel_m = needs->finest_pixel_m,
-                                               .points = points_of(needs->size)});
-    return make_plan(std::move(prepared), {query});
-}
-
-void check_render(const Scene& scene, const RenderOptions& options) {
-    if (options.samples < 1 || options.samples > kMostSamples)
-        throw std::invalid_argument(std::to_string(options.samples) + " x " +
-                                    std::to_string(options.samples) + " samples a pixel: 1 to " +
-                                    std::to_string(kMostSamples) + " a side are accepted");
-    const glm::ivec2 all = scene.camera.resolution * options.samples;
-    if (std::max(all.x, all.y) > Rasteriser::kLargestSide)
-        throw std::invalid_argument("a picture of " + std::to_string(all.x) + " x " + std::to_string(all.y) +
-                                    " samples: up to " + std::to_string(Rasteriser::kLargestSide) +
-                                    " a side are accepted; ask for a smaller picture or fewer samples");
-}
-
-namespace {
-
-// [bytes] of a point of the grid: as it is laid out, with the one of the frame before, in T, displaced, on the screen
-// and in triangles. Of the rasteriser's pieces of triangles, which are fewer where most lie outside the picture, and
-// need more room while their vector grows, as many as there are triangles.
-template <class T>
-constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(float)) + 2 * sizeof(double) +
-                                    6 * sizeof(std::uint32_t) + 11 * sizeof(T) + sizeof(glm::dvec4) +
-                                    2 * (Rasteriser::kPieceBytes + sizeof(std::uint32_t));
-
-// [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
-template <class T>
-constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
-                                     5 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) +
-                                     7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
-
-}  // namespace
-
-MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
-                         std::optional<int> in_flight, int threads) {
-    const Scene sampled = of_samples(scene, options.samples);
-    const Plan plan = picture_plan(sampled, frames);
-    MemoryNeed need;
-    add_sea(need, plan, threads);
-    with_precision(plan.knobs.double_precision, [&]<class T>(T) {
-        need.add("the camera's grid of points", plan.queries[0].query.points * kPointBytes<T>,
-                 "raise surface.cell_px, or ask for a smaller picture (--size)");
-        const glm::ivec2 samples = sampled.camera.resolution;
-        const auto rows =
-            static_cast<std::size_t>(std::min(rows_of_batch(samples.x, options.samples), samples.y));
-        need.add("the pixels at hand", rows * static_cast<std::size_t>(samples.x) * kSampleBytes<T>,
-                 "ask for a smaller picture (--size) or fewer --samples");
-    });
-    const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
-                        static_cast<std::size_t>(scene.camera.resolution.y);
-    need.add("pictures",
-             pixels * (in_flight ? static_cast<std::size_t>(*in_flight) * (kPictureBytes + kFileBytes) +
-                                       kEncodingBytes
-                                 : kPictureBytes),
-             "ask for a smaller picture (--size)");
-    return need;
-}
-
 Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky, std::span<const int> frames,
                    const BuildWatch& watch) {
     check_render(scene, options);
-    const Plan plan = picture_plan(of_samples(scene, options.samples), frames);
+    const Plan plan = picture_plan(of_samples(scene, options.samples), frames, options);
     impl_ = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Impl> {
         return std::make_unique<RendererOf<T, Impl>>(plan, options, std::move(sky), watch);
     });

@@ -10,6 +10,7 @@
 // says how much, and with it what the pictures themselves and their files take.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -27,6 +28,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/waves/sea.h"
+#include "plugin/render/layers.h"
 
 namespace pelagic {
 
@@ -40,6 +42,11 @@ struct Picture {
     glm::ivec2 resolution{0};
     std::vector<SeaRadiance> layers;
     std::vector<std::uint8_t> sea;  // 1: sea in the middle of the pixel, 0: sky
+    // What RenderOptions ask for, otherwise empty. Alpha is the sea's share of the pixel. Layers that aren't light
+    // (kPictureLayers) hold their row's components side by side; they are those of the sample in the middle of the
+    // pixel at the frame's own time, since a mean of depths or of normals is none that is there.
+    std::vector<float> alpha{};
+    std::array<std::vector<float>, kPictureLayerCount> data{};
 };
 
 // The layers' sum.
@@ -50,7 +57,17 @@ inline glm::vec3 radiance_of(const SeaRadiance& layers) {
 struct RenderOptions {
     LightingChoice lighting;
     int samples = 1;  // N × N a pixel, averaged before any tone mapping: 1 … 16
+    // How long the shutter is open [frames], around the frame's own time: 0 … 4. Beyond 0 each of the N × N samples
+    // has a moment of its own, with the sea and the camera as they are then.
+    double shutter_frames = 0.0;
+    bool alpha = false;  // transparent where there is no sea; the light is then multiplied by alpha
+    PictureLayerSet layers = light_layers();
 };
+
+inline constexpr double kLongestShutter_frames = 4.0;
+
+// The moments that a picture shows, in frames: the frame's own, and with a shutter that of each sample, row by row.
+std::vector<double> moments_of(int frame, const RenderOptions& options);
 
 inline constexpr int kMostSamples = 16;
 
@@ -64,7 +81,7 @@ void check_render(const Scene& scene, const RenderOptions& options);
 
 // The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike,
 // whose ladder is as fine as these frames need it. They decide nothing about any frame's bits.
-Plan picture_plan(const Scene& scene, std::span<const int> frames);
+Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderOptions& options = {});
 
 // A picture is computed while the one before is encoded and written.
 inline constexpr int kPicturesInFlight = 2;

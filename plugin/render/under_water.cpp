@@ -24,7 +24,7 @@ std::optional<double> surface_above_camera(const Frame<T>& frame, const View& vi
 }
 
 template <class T>
-void refuse_under_water(const Frame<T>& state, const Scene& scene, int frame,
+void refuse_under_water(const Frame<T>& state, const Scene& scene, double frame,
                         const ProjectedGridOptions& options) {
     const View view = view_at(scene.camera, frame);
     const auto surface_m = surface_above_camera(state, view, options);
@@ -32,7 +32,7 @@ void refuse_under_water(const Frame<T>& state, const Scene& scene, int frame,
     const auto metres = [](double z_m) { return number_text(std::round(z_m * 1e3) / 1e3) + " m"; };
     throw std::invalid_argument(
         std::string(scene.camera.keys.empty() ? "camera.position_m" : "camera.keys") + ": at frame " +
-        std::to_string(frame) + " the camera is under water: it is at z = " + metres(view.position_m.z) +
+        number_text(frame) + " the camera is under water: it is at z = " + metres(view.position_m.z) +
         ", and the surface there at z = " + metres(*surface_m) +
         "; pictures are drawn from above the water only: raise the camera, or leave such "
         "frames out");
@@ -42,7 +42,7 @@ template std::optional<double> surface_above_camera(const Frame<float>&, const V
                                                     const ProjectedGridOptions&);
 template std::optional<double> surface_above_camera(const Frame<double>&, const View&,
                                                     const ProjectedGridOptions&);
-template void refuse_under_water(const Frame<float>&, const Scene&, int, const ProjectedGridOptions&);
-template void refuse_under_water(const Frame<double>&, const Scene&, int, const ProjectedGridOptions&);
+template void refuse_under_water(const Frame<float>&, const Scene&, double, const ProjectedGridOptions&);
+template void refuse_under_water(const Frame<double>&, const Scene&, double, const ProjectedGridOptions&);
 
 }  // namespace pelagic

@@ -23,7 +23,7 @@ std::optional<double> surface_above_camera(const Frame<T>& frame, const View& vi
 // For the shot's camera at a frame whose time `state` has. Throws std::invalid_argument, which says how deep
 // the camera is.
 template <class T>
-void refuse_under_water(const Frame<T>& state, const Scene& scene, int frame,
+void refuse_under_water(const Frame<T>& state, const Scene& scene, double frame,
                         const ProjectedGridOptions& options);
 
 }  // namespace pelagic

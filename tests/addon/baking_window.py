@@ -37,6 +37,7 @@ def steps():
     with checking("the window works meanwhile, and knows how far the bake is"):
         scene.frame_set(7)
         assert f"of {FRAMES} frames" in baking._baking.text, baking._baking.text
+        assert is_alone_in_python()
     window.event_simulate(type="ESC", value="PRESS")
     window.event_simulate(type="ESC", value="RELEASE")
     yield lambda: baking._baking is None

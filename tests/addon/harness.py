@@ -6,6 +6,7 @@
 
 import os
 import sys
+import threading
 import time
 import traceback
 from contextlib import contextmanager
@@ -67,6 +68,11 @@ def evaluated_mesh(obj):
 def resident_mib():
     with open("/proc/self/statm", encoding="ascii") as file:
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def is_alone_in_python():
+    """Whether no thread beside this one has ever entered Python and may do so again."""
+    return set(sys._current_frames()) == {threading.get_ident()}
 
 
 @contextmanager

@@ -144,7 +144,8 @@ with checking("the projected grid is the core's for the camera, at every frame")
         grid = sea.projected_grid(view)
         answer = pelagic.Frame(sea)
         answer.set(shot.shot.time_s(frame))
-        made = answer.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m)
+        made = answer.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m,
+                               cell_axis_m=grid.cell_axis_m, pixel_axis_m=grid.cell_axis_m)
         made["position"][:, :2] += np.array(grid.origin_m, np.float32)
         return made
 

@@ -1,6 +1,7 @@
 """The viewport preview in the real window: what is drawn where, beside the program's own picture; and that the mesh comes
 back whatever happens. Needs a display (xvfb-run will do) and PELAGIC_PROGRAM, the program's path."""
 
+import math
 import os
 import subprocess
 import sys
@@ -14,6 +15,7 @@ from mathutils import Euler, Vector
 
 package = enable()
 from pelagic_ocean import compat, ocean, viewport
+from pelagic_ocean.module import pelagic
 
 FOLDER = Path(tempfile.mkdtemp())
 CUBE_M = 6.0
@@ -48,7 +50,7 @@ def settle():
         if preview is None:
             return
         if preview._job is not None:
-            preview._job.join()
+            preview._job.finish()
         viewport._tend()
         now = (preview.drawing.sea, preview.drawing.light, list(preview.hidden_in), preview.drawing.is_coarse())
         if now == before and not preview.is_building and not now[-1]:
@@ -99,8 +101,8 @@ def place_of(point):
         return (int((clip.y / clip.w * 0.5 + 0.5) * region.height), int((clip.x / clip.w * 0.5 + 0.5) * region.width))
 
 
-def programs_picture(obj):
-    """What `pelagic preview` draws from the same place."""
+def seen_from_here(obj):
+    """The ocean's scene with the view as its camera."""
     with in_view():
         region, region_3d = bpy.context.region, bpy.context.region_data
         pose, projection = region_3d.view_matrix.inverted(), region_3d.window_matrix.copy()
@@ -110,6 +112,11 @@ def programs_picture(obj):
     scene.camera.look_at_m = tuple(pose.translation - 100 * pose.col[2].to_3d())
     scene.camera.fov_deg = float(np.degrees(2 * np.arctan(1 / projection[0][0])))
     scene.camera.resolution = size
+    return scene
+
+
+def programs_picture(scene):
+    """What `pelagic preview` draws of it."""
     shot, file = FOLDER / "same.toml", FOLDER / "same.png"
     scene.save(shot)
     subprocess.run([os.environ["PELAGIC_PROGRAM"], "preview", str(shot), "--offscreen", str(file), "--frame", "1"], check=True)
@@ -143,11 +150,15 @@ def steps():
         options.show_sky = True
         with in_view():
             assert bpy.ops.pelagic.viewport_preview() == {"FINISHED"}
+        # The exposure is metered where the scene's camera is, and in the program's picture that is the view.
+        here, camera = seen_from_here(obj), ocean.scene_of(obj, bpy.context.scene)
+        sky = pelagic.Sky(here)
+        bpy.context.scene.view_settings.exposure += math.log2(sky.exposure(here) / sky.exposure(camera))
         drawn = picture("sea and sky")
         assert viewport.is_on() and not viewport._problem, viewport._problem
         assert obj.hide_get() and not obj.hide_viewport and not obj.hide_render
         assert change_of(shown, drawn).mean() > 0.1
-        theirs = programs_picture(obj)
+        theirs = programs_picture(here)
         difference = change_of(drawn, theirs)
         ratio = drawn.mean(axis=(0, 1)) / theirs.mean(axis=(0, 1))
         print(f"    differences: median {np.median(difference):.4f}, mean {difference.mean():.4f}; mean colours {ratio}")

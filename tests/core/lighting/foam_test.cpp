@@ -65,9 +65,7 @@ double foam(dvec3 v, dvec3 l, dvec3 waves) {
     const double facing = 0.5 * std::erfc(-x / std::sqrt(2.0)) * middle +
                           spread * std::exp(-0.5 * x * x) / std::sqrt(2.0 * oracle::kPi);
     const double up = 1.0 / std::sqrt(1.0 + dot(mean, mean) + dot(across, across) + dot(along, along));
-    const double rise = std::clamp(l.z / kRadius, 0.0, 1.0);
-    const double sun = oracle::kPi * kRadius * kRadius * rise * rise * (3.0 - 2.0 * rise) * facing * up *
-                       oracle::unblocked(v, l, s);
+    const double sun = oracle::kPi * kRadius * kRadius * facing * up * oracle::unblocked(v, l, s);
     return (1e5 * sun + 0.5 + 0.5 * up) / oracle::kPi;
 }
 

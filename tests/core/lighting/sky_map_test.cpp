@@ -49,7 +49,7 @@ TEST(SkyMap, LevelsAreMeansDownToTheMeanOfAll) {
 TEST(SkyMap, LookupIsTrilinear) {
     const SkyMap map(16, noise(16));
     constexpr float kTolerance = 4e-6f;  // rounds a texel's centre to 1e-6 of a texel
-    for (int level = 0; level < 4; ++level) {
+    for (int level = 1; level < 4; ++level) {
         const int n = 16 >> level;
         const auto& texels = map.level(level);
         const auto at = [&](int i, int j) { return texels[static_cast<std::size_t>(j * n + i)].y; };
@@ -65,6 +65,32 @@ TEST(SkyMap, LookupIsTrilinear) {
         EXPECT_NEAR(map.radiance(u, l + 0.25f).y,
                     0.75f * map.radiance(u, l).y + 0.25f * map.radiance(u, l + 1.0f).y, kTolerance);
     }
+}
+
+// The finest level has no kinks: the slope changes from one step to the next by no more than the curvature of a
+// quadratic spline allows, where a bilinear lookup's jumps at each texel. It stays between its neighbours.
+TEST(SkyMap, SharpLookupIsSmooth) {
+    const SkyMap map(32, noise(32));
+    constexpr float kTexel = 2.0f * kSkyMapExtent / 32.0f, kStep = 0.02f;  // of a texel
+    const auto slopes_change = [&](const auto& lookup) {
+        float most = 0.0f;
+        for (int k = 0; k < 500; ++k) {
+            const auto at = [&](int i) {
+                return lookup(glm::vec2(-0.4f, -0.5f) +
+                              kTexel * kStep * glm::vec2(1.0f, 0.3f) * static_cast<float>(k + i))
+                    .y;
+            };
+            most = std::max(most, std::abs(at(2) - 2.0f * at(1) + at(0)) / kStep);
+        }
+        return most;
+    };
+    // Texels are 0 … 1: second differences of the coefficients are at most 4.
+    EXPECT_LT(slopes_change([&](glm::vec2 u) { return map.radiance(u, 0.0f); }), 6.0f * kStep);
+    EXPECT_GT(slopes_change([&](glm::vec2 u) { return map.trilinear(u, 0.0f); }), 10.0f * kStep);
+    // Into level 1 it passes without a step.
+    const glm::vec2 u(0.3f, -0.2f);
+    EXPECT_NEAR(map.radiance(u, 0.9999f).y, map.radiance(u, 1.0f).y, 1e-4f);
+    EXPECT_NEAR(map.radiance(u, 0.0001f).y, map.radiance(u, 0.0f).y, 1e-4f);
 }
 
 TEST(SkyMap, LookupIsClampedToEdgesAndLevels) {
@@ -148,9 +174,24 @@ TEST(SkyBake, BelowTheHorizonTheSeaReflectsTheSky) {
                 4e-4f);
 }
 
+// The finest level goes on past the horizon as the sky comes to it, so that the sky down to the horizon is the dome's.
+TEST(SkyBake, TheSkyIsTheDomesDownToTheHorizon) {
+    SkyDome dome = uniform_dome(0.0f);
+    dome.radiance = [](glm::vec3 d) { return glm::vec3(2.0f - 1.5f * d.z + 0.3f * d.x, 1.0f + d.z, 0.5f); };
+    const BakedSky baked = bake_sky_map(128, dome);
+    for (int azimuth = 0; azimuth < 360; azimuth += 3)
+        for (const double elevation : {0.0, 0.1, 0.3, 0.6, 1.0, 2.0, 5.0, 20.0}) {
+            const double a = azimuth * kPi / 180.0, e = elevation * kPi / 180.0;
+            const glm::vec3 d(glm::dvec3(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)));
+            const glm::vec3 seen = baked.map.open_radiance(sky_map_place(d)), expected = dome.radiance(d);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(seen[c], expected[c], 2e-3f) << azimuth << ' ' << elevation;
+        }
+}
+
 TEST(SkyBake, TexelsThatTheHorizonCrossesAreMixedByArea) {
     constexpr int kSize = 16, kParts = 64;
-    const BakedSky baked = bake_sky_map(kSize, uniform_dome(1.0f));
+    const BakedSky baked = bake_sky_map(2 * kSize, uniform_dome(1.0f));
     const double below = static_cast<double>(baked.map.radiance(glm::vec2(1.25f), 0.0f).x);
     const double side = 2.5 / kSize;
     for (int j = 0; j < kSize; ++j)
@@ -162,7 +203,7 @@ TEST(SkyBake, TexelsThatTheHorizonCrossesAreMixedByArea) {
                                          side * (j + (b + 0.5) / kParts) - 1.25) < 1.0;
             const double share = static_cast<double>(inside) / (kParts * kParts);
             // 8 × 8 samples: an edge through the texel is off by less than half a row.
-            EXPECT_NEAR(static_cast<double>(baked.map.level(0)[static_cast<std::size_t>(j * kSize + i)].x),
+            EXPECT_NEAR(static_cast<double>(baked.map.level(1)[static_cast<std::size_t>(j * kSize + i)].x),
                         share + (1.0 - share) * below, 0.5 / 8.0)
                 << i << " " << j;
         }

@@ -12,6 +12,8 @@
 
 #include "core/base/constants.h"
 #include "core/lighting/background.h"
+#include "core/lighting/colour.h"
+#include "core/lighting/sky_bake.h"
 
 namespace pelagic {
 namespace {
@@ -147,32 +149,56 @@ TEST(Background, ShowsTheMapAndTheDiscOnlyWhereTheyAre) {
     EXPECT_EQ(background(sky, -sky.sun_direction, pixel).sun, glm::vec3(0.0f));
 }
 
-// For a map that is bright above the horizon and black below, the background is bright down to the horizon in
-// every direction, while a plain lookup isn't.
+// The background is the sky down to the horizon in every direction, and the horizon's below it, where the map for
+// reflections has what is under the horizon.
 TEST(Background, IsTheSkyDownToTheHorizon) {
-    constexpr int kSize = 64;
-    std::vector<glm::vec3> texels;
-    for (int j = 0; j < kSize; ++j)
-        for (int i = 0; i < kSize; ++i) {
-            const glm::vec2 first = kSkyMapExtent * (glm::vec2(i, j) * (2.0f / kSize) - 1.0f);
-            const glm::vec2 last = kSkyMapExtent * (glm::vec2(i + 1, j + 1) * (2.0f / kSize) - 1.0f);
-            const bool above = glm::length(glm::max(glm::abs(first), glm::abs(last))) <= 1.0f;
-            texels.push_back(glm::vec3(above ? 4.0f : 0.0f));
-        }
+    SkyDome dome;
+    dome.radiance = [](glm::vec3) { return glm::vec3(4.0f); };
+    dome.samples = [](glm::vec3, float) { return 1; };
     Sky sky;
-    sky.map = SkyMap(kSize, texels);
-    int dark = 0;
+    sky.map = bake_sky_map(64, dome).map;
     for (int azimuth = 0; azimuth < 360; ++azimuth) {
         const auto a = static_cast<float>(azimuth * kPi / 180.0);
-        for (const float z : {-0.03f, 0.0f, 0.003f, 0.02f, 0.1f, 0.9f}) {
+        for (const float z : {-0.6f, -0.03f, 0.0f, 0.003f, 0.02f, 0.1f, 0.9f}) {
             const float across = std::sqrt(1.0f - z * z);
             const glm::vec3 direction(across * std::cos(a), across * std::sin(a), z);
             EXPECT_NEAR(background(sky, direction, 1e-3f).sky.x, 4.0f, 1e-5f) << azimuth << ", " << z;
-            dark += sky.map.radiance(sky_map_place(direction), 0.0f).x < 3.9f;
+            if (z < -0.05f) {
+                EXPECT_LT(sky.map.radiance(sky_map_place(direction), 0.0f).x, 1.0f);
+            }
         }
     }
-    EXPECT_GT(dark, 0);
-    EXPECT_EQ(background(sky, glm::vec3(0.0f, 0.6f, -0.8f), 1e-3f).sky, glm::vec3(0.0f));
+}
+
+// The disc near the horizon: its lower limb is darker and redder, it is round about its true middle, and what is
+// visible of it has the light that the sea gets.
+TEST(Background, TheLowSunsDiscIsExtinguishedByElevation) {
+    for (const double elevation : {0.0, 0.1, 0.3, 1.0}) {
+        const Sky sky =
+            daylight_sky({.sun_elevation_deg = elevation, .sun_azimuth_deg = 0.0, .turbidity = 3.0}, 16);
+        const double radius = static_cast<double>(sky.sun_angular_radius), e = elevation * kPi / 180.0;
+        constexpr int kSteps = 200;
+        const double step = 2.4 * radius / kSteps;
+        glm::dvec3 sum(0.0);
+        for (int j = 0; j < kSteps; ++j)
+            for (int i = 0; i < kSteps; ++i) {
+                const double a = (i + 0.5) * step - 1.2 * radius, up = e + (j + 0.5) * step - 1.2 * radius;
+                const glm::vec3 direction(
+                    glm::dvec3(std::cos(up) * std::cos(a), std::cos(up) * std::sin(a), std::sin(up)));
+                const glm::dvec3 seen(background(sky, direction, 1e-5f).sun);
+                if (std::hypot(a, up - e) > 1.01 * radius) {
+                    EXPECT_EQ(seen.x, 0.0);
+                }
+                if (up > 0.0) sum += seen * (step * step);
+            }
+        const double mean = luminance(glm::dvec3(sky.sun_radiance));
+        EXPECT_NEAR(luminance(sum) / (kPi * radius * radius * mean), 1.0, 0.03) << elevation;
+        const auto limb = [&](double up) {
+            return background(sky, glm::vec3(glm::dvec3(std::cos(e + up), 0.0, std::sin(e + up))), 1e-5f).sun;
+        };
+        EXPECT_GT(limb(0.9 * radius).x, limb(-0.9 * radius).x);
+        EXPECT_GE(limb(0.9 * radius).y / limb(0.9 * radius).x, limb(-0.9 * radius).y / limb(-0.9 * radius).x);
+    }
 }
 
 // A pixel's solid angle is t² cos³θ: those of a picture 90° wide add up to a sixth of a sphere, as a cube's

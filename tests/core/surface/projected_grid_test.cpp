@@ -62,6 +62,14 @@ bool covers(const ProjectedGrid& grid, glm::dvec2 p) {
     return false;
 }
 
+// Of waves as steep at every scale as a gale's, up to this standard deviation of heights.
+HiddenHeight steep_waves(double deviation_m) {
+    HiddenHeight hidden;
+    for (std::size_t i = 0; i < HiddenHeight::kCells; ++i)
+        hidden.deviation_m[i] = std::min(0.022 * HiddenHeight::cell_m(i), deviation_m);
+    return hidden;
+}
+
 std::vector<Shot> hard_shots() {
     std::vector<Shot> shots;
     for (const double height_m : {-30.0, -0.5, 0.0, 1e-9, 0.5, 2.0, 4.0, 60.0, 20e3, 1e5})
@@ -114,7 +122,8 @@ TEST(ProjectedGrid, CoversWhateverMayComeIntoView) {
         const double reach_m = uniform(random) < 0.2 ? 0.0 : 4.0 * uniform(random);
         const ProjectedGrid grid = projected_grid(view, {.cell_px = 24.0,
                                                          .bounds = {.height_m = height_m, .reach_m = reach_m},
-                                                         .significant_height_m = 2.0});
+                                                         .significant_height_m = 2.0,
+                                                         .hidden = steep_waves(0.5)});
         const double farthest_m = glm::length(glm::dvec2(grid.rest_m.back()));
         for (int i = 0; i < 60; ++i) {
             const glm::dvec2 pixel(uniform(random) * view.resolution.x, uniform(random) * view.resolution.y);
@@ -140,7 +149,8 @@ TEST(ProjectedGrid, EveryPoseGivesAValidGrid) {
         SCOPED_TRACE(text_of(shot));
         for (const double height_m : {0.0, 3.0}) {
             const ProjectedGridOptions options{.bounds = {.height_m = height_m, .reach_m = 2.0},
-                                               .significant_height_m = height_m};
+                                               .significant_height_m = height_m,
+                                               .hidden = steep_waves(0.25 * height_m)};
             const View view = view_of(shot);
             const ProjectedGrid grid = projected_grid(view, options);
             ASSERT_EQ((ProjectedGridSize{grid.columns, grid.rows}), projected_grid_needs(view, options).size);
@@ -163,7 +173,8 @@ TEST(ProjectedGrid, EveryPoseGivesAValidGrid) {
 }
 
 // Points are in proportion to the picture's cells, whatever the lens and however near the water: a picture of
-// 32 × 18 pixels through one degree at the water line had 12 million.
+// 32 × 18 pixels through one degree at the water line had 12 million. Rows that heights ask for are no more than six
+// diagonals' cells, beside some six in angle.
 TEST(ProjectedGrid, PointsAreInProportionToThePicturesCells) {
     for (const double fov_deg : {0.1, 1.0, 5.0, 19.0, 21.0, 50.0, 170.0})
         for (const double height_m : {-0.1, 0.0, 0.5, 10.0, 300.0})
@@ -178,10 +189,11 @@ TEST(ProjectedGrid, PointsAreInProportionToThePicturesCells) {
                             const ProjectedGridOptions options{
                                 .cell_px = cell_px,
                                 .bounds = {.height_m = 1.3 * wave_m, .reach_m = wave_m},
-                                .significant_height_m = wave_m};
+                                .significant_height_m = wave_m,
+                                .hidden = steep_waves(0.25 * wave_m)};
                             const ProjectedGridSize size = projected_grid_needs(view_of(shot), options).size;
                             const double across = std::hypot(resolution.x, resolution.y) / cell_px;
-                            EXPECT_LE(static_cast<double>(points_of(size)), 60.0 * across * across + 40e3)
+                            EXPECT_LE(static_cast<double>(points_of(size)), 100.0 * across * across + 40e3)
                                 << text_of(shot) << " waves " << wave_m << " cells " << cell_px << ": "
                                 << size.columns << " × " << size.rows;
                         }
@@ -219,8 +231,9 @@ TEST(ProjectedGrid, CellsAreNoLargerThanAsked) {
                 // Waves much lower than the camera, and waves as high as the lowest camera.
                 const ProjectedGrid calm = projected_grid(
                     view, {.bounds = {.height_m = 0.02 * height_m, .reach_m = 0.02 * height_m}});
-                const ProjectedGrid rough = projected_grid(
-                    view, {.bounds = {.height_m = 3.0, .reach_m = 3.0}, .significant_height_m = 2.4});
+                const ProjectedGrid rough = projected_grid(view, {.bounds = {.height_m = 3.0, .reach_m = 3.0},
+                                                                  .significant_height_m = 2.4,
+                                                                  .hidden = steep_waves(0.6)});
                 largest_px = std::max(largest_px, largest_cell_px(view, calm, 0.0));
                 EXPECT_LE(largest_cell_px(view, calm, 0.0), 8.0) << text_of(shot);
                 // A telephoto lens that looks at nearby waves sees less than they move.
@@ -228,6 +241,87 @@ TEST(ProjectedGrid, CellsAreNoLargerThanAsked) {
             }
     // Nor much smaller: needless cells cost time.
     EXPECT_GT(largest_px, 7.0);
+}
+
+// Of what a row's cells hide, heights seen from the side are at most a third of a pixel: all rows between a camera and
+// the horizon, in the middle of the picture. The sea at rest is seen from 4 m at 250 m a cell, 330 m away.
+TEST(ProjectedGrid, CellsHideNoHeightsThatAreSeen) {
+    for (const double height_m : {0.5, 4.0, 15.0, 200.0, 20e3})
+        for (const double pitch_deg : {-30.0, -5.0, 0.0})
+            for (const double fov_deg : {24.0, 50.0, 90.0})
+                for (const double cell_px : {1.0, 8.0, 24.0}) {
+                    const Shot shot{.height_m = height_m,
+                                    .pitch_deg = pitch_deg,
+                                    .fov_deg = fov_deg,
+                                    .resolution = {320, 180}};
+                    const View view = view_of(shot);
+                    ProjectedGridOptions options{.cell_px = cell_px,
+                                                 .bounds = {.height_m = 10.0, .reach_m = 10.0},
+                                                 .significant_height_m = 8.0,
+                                                 .hidden = steep_waves(2.0)};
+                    const ProjectedGrid grid = projected_grid(view, options);
+                    double seen_px = 0.0;
+                    for (int row = 0; row < grid.rows; ++row) {
+                        const auto radius_m = [&](int j) {
+                            return glm::length(
+                                glm::dvec2(grid.rest_m[static_cast<std::size_t>(j) * (grid.columns + 1)]));
+                        };
+                        const double hidden_m = std::min(0.022 * (radius_m(row + 1) - radius_m(row)), 2.0);
+                        const double across_m = std::hypot(radius_m(row), std::hypot(height_m, 4.0));
+                        seen_px = std::max(
+                            seen_px, hidden_m * radius_m(row) / (across_m * across_m) / view.pixel_tangent());
+                    }
+                    // A tenth more where deviations rise by less than the table's octaves.
+                    EXPECT_LE(seen_px, 0.33 * std::max(cell_px / 8.0, 1.0))
+                        << text_of(shot) << " cells " << cell_px;
+                }
+}
+
+// What waves ask for costs nothing where cells are as small without them, nor in a calm.
+TEST(ProjectedGrid, HeightsCostRowsOnlyWhereTheyAreSeen) {
+    for (const Shot& shot :
+         {Shot{.height_m = 20e3, .pitch_deg = -10.0}, Shot{.height_m = 60.0, .pitch_deg = -80.0},
+          Shot{.height_m = 30.0, .pitch_deg = -90.0}}) {
+        ProjectedGridOptions options{.bounds = {.height_m = 3.0, .reach_m = 3.0},
+                                     .significant_height_m = 2.4};
+        const ProjectedGridSize without = projected_grid_needs(view_of(shot), options).size;
+        options.hidden = steep_waves(0.6);
+        EXPECT_EQ(projected_grid_needs(view_of(shot), options).size, without) << text_of(shot);
+    }
+    const View level = view_of({});
+    EXPECT_EQ(projected_grid_needs(level, {.bounds = {}, .hidden = steep_waves(0.0)}).size,
+              projected_grid_needs(level, {}).size);
+    // From 4 m a gale takes some hundreds.
+    const ProjectedGridOptions gale{.bounds = {.height_m = 10.0, .reach_m = 10.0},
+                                    .significant_height_m = 8.0,
+                                    .hidden = steep_waves(2.0)};
+    EXPECT_GT(projected_grid_needs(level, gale).size.rows, 500);
+    EXPECT_LT(projected_grid_needs(level, gale).size.rows, 1200);
+}
+
+// Rows move by as little as the camera does: over a thousandth of its height, by a small part of a cell.
+TEST(ProjectedGrid, RowsFollowTheCameraWithoutAJump) {
+    const auto radii = [](double height_m, double fov_deg, ProjectedGridSize size) {
+        const ProjectedGrid grid = projected_grid(view_of({.height_m = height_m, .fov_deg = fov_deg}),
+                                                  {.bounds = {.height_m = 1.0, .reach_m = 1.0},
+                                                   .significant_height_m = 1.0,
+                                                   .hidden = steep_waves(0.25),
+                                                   .size = size});
+        std::vector<double> radii_m;
+        for (int row = 0; row <= grid.rows; ++row)
+            radii_m.push_back(
+                glm::length(glm::dvec2(grid.rest_m[static_cast<std::size_t>(row) * (grid.columns + 1)])));
+        return radii_m;
+    };
+    for (const double fov_deg : {3.0, 50.0})
+        for (const ProjectedGridSize size : {ProjectedGridSize{64, 400}, ProjectedGridSize{64, 2000}})
+            for (double height_m = 2.0; height_m < 30.0; height_m *= 1.3) {
+                const std::vector<double> a = radii(height_m, fov_deg, size),
+                                          b = radii(1.001 * height_m, fov_deg, size);
+                for (std::size_t row = 1; row + 1 < a.size(); ++row)
+                    EXPECT_LE(std::abs(b[row] - a[row]), 5e-3 * a[row] + 0.1 * (a[row + 1] - a[row - 1]))
+                        << height_m << " m " << fov_deg << " deg, row " << row << " of " << size.rows;
+            }
 }
 
 // The gap between the last row and the horizon, in pixels along the picture's height.

@@ -45,7 +45,7 @@ TEST(Png, IsReadBackByteForByte) {
     for (const auto& [width, height] :
          {std::pair(1, 1), std::pair(5, 3), std::pair(3, 700), std::pair(640, 2)}) {
         const std::vector<std::uint8_t> rgb = pattern(width, height);
-        const std::string file = encode({.width = width, .height = height, .rgb = rgb});
+        const std::string file = encode({.width = width, .height = height, .bytes = rgb});
         png_image image{};
         image.version = PNG_IMAGE_VERSION;
         ASSERT_NE(png_image_begin_read_from_memory(&image, file.data(), file.size()), 0) << image.message;
@@ -59,7 +59,7 @@ TEST(Png, IsReadBackByteForByte) {
 }
 
 TEST(Png, SaysThatItIsSrgbAndOfEightBits) {
-    const std::string file = encode({.width = 4, .height = 2, .rgb = pattern(4, 2)});
+    const std::string file = encode({.width = 4, .height = 2, .bytes = pattern(4, 2)});
     bool srgb = false;
     for (const Chunk& chunk : chunks_of(file)) {
         if (chunk.name == "sRGB") srgb = true;
@@ -70,15 +70,15 @@ TEST(Png, SaysThatItIsSrgbAndOfEightBits) {
         EXPECT_NE(chunk.name, "tIME");  // the bytes depend on the picture alone
     }
     EXPECT_TRUE(srgb);
-    EXPECT_EQ(file, encode({.width = 4, .height = 2, .rgb = pattern(4, 2)}));
+    EXPECT_EQ(file, encode({.width = 4, .height = 2, .bytes = pattern(4, 2)}));
 }
 
 TEST(Png, RefusesSizesThatItCannotHold) {
     const std::vector<std::uint8_t> rgb = pattern(4, 2);
-    EXPECT_THROW(encode({.width = 0, .height = 2, .rgb = {}}), std::invalid_argument);
-    EXPECT_THROW(encode({.width = 4, .height = -2, .rgb = rgb}), std::invalid_argument);
-    EXPECT_THROW(encode({.width = 1000001, .height = 1, .rgb = rgb}), std::invalid_argument);
-    EXPECT_THROW(encode({.width = 4, .height = 3, .rgb = rgb}), std::invalid_argument);
+    EXPECT_THROW(encode({.width = 0, .height = 2, .bytes = {}}), std::invalid_argument);
+    EXPECT_THROW(encode({.width = 4, .height = -2, .bytes = rgb}), std::invalid_argument);
+    EXPECT_THROW(encode({.width = 1000001, .height = 1, .bytes = rgb}), std::invalid_argument);
+    EXPECT_THROW(encode({.width = 4, .height = 3, .bytes = rgb}), std::invalid_argument);
 }
 
 }  // namespace

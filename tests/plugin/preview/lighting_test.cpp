@@ -181,12 +181,8 @@ class OnBoth {
         ShaderSource source;
         source.add_constants(lighting_constants(choice_, map_.size()));
         source.add_file("core/lighting/special.glsl");
-        source.add_constants(
-            "uniform sampler2D sky_map;\n"
-            "vec3 sky_lookup(vec2 u, float level) {\n"
-            "    vec4 t = textureLod(sky_map, u * (0.5 / 1.25) + 0.5, level);\n"
-            "    return vec3(t.x, t.y, t.z);\n"
-            "}\n");
+        source.add_file("plugin/gpu/sky_texture.glsl");
+        source.add_file("core/lighting/sky_map.glsl");
         source.add_files(lighting_files());
         source.add_file("core/lighting/background.glsl");
         source.add_file("core/lighting/tone.glsl");

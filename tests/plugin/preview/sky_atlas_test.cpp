@@ -30,6 +30,7 @@ TEST(SkyAtlas, IsReadAsTheMapIs) {
     source.add_constants("const float kSkyMapSize = 32.0;\n");
     source.add_file("core/lighting/special.glsl");
     source.add_file("plugin/gpu/sky_atlas.glsl");
+    source.add_file("core/lighting/sky_map.glsl");
     const ShaderProgram program =
         gpu::program_of(gpu::caller(source, "", "answer = vec4(sky_lookup(given(0).xy, given(0).z), 1.0);"));
     program.use();

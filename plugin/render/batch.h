@@ -1,0 +1,51 @@
+// How a picture is computed in parts that stay near the caches, for the renderer and for what it will need.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/evaluate/values.h"
+#include "core/lighting/lighting.h"
+#include "core/scene/scene.h"
+#include "plugin/render/raster.h"
+
+namespace pelagic {
+
+// Samples are pixels of a larger picture with cells as large as before.
+inline Scene of_samples(const Scene& scene, int samples) {
+    Scene sampled = scene;
+    sampled.camera.resolution *= samples;
+    sampled.surface.cell_px *= samples;
+    return sampled;
+}
+
+// Samples that are computed at once: enough to keep all threads busy, little enough to stay near the caches.
+inline constexpr int kBatch = 1 << 16;
+inline constexpr std::size_t kShadeGrain = 256;  // samples a task shades
+
+// Rows of samples that are computed at once: whole bands of the rasteriser that are whole rows of the picture.
+inline int rows_of_batch(int sample_width, int samples) {
+    const int rows_at_once = Rasteriser::kBandRows * samples;
+    return std::max(1, kBatch / (rows_at_once * sample_width)) * rows_at_once;
+}
+
+// What a batch of samples holds, by sample of the batch or by sample that shows the sea.
+template <class T>
+struct Batch {
+    std::vector<std::uint32_t> triangles;  // by sample
+    std::vector<SeaRadiance> radiance;     // by sample
+    std::vector<std::size_t> sea;          // which samples show the sea, rising
+    std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
+    std::vector<T> pixel_m;
+    std::vector<glm::vec<2, T>> pixel_axis_m;
+    std::vector<glm::vec3> to_eye;
+    Values answers;
+    std::vector<SeaPoint> points;
+    std::vector<SeaRadiance> lit;
+};
+
+}  // namespace pelagic

@@ -1,0 +1,100 @@
+// The layers of a picture's EXR, beside R, G, B: the light by its source, and what a compositor computes with. One
+// table: the files, `--layers` and Python follow it.
+//
+// Names. Nuke takes `layer.channel` as it stands, Z as depth.Z, forward and backward as its own motion vectors [px].
+// Blender reads the same files as multilayer: Z is its pass Depth, each layer a pass, and Vector, in the order and
+// with the signs of Cycles, is what its node Vector Blur takes as Speed.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <string>
+#include <string_view>
+
+#include "core/lighting/lighting.h"
+
+namespace pelagic {
+
+enum class PictureLayer {
+    Sun,
+    Sky,
+    Sea,
+    Foam,
+    Depth,
+    Position,
+    Normal,
+    Motion,
+    Vector,
+    Coverage,
+    SlopeVariance
+};
+
+struct PictureLayerRow {
+    PictureLayer layer;
+    std::string_view name;  // for people: "depth"
+    glm::vec3 SeaRadiance::*
+        light;     // its share of R, G, B, averaged over the pixel; nullptr: not a layer of the light
+    bool is_half;  // of those that aren't light: as half floats
+    std::size_t components;               // 1 … 4
+    std::array<const char*, 4> channels;  // in the file
+    const char* description;              // with its unit
+};
+
+// Where there is no sea: a finite depth that is behind everything, as Blender's own.
+inline constexpr float kSkyDepth_m = 1e10f;
+
+// clang-format off
+inline constexpr auto kPictureLayers = std::to_array<PictureLayerRow>({
+    {PictureLayer::Sun, "sun", &SeaRadiance::sun, false, 3, {"sun.R", "sun.G", "sun.B"},
+     "the sun's light, reflected"},
+    {PictureLayer::Sky, "sky", &SeaRadiance::sky, false, 3, {"sky.R", "sky.G", "sky.B"},
+     "the sky's, reflected; beside the sea the sky itself with the sun's disc"},
+    {PictureLayer::Sea, "sea", &SeaRadiance::sea, false, 3, {"sea.R", "sea.G", "sea.B"},
+     "light from the water"},
+    {PictureLayer::Foam, "foam", &SeaRadiance::foam, false, 3, {"foam.R", "foam.G", "foam.B"},
+     "light from whitecaps"},
+    {PictureLayer::Depth, "depth", nullptr, false, 1, {"Z"},
+     "along the camera's axis [m]; 1e10 in the sky"},
+    {PictureLayer::Position, "position", nullptr, false, 3, {"P.X", "P.Y", "P.Z"},
+     "of the sea in the world, z up [m]; 0 in the sky"},
+    {PictureLayer::Normal, "normal", nullptr, true, 3, {"N.X", "N.Y", "N.Z"},
+     "of the waves that the pixel resolves, in the world, unit; 0 in the sky"},
+    {PictureLayer::Motion, "motion", nullptr, false, 4, {"forward.u", "forward.v", "backward.u", "backward.v"},
+     "from here to where the next frame, and the one before, shows the point: u right, v up [px]"},
+    {PictureLayer::Vector, "vector", nullptr, false, 4, {"Vector.X", "Vector.Y", "Vector.Z", "Vector.W"},
+     "the same as Blender has it: from here to the frame before, and from the next frame to here [px]"},
+    {PictureLayer::Coverage, "coverage", nullptr, true, 1, {"coverage.X"},
+     "the share of the sea that whitecaps cover, 0 to 1"},
+    {PictureLayer::SlopeVariance, "slope_variance", nullptr, false, 3,
+     {"slope_variance.X", "slope_variance.Y", "slope_variance.Z"},
+     "of the waves that the pixel hides: xx, yy and xy of their slopes in the world"},
+});
+// clang-format on
+
+inline constexpr std::size_t kPictureLayerCount = kPictureLayers.size();
+using PictureLayerSet = std::bitset<kPictureLayerCount>;
+
+constexpr std::size_t index(PictureLayer layer) {
+    return static_cast<std::size_t>(layer);
+}
+
+// The rows stand in the order of their enumerators.
+static_assert([] {
+    for (std::size_t i = 0; i < kPictureLayerCount; ++i)
+        if (index(kPictureLayers[i].layer) != i) return false;
+    return true;
+}());
+
+// Those that files have unless others are asked for: the light's.
+PictureLayerSet light_layers();
+
+// "sun,depth": these alone; "none"; "all". Throws std::invalid_argument, which says what is accepted.
+PictureLayerSet parse_picture_layers(const std::string& text);
+
+// What the renderer computes for these beside the light: floats a pixel.
+std::size_t data_components(PictureLayerSet layers);
+bool needs_motion(PictureLayerSet layers);
+
+}  // namespace pelagic

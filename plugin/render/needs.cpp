@@ -1,0 +1,149 @@
+// What the pictures of a shot need, before any of them is rendered.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/base/precision.h"
+#include "core/plan/quality.h"
+#include "core/scene/text.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
+#include "plugin/render/batch.h"
+#include "plugin/render/render.h"
+
+namespace pelagic {
+
+RenderOptions render_options(const Scene& scene) {
+    const QualityRow& quality = quality_of(scene.quality.level);
+    RenderOptions options;
+    options.lighting.whitecaps = !products_gone(scene)[index(Product::Coverage)];
+    switch (quality.sky) {
+        case SkyLookups::One:
+            options.lighting.sky_quality = SkyQuality::One;
+            break;
+        case SkyLookups::Nine:
+            options.lighting.sky_quality = SkyQuality::Nine;
+            break;
+        case SkyLookups::Integral:
+            options.lighting.sky_quality = SkyQuality::Integral;
+            break;
+    }
+    options.lighting.fresnel = quality.fitted_fresnel ? FresnelFit::Exact : FresnelFit::Paper;
+    options.samples = quality.samples;
+    return options;
+}
+
+std::vector<double> moments_of(int frame, const RenderOptions& options) {
+    std::vector<double> moments{static_cast<double>(frame)};
+    if (!(options.shutter_frames > 0.0)) return moments;
+    // Moments in the middles of equal parts. From sample to sample they jump by some 0.6 of all parts, so that a
+    // pixel's moments are spread over its rows and columns.
+    const int all = options.samples * options.samples;
+    int jump = std::max(1, static_cast<int>(0.618 * all));
+    while (std::gcd(jump, all) != 1) ++jump;
+    for (int i = 0; i < all; ++i)
+        moments.push_back(frame + options.shutter_frames * ((i * jump % all + 0.5) / all - 0.5));
+    return moments;
+}
+
+Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderOptions& options) {
+    auto prepared = prepare(scene);
+    const ProjectedGridOptions grid = projected_grid_options(*prepared);
+    std::optional<ProjectedGridNeeds> needs;
+    std::optional<View> before;
+    for (const int frame : frames)
+        for (const double moment : moments_of(frame, options)) {
+            const View view = view_at(scene.camera, moment);
+            if (before && *before == view) continue;  // the camera stands still
+            const ProjectedGridNeeds own = projected_grid_needs(view, grid);
+            needs = needs ? together(*needs, own) : own;
+            before = view;
+        }
+    if (!needs) throw std::invalid_argument("a plan of pictures needs at least one frame");
+    Query query = view_query(*prepared, {.products = {},
+                                         .finest_cell_m = needs->finest_cell_m,
+                                         .finest_pixel_m = needs->finest_pixel_m,
+                                         .points = points_of(needs->size)});
+    if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
+    return make_plan(std::move(prepared), {query});
+}
+
+void check_render(const Scene& scene, const RenderOptions& options) {
+    if (options.samples < 1 || options.samples > kMostSamples)
+        throw std::invalid_argument(std::to_string(options.samples) + " x " +
+                                    std::to_string(options.samples) + " samples a pixel: 1 to " +
+                                    std::to_string(kMostSamples) + " a side are accepted");
+    if (!(options.shutter_frames >= 0.0 && options.shutter_frames <= kLongestShutter_frames))
+        throw std::invalid_argument("a shutter that is open for " + number_text(options.shutter_frames) +
+                                    " frames: 0 to " + number_text(kLongestShutter_frames) + " are accepted");
+    const glm::ivec2 all = scene.camera.resolution * options.samples;
+    if (std::max(all.x, all.y) > Rasteriser::kLargestSide)
+        throw std::invalid_argument("a picture of " + std::to_string(all.x) + " x " + std::to_string(all.y) +
+                                    " samples: up to " + std::to_string(Rasteriser::kLargestSide) +
+                                    " a side are accepted; ask for a smaller picture or fewer samples");
+}
+
+namespace {
+
+// [bytes/pixel] of a picture; of its two files, where layers that are packed take half of their halves; and of what
+// encode_exr() and encode_png() hold beside them.
+std::size_t picture_bytes(const RenderOptions& options) {
+    return sizeof(SeaRadiance) + 1 +
+           sizeof(float) * (data_components(options.layers) + (options.alpha ? 1 : 0));
+}
+std::size_t file_bytes(const RenderOptions& options) {
+    const std::size_t light = (options.layers & light_layers()).count() + 1;
+    return light * 3 * 2 / 2 + 2 + sizeof(float) * data_components(options.layers) + (options.alpha ? 3 : 0);
+}
+constexpr std::size_t kEncodingBytes = sizeof(glm::vec3) + 4;
+
+// [bytes] of a point of the grid: as it is laid out, with the one of the frame before, in T, displaced, on the screen
+// and in triangles. Of the rasteriser's pieces of triangles, which are fewer where most lie outside the picture, and
+// need more room while their vector grows, as many as there are triangles.
+template <class T>
+constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(float)) + 2 * sizeof(double) +
+                                    6 * sizeof(std::uint32_t) + 11 * sizeof(T) + sizeof(glm::dvec4) +
+                                    2 * (Rasteriser::kPieceBytes + sizeof(std::uint32_t));
+
+// [bytes] of a sample of a batch: Batch<T>, with its answers, in double beside those in single.
+template <class T>
+constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
+                                     5 * sizeof(T) + sizeof(glm::vec3) + sizeof(SeaPoint) +
+                                     7 * sizeof(float) + (sizeof(T) > sizeof(float) ? 7 * sizeof(T) : 0);
+
+}  // namespace
+
+MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
+                         std::optional<int> in_flight, int threads) {
+    const Scene sampled = of_samples(scene, options.samples);
+    const Plan plan = picture_plan(sampled, frames, options);
+    MemoryNeed need;
+    add_sea(need, plan, threads);
+    with_precision(plan.knobs.double_precision, [&]<class T>(T) {
+        need.add("the camera's grid of points",
+                 plan.queries[0].query.points *
+                     (kPointBytes<T> + (needs_motion(options.layers) ? 3 * sizeof(T) : 0)),
+                 "raise surface.cell_px, or ask for a smaller picture (--size)");
+        const glm::ivec2 samples = sampled.camera.resolution;
+        const auto rows =
+            static_cast<std::size_t>(std::min(rows_of_batch(samples.x, options.samples), samples.y));
+        need.add("the pixels at hand", rows * static_cast<std::size_t>(samples.x) * kSampleBytes<T>,
+                 "ask for a smaller picture (--size) or fewer --samples");
+    });
+    const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
+                        static_cast<std::size_t>(scene.camera.resolution.y);
+    need.add("pictures",
+             pixels * (in_flight ? static_cast<std::size_t>(*in_flight) *
+                                           (picture_bytes(options) + file_bytes(options)) +
+                                       kEncodingBytes
+                                 : picture_bytes(options)),
+             "ask for a smaller picture (--size)");
+    return need;
+}
+
+}  // namespace pelagic

@@ -32,7 +32,11 @@ std::vector<Band> bands_of(const Plan& plan) {
     std::vector<Band> bands;
     for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
         const CascadePlan& cascade = plan.cascades[c];
-        const double end = std::min(cascade.k_upper, kPi * cascade.resolution / cascade.size_m);
+        // Resolutions that were chosen for the finest footprint end where nothing passes, and must not decide about
+        // coarser ones' bits.
+        const double end = plan.from->scene.waves.cascades.empty()
+                               ? cascade.k_upper
+                               : std::min(cascade.k_upper, kPi * cascade.resolution / cascade.size_m);
         for (std::size_t p = 0; p + 1 < panels.size(); ++p) {
             const double from = std::max(panels[p], cascade.k_lower), to = std::min(panels[p + 1], end);
             if (!(from < to)) continue;

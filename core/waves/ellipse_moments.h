@@ -21,7 +21,8 @@ class EllipseMoments {
     EllipseMoments(const Plan& plan, const std::vector<double>& ladder_m);
 
     bool empty() const { return values_.empty(); }
-    // Linear between the table's nodes (EllipseTable). rung: the lower one's number plus the share of the next. ratio: 1 … kLongestEllipse. direction [rad].
+    // Linear between the table's nodes (EllipseTable). rung: the lower one's number plus the share of the next.
+    // ratio: 1 … kLongestEllipse. direction [rad].
     HiddenMoments<double> hidden(double rung, double ratio, double direction) const;
 
     // By width, ratio and direction, which is the fastest.

@@ -188,6 +188,7 @@ class GpuSea {
             made[kNames[p]] =
                 view_of(self, sea.packed_.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
         }
+        if (made.empty()) return made;  // no time was set
         const int columns = sea.packed_.layout()->ellipse_columns();
         made["ellipse_table"] =
             view_of(self, &sea.ellipse_table_[0].x,

@@ -104,11 +104,11 @@ class Grid:
         grid = sea.grid(view, cell_px)
         self.key, self.size, self.origin_m = (view, cell_px), grid.size, grid.origin_m
         form = gpu.types.GPUVertFormat()
-        for name, length in (("rest_in", 2), ("cell_in", 3), ("pixel_in", 1)):
+        for name, length in (("rest_in", 2), ("cell_in", 3), ("pixel_in", 3)):
             form.attr_add(id=name, comp_type="F32", len=length, fetch_mode="FLOAT")
         vertices = gpu.types.GPUVertBuf(format=form, len=len(grid.vertices))
         for name, part in (("rest_in", grid.vertices[:, :2]), ("cell_in", grid.vertices[:, 2:5]),
-                           ("pixel_in", grid.vertices[:, 5])):
+                           ("pixel_in", grid.vertices[:, 5:])):
             vertices.attr_fill(id=name, data=np.ascontiguousarray(part))
         self.triangles = (before.triangles if before is not None and before.size == grid.size
                           else gpu.types.GPUIndexBuf(type="TRIS", seq=grid.triangles))

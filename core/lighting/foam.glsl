@@ -8,16 +8,6 @@ vec3 foam_variance(vec3 variance) {
     return variance + vec3(kFoamSlopeVariance, kFoamSlopeVariance, 0.0f);
 }
 
-// The fraction of the visible surface that is foam. Foam and clear facets count by their projected area, and
-// waves hide both alike. At grazing angles foam, being rougher, shows more of itself. Equals `coverage` where
-// that is 0 or 1, and seen from straight above.
-float visible_coverage(float coverage, vec3 to_eye, vec3 variance) {
-    float w = clamp(coverage, 0.0f, 1.0f);
-    float foam = w * visible_area(to_eye, foam_variance(variance));
-    float clear = (1.0f - w) * visible_area(to_eye, variance);
-    return foam / (foam + clear);
-}
-
 // The reflectance of covered area. Dense foam is white, 0.55. Averaged over its lifetime foam has 0.4 of that
 // (0.22, Koepke 1984, consistent with Monahan's coverage), since most of it is thin: bubbles over water,
 // which show the water's colour brightened. Thick foam is whiter, but the reflectance must not depend on a
@@ -49,7 +39,9 @@ vec3 foam_radiance(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance
     float facing = max(lit, 0.0f) * spread + tail;
     float up =
         inversesqrt(1.0f + dot(mean, mean) + dot(seen.across, seen.across) + dot(seen.along, seen.along));
-    vec3 sun =
-        sun_radiance * (kPi * square(sun_angular_radius) * facing * up * unblocked(v, l, variance));
+    MaskedView view = masked_view(v, variance);
+    float towards = v.z - mean.x * v.x - mean.y * v.y;
+    float open = lit_part(view, towards, facing, l, variance) / visible_part(view, towards);
+    vec3 sun = sun_radiance * (kPi * square(sun_angular_radius) * facing * up * open);
     return reflectance / kPi * (sun + sky_irradiance * (0.5f + 0.5f * up));
 }

@@ -28,25 +28,23 @@ float fresnel_effective_paper(float cosine, float sigma_v) {
     return 0.02f + 0.98f * pow(x, 5.0f * exp(-2.69f * sigma_v)) / (1.0f + 22.7f * sigma_v * sqrt(sigma_v));
 }
 
-// The mean of the exact term over the visible facets: the integral of Eq. 24 with q_vn^e and Hu's term. (Eq.
-// 26 differs from it by up to 0.11.)
+// The mean of the exact term over the visible facets: the integral of Eq. 24 with the density of slopes.glsl and
+// Hu's term. (Eq. 26, made for Smith's masking, differs from it by up to 0.13.)
 //
 // The fit evaluates the exact term at one effective cosine. It starts from w, the mean of v·f/f_z over the
-// visible facets (cosθ for a flat mirror), and lowers it for the facets' tilt and, because the term is
-// convex, for the relative variance V of w. Tilt has two parts: slopes that change w (along2, which is σ_v²
-// if slopes along and across are uncorrelated) and slopes that don't (across2). They are |along|² and
-// |across|² of VisibleSlopes in slopes.glsl.
+// visible facets (cosθ for a flat mirror), and lowers it for the facets' tilt, by their variances along and across
+// the line of sight, and, because the term is convex, for the relative variance V of w.
 //
-// The six coefficients minimise the largest |error|/(F̄ + 0.5) for θ 0 … 90°, σ_v 0.005 … 0.5 and σ across 0
-// … 0.5 (22 × 15 × 7 integrals with uncorrelated slopes, random search). The largest error there is 0.004; it
-// is 0.012 for slopes with a correlation of 0.7.
-float fresnel_effective_exact(float cosine, float sigma_v, float along2, float across2) {
+// The five coefficients minimise the largest |error|/(F̄ + 0.5) for θ 0 … 90°, σ_v 0.005 … 0.5 and σ across
+// 0.01 … 0.5 (20 × 14 × 6 integrals with uncorrelated slopes). The largest error there is 0.004; it is 0.02 for
+// slopes with a correlation of 0.7.
+float fresnel_effective_exact(float cosine, float sigma_v, float across2) {
     float c = clamp(cosine, 0.0f, 1.0f);
     float tau = max(sigma_v * sqrt(1.0f - c * c), 1.0e-6f);
-    RampMoments moments = ramp_moments(min(c / tau, 1.0e3f));
+    VisibleMoments moments = visible_moments(min(c / tau, 1.0e3f));
     float mean = c + tau * moments.first;
     float spread = max(1.0f + moments.second - square(moments.first), 0.0f) * square(tau / mean);
-    float tilt = 1.0f + 1.2762f * along2 + 0.7902f * across2;
-    float convex = 1.0f + mean * spread * (3.8696f - mean * (1.0257f + 0.2706f * mean) - 2.1919f * spread);
+    float tilt = 1.0f + 2.4284f * square(sigma_v) + 0.8712f * across2;
+    float convex = 1.0f + mean * spread * (3.3539f - mean * (1.9f + 0.257f * mean));
     return fresnel_exact(mean * inversesqrt(tilt) / convex, kWaterIndex);
 }

@@ -88,7 +88,7 @@ constexpr LightingChoice choice_of(std::size_t number) {
 // Maps choices that give equal results to one variant.
 constexpr LightingChoice canonical(LightingChoice c) {
     if (!c.sky) c.sky_quality = SkyQuality::One;
-    if (!c.sky && !c.water) c.fresnel = FresnelFit::Paper;
+    if (!c.sun && !c.sky && !c.water) c.fresnel = FresnelFit::Paper;
     return c;
 }
 

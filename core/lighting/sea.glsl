@@ -26,19 +26,31 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, float cover
     vec3 v = into_frame(frame, to_eye);
     float clear = 1.0f;
     if (kWhitecaps) {
-        float foam = visible_coverage(coverage, v, frame.variance);
+        // Waves hide foam as they hide the water between: its share of what is seen is its share of the sea.
+        float foam = clamp(coverage, 0.0f, 1.0f);
         clear = 1.0f - foam;
         terms.foam = foam * foam_radiance(to_eye, light.sun_direction, frame, light.sun_radiance,
                                           light.sun_angular_radius, light.sky_irradiance,
                                           foam_reflectance(light.water_reflectance));
     }
-    if (kSun) {
-        terms.sun = clear * sun_reflection(to_eye, light.sun_direction, frame, light.sun_radiance,
-                                           light.sun_angular_radius);
-    }
     if (kSky) terms.sky = clear * sky_reflection(to_eye, frame);
+    if (!kSun && !kWater) return terms;
+
+    // What facets mirror onto the sea shows sun and water there; sky_seen_again() is the sky's part.
+    float reflected = effective_fresnel(v, frame.variance);
+    float again = reflected * reflected_again(v, frame.variance);
+    vec3 level = grazing_view(v);
+    if (kSun) {
+        terms.sun = sun_seen_from(v, light.sun_direction, frame, light.sun_radiance, light.sun_angular_radius);
+        if (again > 1.0e-5f) {
+            terms.sun += again * sun_seen_again(level, light.sun_direction, frame,
+                                                light.sun_radiance, light.sun_angular_radius);
+        }
+        terms.sun *= clear;
+    }
     if (kWater) {
-        terms.sea = clear * (1.0f - effective_fresnel(v, frame.variance)) *
+        float shown = 1.0f - reflected + again * (1.0f - effective_fresnel(level, frame.variance));
+        terms.sea = clear * shown *
                     water_radiance(light.sun_direction, light.sun_irradiance, light.sky_irradiance,
                                    light.water_reflectance);
     }

@@ -4,12 +4,6 @@
 //   const float kSkyMapSize        texels per side of the map
 //   vec3 sky_lookup(vec2 u, float level)    the map, trilinear; u = r_xy/(1 + r_z), level 0 the finest
 
-// The light that a ray reflected downwards meets: the map's value below the horizon (§6), stored in its
-// corner.
-vec3 light_from_below() {
-    return sky_lookup(vec2(kSkyMapReach, kSkyMapReach), 0.0f);
-}
-
 // The mip level whose trilinear lookup has this variance in u. (A lookup averages a square and interpolates
 // with a tent: a variance of a quarter of a squared texel.)
 float sky_level(float variance) {
@@ -41,8 +35,7 @@ float effective_fresnel(vec3 v, vec3 variance) {
     float sine2 = v.x * v.x + v.y * v.y;
     float sigma_v = sqrt(variance_towards(v, variance) / max(sine2, 1.0e-12f));
     if (!kExactFresnel) return fresnel_effective_paper(v.z, sigma_v);
-    VisibleSlopes seen = visible_slopes(v, variance);
-    return fresnel_effective_exact(v.z, sigma_v, dot(seen.along, seen.along), dot(seen.across, seen.across));
+    return fresnel_effective_exact(v.z, sigma_v, max(variance.x + variance.y - square(sigma_v), 0.0f));
 }
 
 // Fresnel's term of one facet, the one that the effective term averages.
@@ -60,17 +53,40 @@ vec3 sky_at_mean_normal(vec3 to_eye, SlopeFrame frame) {
     return sky_lookup(sky_place(r), sky_level(area * sqrt(determinant_of(frame.variance))));
 }
 
-// The reflection of one facet: the sky where no wave blocks it, otherwise the light from below.
-vec3 facet_reflection(vec2 slope, vec3 v, SlopeFrame frame, float level, vec3 below) {
-    vec3 f = normalize(vec3(-slope.x, -slope.y, 1.0f));
-    vec3 r = 2.0f * dot(v, f) * f - v;
-    float open = unblocked(v, r, frame.variance);
-    return mix(below, sky_lookup(sky_place(out_of_frame(frame, r)), level), open);
+// What a ray that a facet mirrors onto the sea meets there: the sea seen along its mean plane, in the same
+// azimuth, since such rays are nearly level. Here its reflection of the sky: F̄ of that view, and one lookup where
+// the facets mirror it that are seen so. Their slope towards the ray is 1.2 σ on average, weighted by Fresnel's
+// term; reflections are twice as high, and spread by twice the slopes' deviation there, 0.6 σ, and, across, by
+// twice σ times the cosine of incidence, 1.4 σ_v.
+vec3 grazing_view(vec3 v) {
+    float sine = sqrt(v.x * v.x + v.y * v.y);
+    return sine > 1.0e-6f ? vec3(v.x / sine, v.y / sine, 0.0f) : vec3(1.0f, 0.0f, 0.0f);
 }
 
-float facet_cosine(vec2 slope, vec3 v) {
+vec3 sky_seen_again(vec3 v, SlopeFrame frame) {
+    vec3 grazing = grazing_view(v);
+    float variance = max(variance_towards(grazing, frame.variance), 0.0f);
+    float slope = 1.2f * sqrt(variance);
+    float upright = 1.0f / (1.0f + square(slope));
+    vec3 r = grazing * (upright * (square(slope) - 1.0f)) + vec3(0.0f, 0.0f, 2.0f * slope * upright);
+    float level = sky_level(3.4f * variance * sqrt(frame.variance.x + frame.variance.y - min(variance, frame.variance.x + frame.variance.y)));
+    return effective_fresnel(grazing, frame.variance) * sky_lookup(sky_place(out_of_frame(frame, r)), level);
+}
+
+// What one visible facet mirrors, per its projected area and that of the plane: of the sky, and of the sea again.
+struct FacetLight {
+    vec3 sky;
+    float again;
+};
+
+FacetLight facet_light(vec2 slope, float facing, float visible, vec3 v, SlopeFrame frame, MaskedView view, float level) {
     vec3 f = normalize(vec3(-slope.x, -slope.y, 1.0f));
-    return max(dot(v, f), 0.0f);
+    float cosine = max(dot(v, f), 0.0f);
+    vec3 r = 2.0f * cosine * f - v;
+    float reflected = facet_fresnel(cosine);
+    float lit = min(lit_part(view, facing, facing, r, frame.variance), visible);
+    return FacetLight(reflected * lit * sky_lookup(sky_place(out_of_frame(frame, r)), level),
+                      reflected * (visible - lit));
 }
 
 // The best quality in real time: nine lookups over the visible slopes. Near grazing the mean and variance of
@@ -91,19 +107,23 @@ vec3 sky_of_nine(vec3 to_eye, SlopeFrame frame) {
     vec2 across = change.by_x * seen.across.x + change.by_y * seen.across.y;
     float level = sky_level(0.2f * min(dot(along, along) * square(step_along), dot(across, across)));
 
-    vec3 below = light_from_below();
+    MaskedView view = masked_view(v, frame.variance);
     vec3 sum = vec3(0.0f);
+    float again = 0.0f;
     float total = 0.0f;
     float turn = 0.0f;
     for (int i = 0; i < 9; ++i) {
         float x = first + step_along * (float(i) + 0.5f);
-        vec2 slope = seen.across * turn - seen.along * x;
-        float part = (seen.tilt + x) * exp(-0.5f * x * x);
-        total += part;
-        sum += part * facet_fresnel(facet_cosine(slope, v)) * facet_reflection(slope, v, frame, level, below);
+        float facing = view.height + sqrt(view.along) * x;
+        float visible = visible_part(view, facing);
+        float part = facing * exp(-0.5f * x * x);
+        FacetLight light = facet_light(seen.across * turn - seen.along * x, facing, visible, v, frame, view, level);
+        total += part * visible;
+        sum += part * light.sky;
+        again += part * light.again;
         turn = turn > 0.5f ? -1.2247449f : (turn < -0.5f ? 0.0f : 1.2247449f);
     }
-    return sum / total;
+    return (sum + again * sky_seen_again(v, frame)) / total;
 }
 
 // Eq. 20 in full: every facet with its visibility and Fresnel term. A midpoint rule over the visible slopes,
@@ -121,26 +141,35 @@ vec3 sky_integral(vec3 to_eye, SlopeFrame frame) {
     vec2 across = change.by_x * seen.across.x + change.by_y * seen.across.y;
     float level = sky_level(
         min(dot(along, along) * square(step_along), dot(across, across) * square(step_across)) / 12.0f);
-    vec3 below = light_from_below();
+    MaskedView view = masked_view(v, frame.variance);
     vec3 sum = vec3(0.0f);
+    float again = 0.0f;
     float total = 0.0f;
     for (int i = 0; i < 32; ++i) {
         float x = first + step_along * (float(i) + 0.5f);
-        float weight = (k + x) * exp(-0.5f * x * x);
+        float facing = view.height + sqrt(view.along) * x;
+        float visible = visible_part(view, facing);
+        float weight = facing * exp(-0.5f * x * x);
         for (int j = 0; j < 16; ++j) {
             float y = -4.0f + step_across * (float(j) + 0.5f);
-            vec2 slope = seen.across * y - seen.along * x;
             float part = weight * exp(-0.5f * y * y);
-            total += part;
-            sum += part * fresnel_exact(facet_cosine(slope, v), kWaterIndex) *
-                   facet_reflection(slope, v, frame, level, below);
+            FacetLight light = facet_light(seen.across * y - seen.along * x, facing, visible, v, frame, view, level);
+            total += part * visible;
+            sum += part * light.sky;
+            again += part * light.again;
         }
     }
-    return sum / total;
+    return (sum + again * sky_seen_again(v, frame)) / total;
+}
+
+// What the sea shows of a uniform sky of radiance 1, by one and two reflections. The rest of it is the water's.
+float shown_of_uniform_sky(vec3 v, vec3 variance) {
+    float reflected = effective_fresnel(v, variance);
+    return reflected * (1.0f - reflected_again(v, variance) * (1.0f - effective_fresnel(grazing_view(v), variance)));
 }
 
 vec3 sky_reflection(vec3 to_eye, SlopeFrame frame) {
     if (kSkyLookups == 0) return sky_integral(to_eye, frame);
     if (kSkyLookups == 9) return sky_of_nine(to_eye, frame);
-    return effective_fresnel(into_frame(frame, to_eye), frame.variance) * sky_at_mean_normal(to_eye, frame);
+    return shown_of_uniform_sky(into_frame(frame, to_eye), frame.variance) * sky_at_mean_normal(to_eye, frame);
 }

@@ -7,6 +7,9 @@
 const float kPi = 3.14159265f;
 const float kWaterIndex = 1.34f;  // sea water's index of refraction for visible light (Hu et al. 2006)
 
+// The part of masking that is nested (slopes.glsl); the rest is Smith's.
+const float kNested = 0.75f;
+
 const float kSkyMapReach = 1.25f;  // the map covers |u_x|, |u_y| up to this; kSkyMapExtent in C++
 
 // The place of a direction in the map. r_z → −1 is the projection's pole; any place beyond the map's edge
@@ -55,17 +58,31 @@ float square(float x) {
     return x * x;
 }
 
-// Moments of the density (k + x)₊ φ(x)/(kΦ(k) + φ(k)), k ≥ 0, with the normal density φ and its integral Φ:
-// normal slopes weighted by their visibility (slopes.glsl). The mean is `first`, the second moment is 1 +
-// `second`.
-struct RampMoments {
-    float first;   // Φ(k)/(kΦ(k) + φ(k))
-    float second;  // φ(k)/(kΦ(k) + φ(k))
+// (1 − exp(−x))/x for x ≥ 0, without its cancellation.
+float decay_mean(float x) {
+    return x < 0.05f ? 1.0f - x * (0.5f - x * (0.16666667f - x * 0.041666667f)) : (1.0f - exp(-x)) / x;
+}
+
+// What the eye sees of normal slopes x (slopes.glsl), k ≥ 0, with the normal density φ and its integral Φ. The
+// mean is `first`, the second moment is 1 + `second`.
+//
+// Smith's part has the density (k + x)₊ φ(x)/whole, the nested part (k + x)/k (φ(x) − φ(x + 2k))₊: the noncentral
+// χ distribution of three degrees of freedom.
+struct VisibleMoments {
+    float whole;  // kΦ + φ
+    float first;
+    float second;
 };
 
-RampMoments ramp_moments(float k) {
+VisibleMoments visible_moments(float k) {
     float a = 0.70710678f * k;
     float bell = exp(-a * a);
-    float whole = k + 0.39894228f * bell * erfcx_remainder(a);  // kΦ + φ without cancellation
-    return RampMoments((1.0f - 0.5f * bell * erfcx(a)) / whole, 0.39894228f * bell / whole);
+    float outside = bell * erfcx(a);  // 2Φ(−k)
+    float whole = k + 0.39894228f * bell * erfcx_remainder(a);  // without cancellation
+    float k2 = k * k;
+    float slope = k < 0.5f ? 0.79788456f * (1.0f - k2 * (1.0f / 6.0f - k2 * (0.025f - k2 * (1.0f / 336.0f))))
+                           : (1.0f - outside) / k;  // (2Φ(k) − 1)/k
+    float nested = slope - k * outside + 0.79788456f * bell;
+    return VisibleMoments(whole, mix((1.0f - 0.5f * outside) / whole, nested, kNested),
+                          mix(0.39894228f * bell / whole, 2.0f - 2.0f * k * nested, kNested));
 }

@@ -68,8 +68,9 @@ vec2 pull_of(vec3 h, HalfVector of) {
 // sun_radiance is the mean over the whole disc, to_sun the centre of what is visible of it (core/lighting/sky.h). At
 // most the visible part's own radiance times F: no facet is brighter than the sun itself. 0 for a sun at or below
 // the horizon.
-vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
-    vec3 v = into_frame(frame, to_eye);
+//
+// v: to the eye, in the frame.
+vec3 sun_seen_from(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
     vec3 l = into_frame(frame, to_sun);
     vec3 h = v + l;
     if (to_sun.z <= 0.0f || h.z <= 1.0e-5f) return vec3(0.0f);  // no visible facet mirrors the sun
@@ -83,6 +84,8 @@ vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radianc
     vec2 pull = pull_of(h, half_vector(h, frame.variance, of_side, of_rise, vec2(0.0f)));
     vec2 slope = -h.z * vec2(frame.variance.x * pull.x + frame.variance.z * pull.y,
                              frame.variance.z * pull.x + frame.variance.y * pull.y);
+    // No farther than 5 deviations of the waves: there is nothing to be mirrored, and the disc in such slopes is wide.
+    slope *= min(1.0f, 5.0f * inversesqrt(max(-h.z * dot(slope, pull), 1.0e-12f)));
     HalfVector half_way = half_vector(h, frame.variance, of_side, of_rise, slope);
     float distance = slope_distance(vec2(h.x, h.y), half_way.covariance, square(half_way.root));
     float density = disc_density(distance, half_way.disc_root / half_way.root, half_way.root);
@@ -97,8 +100,25 @@ vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radianc
     float cosine = dot(v, mirroring) / max(size, 1.0e-6f);
     // The disc's height blurs the horizon of the frame, too.
     vec3 blurred = frame.variance + vec3(square(spread.y), square(spread.y), 0.0f);
-    float seen = visible_area(v, frame.variance) + max(v.z, 0.0f) * smith_lambda(smith_argument(l, blurred));
-    float part = kPi * square(angular_radius) * square(facing) * density / max(seen, 1.0e-6f);
+    float lit = lit_part(masked_view(v, frame.variance), facing, facing, l, blurred);
+    float part = kPi * square(angular_radius) * square(facing) * density * lit;
     float most = square(0.5f * angular_radius) / (spread.x * spread.y);  // the whole disc's share of what is visible
     return sun_radiance * (min(part, most) * fresnel_exact(cosine, kWaterIndex));
+}
+
+vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
+    return sun_seen_from(into_frame(frame, to_eye), to_sun, frame, sun_radiance, angular_radius);
+}
+
+// The same where it adds a twentieth: the disc is a Gaussian in the slopes.
+vec3 sun_seen_again(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
+    vec3 l = into_frame(frame, to_sun);
+    vec3 h = v + l;
+    if (to_sun.z <= 0.0f || h.z <= 1.0e-2f) return vec3(0.0f);
+    float blur = square(0.25f * angular_radius / h.z);
+    vec3 variance = frame.variance + vec3(blur, blur, 0.0f);
+    float facing = 0.5f * dot(h, h) / h.z;
+    float density = slope_density(vec2(h.x, h.y) / -h.z, variance) * square(facing / h.z);
+    float part = kPi * square(angular_radius) * density * lit_part(masked_view(v, variance), facing, facing, l, variance);
+    return sun_radiance * (min(part, 1.0f) * fresnel_exact(0.5f * length(h), kWaterIndex));
 }

@@ -486,42 +486,46 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
     grid.cell_axis_m.resize(count);
     grid.pixel_axis_m.resize(count);
     std::vector<glm::dvec2> previous(stride), row(stride);
-    std::vector<double> across_m(count, 0.0), away_m(count, 0.0);  // to the neighbouring columns and rows
+    std::vector<double> across_m(rows.size()), away_m(count, 0.0);  // to the neighbouring columns, and rows
+    const glm::dvec2 forward(view.forward);
     for (std::size_t j = 0; j < rows.size(); ++j) {
-        const double r = rows[j].radius_m;
-        for (std::size_t i = 0; i < stride; ++i) {
-            const double azimuth = rows[j].half_width * (2.0 * static_cast<double>(i) / columns - 1.0);
-            const glm::dvec2 unit(std::cos(azimuth), std::sin(azimuth));
-            // To the right in the picture, which is clockwise seen from above.
-            const glm::dvec2 away(at.ahead.x * unit.x + at.ahead.y * unit.y,
-                                  at.ahead.y * unit.x - at.ahead.x * unit.y);
+        const double r = rows[j].radius_m, distance_m = std::hypot(r, at.effective_height_m);
+        const double down_m = std::copysign(at.effective_height_m, at.height_m) * view.forward.z;
+        const double step = 2.0 * rows[j].half_width / columns;
+        const glm::dvec2 turn(std::cos(step), -std::sin(step));
+        across_m[j] = 2.0 * r * std::sin(std::min(0.5 * step, 0.5 * kPi));
+        // To the right in the picture, which is clockwise seen from above.
+        const auto turned = [](glm::dvec2 a, glm::dvec2 b) {
+            return glm::dvec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);
+        };
+        glm::dvec2 away =
+            turned(at.ahead, glm::dvec2(std::cos(rows[j].half_width), std::sin(rows[j].half_width)));
+        for (std::size_t i = 0; i < stride; ++i, away = turned(away, turn)) {
             row[i] = r * away;
             const std::size_t here = j * stride + i;
             grid.rest_m[here] = glm::vec2(row[i]);
             // A pixel's angle shrinks with the cosine of its distance from the axis, down to the corner's.
-            const glm::dvec3 way =
-                glm::normalize(glm::dvec3(row[i], -std::copysign(at.effective_height_m, at.height_m)));
-            const double cosine = std::max(glm::dot(way, view.forward), at.corner_cos);
-            const double pixel_m = pixel_width_m(view, at, r, cosine);
+            const double ahead_m = std::max(glm::dot(row[i], forward) - down_m, at.corner_cos * distance_m);
+            const double pixel_m = view.pixel_tangent() * ahead_m;
             grid.pixel_m[here] = static_cast<float>(pixel_m);
             grid.pixel_axis_m[here] = glm::vec2(pixel_m * foreshortening(at, r) * away);
             grid.cell_axis_m[here] = glm::vec2(away);  // its length follows below
-            const auto join = [&](std::vector<double>& distances_m, std::size_t other, double distance_m) {
-                distances_m[here] = std::max(distances_m[here], distance_m);
-                distances_m[other] = std::max(distances_m[other], distance_m);
-            };
-            if (i > 0) join(across_m, here - 1, glm::length(row[i] - row[i - 1]));
-            if (j > 0) join(away_m, here - stride, glm::length(row[i] - previous[i]));
+            if (j == 0) continue;
+            away_m[here] = glm::length(row[i] - previous[i]);
+            away_m[here - stride] = std::max(away_m[here - stride], away_m[here]);
         }
         previous.swap(row);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        const double long_m = std::max(across_m[i], away_m[i]), short_m = std::min(across_m[i], away_m[i]);
-        const double width_m = cell_width_m(at, cell_angle, rows[i / stride].radius_m);
-        const glm::vec2 away = grid.cell_axis_m[i];
-        grid.cell_m[i] = static_cast<float>(std::min(std::max(short_m, width_m), long_m));
-        grid.cell_axis_m[i] =
-            static_cast<float>(long_m) * (away_m[i] >= across_m[i] ? away : glm::vec2(-away.y, away.x));
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+        const double width_m = cell_width_m(at, cell_angle, rows[j].radius_m);
+        for (std::size_t i = j * stride; i < (j + 1) * stride; ++i) {
+            const double long_m = std::max(across_m[j], away_m[i]),
+                         short_m = std::min(across_m[j], away_m[i]);
+            const glm::vec2 away = grid.cell_axis_m[i];
+            grid.cell_m[i] = static_cast<float>(std::min(std::max(short_m, width_m), long_m));
+            grid.cell_axis_m[i] =
+                static_cast<float>(long_m) * (away_m[i] >= across_m[j] ? away : glm::vec2(-away.y, away.x));
+        }
     }
     return grid;
 }

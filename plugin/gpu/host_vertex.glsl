@@ -2,19 +2,17 @@
 
 in vec2 rest_in;  // [m], relative to the grid's origin
 in vec3 cell_in;   // footprints: width and long axis [m]
-in float pixel_in;
+in vec3 pixel_in;
 
 uniform mat4 clip_from_grid;  // the host's
 
 out vec2 rest_m;
-out float pixel_m;
-out vec3 tilt;  // the normal of what cells show: how pixels lie on it
+out vec3 pixel_m;
 
 void main() {
     vec3 displacement = query_cell(rest_in, cell_in);
     rest_m = rest_in;
     pixel_m = pixel_in;
-    tilt = query_normal(rest_in, cell_in);
     vec4 clip = clip_from_grid *
                 vec4(rest_in.x + displacement.y, rest_in.y + displacement.z, displacement.x, 1.0);
     // Beyond the host's far plane the sea goes on, as far away as a depth buffer of 24 bits can tell from

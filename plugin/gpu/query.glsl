@@ -19,16 +19,6 @@ vec3 query_cell(vec2 rest_m, vec3 cell) {
     return sum;
 }
 
-// Of the fields that such a cell shows.
-vec3 query_normal(vec2 rest_m, vec3 cell) {
-    PixelFields f = pixel_cascades(rest_m, footprint_of(kCellRungs, kPixelRungs, cell));
-    if (kTrains)
-        f = pixel_trains(split_metres(rest_m), train_footprint(cell, finest_m.y),
-                         TrainSums(f, PixelMoments(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))).fields;
-    SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy);
-    return vec3(n.x, n.y, n.z);
-}
-
 struct PixelAnswer {
     vec3 normal;
     PixelMoments hidden;

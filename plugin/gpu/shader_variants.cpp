@@ -48,10 +48,12 @@ const std::vector<std::string_view>& lighting_files() {
 
 const std::vector<std::string_view>& query_files() {
     static const std::vector<std::string_view> files{
-        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl", "core/plan/filter.inl",
-        "core/plan/taps.inl",         "core/waves/spline.inl",   "core/waves/whitecaps.inl",
-        "core/evaluate/surface.inl",  "core/evaluate/pixel.inl", "core/waves/trains.inl",
-        "core/evaluate/hidden.inl",   "plugin/gpu/places.glsl",  "plugin/gpu/cascades.glsl",
+        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",
+        "core/plan/filter.inl",       "core/plan/taps.inl",
+        "core/waves/spline.inl",      "core/waves/whitecaps.inl",
+        "core/evaluate/surface.inl",  "core/waves/trains.inl",
+        "core/evaluate/hidden.inl",   "core/surface/pixel_footprint.inl",
+        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl",
         "plugin/gpu/trains.glsl",     "plugin/gpu/query.glsl"};
     return files;
 }

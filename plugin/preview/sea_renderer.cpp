@@ -138,10 +138,12 @@ void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
         float cell_m;
         glm::vec2 cell_axis_m;
         float pixel_m;
+        glm::vec2 pixel_axis_m;
     };
     std::vector<Vertex> vertices(grid.rest_m.size());
     for (std::size_t i = 0; i < vertices.size(); ++i)
-        vertices[i] = {grid.rest_m[i], grid.cell_m[i], grid.cell_axis_m[i], grid.pixel_m[i]};
+        vertices[i] = {grid.rest_m[i], grid.cell_m[i], grid.cell_axis_m[i], grid.pixel_m[i],
+                       grid.pixel_axis_m[i]};
     glBindVertexArray(grid_array.name());
     glBindBuffer(GL_ARRAY_BUFFER, grid_vertices.name());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)), vertices.data(),
@@ -153,7 +155,7 @@ void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
     };
     attribute(0, 2, offsetof(Vertex, rest_m));
     attribute(1, 3, offsetof(Vertex, cell_m));
-    attribute(2, 1, offsetof(Vertex, pixel_m));
+    attribute(2, 3, offsetof(Vertex, pixel_m));
     if (grid_size == glm::ivec2(grid.columns, grid.rows)) return;
     grid_size = {grid.columns, grid.rows};
     const std::vector<std::uint32_t> triangles =

@@ -225,7 +225,7 @@ class GpuSea {
             options.cell_px = *cell_px;
         }
         ProjectedGrid grid;
-        std::vector<std::array<float, 6>> vertices;
+        std::vector<std::array<float, 8>> vertices;
         {
             const OthersMayRun others_may_run;
             const ProjectedGridNeeds needs = projected_grid_needs(view, options);
@@ -235,8 +235,9 @@ class GpuSea {
             if (packed_.layout()->pixels().footprints_m.size() > 1) keep_to_rungs(grid, needs);
             vertices.resize(grid.rest_m.size());
             for (std::size_t i = 0; i < vertices.size(); ++i)
-                vertices[i] = {grid.rest_m[i].x,      grid.rest_m[i].y,      grid.cell_m[i],
-                               grid.cell_axis_m[i].x, grid.cell_axis_m[i].y, grid.pixel_m[i]};
+                vertices[i] = {grid.rest_m[i].x,       grid.rest_m[i].y,      grid.cell_m[i],
+                               grid.cell_axis_m[i].x,  grid.cell_axis_m[i].y, grid.pixel_m[i],
+                               grid.pixel_axis_m[i].x, grid.pixel_axis_m[i].y};
         }
         return {{.columns = grid.columns, .rows = grid.rows},
                 grid.origin_m,
@@ -331,7 +332,7 @@ void add_gpu_grid(py::module_& module) {
             "(x, y) [m], in double precision: vertices are relative to it.")
         .def_readonly(
             "vertices", &GpuGrid::vertices,
-            "float32 (n, 6): the attributes rest_in (the first two), cell_in (three) and pixel_in [m].")
+            "float32 (n, 8): the attributes rest_in (the first two), cell_in and pixel_in (three each) [m].")
         .def_property_readonly("triangles", &triangles_of,
                                "uint32 (m, 3), made anew; the nearest first. They depend on the size alone.");
 }

@@ -11,10 +11,10 @@
 #include <span>
 #include <utility>
 
-#include "core/base/number.h"
 #include "core/base/precision.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
+#include "core/surface/pixel_footprint.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
@@ -25,11 +25,6 @@
 #include "plugin/render/under_water.h"
 
 namespace pelagic {
-namespace {
-
-#include "core/evaluate/pixel.inl"
-
-}  // namespace
 
 class Renderer::Impl {
   public:
@@ -144,10 +139,8 @@ class RendererOf final : public Impl {
         cell_m_.assign(grid_.cell_m.begin(), grid_.cell_m.end());
         cell_axis_m_.assign(grid_.cell_axis_m.begin(), grid_.cell_axis_m.end());
         position_.resize(count);
-        normal_.resize(count);
         Results<T> results;
         results.set(Product::Position, {position_.data()});
-        results.set(Product::Normal, {normal_.data()});  // as smooth as the cells: how the pixels lie on them
         if (needs_motion(options_.layers)) {
             velocity_.resize(count);
             results.set(Product::Velocity, {velocity_.data()});
@@ -157,9 +150,7 @@ class RendererOf final : public Impl {
                            .count = count,
                            .rest_m = {rest_.data()},
                            .cell_m = {cell_m_.data()},
-                           .pixel_m = {cell_m_.data()},
-                           .cell_axis_m = {cell_axis_m_.data()},
-                           .pixel_axis_m = {cell_axis_m_.data()}},
+                           .cell_axis_m = {cell_axis_m_.data()}},
                  results);
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         const glm::dmat4 clip_from = view_.clip_from(glm::dvec3(grid_.origin_m, 0.0), kFirst_m);
@@ -279,27 +270,40 @@ class RendererOf final : public Impl {
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
             const glm::dvec3 weights = raster_.weights(triangle, centre(first_row, batch_.sea[i]));
-            glm::dvec2 rest(0.0);
-            glm::dvec3 position(0.0), normal(0.0);
+            glm::dvec2 rest(0.0), pixel_axis_m(0.0);
+            glm::dvec3 position(0.0);
             double pixel_m = 0.0;
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t vertex = triangles_[3 * std::size_t{triangle} + corner];
                 rest += weights[corner] * glm::dvec2(rest_[vertex]);
                 position += weights[corner] * glm::dvec3(position_[vertex]);
                 pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
-                normal += weights[corner] * glm::dvec3(normal_[vertex]);
+                pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
+            const auto pixel = pixel_on_mesh(
+                triangle, first_row, batch_.sea[i],
+                PixelFootprint<double>{.width = pixel_m, .axis_x = pixel_axis_m.x, .axis_y = pixel_axis_m.y});
+            batch_.pixel_axis_m[i] = glm::vec<2, T>(pixel.axis_x, pixel.axis_y);
+            // Rounding must not reach the rung below the frame's first.
+            batch_.pixel_m[i] = std::max(static_cast<T>(pixel.width), first_pixel_m_);
             const glm::dvec3 way = eye - position;
             const double distance = glm::length(way);
             // At the eye itself, which the near plane keeps from happening, up is as good as any.
             batch_.to_eye[i] = distance > 0.0 ? glm::vec3(way / distance) : glm::vec3(0.0f, 0.0f, 1.0f);
-            const glm::dvec3 to_eye(batch_.to_eye[i]), tilt = normal / std::max(glm::length(normal), 1e-9);
-            const auto axis = pixel_axis(pixel_m, tilt.x, tilt.y, tilt.z, to_eye.x, to_eye.y, to_eye.z);
-            batch_.pixel_axis_m[i] = glm::vec<2, T>(axis.x_m, axis.y_m);
-            // Rounding must not reach the rung below the frame's first.
-            batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
         });
+    }
+
+    PixelFootprint<double> pixel_on_mesh(std::uint32_t triangle, int first_row, std::size_t sample,
+                                         PixelFootprint<double> at_rest) const {
+        const double tangent = view_.pixel_tangent();
+        const glm::dvec2 from_middle = seen_at(first_row, sample) - 0.5 * glm::dvec2(view_.resolution);
+        const glm::dvec3 ray =
+            view_.forward + tangent * (from_middle.x * view_.right - from_middle.y * view_.up);
+        const glm::dvec2 nearer =
+            raster_.relative_change(triangle, centre(first_row, sample)) / (sampling_.stride * tangent);
+        return footprint_on_mesh(at_rest, view_.right.x, view_.right.y, view_.up.x, view_.up.y, ray.x, ray.y,
+                                 nearer.x, -nearer.y);
     }
 
     // The batch's samples into the picture's pixels.
@@ -412,7 +416,7 @@ class RendererOf final : public Impl {
     std::vector<glm::vec<2, T>> rest_;      // the grid's own, in T
     std::vector<T> cell_m_;
     std::vector<glm::vec<2, T>> cell_axis_m_;
-    std::vector<glm::vec<3, T>> position_, normal_;
+    std::vector<glm::vec<3, T>> position_;
     std::vector<glm::vec<3, T>> velocity_;  // where motion vectors are asked for
     std::vector<glm::dvec4> clip_;
     Rasteriser raster_;

@@ -173,8 +173,7 @@ void print() {
     };
     const auto exact = [&](double c, double along, double across) {
         return static_cast<double>(shared.fresnel_effective_exact(
-            static_cast<float>(c), static_cast<float>(along), static_cast<float>(along * along),
-            static_cast<float>(across * across)));
+            static_cast<float>(c), static_cast<float>(along), static_cast<float>(across * across)));
     };
     const auto term = [](double c) { return oracle::fresnel(c); };
     fresnel_errors("Eq. 26 against the average of Schlick's term", paper, oracle::schlick);

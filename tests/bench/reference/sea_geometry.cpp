@@ -133,7 +133,8 @@ ProjectedSea::ProjectedSea(const WaveTile& tile, const View& view, double cell_p
              Points<float>{.origin_m = grid_.origin_m,
                            .count = grid_.rest_m.size(),
                            .rest_m = {grid_.rest_m.data()},
-                           .cell_m = {grid_.cell_m.data()}},
+                           .cell_m = {grid_.cell_m.data()},
+                           .cell_axis_m = {grid_.cell_axis_m.data()}},
              results);
     auto* indices = static_cast<std::uint32_t*>(buffer(mesh, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
                                                        3 * sizeof(std::uint32_t), triangles_.size() / 3));
@@ -154,6 +155,8 @@ bool ProjectedSea::trace(const SeaRay& ray, SeaHit& hit) const {
     hit.rest_m = at_hit(grid_.rest_m);
     hit.pixel_m = at_hit(grid_.pixel_m);
     hit.cell_m = at_hit(grid_.cell_m);
+    hit.pixel_axis_m = at_hit(grid_.pixel_axis_m);
+    hit.cell_axis_m = at_hit(grid_.cell_axis_m);
     hit.facet_normal = glm::normalize(glm::vec3(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z));
     hit.distance_m = found.ray.tfar;
     return true;

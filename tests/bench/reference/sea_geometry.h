@@ -22,7 +22,9 @@ struct SeaHit {
     glm::vec2 rest_m{0.0f};        // position at rest of the hit; within the tile for the finest geometry
     glm::vec3 facet_normal{0.0f};  // unit, upwards
     float distance_m = 0.0f;
-    float pixel_m = 0.0f, cell_m = 0.0f;  // footprints at the hit; of the projected grid only
+    // Footprints at the hit, as in Points (core/evaluate/evaluate.h); of the projected grid only.
+    float pixel_m = 0.0f, cell_m = 0.0f;
+    glm::vec2 pixel_axis_m{0.0f}, cell_axis_m{0.0f};
 };
 
 class EmbreeScene {

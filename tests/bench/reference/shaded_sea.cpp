@@ -29,6 +29,7 @@ SeaPixels sea_pixels(const WaveTile& tile, const View& view, const PixelOptions&
     pixels.per_line = view.resolution.x * n * n;
     std::vector<glm::vec2> rest_m;
     std::vector<float> footprints_m;
+    std::vector<glm::vec2> axes_m;
     for (int row = options.first_row; row < view.resolution.y; ++row) {
         pixels.first.push_back(rest_m.size());
         for (int i = 0; i < pixels.per_line; ++i) {
@@ -37,8 +38,9 @@ SeaPixels sea_pixels(const WaveTile& tile, const View& view, const PixelOptions&
             SeaHit hit;
             if (!sea.trace({.origin_m = glm::vec3(view.position_m), .direction = direction}, hit)) continue;
             rest_m.push_back(hit.rest_m);
-            footprints_m.push_back(options.pixels > 0.0 ? static_cast<float>(options.pixels) * hit.pixel_m
-                                                        : hit.cell_m);
+            const auto scale = static_cast<float>(options.pixels);
+            footprints_m.push_back(scale > 0.0f ? scale * hit.pixel_m : hit.cell_m);
+            axes_m.push_back(scale > 0.0f ? scale * hit.pixel_axis_m : hit.cell_axis_m);
             pixels.points.push_back({.to_eye = -direction});
         }
     }
@@ -46,10 +48,12 @@ SeaPixels sea_pixels(const WaveTile& tile, const View& view, const PixelOptions&
     Results<float> results;
     results.set(Product::Normal, {&pixels.points.front().normal, sizeof(SeaPoint)});
     results.set(Product::SlopeVariance, {&pixels.points.front().slope_variance, sizeof(SeaPoint)});
-    evaluate(
-        tile.frame(), kPixels,
-        Points<float>{.count = rest_m.size(), .rest_m = {rest_m.data()}, .pixel_m = {footprints_m.data()}},
-        results);
+    evaluate(tile.frame(), kPixels,
+             Points<float>{.count = rest_m.size(),
+                           .rest_m = {rest_m.data()},
+                           .pixel_m = {footprints_m.data()},
+                           .pixel_axis_m = {axes_m.data()}},
+             results);
     return pixels;
 }
 

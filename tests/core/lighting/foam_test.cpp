@@ -17,36 +17,6 @@ dvec3 rough(dvec3 s) {
     return s + dvec3(kBumps, kBumps, 0.0);
 }
 
-double area(dvec3 v, dvec3 s) {
-    return v.z * (1.0 + oracle::lambda(v, s));
-}
-
-TEST(Foam, VisibleCoverageIsAShareOfProjectedAreas) {
-    Optics optics;
-    Inputs inputs(30);
-    for (int i = 0; i < 100000; ++i) {
-        const vec3 v = inputs.direction(1e-5), s = inputs.variance(1e-3, 0.7, 0.9);
-        const float w = static_cast<float>(inputs.uniform(0.0, 1.0));
-        const double foam = static_cast<double>(w) * area(dvec3(v), rough(dvec3(s))),
-                     clear = (1.0 - static_cast<double>(w)) * area(dvec3(v), dvec3(s));
-        const double expected = foam / (foam + clear);
-        ASSERT_NEAR(optics.visible_coverage(w, v, s), expected, 1e-4 * expected) << i;
-        ASSERT_EQ(optics.visible_coverage(0.0f, v, s), 0.0f);
-        ASSERT_EQ(optics.visible_coverage(1.0f, v, s), 1.0f);
-    }
-    // Seen from straight above nothing is hidden. At grazing angles foam, being rougher, shows more of
-    // itself.
-    const vec3 s(0.02f, 0.015f, 0.0f);
-    EXPECT_NEAR(optics.visible_coverage(0.3f, vec3(0.0f, 0.0f, 1.0f), s), 0.3f, 1e-6f);
-    float last = 0.3f;
-    for (float cosine : {0.2f, 0.1f, 0.05f, 0.01f, 0.0f}) {
-        const float seen =
-            optics.visible_coverage(0.3f, vec3(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine), s);
-        EXPECT_GT(seen, last);
-        last = seen;
-    }
-}
-
 // The closed form of foam.glsl in double; E max(x, 0) of a normal x by numerical integration.
 double foam(dvec3 v, dvec3 l, dvec3 waves) {
     const dvec3 s = rough(waves);
@@ -55,7 +25,12 @@ double foam(dvec3 v, dvec3 l, dvec3 waves) {
     const double sigma = std::sqrt(dot(d, turned)), k = v.z / (sigma * sine);
     const double upper = 0.5 * std::erfc(-k / std::sqrt(2.0)),
                  here = std::exp(-0.5 * k * k) / std::sqrt(2.0 * oracle::kPi);
-    const double first = upper / (k * upper + here), second = here / (k * upper + here);
+    // Smith's part, and the nested part: the χ distribution of three degrees of freedom.
+    const double outside = 1.0 - upper, both = upper - outside;
+    const double nested = both / k - 2.0 * k * outside + 2.0 * here;
+    const double first = (1.0 - oracle::kNested) * upper / (k * upper + here) + oracle::kNested * nested,
+                 second = (1.0 - oracle::kNested) * here / (k * upper + here) +
+                          oracle::kNested * (2.0 - 2.0 * k * nested);
     const dvec2 along = turned / sigma,
                 across = dvec2(-d.y, d.x) * (std::sqrt(s.x * s.y - s.z * s.z) / sigma), mean = -first * along;
     const dvec2 light(l.x, l.y);
@@ -65,7 +40,9 @@ double foam(dvec3 v, dvec3 l, dvec3 waves) {
     const double facing = 0.5 * std::erfc(-x / std::sqrt(2.0)) * middle +
                           spread * std::exp(-0.5 * x * x) / std::sqrt(2.0 * oracle::kPi);
     const double up = 1.0 / std::sqrt(1.0 + dot(mean, mean) + dot(across, across) + dot(along, along));
-    const double sun = oracle::kPi * kRadius * kRadius * facing * up * oracle::unblocked(v, l, s);
+    const double w = v.z - mean.x * v.x - mean.y * v.y;
+    const double sun = oracle::kPi * kRadius * kRadius * facing * up * oracle::lit(w, facing, v, l, s) /
+                       oracle::visible(w, v, s);
     return (1e5 * sun + 0.5 + 0.5 * up) / oracle::kPi;
 }
 

@@ -45,9 +45,9 @@ double exact(double cosine) {
     return oracle::fresnel(cosine);
 }
 
-// Against Eq. 24's integral, for σ up to 0.5 along and across the line of sight, and correlated slopes. Our
-// fit is within 0.015 of the mean of the exact term (0.025 for almost full correlation), Eq. 26 within 0.065
-// of the mean of Schlick's term, for which it was made (0.05 up to 89.5°).
+// Against Eq. 24's integral, for σ up to 0.5 along and across the line of sight. Our fit is within 0.006 of the mean of
+// the exact term; within 0.025 and 0.05 for slopes whose correlation is 0.7 and 0.99, which it doesn't know. Eq. 26 is
+// within 0.11 of the mean of Schlick's term: it was made for Smith's masking.
 TEST(Fresnel, EffectiveTermsAreTheAverages) {
     Optics optics;
     for (double degrees : {0.0, 25.0, 50.0, 65.0, 75.0, 80.0, 84.0, 87.0, 89.0, 89.9}) {
@@ -57,18 +57,17 @@ TEST(Fresnel, EffectiveTermsAreTheAverages) {
             for (double across : {0.02, 0.2, 0.5})
                 for (double correlation : {0.0, 0.7, 0.99}) {
                     const dvec3 s(along * along, across * across, correlation * along * across);
-                    const double with =
-                        s.x +
-                        s.z * s.z / s.x;  // with the slopes correlated with those along the line of sight
                     EXPECT_NEAR(
-                        optics.fresnel_effective_exact(c, static_cast<float>(along), static_cast<float>(with),
-                                                       static_cast<float>(s.x + s.y - with)),
-                        average(theta, s, exact), correlation > 0.9 ? 0.025 : 0.015)
+                        optics.fresnel_effective_exact(c, static_cast<float>(along), static_cast<float>(s.y)),
+                        average(theta, s, exact),
+                        correlation > 0.9   ? 0.05
+                        : correlation > 0.5 ? 0.025
+                                            : 0.006)
                         << degrees << ' ' << along << ' ' << across << ' ' << correlation;
                 }
         for (double sigma : {0.05, 0.1, 0.2, 0.35, 0.5}) {
             EXPECT_NEAR(optics.fresnel_effective_paper(c, static_cast<float>(sigma)),
-                        average(theta, dvec3(sigma * sigma, sigma * sigma, 0.0), oracle::schlick), 0.065)
+                        average(theta, dvec3(sigma * sigma, sigma * sigma, 0.0), oracle::schlick), 0.11)
                 << degrees << ' ' << sigma;
         }
     }
@@ -79,7 +78,7 @@ TEST(Fresnel, EffectiveTermsAreTheAverages) {
 TEST(Fresnel, EffectiveTermOfAMirrorIsTheTerm) {
     Optics optics;
     for (float c = 0.0f; c <= 1.0f; c += 1e-3f) {
-        EXPECT_NEAR(optics.fresnel_effective_exact(c, 1e-5f, 1e-10f, 1e-10f),
+        EXPECT_NEAR(optics.fresnel_effective_exact(c, 1e-5f, 1e-10f),
                     optics.fresnel_exact(c, optics.kWaterIndex), 1e-4f)
             << c;
     }

@@ -49,7 +49,7 @@ struct Furnace {
     vec3 sky_lookup(vec2 u, float level) const { return lookup(u, level); }
     float fresnel_exact(float, float) { return 1.0f; }
     float fresnel_schlick(float) { return 1.0f; }
-    float fresnel_effective_exact(float, float, float, float) { return 1.0f; }
+    float fresnel_effective_exact(float, float, float) { return 1.0f; }
     float fresnel_effective_paper(float, float) { return 1.0f; }
 
 // clang-format off
@@ -101,18 +101,32 @@ inline double lambda(dvec3 d, dvec3 s) {
     return (std::exp(-a * a) - a * root * std::erfc(a)) / (2.0 * a * root);
 }
 
-// The fraction of the visible facets that this direction reaches: Eq. 5 over Eq. 10.
-inline double unblocked(dvec3 v, dvec3 l, dvec3 s) {
-    if (l.z <= 0.0) return 0.0;
-    const double seen = lambda(v, s);
-    return (1.0 + seen) / (1.0 + seen + lambda(l, s));
+constexpr double kNested = 0.75;
+
+// The chance that a facet with w = d·f/f_z is open to d: a Brownian bridge from w to d_z that doesn't cross 0.
+inline double bridge(double w, dvec3 d, dvec3 s) {
+    return d.z > 0.0 && w > 0.0 ? -std::expm1(-2.0 * w * d.z / towards(d, s)) : 0.0;
 }
 
-// ∬ of Eq. 10's density times f(slope, facet), by a fine midpoint rule over ±6 σ.
+// The visible part of a facet with w = v·f/f_z, per its projected area and that of the plane; and what of it the
+// light reaches, with l·f/f_z = lit.
+inline double visible(double w, dvec3 v, dvec3 s) {
+    return ((1.0 - kNested) / (1.0 + lambda(v, s)) + kNested * bridge(w, v, s)) / v.z;
+}
+inline double lit(double w, double lit, dvec3 v, dvec3 l, dvec3 s) {
+    if (l.z <= 0.0) return 0.0;
+    return ((1.0 - kNested) / (1.0 + lambda(v, s) + lambda(l, s)) +
+            kNested * bridge(w, v, s) * bridge(lit, l, s)) /
+           v.z;
+}
+
+// ∬ of the density of visible slopes times f(slope, facet), by a fine midpoint rule over ±6 σ.
 template <class Function>
 auto over_visible(dvec3 v, dvec3 s, int steps, Function&& f) {
     using Value = decltype(f(dvec2(), dvec3()));
     const Factor factor(s);
+    const dvec3 eye(v.x, v.y, std::max(v.z, 1e-9));
+    const double smith = (1.0 - kNested) / (1.0 + lambda(eye, s));
     Value sum(0.0);
     double total = 0.0;
     for (int i = 0; i < steps; ++i)
@@ -121,21 +135,29 @@ auto over_visible(dvec3 v, dvec3 s, int steps, Function&& f) {
             const dvec2 slope(factor.a * x, factor.b * x + factor.c * y);
             const double cosine = v.z - v.x * slope.x - v.y * slope.y;
             if (cosine <= 0.0) continue;
-            const double weight = std::exp(-0.5 * (x * x + y * y)) * cosine;
+            const double weight = std::exp(-0.5 * (x * x + y * y)) * cosine *
+                                  (smith + kNested * bridge(cosine, eye, s)) / eye.z;
             sum += weight * f(slope, normalize(dvec3(-slope.x, -slope.y, 1.0)));
             total += weight;
         }
     return sum / total;
 }
 
-// Eq. 20 with the exact Fresnel term; blocked rays get `below`.
+// Eq. 20 with the exact Fresnel term. What facets mirror onto the sea shows the same integral of the sea seen
+// along its plane, there without any that is mirrored a third time.
 template <class Radiance>
-double sky(dvec3 v, dvec3 s, double below, int steps, Radiance&& radiance) {
+double sky(dvec3 v, dvec3 s, int steps, Radiance&& radiance) {
+    const dvec3 level = normalize(dvec3(v.x, v.y, 0.0) + dvec3(v.z > 0.999999 ? 1.0 : 0.0, 0.0, 0.0));
+    const double again = over_visible(level, s, steps, [&](dvec2, dvec3 f) {
+        const double cosine = dot(level, f);
+        const dvec3 r = 2.0 * cosine * f - level;
+        return fresnel(cosine) * radiance(dvec3(r.x, r.y, std::abs(r.z)));
+    });
     return over_visible(v, s, steps, [&](dvec2, dvec3 f) {
-        const double cosine = dot(v, f);
+        const double cosine = dot(v, f), w = cosine / f.z;
         const dvec3 r = 2.0 * cosine * f - v;
-        const double open = unblocked(v, r, s);
-        return fresnel(cosine) * (open > 0.0 ? open * radiance(r) + (1.0 - open) * below : below);
+        const double open = std::min(lit(w, w, v, r, s) / visible(w, v, s), 1.0);
+        return fresnel(cosine) * (open > 0.0 ? open * radiance(r) + (1.0 - open) * again : again);
     });
 }
 

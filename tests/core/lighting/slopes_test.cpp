@@ -152,7 +152,8 @@ TEST(Slopes, DensityIsTheGaussian) {
 }
 
 // Λ, from 1e-30 (near nadir; smaller values vanish beside 1) to grazing.
-TEST(Slopes, MaskingIsSmiths) {
+// Masking, Smith's and nested: a facet is never lit more than it is seen.
+TEST(Slopes, MaskingIsTheMixture) {
     Optics optics;
     Inputs inputs(6);
     for (int i = 0; i < kInputs; ++i) {
@@ -163,8 +164,13 @@ TEST(Slopes, MaskingIsSmiths) {
             << i;
         const double area = static_cast<double>(d.z) * (1.0 + expected);
         ASSERT_NEAR(optics.visible_area(d, s), area, 1e-5 * area) << i;
-        const double open = oracle::unblocked(dvec3(d), dvec3(l), dvec3(s));
-        ASSERT_NEAR(optics.unblocked(d, l, s), open, kSlack * open) << i;
+        const auto view = optics.masked_view(d, s);
+        const float w = static_cast<float>(inputs.logarithmic(1e-4, 1.0)), facing = w * l.z;
+        const double seen = oracle::visible(double(w), dvec3(d), dvec3(s)),
+                     lit = oracle::lit(double(w), double(facing), dvec3(d), dvec3(l), dvec3(s));
+        ASSERT_NEAR(optics.visible_part(view, w), seen, kSlack * seen) << i;
+        ASSERT_NEAR(optics.lit_part(view, w, facing, l, s), lit, kSlack * lit + 1e-6 * seen) << i;
+        ASSERT_LE(lit, seen * (1.0 + 1e-9)) << i;
     }
 }
 
@@ -216,6 +222,29 @@ TEST(Slopes, FacetsThatAreSeenLeanTowardsTheEye) {
         }
 }
 
+// What reflected_again() fits, by summation. Errors are times F̄, their share of the light.
+TEST(Slopes, LightThatMeetsTheSeaAgain) {
+    Optics optics;
+    for (double degrees : {0.0, 30.0, 60.0, 72.0, 80.0, 85.0, 88.0, 89.5})
+        for (double along : {0.03, 0.1, 0.2, 0.3})
+            for (double ratio : {0.6, 1.0, 1.6}) {
+                const double theta = degrees * oracle::kPi / 180.0;
+                const dvec3 v(std::sin(theta), 0.0, std::cos(theta)),
+                    s(along * along, ratio * ratio * along * along, 0.0);
+                const double all = oracle::over_visible(
+                    v, s, 120, [&](dvec2, dvec3 f) { return oracle::fresnel(dot(v, f)); });
+                const double again = oracle::over_visible(v, s, 120, [&](dvec2, dvec3 f) {
+                    const double cosine = dot(v, f), w = cosine / f.z;
+                    return oracle::fresnel(cosine) *
+                           (1.0 -
+                            std::min(oracle::lit(w, w, v, 2.0 * cosine * f - v, s) / oracle::visible(w, v, s),
+                                     1.0));
+                });
+                EXPECT_NEAR(all * static_cast<double>(optics.reflected_again(vec3(v), vec3(s))), again, 0.015)
+                    << degrees << ' ' << along << ' ' << ratio;
+            }
+}
+
 TEST(Slopes, HardCasesStayFinite) {
     Optics optics;
     const float grazing = std::numeric_limits<float>::denorm_min();
@@ -231,7 +260,13 @@ TEST(Slopes, HardCasesStayFinite) {
                 EXPECT_TRUE(
                     std::isfinite(optics.visible_slope_density(vec2(0.1f, 0.2f), local, frame.variance)));
                 EXPECT_TRUE(std::isfinite(optics.smith_lambda(optics.smith_argument(local, frame.variance))));
-                EXPECT_TRUE(std::isfinite(optics.unblocked(local, -local, frame.variance)));
+                const auto view = optics.masked_view(local, frame.variance);
+                for (float w : {0.0f, 1e-6f, 1.0f, 1e5f}) {
+                    EXPECT_TRUE(std::isfinite(optics.visible_part(view, w)));
+                    EXPECT_TRUE(std::isfinite(optics.lit_part(view, w, w, -local, frame.variance)));
+                    EXPECT_TRUE(std::isfinite(optics.lit_part(view, w, w, n, frame.variance)));
+                }
+                EXPECT_TRUE(std::isfinite(optics.reflected_again(local, frame.variance)));
                 EXPECT_TRUE(std::isfinite(length(seen.along) + length(seen.across) + seen.tilt +
                                           seen.x.first + seen.x.second));
             }

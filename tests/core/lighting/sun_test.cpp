@@ -120,9 +120,9 @@ TEST(Sun, WideWavesSeeTheAverageOverTheDisc) {
                         const dvec3 half = normalize(v + d);
                         const double p = std::exp(-0.5 * factor.distance(half_slope(v, d))) /
                                          (2.0 * oracle::kPi * factor.root_of_determinant());
-                        sum += p * oracle::fresnel(dot(v, half)) /
-                               (4.0 * std::pow(half.z, 4) * v.z *
-                                (1.0 + oracle::lambda(v, s) + oracle::lambda(d, s)));
+                        const double w = dot(v, half) / half.z;
+                        sum += p * oracle::fresnel(dot(v, half)) * oracle::lit(w, w, v, d, s) /
+                               (4.0 * std::pow(half.z, 4));
                     }
                 const double expected = kSolidAngle * sum / (kSteps * kSteps);
                 const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), vec3(s));
@@ -165,6 +165,24 @@ TEST(Sun, MirrorShowsTheDisc) {
         const double expected = kSolidAngle * oracle::fresnel(std::sin(height));
         EXPECT_NEAR(sum, expected, 0.03 * expected) << elevation;
     }
+}
+
+// Reciprocity: exchanging eye and sun changes the radiance by the ratio of their cosines. Where the peak isn't
+// limited to the sun's own radiance, and both are well above the horizon; 2 %, since only the sun is a disc.
+TEST(Sun, EyeAndSunMayBeExchanged) {
+    Optics optics;
+    Inputs inputs(13);
+    int bright = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const vec3 v = inputs.direction(0.05), l = inputs.direction(0.05),
+                   s = inputs.variance(0.05, 0.5, 0.8);
+        const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), s);
+        const float there = v.z * optics.sun_reflection(v, l, frame, vec3(1.0f), float(kRadius)).x,
+                    back = l.z * optics.sun_reflection(l, v, frame, vec3(1.0f), float(kRadius)).x;
+        ASSERT_NEAR(there, back, 0.02f * there + 1e-7f) << i;
+        bright += there > 1e-6f;
+    }
+    EXPECT_GT(bright, 1000);
 }
 
 // Of a disc that is 1 in the mean: where part of it has set, what is left is brighter than the mean.
@@ -236,7 +254,7 @@ double over_the_disc(double elevation, double view, double azimuth, dvec3 s) {
     const dvec3 v(-std::cos(view), 0.0, std::sin(view));
     const oracle::Factor factor(s);
     constexpr int kSteps = 120;
-    const double step = 2.0 * kRadius / kSteps, lambda_v = oracle::lambda(v, s);
+    const double step = 2.0 * kRadius / kSteps;
     double sum = 0.0;
     for (int j = 0; j < kSteps; ++j) {
         const double up = (j + 0.5) * step - kRadius, e = elevation + up;
@@ -248,9 +266,9 @@ double over_the_disc(double elevation, double view, double azimuth, dvec3 s) {
             const dvec3 half = normalize(v + d);
             const double distance = factor.distance(half_slope(v, d));
             if (distance > 100.0) continue;
-            sum += std::exp(-0.5 * distance) * oracle::fresnel(dot(v, half)) /
-                   (2.0 * oracle::kPi * factor.root_of_determinant() * 4.0 * std::pow(half.z, 4) * v.z *
-                    (1.0 + lambda_v + oracle::lambda(d, s)));
+            const double w = dot(v, half) / half.z;
+            sum += std::exp(-0.5 * distance) * oracle::fresnel(dot(v, half)) * oracle::lit(w, w, v, d, s) /
+                   (2.0 * oracle::kPi * factor.root_of_determinant() * 4.0 * std::pow(half.z, 4));
         }
     }
     return sum * step * step;
@@ -270,7 +288,7 @@ TEST(Sun, OnTheHorizonLightsWhatIsBeneathIt) {
                 const auto frame = optics.slope_frame(flat, vec3(s));
                 const vec3 v(dvec3(-std::cos(view), 0.0, std::sin(view)));
                 for (const double azimuth :
-                     {0.0, 0.5 * kRadius, kRadius, 3.0 * kRadius, 0.05, 0.2, 1.0, 2.5}) {
+                     {0.0, 0.5 * kRadius, kRadius, 3.0 * kRadius, 0.05, 0.2, 1.0, 2.5, oracle::kPi}) {
                     const dvec3 l(std::cos(visible.centre) * std::cos(azimuth),
                                   std::cos(visible.centre) * std::sin(azimuth), std::sin(visible.centre));
                     const double found =

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-#include "core/plan/taps.h"
 #include "core/evaluate/values.h"
 #include "core/plan/plan.h"
+#include "core/plan/taps.h"
 #include "core/scene/validate.h"
 #include "core/surface/patch.h"
 #include "core/waves/frame.h"

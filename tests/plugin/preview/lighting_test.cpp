@@ -99,8 +99,9 @@ struct Functions {
                  return vec4(f.x, f.normal.z);)
     PELAGIC_BOTH(frame_variance, SlopeFrame f = slope_frame(facing_normal(nn, vv), ss);
                  return vec4(f.variance, 0.0f) / (f.variance.x + f.variance.y);)
-    PELAGIC_BOTH(areas,
-                 return vec4(visible_area(vv, ss), unblocked(vv, ll, ss), smith_argument(vv, ss), 0.0f);)
+    PELAGIC_BOTH(areas, MaskedView m = masked_view(vv, ss);
+                 return vec4(visible_area(vv, ss), lit_part(m, bb, bb, ll, ss) / visible_part(m, bb),
+                             smith_argument(vv, ss), reflected_again(vv, ss));)
     PELAGIC_BOTH(sun, SlopeFrame f = slope_frame(facing_normal(nn, vv), ss);
                  return vec4(sun_reflection(vv, ll, f, vec3(1.0f), 0.00465f), 0.0f);)
     PELAGIC_BOTH(sky, SlopeFrame f = slope_frame(facing_normal(nn, vv), ss);
@@ -112,7 +113,7 @@ struct Functions {
                  return vec4(foam_radiance(vv, ll, f, vec3(1e4f, 9e3f, 8e3f), 0.00465f,
                                            vec3(10.0f, 12.0f, 15.0f),
                                            foam_reflectance(vec3(0.01f, 0.03f, 0.05f))),
-                             visible_coverage(ww, into_frame(f, vv), f.variance));)
+                             0.0f);)
     PELAGIC_BOTH(whole_sea,
                  SeaTerms t = sea_radiance(vv, nn, ss, ww,
                                            SeaLight(ll, vec3(1e4f, 9e3f, 8e3f), 0.00465f,

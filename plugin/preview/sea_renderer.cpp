@@ -251,6 +251,13 @@ int SeaRenderer::largest_texture() const {
     return implementation_->largest_texture;
 }
 
+bool SeaRenderer::is_software() const {
+    const std::string name = device();
+    static constexpr std::array kNames{"llvmpipe", "softpipe", "swrast", "Software Rasterizer", "SwiftShader"};
+    return std::any_of(kNames.begin(), kNames.end(),
+                       [&](const char* known) { return name.find(known) != std::string::npos; });
+}
+
 std::string SeaRenderer::device() const {
     return std::string(reinterpret_cast<const char*>(glGetString(GL_RENDERER))) + ", OpenGL " +
            reinterpret_cast<const char*>(glGetString(GL_VERSION));

@@ -275,7 +275,8 @@ int SeaRenderer::largest_texture() const {
 
 bool SeaRenderer::is_software() const {
     const std::string name = device();
-    static constexpr std::array kNames{"llvmpipe", "softpipe", "swrast", "Software Rasterizer", "SwiftShader"};
+    static constexpr std::array kNames{"llvmpipe", "softpipe", "swrast", "Software Rasterizer",
+                                       "SwiftShader"};
     return std::any_of(kNames.begin(), kNames.end(),
                        [&](const char* known) { return name.find(known) != std::string::npos; });
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/plan/taps.h"
+
 namespace pelagic {
 namespace {
 
@@ -54,11 +56,13 @@ const std::vector<std::string_view>& lighting_files() {
 
 const std::vector<std::string_view>& query_files() {
     static const std::vector<std::string_view> files{
-        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",  "core/plan/filter.inl",
-        "core/waves/spline.inl",      "core/waves/whitecaps.inl", "core/evaluate/surface.inl",
-        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "core/surface/pixel_footprint.inl",
-        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl", "plugin/gpu/trains.glsl",
-        "plugin/gpu/query.glsl"};
+        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",
+        "core/plan/filter.inl",       "core/plan/taps.inl",
+        "core/waves/spline.inl",      "core/waves/whitecaps.inl",
+        "core/evaluate/surface.inl",  "core/waves/trains.inl",
+        "core/evaluate/hidden.inl",   "core/surface/pixel_footprint.inl",
+        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl",
+        "plugin/gpu/trains.glsl",     "plugin/gpu/query.glsl"};
     return files;
 }
 
@@ -70,7 +74,10 @@ std::string query_constants(const SeaLayout& layout, bool coverage) {
            constant("P", layout.sea().plan().knobs.spline_taps) + constant("kChoppy", layout.is_choppy()) +
            constant("kCoverage", coverage) +
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
-           constant("kTrains", layout.has_trains());
+           constant("kTrains", layout.has_trains()) + constant("kNodesARung", EllipseTable::kNodesARung) +
+           constant("kNodesAnOctave", EllipseTable::kNodesAnOctave) +
+           constant("kRatios", EllipseTable::kRatios) + constant("kDirections", EllipseTable::kDirections) +
+           "const float kLongestEllipse = " + std::to_string(kLongestEllipse) + ";\n";
 }
 
 std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from mathutils import Vector
 
 from . import compat, ocean
 from .module import pelagic
@@ -160,10 +161,21 @@ def _keyframe(owner, path, values):
             point.interpolation = "LINEAR"
 
 
+def _seen(scene, frame):
+    """The pose of a shot's camera at a frame."""
+    view = pelagic.View.of_scene(scene, frame)
+    pinhole = ocean.Pinhole(*map(Vector, (view.position_m, view.right, view.up, view.forward)), view.tan_half_width,
+                            view.resolution)
+    look_at = pinhole.position_m + ocean.LOOK_AHEAD_M * pinhole.forward
+    return Pose(view.position_m, tuple(look_at), math.degrees(2 * math.atan(view.tan_half_width)), pinhole.roll_deg())
+
+
 def make(context, scene, name):
     """The shot's camera: it tracks an empty where it looks, and hangs in another if it rolls. Returns the camera."""
     poses = {key.frame: Pose(key.position_m, key.look_at_m, key.fov_deg or scene.camera.fov_deg, key.roll_deg)
              for key in scene.camera.keys}
+    if scene.camera.interpolation == "smooth" and len(poses) > 2:  # the core's curves, which aren't Blender's
+        poses = {frame: _seen(scene, frame) for frame in range(min(poses), max(poses) + 1)}
     poses = poses or {1: Pose(scene.camera.position_m, scene.camera.look_at_m, scene.camera.fov_deg, 0.0)}
     first = poses[min(poses)]
     data = bpy.data.cameras.new(f"{name} Camera")

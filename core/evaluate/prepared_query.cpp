@@ -10,54 +10,26 @@
 #include <string>
 
 #include "core/base/number.h"
+#include "core/evaluate/taps.h"
 #include "core/evaluate/trains.h"
 
 namespace pelagic {
 namespace {
 
-// A point's place on a ladder of footprints: (1 − t) of the lower rung and t of the next.
-template <class T>
-struct Rung {
-    std::size_t lower;
-    T t;
-};
-
-// The long side of a point's footprint; no number where that is none.
-template <class T>
-T long_side(const Strided<const T>& width_m, const Strided<const glm::vec<2, T>>& axis_m, std::size_t point) {
-    const T width = width_m[point];
-    if (!axis_m) return width;
-    const T length = std::hypot(axis_m[point].x, axis_m[point].y);
-    return length > width ? length : width;
-}
-
-template <class T>
-Rung<T> rung_of(const std::vector<double>& ladder_m, const Strided<const T>& footprint_m,
-                const Strided<const glm::vec<2, T>>& axis_m, std::size_t point) {
-    if (!footprint_m || ladder_m.size() == 1) return {0, T(0)};
-    const double wanted =
-        std::min(static_cast<double>(long_side(footprint_m, axis_m, point)), ladder_m.back());
-    if (!(wanted > ladder_m.front()))
-        return {0, T(0)};  // the finest rung, for a footprint that is no number, too
-    const auto above = std::upper_bound(ladder_m.begin() + 1, ladder_m.end() - 1, wanted);
-    const std::size_t upper = static_cast<std::size_t>(above - ladder_m.begin());
-    const double lower_m = ladder_m[upper - 1], upper_m = ladder_m[upper];
-    return {upper - 1, static_cast<T>((wanted - lower_m) / (upper_m - lower_m))};
-}
-
 #include "core/evaluate/hidden.inl"
 
-// What a rung of pixels hides of `whole`: less what passes through the cascades.
+// What a rung of pixels hides of `whole`: less what passes through the cascades, and more by what is hidden beside.
 template <class T>
 HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& rung,
-                           const HiddenMoments<double>& whole) {
+                           const HiddenMoments<double>& whole, const HiddenMoments<double>& beside = {}) {
     const double t = static_cast<double>(rung.t);
     const auto left = [&](std::size_t moment) {
         const auto m = kHiddenMoments[moment];
         const double here = statistics.resolved[rung.lower].*m;
-        if (!(t > 0.0)) return whole[moment] - here;  // there may be no next rung
-        return whole[moment] - blended_moment(here, statistics.resolved_next[rung.lower].*m,
-                                              statistics.resolved[rung.lower + 1].*m, t);
+        if (!(t > 0.0)) return whole[moment] - here + beside[moment];  // there may be no next rung
+        return beside[moment] + whole[moment] -
+               blended_moment(here, statistics.resolved_next[rung.lower].*m,
+                              statistics.resolved[rung.lower + 1].*m, t);
     };
     const auto hidden = possible_moments(
         PixelMoments<double>(left(0), left(1), left(2), left(3), left(4), left(5), left(6), left(7)));
@@ -84,12 +56,21 @@ struct PreparedQuery<T>::Call {
     bool differ_in_hidden;  // where trains see each point's own pixel, or cascades a ladder
 };
 
+// What is made for a chunk on its way.
+template <class T>
+struct PreparedQuery<T>::Work {
+    Chunk<T> chunk;
+    HiddenChunk<T> hidden_of;
+    ChunkFootprints<T> cells, pixels;
+};
+
 template <class T>
 PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductSet wanted,
                                 glm::dvec2 origin_m)
     : frame_(&frame),
       planned_(&frame.sea().plan().queries.at(query_index)),
       statistics_(&frame.sea().statistics(query_index)),
+      ellipses_(&frame.sea().ellipses(query_index)),
       wanted_(wanted),
       kernels_(evaluate_kernels<T>()) {
     const Plan& plan = frame.sea().plan();
@@ -108,7 +89,9 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
         for (const int level : *levels)
             if (std::none_of(levels_.begin(), levels_.end(),
                              [&](const LevelGrids& there) { return there.level == level; }))
-                levels_.push_back({level, {}});
+                levels_.push_back({level, {}, {}});
+    for (const CascadePlan& cascade : plan.cascades)
+        whole_m_.push_back(static_cast<T>(whole_footprint_m(cascade, plan.filter)));
     place_.origin_m = origin_m;
     refresh();
 }
@@ -120,11 +103,13 @@ void PreparedQuery<T>::refresh() {
     const FieldSet needed = fields_of(wanted_) & ~plan.dropped;
     for (LevelGrids& of : levels_) {
         of.grids.clear();
+        of.of_cascade.assign(plan.cascades.size(), -1);
         for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
             const CascadePlan& cascade = plan.cascades[c];
             const int g = cascade.grid_of_level[of.level];
             if (g < 0) continue;
             const Grid& grid = cascade.grids[g];
+            of.of_cascade[c] = static_cast<int>(of.grids.size());
             GridArgs<T>& args = of.grids.emplace_back();
             args.sampling = grid.sampling;
             args.taps = plan.knobs.spline_taps;
@@ -183,14 +168,19 @@ void PreparedQuery<T>::evaluate(const Points<T>& points, const Results<T>& resul
                                         row.name + "\"");
     if (!is_current())
         throw std::logic_error("the frame was set to another time: refresh() makes the query valid again");
+    if ((points.cell_axis_m && !points.cell_m) || (points.pixel_axis_m && !points.pixel_m))
+        throw std::invalid_argument("a footprint's long axis needs its width as well");
+    if ((points.cell_axis_m || points.pixel_axis_m) &&
+        (planned_->query.lattice || planned_->query.only_cascade))
+        throw std::invalid_argument("query \"" + planned_->query.name +
+                                    "\" is of a lattice or of one cascade, whose footprints are round");
     if (points.count == 0) return;
     const auto at = [&](const Place& place) {
         const Call call = this->call(points, results, place);
         constexpr std::size_t kPoints = Chunk<T>::kPoints;
         const auto work = [&](std::size_t begin, std::size_t end) {
-            Chunk<T> chunk;
-            HiddenChunk<T> hidden_of;
-            for (std::size_t c = begin; c < end; ++c) run(call, c * kPoints, chunk, hidden_of);
+            Work of_thread;
+            for (std::size_t c = begin; c < end; ++c) run(call, c * kPoints, of_thread);
         };
         if (points.count <= kPoints) return work(0, 1);
         tbb::parallel_for(
@@ -204,8 +194,8 @@ void PreparedQuery<T>::evaluate(const Points<T>& points, const Results<T>& resul
 }
 
 template <class T>
-void PreparedQuery<T>::run(const Call& call, std::size_t first, Chunk<T>& chunk,
-                           HiddenChunk<T>& hidden_of) const {
+void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) const {
+    auto& [chunk, hidden_of, cells, pixels] = work;
     const Plan& plan = frame_->sea().plan();
     chunk.count = std::min(Chunk<T>::kPoints, call.points.count - first);
     const std::size_t padded = chunk.padded();
@@ -225,7 +215,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Chunk<T>& chunk,
     // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
     for (typename Chunk<T>::Values& sum : chunk.sums) std::fill(sum.begin(), sum.begin() + padded, T(0));
     if (call.on_ladder) {
-        add_ladder(call, first, chunk, hidden_of);
+        add_ladder(call, first, work);
     } else {
         for (std::size_t l = 0; l < levels_.size(); ++l) {
             FieldSet fields;
@@ -234,7 +224,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Chunk<T>& chunk,
             add_grids(call, l, {fields, nullptr, nullptr}, chunk);
         }
     }
-    add_own_footprints(call, first, chunk, hidden_of);
+    add_own_footprints(call, first, work);
     kernels_.derive({.chunk = &chunk,
                      .results = call.results.from_point(first),
                      .hidden = hidden_,
@@ -265,25 +255,47 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
     }
 }
 
-// Each point between two rungs: the levels one after another, each with the points' shares in it.
+// Each point between two rungs. Round footprints: the levels one after another, each with the points' shares in
+// it. Ellipses: see add_ellipses().
 template <class T>
-void PreparedQuery<T>::add_ladder(const Call& call, std::size_t first, Chunk<T>& chunk,
-                                  HiddenChunk<T>& hidden_of) const {
+void PreparedQuery<T>::add_ladder(const Call& call, std::size_t first, Work& work) const {
+    auto& [chunk, hidden_of, cells, pixels] = work;
     const Query& query = planned_->query;
-    const std::size_t padded = chunk.padded();
-    std::array<Rung<T>, Chunk<T>::kPoints> cell, pixel;
+    const Points<T>& points = call.points;
+    cells.take(query.cell_m, points.cell_m, points.cell_axis_m, first, chunk.count);
+    pixels.take(query.pixel_m, points.pixel_m, points.pixel_axis_m, first, chunk.count);
+    FieldSet round;
+    if (cells.any_round) round |= cell_fields();
+    if (pixels.any_round) round |= ~cell_fields();
+    add_round(call, round, work);
+    if (cells.any_ellipse) add_ellipses(call, planned_->cell_levels, cell_fields(), cells, chunk);
+    if (pixels.any_ellipse) add_ellipses(call, planned_->pixel_levels, ~cell_fields(), pixels, chunk);
+    if (!call.wants_hidden || !call.differ_in_hidden || has_trains_) return;
+    const HiddenMoments<double> whole = hidden_moments<double>(statistics_->whole);
+    for (auto& moment : hidden_of.moments)
+        std::fill(moment.begin() + chunk.count, moment.begin() + chunk.padded(), T(0));
     for (std::size_t i = 0; i < chunk.count; ++i) {
-        cell[i] = rung_of(query.cell_m, call.points.cell_m, call.points.cell_axis_m, first + i);
-        pixel[i] = rung_of(query.pixel_m, call.points.pixel_m, call.points.pixel_axis_m, first + i);
+        const HiddenMoments<T> left =
+            hidden_at<T>(*statistics_, pixels.of[i].rung, whole, beside_round(pixels.of[i]));
+        for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
     }
+}
+
+template <class T>
+void PreparedQuery<T>::add_round(const Call& call, FieldSet round, Work& work) const {
+    if (round.none()) return;
+    auto& [chunk, hidden_of, cells, pixels] = work;
+    const std::size_t count = chunk.count, padded = chunk.padded();
     typename Chunk<T>::Values cell_weight, pixel_weight;
-    const auto shares = [&](const std::vector<int>& levels, int level, const auto& rungs,
+    const auto shares = [&](const std::vector<int>& levels, int level, const ChunkFootprints<T>& footprints,
                             typename Chunk<T>::Values& weight) {
         bool any = false;
         std::fill(weight.begin(), weight.begin() + padded, T(0));
-        for (std::size_t i = 0; i < chunk.count; ++i) {
-            if (levels[rungs[i].lower] == level) weight[i] += T(1) - rungs[i].t;
-            if (rungs[i].t > T(0) && levels[rungs[i].lower + 1] == level) weight[i] += rungs[i].t;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (footprints.of[i].is_ellipse) continue;
+            const Rung<T>& rung = footprints.of[i].rung;
+            if (levels[rung.lower] == level) weight[i] += T(1) - rung.t;
+            if (rung.t > T(0) && levels[rung.lower + 1] == level) weight[i] += rung.t;
             any = any || weight[i] > T(0);
         }
         return any;
@@ -291,39 +303,98 @@ void PreparedQuery<T>::add_ladder(const Call& call, std::size_t first, Chunk<T>&
     for (std::size_t l = 0; l < levels_.size(); ++l) {
         const int level = levels_[l].level;
         FieldSet fields;
-        if (shares(planned_->cell_levels, level, cell, cell_weight)) fields |= cell_fields();
-        if (shares(planned_->pixel_levels, level, pixel, pixel_weight)) fields |= ~cell_fields();
-        add_grids(call, l, {fields, cell_weight.data(), pixel_weight.data()}, chunk);
+        if (shares(planned_->cell_levels, level, cells, cell_weight)) fields |= cell_fields();
+        if (shares(planned_->pixel_levels, level, pixels, pixel_weight)) fields |= ~cell_fields();
+        add_grids(call, l, {fields & round, cell_weight.data(), pixel_weight.data()}, chunk);
     }
-    if (!call.wants_hidden || !call.differ_in_hidden || has_trains_) return;
-    const HiddenMoments<double> whole = hidden_moments<double>(statistics_->whole);
-    for (auto& moment : hidden_of.moments)
-        std::fill(moment.begin() + chunk.count, moment.begin() + padded, T(0));
+}
+
+template <class T>
+HiddenMoments<double> PreparedQuery<T>::beside_round(const Footprint<T>& pixel) const {
+    if (!pixel.is_ellipse) return {};
+    return ellipses_->hidden(static_cast<double>(pixel.rung.lower) + static_cast<double>(pixel.rung.t),
+                             static_cast<double>(pixel.length_m / pixel.width_m),
+                             static_cast<double>(std::atan2(pixel.axis.y, pixel.axis.x)));
+}
+
+// Points whose footprints are ellipses: each of a cascade's grids is read at their taps (core/plan/taps.inl), which
+// are gathered to chunks of their own.
+template <class T>
+void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& levels, FieldSet fields,
+                                    const ChunkFootprints<T>& footprints, Chunk<T>& chunk) const {
+    fields &= call.needed;
+    if (fields.none()) return;
+    std::size_t lowest = levels.size(), highest = 0;
     for (std::size_t i = 0; i < chunk.count; ++i) {
-        const HiddenMoments<T> left = hidden_at<T>(*statistics_, pixel[i], whole);
-        for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
+        if (!footprints.of[i].is_ellipse) continue;
+        lowest = std::min(lowest, footprints.of[i].rung.lower);
+        highest = std::max(highest, footprints.of[i].rung.lower);
+    }
+    highest = std::min(highest + 1, levels.size() - 1);
+    const auto level_of = [&](std::size_t rung) {
+        std::size_t l = 0;
+        while (levels_[l].level != levels[rung]) ++l;
+        return l;
+    };
+    const Plan& plan = frame_->sea().plan();
+    TapChunk<T> taps;
+    for (std::size_t c = 0; c < whole_m_.size(); ++c) {
+        const auto grid_of = [&](std::size_t rung) { return plan.cascades[c].grid_of_level[levels[rung]]; };
+        for (std::size_t rung = lowest; rung <= highest; ++rung) {
+            // Rungs that let everything through whole share a grid.
+            const int grid = grid_of(rung);
+            if (grid < 0 || (rung > lowest && grid == grid_of(rung - 1))) continue;
+            const std::size_t l = level_of(rung);
+            const auto g = static_cast<std::size_t>(levels_[l].of_cascade[c]);
+            taps.begin(levels_[l].grids[g], call.place.nodes[l][g], fields, kernels_);
+            for (std::size_t i = 0; i < chunk.count; ++i) {
+                const Footprint<T>& footprint = footprints.of[i];
+                if (!footprint.is_ellipse) continue;
+                const Rung<T>& at = footprint.rung;
+                T share = grid_of(at.lower) == grid ? T(1) - at.t : T(0);
+                if (at.t > T(0) && grid_of(at.lower + 1) == grid) share += at.t;
+                if (share > T(0)) taps.add(i, footprint, share, whole_m_[c], chunk);
+            }
+            taps.flush(chunk);
+        }
     }
 }
 
 // The trains, which see each point's own footprints, and what all together hide.
 template <class T>
-void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Chunk<T>& chunk,
-                                          HiddenChunk<T>& hidden_of) const {
+void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
+    auto& [chunk, hidden_of, cells, pixels] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
-    typename Chunk<T>::Values cell, pixel;
+    struct Own {
+        typename Chunk<T>::Values width, x, y;
+    };
+    Own cell, pixel;
     const auto own = [&](const Strided<const T>& footprint_m, const Strided<const glm::vec<2, T>>& axis_m,
-                         double finest_m, typename Chunk<T>::Values& of) {
+                         double finest_m, Own& of) -> typename TrainArgs<T>::Stretch {
         const T finest = static_cast<T>(finest_m);
         for (std::size_t i = 0; i < padded; ++i) {
-            const T wanted = i < chunk.count ? long_side(footprint_m, axis_m, first + i) : finest;
-            of[i] = wanted > finest ? wanted : finest;  // the finest for one that is no number, too
+            const T wanted = i < chunk.count ? footprint_m[first + i] : finest;
+            of.width[i] = wanted > finest ? wanted : finest;  // the finest for one that is no number, too
         }
+        if (!axis_m) return {};
+        for (std::size_t i = 0; i < padded; ++i) {
+            const glm::vec<2, T> axis = i < chunk.count ? axis_m[first + i] : glm::vec<2, T>(T(0));
+            const T length2 = axis.x * axis.x + axis.y * axis.y,
+                    beyond2 = length2 - of.width[i] * of.width[i];
+            const bool is_ellipse = beyond2 > T(0) && std::isfinite(length2);
+            const T by = is_ellipse ? std::sqrt(beyond2 / length2) : T(0);
+            of.x[i] = is_ellipse ? by * axis.x : T(0);
+            of.y[i] = is_ellipse ? by * axis.y : T(0);
+        }
+        return {of.x.data(), of.y.data()};
     };
     const Query& query = planned_->query;
-    if (points.cell_m) own(points.cell_m, points.cell_axis_m, query.cell_m.front(), cell);
-    if (points.pixel_m) own(points.pixel_m, points.pixel_axis_m, query.pixel_m.front(), pixel);
+    typename TrainArgs<T>::Stretch cell_stretch, pixel_stretch;
+    if (points.cell_m) cell_stretch = own(points.cell_m, points.cell_axis_m, query.cell_m.front(), cell);
+    if (points.pixel_m)
+        pixel_stretch = own(points.pixel_m, points.pixel_axis_m, query.pixel_m.front(), pixel);
     const Plan& plan = frame_->sea().plan();
     const bool varied = call.wants_hidden && call.differ_in_hidden;
     if (varied)
@@ -335,8 +406,10 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, C
                    .wanted = call.needed,
                    .cell_m = static_cast<T>(query.cell_m.front()),
                    .pixel_m = static_cast<T>(query.pixel_m.front()),
-                   .cell_of = points.cell_m ? cell.data() : nullptr,
-                   .pixel_of = points.pixel_m ? pixel.data() : nullptr,
+                   .cell_of = points.cell_m ? cell.width.data() : nullptr,
+                   .pixel_of = points.pixel_m ? pixel.width.data() : nullptr,
+                   .cell_stretch = cell_stretch,
+                   .pixel_stretch = pixel_stretch,
                    .hidden = varied ? &hidden_of : nullptr},
                   chunk);
     if (!varied || plan.cascades.empty()) return;
@@ -344,8 +417,9 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, C
         HiddenMoments<double> whole;
         for (std::size_t m = 0; m < whole.size(); ++m)
             whole[m] = static_cast<double>(hidden_of.moments[m][i]);
-        const HiddenMoments<T> left = hidden_at<T>(
-            *statistics_, rung_of(query.pixel_m, points.pixel_m, points.pixel_axis_m, first + i), whole);
+        const HiddenMoments<T> left =
+            call.on_ladder ? hidden_at<T>(*statistics_, pixels.of[i].rung, whole, beside_round(pixels.of[i]))
+                           : hidden_at<T>(*statistics_, {}, whole);
         for (std::size_t m = 0; m < left.size(); ++m) hidden_of.moments[m][i] = left[m];
     }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/evaluate/evaluate.h"
+#include "core/evaluate/footprints.h"
 #include "core/evaluate/kernels.h"
 
 namespace pelagic {
@@ -35,6 +36,7 @@ class PreparedQuery {
     struct LevelGrids {
         int level;
         std::vector<GridArgs<T>> grids;  // where the origin lies stands in Place
+        std::vector<int> of_cascade;     // index into grids; −1: nothing passes
     };
     // Where the points' origin lies.
     struct Place {
@@ -44,6 +46,7 @@ class PreparedQuery {
     };
     // What one call has in common for all its points.
     struct Call;
+    struct Work;
     // How a level's grids count at a chunk's points.
     struct Share {
         FieldSet fields;
@@ -52,15 +55,21 @@ class PreparedQuery {
 
     Place place_of(glm::dvec2 origin_m) const;
     Call call(const Points<T>& points, const Results<T>& results, const Place& place) const;
-    void run(const Call& call, std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const;
+    void run(const Call& call, std::size_t first, Work& work) const;
     void add_grids(const Call& call, std::size_t level, const Share& share, Chunk<T>& chunk) const;
-    void add_ladder(const Call& call, std::size_t first, Chunk<T>& chunk, HiddenChunk<T>& hidden_of) const;
-    void add_own_footprints(const Call& call, std::size_t first, Chunk<T>& chunk,
-                            HiddenChunk<T>& hidden_of) const;
+    void add_ladder(const Call& call, std::size_t first, Work& work) const;
+    void add_round(const Call& call, FieldSet round, Work& work) const;
+    void add_ellipses(const Call& call, const std::vector<int>& levels, FieldSet fields,
+                      const ChunkFootprints<T>& footprints, Chunk<T>& chunk) const;
+    void add_own_footprints(const Call& call, std::size_t first, Work& work) const;
+    // What an ellipse hides of the cascades' waves beyond a round footprint of its width.
+    HiddenMoments<double> beside_round(const Footprint<T>& pixel) const;
 
     const Frame<T>* frame_;
     const PlannedQuery* planned_;
     const QueryStatistics* statistics_;
+    const EllipseMoments* ellipses_;
+    std::vector<T> whole_m_;  // by cascade: whole_footprint_m()
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
     bool has_trains_ = false;

@@ -141,11 +141,33 @@ class Zone {
     std::size_t full_ = 0, any_ = 0;
 };
 
+// The footprints of a vector's points.
+template <class D>
+struct Ellipses {
+    hn::Vec<D> width_m, x, y;  // x, y: TrainArgs::Stretch
+    bool are_round;
+
+    // How long they are along a train's way. A round one stays what it is, to the bit.
+    template <class T = hn::TFromD<D>>
+    HWY_INLINE hn::Vec<D> along(D d, const Trains<T>& trains, std::size_t i) const {
+        if (are_round) return width_m;
+        const T unit_x = static_cast<T>(trains.kx_cycles_per_m[i] * trains.wavelength_m[i]),
+                unit_y = static_cast<T>(trains.ky_cycles_per_m[i] * trains.wavelength_m[i]);
+        const auto stretch = hn::MulAdd(x, hn::Set(d, unit_x), hn::Mul(y, hn::Set(d, unit_y)));
+        const auto length = hn::Sqrt(hn::MulAdd(stretch, stretch, hn::Mul(width_m, width_m)));
+        return hn::IfThenElse(hn::Eq(stretch, hn::Zero(d)), width_m, length);
+    }
+    HWY_INLINE hn::Vec<D> longest() const {
+        return are_round ? width_m : hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(width_m, width_m))));
+    }
+};
+
 // What the footprints hide, for the points of one vector. Each point's trains beyond its own end come as one
 // sum, looked up, and those of the blend one by one.
 template <class T, class D, class V = hn::Vec<D>>
-HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, const V footprint_m,
+HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, const Ellipses<D>& footprints,
                          HiddenChunk<T>& hidden, std::size_t base) {
+    const V footprint_m = footprints.width_m;
     V sum[kHiddenMoments.size()];
     const std::size_t longest_end = zone.end_of(hn::GetLane(hn::MaxOfLanes(d, footprint_m)), zone.any());
     if (longest_end == zone.any()) {  // the rule, and cheaper: all points end with the same train
@@ -164,7 +186,7 @@ HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, cons
         for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) sum[m] = hn::LoadU(d, looked_up[m]);
     }
     for (std::size_t i = zone.full(); i < zone.any(); ++i) {
-        const V w = zone.weight(d, i, footprint_m);
+        const V w = zone.weight(d, i, footprints.along(d, trains, i));
         const V strain = hidden_strain_part(Pack<D>(w)).v;
         const V slope = hidden_slope_part(Pack<D>(w), Pack<D>(hn::Set(d, trains.steepness2[i]))).v;
         const auto blends = zone.passes(d, i, footprint_m);  // else it is in the looked-up sum
@@ -207,11 +229,15 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
         };
         const auto smallest = [&](V v) { return hn::GetLane(hn::MinOfLanes(d, v)); };
         const auto largest = [&](V v) { return hn::GetLane(hn::MaxOfLanes(d, v)); };
-        const V cell_m = footprint(args.cell_of, args.cell_m),
-                pixel_m = footprint(args.pixel_of, args.pixel_m);
-        if (cell_wanted) cell.move_to(smallest(cell_m), largest(cell_m));
-        if (pixel_wanted || args.hidden) pixel.move_to(smallest(pixel_m), largest(pixel_m));
-        if (args.hidden) trains_detail::HiddenOf(d, trains, pixel, pixel_m, *args.hidden, base);
+        const auto ellipses = [&](const T* of, T uniform_m, const typename TrainArgs<T>::Stretch& stretch) {
+            return trains_detail::Ellipses<std::remove_const_t<decltype(d)>>{
+                footprint(of, uniform_m), footprint(stretch.x, T(0)), footprint(stretch.y, T(0)), !stretch.x};
+        };
+        const auto cells = ellipses(args.cell_of, args.cell_m, args.cell_stretch),
+                   pixels = ellipses(args.pixel_of, args.pixel_m, args.pixel_stretch);
+        if (cell_wanted) cell.move_to(smallest(cells.width_m), largest(cells.longest()));
+        if (pixel_wanted || args.hidden) pixel.move_to(smallest(pixels.width_m), largest(pixels.longest()));
+        if (args.hidden) trains_detail::HiddenOf(d, trains, pixel, pixels, *args.hidden, base);
 
         const std::size_t cell_end = cell_wanted ? cell.any() : 0, pixel_end = pixel_wanted ? pixel.any() : 0;
         const std::size_t end = std::max(cell_end, pixel_end);
@@ -234,7 +260,7 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
             if (i < cell_end) {
                 V s = sine, c = cosine;
                 if (i >= cell.full()) {
-                    const V w = cell.weight(d, i, cell_m);
+                    const V w = cell.weight(d, i, cells.along(d, trains, i));
                     s = hn::Mul(w, s);
                     c = hn::Mul(w, c);
                 }
@@ -252,7 +278,7 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
             if (i < pixel_end) {
                 V s = sine, c = cosine;
                 if (i >= pixel.full()) {
-                    const V w = pixel.weight(d, i, pixel_m);
+                    const V w = pixel.weight(d, i, pixels.along(d, trains, i));
                     s = hn::Mul(w, s);
                     c = hn::Mul(w, c);
                 }

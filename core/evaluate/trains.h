@@ -26,6 +26,12 @@ struct TrainArgs {
     T cell_m = T(0), pixel_m = T(0);
     const T* cell_of = nullptr;   // padded() long; values beyond the chunk's count are not used
     const T* pixel_of = nullptr;  // the same
+    // Of footprints that are ellipses, beside their widths: the direction of the long axis times √(length² − width²),
+    // so that the ellipse is √(width² + (stretch · k̂)²) long along k̂. As cell_of and pixel_of; null: round.
+    struct Stretch {
+        const T *x = nullptr, *y = nullptr;
+    };
+    Stretch cell_stretch{}, pixel_stretch{};
     // Where given: what pixel_of (or pixel_m) hides.
     HiddenChunk<T>* hidden = nullptr;
 };

@@ -353,6 +353,9 @@ class HeldRows {
 
 Sky picture_sky(const LatLongRows& picture, int map_size) {
     check_size(picture.width, picture.height);
+    // A texel at the horizon is 2 · extent/size wide, a pixel 2π/width.
+    if (map_size == 0)
+        map_size = static_cast<double>(kSkyMapExtent) / kPi * picture.width > 768.0 ? 1024 : 512;
     SkyMap::check_size(map_size);
     const Upper upper(picture);
     const Sun sun = find_sun(upper);

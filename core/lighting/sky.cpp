@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <glm/common.hpp>
@@ -38,14 +39,13 @@ class ScatteredTable {
   public:
     explicit ScatteredTable(const Atmosphere& air) : entries_((kElevations + 1) * (kAzimuths + 1)) {
         std::vector<double> azimuths;
-        for (std::size_t j = 0; j <= kAzimuths; ++j)
-            azimuths.push_back(kPi * static_cast<double>(j) / kAzimuths);
-        tbb::parallel_for(std::size_t{0}, kElevations + 1, [&](std::size_t i) {
+        for (int j = 0; j <= kAzimuths; ++j) azimuths.push_back(kPi * j / kAzimuths);
+        tbb::parallel_for(0, kElevations + 1, [&](int i) {
             const double x = static_cast<double>(i) / kElevations;
             const auto row = air.scattered(0.5 * kPi * x * x, azimuths);
-            for (std::size_t j = 0; j <= kAzimuths; ++j)
-                entries_[i * (kAzimuths + 1) + j] = {colour_of(row[j].by_air), colour_of(row[j].by_haze),
-                                                     colour_of(row[j].more)};
+            for (std::size_t j = 0; j < row.size(); ++j)
+                entries_[static_cast<std::size_t>(i) * row.size() + j] = {
+                    colour_of(row[j].by_air), colour_of(row[j].by_haze), colour_of(row[j].more)};
         });
     }
 
@@ -53,25 +53,42 @@ class ScatteredTable {
     glm::dvec3 radiance(double elevation, double azimuth, double cosine) const {
         const double x = std::sqrt(std::clamp(elevation / (0.5 * kPi), 0.0, 1.0)) * kElevations;
         const double y = std::clamp(std::abs(azimuth) / kPi, 0.0, 1.0) * kAzimuths;
-        const std::size_t i = std::min(static_cast<std::size_t>(x), kElevations - 1);
-        const std::size_t j = std::min(static_cast<std::size_t>(y), kAzimuths - 1);
-        const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
-        const Entry* low = &entries_[i * (kAzimuths + 1) + j];
-        const Entry* high = low + kAzimuths + 1;
-        const auto mixed = [&](glm::dvec3 Entry::*kind) {
-            return glm::mix(glm::mix(low[0].*kind, low[1].*kind, t),
-                            glm::mix(high[0].*kind, high[1].*kind, t), s);
-        };
-        return into_gamut(mixed(&Entry::by_air) * air_phase(cosine) +
-                          mixed(&Entry::by_haze) * haze_phase(cosine) + mixed(&Entry::more));
+        const int i = std::min(static_cast<int>(x), kElevations - 1),
+                  j = std::min(static_cast<int>(y), kAzimuths - 1);
+        const std::array<double, 4> up = smooth_weights(x - i), across = smooth_weights(y - j);
+        Entry mixed;
+        for (std::size_t b = 0; b < 4; ++b)
+            for (std::size_t a = 0; a < 4; ++a) {
+                const double weight = up[b] * across[a];
+                const Entry& entry = at(i + static_cast<int>(b) - 1, j + static_cast<int>(a) - 1);
+                mixed.by_air += weight * entry.by_air;
+                mixed.by_haze += weight * entry.by_haze;
+                mixed.more += weight * entry.more;
+            }
+        return into_gamut(mixed.by_air * air_phase(cosine) + mixed.by_haze * haze_phase(cosine) + mixed.more);
     }
 
   private:
     // Elevations grow with the square of the index: steps of 0.02° at the horizon and 3° at the zenith.
-    static constexpr std::size_t kElevations = 64, kAzimuths = 24;
+    static constexpr int kElevations = 64, kAzimuths = 24;
     struct Entry {
         glm::dvec3 by_air{0.0}, by_haze{0.0}, more{0.0};
     };
+
+    // Catmull and Rom's: without kinks, and through the table's own values.
+    static std::array<double, 4> smooth_weights(double t) {
+        return {t * (t * (1.0 - 0.5 * t) - 0.5), t * t * (1.5 * t - 2.5) + 1.0,
+                t * (t * (2.0 - 1.5 * t) + 0.5), t * t * (0.5 * t - 0.5)};
+    }
+
+    // Past an end the table goes on as it came: mirrored at the sun's meridian, and at the horizon, where it is smooth in
+    // the elevation, the square of the index.
+    const Entry& at(int i, int j) const {
+        i = std::min(std::abs(i), kElevations);
+        j = j > kAzimuths ? 2 * kAzimuths - j : std::abs(j);
+        return entries_[static_cast<std::size_t>(i * (kAzimuths + 1) + j)];
+    }
+
     std::vector<Entry> entries_;
 };
 

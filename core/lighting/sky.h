@@ -65,10 +65,11 @@ struct LatLongRows {
 // the picture is not used, nor read. Throws std::invalid_argument for a picture without pixels, and for values that
 // are NaN, negative or above 1e30, naming the first of them; and what read() throws.
 //
-// Each row is read twice, those near the sun three times. Some hundred rows are held at a time.
-Sky picture_sky(const LatLongRows& picture, int map_size = 512);
+// Each row is read twice, those near the sun three times. Some hundred rows are held at a time. map_size 0: 512, or
+// 1024 for pictures that fill as many at the horizon.
+Sky picture_sky(const LatLongRows& picture, int map_size = 0);
 // The same of a picture in memory; values of its lower half are looked at, too.
-Sky picture_sky(const LatLong& picture, int map_size = 512);
+Sky picture_sky(const LatLong& picture, int map_size = 0);
 
 // The sky as such a picture, width / 2 rows, without the sun's disc: each pixel the mean over its solid angle.
 // Below the horizon is what the sea reflects of the sky. Throws std::invalid_argument for a width that is odd

@@ -84,6 +84,8 @@ vec3 sun_seen_from(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, flo
     vec2 pull = pull_of(h, half_vector(h, frame.variance, of_side, of_rise, vec2(0.0f)));
     vec2 slope = -h.z * vec2(frame.variance.x * pull.x + frame.variance.z * pull.y,
                              frame.variance.z * pull.x + frame.variance.y * pull.y);
+    // No farther than 5 deviations of the waves: there is nothing to be mirrored, and the disc in such slopes is wide.
+    slope *= min(1.0f, 5.0f * inversesqrt(max(-h.z * dot(slope, pull), 1.0e-12f)));
     HalfVector half_way = half_vector(h, frame.variance, of_side, of_rise, slope);
     float distance = slope_distance(vec2(h.x, h.y), half_way.covariance, square(half_way.root));
     float density = disc_density(distance, half_way.disc_root / half_way.root, half_way.root);

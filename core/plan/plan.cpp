@@ -12,6 +12,7 @@
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
 #include "core/plan/quality.h"
+#include "core/plan/taps.h"
 #include "core/scene/cascade_bands.h"
 #include "core/surface/rungs.h"
 
@@ -406,6 +407,9 @@ std::size_t Plan::sea_bytes() const {
     for (const CascadePlan& cascade : cascades)
         bytes += lattice_modes(cascade.grid_radius()) *
                  sea_bytes_per_mode(knobs.double_precision, choppiness > 0.0);
+    for (const PlannedQuery& planned : queries)
+        if (has_ellipse_table(*this, planned.query))
+            bytes += EllipseTable::nodes(planned.query.pixel_m.size()) * EllipseTable::kBytesANode;
     return bytes;
 }
 

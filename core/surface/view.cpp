@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <type_traits>
 
 #include "core/base/constants.h"
 
@@ -19,6 +20,60 @@ Pose pose_of(const Camera& camera, const CameraKey& key) {
     return {key.position_m, key.look_at_m, key.fov_deg.value_or(camera.fov_deg), key.roll_deg};
 }
 
+Pose straight(const Pose& from, const Pose& to, double t) {
+    return {from.position_m + t * (to.position_m - from.position_m),
+            from.look_at_m + t * (to.look_at_m - from.look_at_m),
+            from.fov_deg + t * (to.fov_deg - from.fov_deg),
+            from.roll_deg + t * (to.roll_deg - from.roll_deg)};
+}
+
+// The slope at a key of a curve of cubics, from those of the lines before and after it: the slope of the parabola through
+// the key and its neighbours, which uneven keys don't jerk. It is at most three times either line's: with more, a cubic
+// would go back and forth between its keys (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980). So a camera that stands
+// between two equal keys stands still.
+template <class Value>
+Value slope_at(const Value& before, double frames_before, const Value& after, double frames_after) {
+    constexpr double kSteepest = 3.0;
+    const auto size = [](const Value& v) {
+        if constexpr (std::is_same_v<Value, double>)
+            return std::abs(v);
+        else
+            return glm::length(v);
+    };
+    // A number keeps between its keys: no camera dips below the sea, no angle of view below zero.
+    if constexpr (std::is_same_v<Value, double>)
+        if (before * after <= 0.0) return 0.0;
+    const Value slope = (frames_after * before + frames_before * after) / (frames_before + frames_after);
+    const double largest = kSteepest * std::min(size(before), size(after));
+    return size(slope) > largest ? slope * (largest / size(slope)) : slope;
+}
+
+// C1 in time: cubics through the keys, of which there are three or more; the first and the last slope are the straight
+// lines'. Along the sea a place is one vector, so that its way doesn't depend on the axes.
+Pose smooth(const Camera& camera, std::size_t from, double t) {
+    const auto& keys = camera.keys;
+    const auto frames = [&](std::size_t i) { return static_cast<double>(keys[i + 1].frame) - keys[i].frame; };
+    const auto curve = [&](const auto& value) {
+        const auto at = [&](std::size_t i) { return value(pose_of(camera, keys[i])); };
+        const auto line = [&](std::size_t i) { return (at(i + 1) - at(i)) / frames(i); };
+        const auto slope = [&](std::size_t i) {
+            if (i == 0) return line(0);
+            if (i + 1 == keys.size()) return line(i - 1);
+            return slope_at(line(i - 1), frames(i - 1), line(i), frames(i));
+        };
+        const double u = 1.0 - t, span = frames(from);
+        return u * u * (at(from) * (1.0 + 2.0 * t) + slope(from) * (t * span)) +
+               t * t * (at(from + 1) * (1.0 + 2.0 * u) - slope(from + 1) * (u * span));
+    };
+    const auto place = [&](glm::dvec3 Pose::*point) {
+        return glm::dvec3(curve([&](const Pose& pose) { return glm::dvec2(pose.*point); }),
+                          curve([&](const Pose& pose) { return (pose.*point).z; }));
+    };
+    return {place(&Pose::position_m), place(&Pose::look_at_m),
+            curve([](const Pose& pose) { return pose.fov_deg; }),
+            curve([](const Pose& pose) { return pose.roll_deg; })};
+}
+
 Pose pose_at(const Camera& camera, double frame) {
     const auto& keys = camera.keys;
     if (keys.empty()) return {camera.position_m, camera.look_at_m, camera.fov_deg, 0.0};
@@ -27,13 +82,11 @@ Pose pose_at(const Camera& camera, double frame) {
     if (after == keys.begin()) return pose_of(camera, *after);
     const Pose from = pose_of(camera, *(after - 1));
     if (after == keys.end()) return from;
-    const Pose to = pose_of(camera, *after);
     // In double: the difference of two ints may overflow an int.
     const double first = (after - 1)->frame, t = (frame - first) / (after->frame - first);
-    return {from.position_m + t * (to.position_m - from.position_m),
-            from.look_at_m + t * (to.look_at_m - from.look_at_m),
-            from.fov_deg + t * (to.fov_deg - from.fov_deg),
-            from.roll_deg + t * (to.roll_deg - from.roll_deg)};
+    if (camera.interpolation == CameraInterpolation::Smooth && keys.size() > 2)
+        return smooth(camera, static_cast<std::size_t>(after - keys.begin()) - 1, t);
+    return straight(from, pose_of(camera, *after), t);
 }
 
 }  // namespace

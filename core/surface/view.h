@@ -30,8 +30,9 @@ struct View {
     glm::dmat4 clip_from(glm::dvec3 origin_m, double near_m) const;
 };
 
-// The shot's camera at a frame: camera.keys, interpolated linearly between them (angles too) and constant
-// outside, or its single pose. Up is z, for a vertical direction +y, and then the roll.
+// The shot's camera at a frame: its single pose, or camera.keys, constant outside them and between them, angles too, on
+// straight lines or, with camera.interpolation = "smooth", on C1 cubics whose heights and angles keep between their
+// keys'. Up is z, for a vertical direction +y, and then the roll.
 View view_at(const Camera& camera, double frame);
 
 }  // namespace pelagic

@@ -13,6 +13,7 @@
 #include "core/plan/plan.h"
 #include "core/spectrum/spectral_moments.h"
 #include "core/spectrum/spectrum_table.h"
+#include "core/waves/ellipse_moments.h"
 #include "core/waves/trains.h"
 
 namespace pelagic {
@@ -77,6 +78,8 @@ class Sea {
     // The whole sea, capillary tail included; Jacobian moments times choppiness².
     const SpectralMoments& total() const { return total_; }
     const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
+    // What ellipses hide of the cascades' waves beyond their round part, for queries that may ask (has_ellipse_table).
+    const EllipseMoments& ellipses(int query) const { return ellipses_.at(query); }
     // How far the surface goes from its rest, by expectation (core/plan/extent.h).
     const Extent& extent() const { return plan_.from->extent; }
     // What a query's finest pixels show of total(), cascades and trains.
@@ -98,6 +101,7 @@ class Sea {
     std::vector<Cascade<T>> cascades_;
     Trains<T> trains_;
     std::vector<QueryStatistics> statistics_;
+    std::vector<EllipseMoments> ellipses_;
     std::vector<double> expected_m0_;
 };
 

@@ -134,7 +134,8 @@ const char* const kPreviewFooter =
     "  pelagic preview storm.toml --offscreen storm.png --frame 12 --size 640x360\n"
     "                                                        one picture, without a display (EGL)\n"
     "\n"
-    "The window's \"Copy as shot file\" copies the keys that you changed to the clipboard.";
+    "The window's \"Save shot\" writes the keys that you changed into the shot's file, and keeps the\n"
+    "rest of it; \"Copy\" puts them on the clipboard.";
 const char* const kOffscreen =
     "Draw one frame into a file, without a window or display: an .exr with the layers sun, sky,\n"
     "sea and foam, or a .png";
@@ -147,7 +148,7 @@ const char* const kPreviewSize =
 const char* const kPreviewQuality = "Instead of the shot's quality.level: draft, preview, final, reference";
 const char* const kScale =
     "Draw fewer pixels than the window has: each covers N × N of them, N = 1, 2 or 4.\n"
-    "Also in the window's panel. Default: 1";
+    "Also in the window's panel. Default: 1, or 2 where the processor draws";
 const char* const kScreenshot =
     "Save the window with its panel as a .png after some pictures, and close it: for tests\n"
     "without a user, for example under Xvfb";

@@ -10,6 +10,7 @@
 
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
+#include "core/scene/shot_text.h"
 #include "plugin/bake/bake.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
@@ -22,7 +23,9 @@
 #include "plugin/preview/offscreen.h"
 #include "plugin/preview/window.h"
 #include "plugin/render/picture_files.h"
+#include "plugin/shot/edit_shot.h"
 #include "plugin/shot/shot.h"
+#include "plugin/shot/text_file.h"
 
 namespace pelagic::cli {
 namespace {
@@ -34,7 +37,7 @@ struct Arguments {
     std::optional<std::string> offscreen, screenshot, quality;
     std::optional<int> frame;
     std::string size, threads, max_memory;
-    int scale = 1, after = 8;
+    int scale = 0, after = 8;  // 0: what suits the driver
 };
 
 int wrong_usage(const std::string& problem) {
@@ -84,6 +87,18 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
     return kDone;
 }
 
+// Into the shot's file, which keeps all that hasn't changed.
+void save_shot(const fs::path& file, const Scene& scene, const Scene& shot) {
+    const std::string text = edited_shot(read_text_file(file, kMostShotBytes), scene, shot);
+    Scene written = parse_shot(text, file, check_sky);
+    written.quality.level = scene.quality.level;  // --quality may have chosen it
+    if (!shot_text(scene, written).empty())
+        throw ShotError(
+            file.string() +
+            ": isn't written in a way that keys can be put into; use Copy, and put them in by hand");
+    files::write_atomically(file, text);
+}
+
 int run(const Arguments& arguments) {
     Scene scene = load_shot(arguments.shot, check_sky);
     if (arguments.quality) {
@@ -113,7 +128,9 @@ int run(const Arguments& arguments) {
             return kRefused;
         }
     }
+    const auto save = [&](const Scene& now, const Scene& shot) { save_shot(arguments.shot, now, shot); };
     WindowOptions options{.folder = fs::path(arguments.shot).parent_path(),
+                          .save = save,
                           .size = size_of(arguments.size),
                           .pixel_size = arguments.scale,
                           .frame = arguments.frame,

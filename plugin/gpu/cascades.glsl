@@ -13,11 +13,15 @@ layout(std140) uniform SeaTables {
     // Four vectors per rung of pixels: its hidden moments (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy), and
     // the same eight mixed with the next rung.
     vec4 hidden_rungs[4 * kPixelRungs];
+    vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]
 };
 
 uniform sampler2D cell_fields;     // Height, Dx, Dy
 uniform sampler2D pixel_fields;    // ηx, ηy, Dxx, Dyy
 uniform sampler2D pixel_fields_2;  // Dxy
+// What ellipses hide beyond round footprints (core/waves/ellipse_moments.h): a row for each width; two texels for each
+// direction, the directions of a ratio side by side.
+uniform sampler2D ellipse_table;
 
 // A point's place between the levels of filtering (rungs): weight 1 − t for the lower one, t for the next.
 // See evaluate.cpp.
@@ -63,23 +67,62 @@ vec4 spline_sum(sampler2D fields, ivec2 texel, float wx[P], float wy[P]) {
     return sum;
 }
 
+// A footprint held within the ladder, as in core/evaluate/footprints.h: width and long axis [m] given.
+struct Footprint {
+    Rung rung;
+    float width;
+    float along;  // its length; 0: round
+    vec2 axis;    // unit vector
+};
+
+Footprint footprint_of(int first, int count, vec3 given) {
+    float whole = length(given.yz);
+    float along = min(whole, rungs[first + count - 1].x);
+    float own = max(given.x, rungs[first].x);
+    if (count == 1 || !(along > own))
+        return Footprint(rung_of(first, count, given.x), given.x, 0.0, vec2(1.0, 0.0));
+    float width = max(own, along / kLongestEllipse);
+    return Footprint(rung_of(first, count, width), width, along, given.yz / whole);
+}
+
+Taps taps_in(int cascade, Footprint footprint) {
+    if (footprint.along == 0.0) return Taps(0.0, 0.5);
+    return taps_of(max(footprint.width, cascades[cascade].x), footprint.along);
+}
+
+int last_tap(Taps taps) { return int(ceil(taps.reach - 0.5)); }
+
+// Where a tile stands for both rungs of a point, as it does where they let all of it pass whole: the point's share in it;
+// the second then has none. r: 0 for the lower rung, 1 for the next.
+float share_in(int tile, int r, float t) {
+    if (!(t > 0.0)) return r == 0 ? 1.0 : 0.0;
+    bool both = tile_first[tile] == tile_first[r == 0 ? tile + kCascades : tile - kCascades];
+    if (r == 0) return both ? 1.0 : 1.0 - t;
+    return both ? 0.0 : t;
+}
+
 // Height, Dx, Dy.
-vec3 cell_cascades(SplitMetres x, float cell_m) {
+vec3 cell_cascades(vec2 rest_m, Footprint footprint) {
     vec3 sum = vec3(0.0);
-    Rung rung = rung_of(0, kCellRungs, cell_m);
-    for (int r = 0; r < 2; ++r) {
-        float share = r == 0 ? 1.0 - rung.t : rung.t;
-        if (!(share > 0.0)) continue;
-        for (int c = 0; c < kCascades; ++c) {
-            int tile = (rung.lower + r) * kCascades + c;
+    for (int c = 0; c < kCascades; ++c) {
+        Taps taps = taps_in(c, footprint);
+        int last = last_tap(taps);
+        for (int r = 0; r < 2; ++r) {
+            if (r == 1 && !(footprint.rung.t > 0.0)) continue;  // there may be no next rung
+            int tile = (footprint.rung.lower + r) * kCascades + c;
             if (tile_first[tile].z == 0) continue;
-            Place place = place_in(tile, x);
-            float wx[P];
-            float wy[P];
-            bspline_weights(place.rest.x, wx);
-            bspline_weights(place.rest.y, wy);
-            vec4 value = spline_sum(cell_fields, place.texel, wx, wy);
-            sum += share * (kChoppy ? vec3(value.x, value.y, value.z) : vec3(value.x, 0.0, 0.0));
+            float share = share_in(tile, r, footprint.rung.t);
+            if (!(share > 0.0)) continue;
+            for (int j = -last; j <= last; ++j) {
+                Place place = place_in(tile, split_metres(rest_m + float(j) * taps.spacing_m * footprint.axis));
+                float wx[P];
+                float wy[P];
+                bspline_weights(place.rest.x, wx);
+                bspline_weights(place.rest.y, wy);
+                vec4 value = spline_sum(cell_fields, place.texel, wx, wy);
+                sum += share * tap_weight(taps.reach, float(j)) *
+                       (kChoppy ? vec3(value.x, value.y, value.z) : vec3(value.x, 0.0, 0.0));
+            }
         }
     }
     return sum;
@@ -89,30 +132,63 @@ struct PixelFields {
     float slope_x, slope_y, dxx, dyy, dxy;
 };
 
-PixelFields pixel_cascades(SplitMetres x, Rung rung) {
+PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
     vec4 sum = vec4(0.0);
     float dxy = 0.0;
-    for (int r = 0; r < 2; ++r) {
-        float share = r == 0 ? 1.0 - rung.t : rung.t;
-        if (!(share > 0.0)) continue;
-        for (int c = 0; c < kCascades; ++c) {
-            int tile = (kCellRungs + rung.lower + r) * kCascades + c;
+    for (int c = 0; c < kCascades; ++c) {
+        Taps taps = taps_in(c, footprint);
+        int last = last_tap(taps);
+        for (int r = 0; r < 2; ++r) {
+            if (r == 1 && !(footprint.rung.t > 0.0)) continue;  // there may be no next rung
+            int tile = (kCellRungs + footprint.rung.lower + r) * kCascades + c;
             if (tile_first[tile].z == 0) continue;
-            Place place = place_in(tile, x);
-            float wx[P];
-            float wy[P];
-            bspline_weights(place.rest.x, wx);
-            bspline_weights(place.rest.y, wy);
-            sum += share * spline_sum(pixel_fields, place.texel, wx, wy);
-            if (kChoppy) dxy += share * spline_sum(pixel_fields_2, place.texel, wx, wy).x;
+            float share = share_in(tile, r, footprint.rung.t);
+            if (!(share > 0.0)) continue;
+            for (int j = -last; j <= last; ++j) {
+                Place place = place_in(tile, split_metres(rest_m + float(j) * taps.spacing_m * footprint.axis));
+                float wx[P];
+                float wy[P];
+                bspline_weights(place.rest.x, wx);
+                bspline_weights(place.rest.y, wy);
+                float weight = share * tap_weight(taps.reach, float(j));
+                sum += weight * spline_sum(pixel_fields, place.texel, wx, wy);
+                if (kChoppy) dxy += weight * spline_sum(pixel_fields_2, place.texel, wx, wy).x;
+            }
         }
     }
     if (!kChoppy) return PixelFields(sum.x, sum.y, 0.0, 0.0, 0.0);
     return PixelFields(sum.x, sum.y, sum.z, sum.w, dxy);
 }
 
+// What an ellipse hides beyond a round footprint of its width: (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy).
+struct EllipseHidden {
+    vec4 low, high;
+};
+
+EllipseHidden ellipse_hidden(Footprint footprint) {
+    EllipseHidden sum = EllipseHidden(vec4(0.0), vec4(0.0));
+    if (footprint.along == 0.0 || kCascades == 0) return sum;
+    float w = (float(footprint.rung.lower) + footprint.rung.t) * float(kNodesARung);
+    float r = log2(footprint.along / footprint.width) * float(kNodesAnOctave);
+    float turn = atan(footprint.axis.y, footprint.axis.x) / 3.14159265358979323846;
+    float d = (turn - floor(turn)) * float(kDirections);
+    ivec3 node = ivec3(min(int(w), textureSize(ellipse_table, 0).y - 2), clamp(int(r), 0, kRatios - 2),
+                       min(int(d), kDirections - 1));
+    vec3 share = vec3(w, r, d) - vec3(node);
+    for (int corner = 0; corner < 8; ++corner) {
+        ivec3 next = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+        vec3 each = mix(1.0 - share, share, vec3(next));
+        int column = 2 * ((node.y + next.y) * kDirections + (node.z + next.z) % kDirections);
+        float of = each.x * each.y * each.z;
+        sum.low += of * texelFetch(ellipse_table, ivec2(column, node.x + next.x), 0);
+        sum.high += of * texelFetch(ellipse_table, ivec2(column + 1, node.x + next.x), 0);
+    }
+    return sum;
+}
+
 // The rung's hidden moments without the trains' part. May be negative by rounding.
-PixelMoments hidden_of(Rung rung) {
+PixelMoments hidden_of(Footprint footprint) {
+    Rung rung = footprint.rung;
     vec4 low = hidden_rungs[4 * rung.lower];
     vec4 high = hidden_rungs[4 * rung.lower + 1];
     if (rung.t > 0.0) {
@@ -125,5 +201,8 @@ PixelMoments hidden_of(Rung rung) {
             high[i] = blended_moment(high[i], high_both[i], high_next[i], rung.t);
         }
     }
+    EllipseHidden beside = ellipse_hidden(footprint);
+    low += beside.low;
+    high += beside.high;
     return PixelMoments(low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w);
 }

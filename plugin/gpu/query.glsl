@@ -3,14 +3,19 @@
 uniform float whitecap_threshold;
 uniform vec2 finest_m;  // the finest footprints of cells and pixels; trains are filtered no finer
 
-float long_side(vec3 footprint_m) { return max(footprint_m.x, length(footprint_m.yz)); }
+// Footprints are given as width and long axis [m]. Trains follow them however long they are: (width, stretch) as
+// TrainArgs has it.
+vec3 train_footprint(vec3 given, float finest) {
+    float width = given.x > finest ? given.x : finest;
+    float along2 = dot(given.yz, given.yz);
+    float beyond2 = along2 - width * width;
+    return vec3(width, beyond2 > 0.0 ? sqrt(beyond2 / along2) * given.yz : vec2(0.0));
+}
 
 // Height, Dx, Dy of the point that rests at x.
 vec3 query_cell(vec2 rest_m, vec3 cell) {
-    float cell_m = long_side(cell);
-    SplitMetres x = split_metres(rest_m);
-    vec3 sum = cell_cascades(x, cell_m);
-    if (kTrains) sum += cell_trains(x, cell_m > finest_m.x ? cell_m : finest_m.x);
+    vec3 sum = cell_cascades(rest_m, footprint_of(0, kCellRungs, cell));
+    if (kTrains) sum += cell_trains(split_metres(rest_m), train_footprint(cell, finest_m.x));
     return sum;
 }
 
@@ -22,11 +27,9 @@ struct PixelAnswer {
 };
 
 PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
-    float pixel_m = long_side(pixel);
-    SplitMetres x = split_metres(rest_m);
-    Rung rung = rung_of(kCellRungs, kPixelRungs, pixel_m);
-    TrainSums sums = TrainSums(pixel_cascades(x, rung), hidden_of(rung));
-    if (kTrains) sums = pixel_trains(x, pixel_m > finest_m.y ? pixel_m : finest_m.y, sums);
+    Footprint footprint = footprint_of(kCellRungs, kPixelRungs, pixel);
+    TrainSums sums = TrainSums(pixel_cascades(rest_m, footprint), hidden_of(footprint));
+    if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(pixel, finest_m.y), sums);
     PixelFields f = sums.fields;
     PixelMoments hidden = possible_moments(sums.hidden);
     SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy);
@@ -36,5 +39,5 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
                                          HiddenStrain(hidden.xxxx, hidden.xxxy, hidden.xxyy, hidden.xyyy,
                                                       hidden.yyyy)),
                         whitecap_threshold, kThirdMoment);
-    return PixelAnswer(vec3(n.x, n.y, n.z), hidden, foam, float(rung.lower) + rung.t);
+    return PixelAnswer(vec3(n.x, n.y, n.z), hidden, foam, float(footprint.rung.lower) + footprint.rung.t);
 }

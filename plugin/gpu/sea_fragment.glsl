@@ -1,14 +1,12 @@
 // A pixel of the sea: the query at the point at rest that it shows, and the light from there.
 
-in vec2 rest_m;
-in vec3 pixel_m;  // width and long axis
-
 void main() {
+    read_point();
     if (kWireframe) {
         write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), 1.0);
         return;
     }
-    PixelAnswer answer = query_pixel(rest_m, pixel_m);
+    PixelAnswer answer = query_pixel(rest_m, pixel_on_mesh());
     if (kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), 1.0);
         return;

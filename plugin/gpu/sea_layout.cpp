@@ -164,6 +164,22 @@ void SeaLayout::fill(const Frame<float>& frame, std::vector<std::vector<float>>&
     }
 }
 
+int SeaLayout::ellipse_columns() const {
+    return sea_->ellipses(query_).empty() ? 1 : 2 * EllipseTable::kRatios * EllipseTable::kDirections;
+}
+
+std::vector<glm::vec4> SeaLayout::ellipse_texels() const {
+    const EllipseMoments& ellipses = sea_->ellipses(query_);
+    if (ellipses.empty()) return {glm::vec4(0.0f)};
+    std::vector<glm::vec4> texels;
+    texels.reserve(2 * ellipses.values().size());
+    for (const HiddenMoments<float>& m : ellipses.values()) {
+        texels.emplace_back(m[0], m[1], m[2], m[3]);
+        texels.emplace_back(m[4], m[5], m[6], m[7]);
+    }
+    return texels;
+}
+
 std::vector<glm::vec4> SeaLayout::train_texels() const {
     const Trains<float>& trains = sea_->trains();
     const std::size_t count = trains.count();

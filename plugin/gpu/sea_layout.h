@@ -68,6 +68,10 @@ class SeaLayout {
     static constexpr int kTrainTexels = 8;
     std::vector<glm::vec4> train_texels() const;
 
+    // Rows of ellipse_columns(), as cascades.glsl has it; one texel of zeros where there are no cascades.
+    std::vector<glm::vec4> ellipse_texels() const;
+    int ellipse_columns() const;
+
     // For points relative to an origin [m]: the uniform block of cascades.glsl, as large for each; and, where
     // the sea has trains, their phases there [cycles], one float a train.
     std::vector<std::byte> tables(glm::dvec2 origin_m) const;

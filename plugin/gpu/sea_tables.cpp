@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/plan/taps.h"
 #include "plugin/gpu/sea_layout.h"
 
 namespace pelagic {
@@ -72,6 +73,12 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m) const {
     append(scale);
     append(rung);
     append(hidden);
+    std::vector<std::array<float, 4>> cascades;
+    for (const CascadePlan& cascade : sea_->plan().cascades)
+        cascades.push_back(
+            {static_cast<float>(whole_footprint_m(cascade, sea_->plan().filter)), 0.0f, 0.0f, 0.0f});
+    cascades.resize(std::max<std::size_t>(cascades.size(), 1));
+    append(cascades);
     return block;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/plan/taps.h"
+
 namespace pelagic {
 namespace {
 
@@ -28,6 +30,14 @@ std::vector<std::string_view> output_files(const DrawOptions& options) {
     return {"plugin/gpu/sea_outputs.glsl"};
 }
 
+const char* vertex_file(const DrawOptions& options) {
+    return options.for_host ? "plugin/gpu/host_vertex.glsl" : "plugin/gpu/sea_vertex.glsl";
+}
+const char* points_file(const DrawOptions& options) {
+    return is_lit_afterwards(options) ? "plugin/gpu/sea_points_texture.glsl"
+                                      : "plugin/gpu/sea_points_in.glsl";
+}
+
 // The constants that the shaders of sea and sky share.
 std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
@@ -46,10 +56,13 @@ const std::vector<std::string_view>& lighting_files() {
 
 const std::vector<std::string_view>& query_files() {
     static const std::vector<std::string_view> files{
-        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",  "core/plan/filter.inl",
-        "core/waves/spline.inl",      "core/waves/whitecaps.inl", "core/evaluate/surface.inl",
-        "core/waves/trains.inl",      "core/evaluate/hidden.inl", "plugin/gpu/places.glsl",
-        "plugin/gpu/cascades.glsl",   "plugin/gpu/trains.glsl",   "plugin/gpu/query.glsl"};
+        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",
+        "core/plan/filter.inl",       "core/plan/taps.inl",
+        "core/waves/spline.inl",      "core/waves/whitecaps.inl",
+        "core/evaluate/surface.inl",  "core/waves/trains.inl",
+        "core/evaluate/hidden.inl",   "core/surface/pixel_footprint.inl",
+        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl",
+        "plugin/gpu/trains.glsl",     "plugin/gpu/query.glsl"};
     return files;
 }
 
@@ -61,7 +74,10 @@ std::string query_constants(const SeaLayout& layout, bool coverage) {
            constant("P", layout.sea().plan().knobs.spline_taps) + constant("kChoppy", layout.is_choppy()) +
            constant("kCoverage", coverage) +
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
-           constant("kTrains", layout.has_trains());
+           constant("kTrains", layout.has_trains()) + constant("kNodesARung", EllipseTable::kNodesARung) +
+           constant("kNodesAnOctave", EllipseTable::kNodesAnOctave) +
+           constant("kRatios", EllipseTable::kRatios) + constant("kDirections", EllipseTable::kDirections) +
+           "const float kLongestEllipse = " + std::to_string(kLongestEllipse) + ";\n";
 }
 
 std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
@@ -72,6 +88,10 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
            constant("kWhitecaps", choice.whitecaps) + constant("kSkyLookups", lookups) +
            constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
            "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
+}
+
+bool is_lit_afterwards(const DrawOptions& options) {
+    return !options.for_host && !options.wireframe;
 }
 
 ShaderVariant::ShaderVariant(std::string constants, std::vector<std::string_view> vertex,
@@ -96,14 +116,21 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     return {query_constants(layout, coverage) + lighting_constants(lighting, sky_map_size) +
                 picture_constants(options),
-            joined({query_files(),
-                    {options.for_host ? "plugin/gpu/host_vertex.glsl" : "plugin/gpu/sea_vertex.glsl"}}),
+            is_lit_afterwards(options) ? std::vector<std::string_view>{"plugin/gpu/full_vertex.glsl"}
+                                       : joined({query_files(), {vertex_file(options)}}),
             joined({query_files(),
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
                     {"plugin/gpu/rays.glsl"},
                     output_files(options),
-                    {"plugin/gpu/false_colour.glsl", "plugin/gpu/sea_fragment.glsl"}})};
+                    {"plugin/gpu/false_colour.glsl", points_file(options), "plugin/gpu/sea_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_points(const SeaLayout& layout) {
+    return {query_constants(layout, false), joined({query_files(), {vertex_file({})}}),
+            joined({query_files(),
+                    {"plugin/gpu/rays.glsl", "plugin/gpu/sea_points_in.glsl",
+                     "plugin/gpu/sea_points_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size) {

@@ -33,14 +33,21 @@ vec2 train_sine_cosine(int i, SplitMetres x) {
     return vec2(sin(angle), cos(angle));
 }
 
-// Height, Dx, Dy.
-vec3 cell_trains(SplitMetres x, float cell_m) {
+// How long an ellipse is along a train's way.
+float footprint_along(int i, vec3 footprint) {
+    vec4 k = texelFetch(train_table, ivec2(i, 0), 0);
+    float stretch = dot(footprint.yz, vec2(k.x + k.y, k.z + k.w)) * texelFetch(train_table, ivec2(i, 3), 0).x;
+    return stretch == 0.0 ? footprint.x : sqrt(footprint.x * footprint.x + stretch * stretch);
+}
+
+// Height, Dx, Dy. footprint: width and stretch (core/evaluate/trains.h).
+vec3 cell_trains(SplitMetres x, vec3 footprint) {
     vec3 sum = vec3(0.0);
-    int full = trains_above(cell_m, train_filter.z);
-    int end = trains_above(cell_m, train_filter.w);
+    int full = trains_above(length(footprint), train_filter.z);
+    int end = trains_above(footprint.x, train_filter.w);
     for (int i = 0; i < end; ++i) {
         vec2 wave = train_sine_cosine(i, x);
-        if (i >= full) wave *= train_weight(texelFetch(train_table, ivec2(i, 3), 0).x, cell_m);
+        if (i >= full) wave *= train_weight(texelFetch(train_table, ivec2(i, 3), 0).x, footprint_along(i, footprint));
         vec4 amplitude = texelFetch(train_table, ivec2(i, 2), 0);
         sum += vec3(amplitude.y * wave.y, amplitude.z * wave.x, amplitude.w * wave.x);
     }
@@ -53,9 +60,9 @@ struct TrainSums {
     PixelMoments hidden;
 };
 
-TrainSums pixel_trains(SplitMetres x, float pixel_m, TrainSums sums) {
-    int full = trains_above(pixel_m, train_filter.z);
-    int end = trains_above(pixel_m, train_filter.w);
+TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
+    int full = trains_above(length(footprint), train_filter.z);
+    int end = trains_above(footprint.x, train_filter.w);
     vec4 low = texelFetch(train_table, ivec2(end, 6), 0);
     vec4 high = texelFetch(train_table, ivec2(end, 7), 0);
     vec4 first = vec4(0.0);
@@ -64,7 +71,7 @@ TrainSums pixel_trains(SplitMetres x, float pixel_m, TrainSums sums) {
         vec2 wave = train_sine_cosine(i, x);
         if (i >= full) {
             vec4 train = texelFetch(train_table, ivec2(i, 3), 0);
-            float w = train_weight(train.x, pixel_m);
+            float w = train_weight(train.x, footprint_along(i, footprint));
             wave *= w;
             float slope_part = hidden_slope_part(w, train.y);
             float strain_part = hidden_strain_part(w);

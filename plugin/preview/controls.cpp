@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
@@ -80,13 +81,39 @@ std::string format_of(const Key& key) {
     constexpr double kSpan = 100.0, kShortSpan = 10.0;  // from tens on no decimals, below ones two
     const SoftRange& soft = *key.soft;
     const double span = soft.is_logarithmic ? soft.low * kSpan : soft.high - soft.low;
-    const char* digits = span > kSpan ? "%.0f" : span >= kShortSpan ? "%.1f" : "%.2f";
+    const char* digits = span > kSpan || key.type == KeyType::Integer ? "%.0f"
+                         : span >= kShortSpan                         ? "%.1f"
+                                                                      : "%.2f";
     const std::string unit = key.unit == "degrees" ? "°" : key.unit == "pixels" ? " px" : ' ' + key.unit;
     return digits + (key.unit.empty() ? "" : unit);
 }
 
+// Whether a number is infinite, as the depth of deep water is.
+bool key_unbounded(const Key& key, double& number) {
+    bool is_infinite = std::isinf(number);
+    ImGui::PushID(key.path.c_str());
+    const bool changed = ImGui::Checkbox("##infinite", &is_infinite);
+    ImGui::PopID();
+    tooltip("Without bound");
+    if (changed)
+        number =
+            is_infinite ? std::numeric_limits<double>::infinity() : std::sqrt(key.soft->low * key.soft->high);
+    ImGui::SameLine();
+    return changed;
+}
+
+// A whole number to type or step, where no part of what the key accepts is more useful than another.
+bool key_integer(const Key& key, std::int64_t& number) {
+    constexpr std::int64_t kStep = 1;
+    const bool changed = ImGui::InputScalar(key.label.c_str(), ImGuiDataType_S64, &number, &kStep);
+    number = std::clamp(number, key.least, key.largest);
+    tooltip(key.help.c_str());
+    return changed;
+}
+
 // A slider over the useful part of what the key accepts.
 bool key_slider(const Key& key, KeyValue& value) {
+    if (!key.soft) return key_integer(key, std::get<std::int64_t>(value));
     const bool is_integer = std::holds_alternative<std::int64_t>(value);
     double number = is_integer ? static_cast<double>(std::get<std::int64_t>(value)) : std::get<double>(value);
     const SliderLook look{.low = key.soft->low,
@@ -94,7 +121,12 @@ bool key_slider(const Key& key, KeyValue& value) {
                           .format = format_of(key),
                           .help = key.help,
                           .logarithmic = key.soft->is_logarithmic};
-    if (!slider(key.label.c_str(), number, look)) return false;
+    bool changed = key.may_be_infinite && key_unbounded(key, number);
+    if (std::isinf(number))
+        ImGui::TextDisabled("%s: unbounded", key.label.c_str());
+    else
+        changed = slider(key.label.c_str(), number, look) || changed;
+    if (!changed) return false;
     if (is_integer)
         value = static_cast<std::int64_t>(std::llround(number));
     else
@@ -102,22 +134,36 @@ bool key_slider(const Key& key, KeyValue& value) {
     return true;
 }
 
+// A choice that takes a file can't be made here.
+constexpr const char* kOfFile = "file";
+
 bool key_words(const Key& key, std::string& word) {
     const auto shown = [](std::string text) {
         if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
         return text;
     };
     bool changed = false;
+    ImGui::BeginDisabled(word == kOfFile);
     if (ImGui::BeginCombo(key.label.c_str(), shown(word).c_str())) {
         for (const KeyChoice& choice : key.choices)
-            if (choice.is_built && ImGui::Selectable(shown(choice.word).c_str(), choice.word == word)) {
+            if (choice.is_built && choice.word != kOfFile &&
+                ImGui::Selectable(shown(choice.word).c_str(), choice.word == word)) {
                 word = choice.word;
                 changed = true;
             }
         ImGui::EndCombo();
     }
+    ImGui::EndDisabled();
     tooltip(key.help.c_str());
     return changed;
+}
+
+// A new entry: every number in the middle of what is useful.
+KeyEntry usual_entry(const Key& key) {
+    KeyEntry entry;
+    for (const Key& inner : key.entry_keys)
+        entry.values.emplace_back(inner.name, 0.5 * (inner.soft->low + inner.soft->high));
+    return entry;
 }
 
 bool key_entries(const Key& key, std::vector<KeyEntry>& entries) {
@@ -129,6 +175,23 @@ bool key_entries(const Key& key, std::vector<KeyEntry>& entries) {
             changed = key_slider(key.entry_keys[k], entries[i].values[k].second) || changed;
         ImGui::PopID();
     }
+    ImGui::PushID(key.path.c_str());
+    ImGui::BeginDisabled(entries.size() >= key.most_entries);
+    if (ImGui::SmallButton(("Add " + key.label).c_str())) {
+        entries.push_back(usual_entry(key));
+        changed = true;
+    }
+    ImGui::EndDisabled();
+    tooltip(key.help.c_str());
+    if (!entries.empty()) {
+        ImGui::SameLine();
+        if (ImGui::SmallButton("Remove")) {
+            entries.pop_back();
+            changed = true;
+        }
+        tooltip("The last one");
+    }
+    ImGui::PopID();
     return changed;
 }
 
@@ -167,12 +230,10 @@ void waves_section(Controls& controls, const Readout& readout) {
     key_controls(controls.scene, keys_of(kWavesSection));
     // Foam that is computed is shown, also in a shot that begins without.
     if (controls.scene.effects.whitecaps && !had_whitecaps) controls.draw.lighting.whitecaps = true;
-    if (readout.building_sea)
-        ImGui::TextColored(
-            kAccent, readout.has_sea ? "Building this sea; the last one plays on …" : "Building the sea …");
-    else
-        ImGui::TextDisabled("Significant height %.2f m, built in %.2f s", readout.significant_height_m,
-                            readout.times.build_s);
+    ImGui::PushStyleColor(ImGuiCol_Text,
+                          readout.building_sea ? kAccent : ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+    ImGui::TextWrapped("%s", sea_words(readout).c_str());
+    ImGui::PopStyleColor();
 }
 
 void sky_section(Scene& scene, const Readout& readout) {
@@ -347,8 +408,12 @@ void panel(Controls& controls, const Readout& readout, const Scene& shot, Clicks
     times_section(readout);
     ImGui::Spacing();
     ImGui::Separator();
-    clicks.copy = ImGui::Button("Copy as shot file");
-    tooltip("Puts the keys that differ from the shot's, the camera's place included, on the clipboard");
+    clicks.save = ImGui::Button("Save shot");
+    tooltip(
+        "Writes the keys that differ, the camera's place included, into the shot's file; all else in it stays");
+    ImGui::SameLine();
+    clicks.copy = ImGui::Button("Copy");
+    tooltip("Puts the same keys on the clipboard, as a shot file");
     ImGui::SameLine();
     clicks.reset = ImGui::Button("Reset");
     tooltip("Everything as the shot file has it");
@@ -365,7 +430,7 @@ void bar(Controls& controls, const Shot& shot) {
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                      ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoSavedSettings);
     if (ImGui::Button(controls.playing ? "Pause" : "Play", ImVec2(scaled(64.0f), 0.0f)))
-        controls.playing = !controls.playing;
+        play_or_pause(controls, shot);
     tooltip("Space");
     ImGui::SameLine();
     auto frame = static_cast<float>(controls.frame);
@@ -388,7 +453,7 @@ void bar(Controls& controls, const Shot& shot) {
             .logarithmic = true});
     ImGui::SameLine();
     ImGui::Checkbox("Repeat", &controls.repeat);
-    tooltip("Play the shot's frames over and over; otherwise time goes on past the last one");
+    tooltip("Play the shot's frames over and over; otherwise once");
     ImGui::End();
 }
 
@@ -432,8 +497,8 @@ void help() {
 const std::vector<PanelSection>& panel_sections() {
     static const std::vector<PanelSection> sections{
         {"Wind and waves",
-         {"sea.wind_speed_mps", "sea.wind_direction_deg", "sea.fetch_m", "waves.choppiness", "sea.swell",
-          "effects.whitecaps"}},
+         {"sea.wind_speed_mps", "sea.wind_direction_deg", "sea.fetch_m", "sea.depth_m", "sea.spectrum",
+          "sea.spreading", "waves.choppiness", "shot.seed", "sea.swell", "effects.whitecaps"}},
         {"Sun and sky", {"light.sun_elevation_deg", "light.sun_azimuth_deg", "light.turbidity"}},
         {"Water", {"water.type", "water.chlorophyll_mg_m3"}},
         {"Picture", {"surface.cell_px"}}};
@@ -444,12 +509,63 @@ Controls controls_for(const Scene& scene) {
     Controls controls;
     controls.scene = scene;
     controls.draw.lighting = render_options(scene).lighting;
-    // A shot that moves its camera, or closes, is watched as it is; a sea is watched for as long as one
-    // likes.
-    controls.repeat = !scene.camera.keys.empty() || scene.shot.loop_s > 0.0;
     controls.frame = scene.shot.first_frame;
     return controls;
 }
+
+void play_on(Controls& controls, double seconds, const Shot& shot) {
+    if (!controls.playing) return;
+    const double first = shot.first_frame, last = shot.last_frame;
+    const double frame = controls.frame + seconds * controls.speed * shot.fps;
+    if (first == last) return go_to(controls, first, shot);
+    if (!controls.repeat) {
+        controls.playing = frame < last;
+        return go_to(controls, frame, shot);
+    }
+    // The last frame is shown as long as the others.
+    controls.frame = first + std::fmod(frame - first, last + 1.0 - first);
+}
+
+void play_or_pause(Controls& controls, const Shot& shot) {
+    controls.playing = !controls.playing;
+    if (controls.playing && !controls.repeat && controls.frame >= shot.last_frame)
+        controls.frame = shot.first_frame;
+}
+
+void go_to(Controls& controls, double frame, const Shot& shot) {
+    controls.frame =
+        std::clamp(frame, static_cast<double>(shot.first_frame), static_cast<double>(shot.last_frame));
+}
+
+std::string sea_words(const Readout& readout) {
+    std::array<char, 160> words{};
+    if (readout.building_sea)
+        std::snprintf(words.data(), words.size(), "Building %s: %.0f %%, %.0f s",
+                      readout.has_sea ? "this sea, while the last one plays on" : "the sea",
+                      100.0 * readout.built, readout.waited_s);
+    else if (readout.has_sea)
+        std::snprintf(words.data(), words.size(), "Significant height %.2f m, built in %.2f s",
+                      readout.significant_height_m, readout.times.build_s);
+    else if (readout.message.empty())
+        return "The sea's first picture is being made";
+    return words.data();
+}
+
+namespace {
+
+// In the middle of a window that has no sea yet.
+void waiting_note(const Readout& readout) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(screen.x * 0.5f, screen.y * 0.5f), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    ImGui::Begin("##waiting", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                     ImGuiWindowFlags_NoSavedSettings);
+    ImGui::TextUnformatted(sea_words(readout).c_str());
+    ImGui::ProgressBar(static_cast<float>(readout.built), ImVec2(scaled(240.0f), 0.0f), "");
+    ImGui::End();
+}
+
+}  // namespace
 
 Clicks draw_controls(Controls& controls, const Readout& readout, const Scene& shot) {
     Clicks clicks;
@@ -466,6 +582,7 @@ Clicks draw_controls(Controls& controls, const Readout& readout, const Scene& sh
         warning(readout.message);
         ImGui::End();
     }
+    if (!readout.has_sea && readout.message.empty()) waiting_note(readout);
     if (controls.show_help) help();
     return clicks;
 }

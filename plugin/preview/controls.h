@@ -19,14 +19,20 @@ struct Controls {
     double exposure_stops = 0.0;  // above what suits the light
     int pixel_size = 1;           // 1, 2, 4: a drawn pixel covers this many of the window's, squared
     bool playing = true;
-    bool repeat = false;  // the shot's range; otherwise time goes on
-    double speed = 1.0;   // of playing
-    double frame = 1.0;   // of the shot, with fractions
+    bool repeat = true;  // the shot's frames over and over; otherwise playing ends with the last one
+    double speed = 1.0;  // of playing
+    double frame = 1.0;  // of the shot, with fractions
     bool show_panel = true, show_help = false;
 };
 
 // How the panel begins for a shot.
 Controls controls_for(const Scene& scene);
+
+// The playhead, which never leaves the shot's frames: so many seconds on while it plays; played or paused, from the
+// first frame where it had come to its end; by hand to a frame.
+void play_on(Controls& controls, double seconds, const Shot& shot);
+void play_or_pause(Controls& controls, const Shot& shot);
+void go_to(Controls& controls, double frame, const Shot& shot);
 
 // The milliseconds of one picture, in the order in which they are spent; frames and seas beside it.
 struct PictureTimes {
@@ -45,6 +51,8 @@ struct Readout {
     std::string message;   // what went wrong; empty: all is well
     bool has_sea = false;  // one is on show
     bool building_sea = false, building_sky = false;
+    double built = 0.0,
+           waited_s = 0.0;     // how much of that sea there is, 0 … 1, and for how long it has been built
     bool follows_shot = true;  // the camera is the shot's own
     glm::dvec3 camera_m{0.0};
     double significant_height_m = 0.0;  // of the sea on show
@@ -57,8 +65,12 @@ struct Readout {
 struct Clicks {
     bool shot_camera = false;  // back to it
     bool copy = false;         // the changed keys, as a shot file
+    bool save = false;         // the same into the shot's own file
     bool reset = false;        // everything as the shot has it
 };
+
+// What the window is doing or shows of the sea, in a line.
+std::string sea_words(const Readout& readout);
 
 // Draws everything and changes `controls` as the artist wills. `shot` is the scene as its file has it.
 Clicks draw_controls(Controls& controls, const Readout& readout, const Scene& shot);

@@ -31,8 +31,15 @@ LiveSea::Build in_the_background(LiveSea::Build build) {
 LiveSea::LiveSea(Build build)
     : frames_thread_([this] { compute_frames(); }), builder_(in_the_background(std::move(build))) {}
 
-LiveSea::LiveSea(const LiveLimits& limits)
-    : LiveSea([limits](const Scene& scene) { return build_live(scene, limits); }) {}
+LiveSea::LiveSea(const LiveLimits& limits) : LiveSea(limits, std::make_shared<std::atomic<double>>(0.0)) {}
+
+LiveSea::LiveSea(const LiveLimits& limits, const std::shared_ptr<std::atomic<double>>& built)
+    : LiveSea([limits, built](const Scene& scene) {
+          *built = 0.0;
+          return build_live(scene, limits, {.progress = [built](double done) { *built = done; }});
+      }) {
+    built_ = built;
+}
 
 LiveSea::~LiveSea() {
     {
@@ -78,7 +85,8 @@ std::optional<double> LiveSea::water_over_eye() const {
 }
 
 LiveStatus LiveSea::status() const {
-    LiveStatus status{.building = builder_.is_busy(), .error = builder_.error()};
+    LiveStatus status{
+        .building = builder_.is_busy(), .built = built_ ? built_->load() : 0.0, .error = builder_.error()};
     const std::lock_guard lock(mutex_);
     if (status.error.empty()) status.error = frame_error_;
     status.seas = seas_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -42,7 +43,8 @@ struct LiveLimits {
 // Plans and builds the sea for pictures of the scene. Where that doesn't fit the limits, the shortest waves are left
 // to the slope variance until it does, and the note says so. Throws std::invalid_argument with every problem that
 // validate() finds, and NotEnoughMemory where nothing is left to leave out.
-std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits);
+std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits,
+                                            const BuildWatch& watch = {});
 
 // Whether the two scenes have the same waves in pictures, so that nothing needs to be built.
 bool same_sea(const Scene& a, const Scene& b);
@@ -57,6 +59,7 @@ struct LiveFrame {
 
 struct LiveStatus {
     bool building = false;      // a sea is being built
+    double built = 0.0;         // how much of it, 0 … 1, where that is known
     std::string error;          // of the latest sea or frame; empty if it succeeded
     long seas = 0, frames = 0;  // numbers finished
 };
@@ -88,6 +91,7 @@ class LiveSea {
     LiveStatus status() const;
 
   private:
+    LiveSea(const LiveLimits& limits, const std::shared_ptr<std::atomic<double>>& built);
     void compute_frames();
 
     // Triple buffering: one slot is being written, one waits, one is being drawn.
@@ -104,7 +108,8 @@ class LiveSea {
     std::string frame_error_;
     long seas_ = 0, frames_ = 0;
     bool stopping_ = false;
-    std::optional<Scene> asked_;  // used by the drawing thread only
+    std::optional<Scene> asked_;                        // used by the drawing thread only
+    std::shared_ptr<const std::atomic<double>> built_;  // null where nobody tells
     std::thread frames_thread_;
     LiveWorker<Scene, LiveBuild> builder_;
 };

@@ -39,7 +39,8 @@ bool fits(const Plan& plan, const LiveLimits& limits) {
 
 }  // namespace
 
-std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits) {
+std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits,
+                                            const BuildWatch& watch) {
     std::string problems;
     for (const Problem& problem : validate(scene))
         problems += (problems.empty() ? "" : "\n") + text_of(problem);
@@ -71,7 +72,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
             "quality.level";
     }
     if (!fits(plan, limits)) require_memory(live_memory(plan), limits.memory, "this sea");
-    made.sea = std::make_shared<const Sea<float>>(std::move(plan));
+    made.sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
     made.grid = projected_grid_options(*prepared);
     made.build_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::make_shared<const LiveBuild>(std::move(made));

@@ -50,6 +50,8 @@ class SeaRenderer {
 
     // The driver's name for the device, for messages and benchmarks.
     std::string device() const;
+    // Whether that is a processor rather than a graphics card.
+    bool is_software() const;
 
     void set_sky(const Sky& sky, const WaterBody& water);
     // Sets the frame of the next pictures. A frame of another sea replaces that sea: textures are made again,

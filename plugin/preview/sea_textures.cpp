@@ -14,7 +14,7 @@
 namespace pelagic {
 namespace {
 
-enum Unit : int { kCellFields, kPixelFields, kPixelFields2, kTrainTable, kTrainCycles };
+enum Unit : int { kCellFields, kPixelFields, kPixelFields2, kEllipseTable, kTrainTable, kTrainCycles };
 
 }  // namespace
 
@@ -35,6 +35,7 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
                            ": ask for fewer cascades");
     std::vector<GlTexture> planes;
     std::optional<GlTexture> train_table, train_cycles;
+    GlTexture ellipse_table;
     for (const SeaLayout::Plane& plane : layout->planes()) {
         edit_texture(planes.emplace_back());
         texels_as_they_are();
@@ -42,6 +43,12 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
         glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(texels.internal), plane.size.x, plane.size.y, 0,
                      texels.format, GL_FLOAT, nullptr);
     }
+    edit_texture(ellipse_table);
+    texels_as_they_are();
+    const std::vector<glm::vec4> ellipses = layout->ellipse_texels();
+    const int columns = layout->ellipse_columns();
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, columns, static_cast<GLsizei>(ellipses.size()) / columns, 0,
+                 GL_RGBA, GL_FLOAT, ellipses.data());
     if (layout->has_trains()) {
         const auto count = static_cast<GLsizei>(layout->sea().trains().count());
         if (count + 1 > largest_texture)
@@ -59,6 +66,7 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     }
     layout_ = layout;
     planes_ = std::move(planes);
+    ellipse_table_ = std::move(ellipse_table);
     train_table_ = std::move(train_table);
     train_cycles_ = std::move(train_cycles);
 }
@@ -121,12 +129,13 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
     if (block != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), block, 0);
     for (const auto& [name, unit] :
          {std::pair{"cell_fields", kCellFields}, std::pair{"pixel_fields", kPixelFields},
-          std::pair{"pixel_fields_2", kPixelFields2}, std::pair{"train_table", kTrainTable},
-          std::pair{"train_cycles", kTrainCycles}})
+          std::pair{"pixel_fields_2", kPixelFields2}, std::pair{"ellipse_table", kEllipseTable},
+          std::pair{"train_table", kTrainTable}, std::pair{"train_cycles", kTrainCycles}})
         glUniform1i(program.uniform(name), unit);
     set_uniforms(program, query_uniforms(*layout_));
     for (std::size_t p = 0; p < planes_.size(); ++p)
         bind_texture(static_cast<int>(kCellFields + p), planes_[p]);
+    bind_texture(kEllipseTable, *ellipse_table_);
     if (layout_->has_trains()) {
         bind_texture(kTrainTable, *train_table_);
         bind_texture(kTrainCycles, *train_cycles_);

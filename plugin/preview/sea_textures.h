@@ -16,7 +16,7 @@ namespace pelagic {
 
 class SeaTextures {
   public:
-    static constexpr int kUnits = 5;  // bind() uses texture units 0 … kUnits − 1
+    static constexpr int kUnits = 6;  // bind() uses texture units 0 … kUnits − 1
 
     // As SeaRenderer::upload() and upload_once().
     void upload(const PackedFrame& frame);
@@ -35,7 +35,7 @@ class SeaTextures {
 
     std::shared_ptr<const SeaLayout> layout_;
     std::vector<GlTexture> planes_;
-    std::optional<GlTexture> train_table_, train_cycles_;
+    std::optional<GlTexture> ellipse_table_, train_table_, train_cycles_;
     GlBuffer tables_;
     double time_within_loop_s_ = 0.0;
 

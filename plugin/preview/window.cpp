@@ -219,7 +219,7 @@ class Preview {
           gui_(window_),
           controls_(controls_for(scene)),
           skies_(build_sky) {
-        controls_.pixel_size = options.pixel_size;
+        controls_.pixel_size = options.pixel_size != 0 ? options.pixel_size : renderer_.is_software() ? 2 : 1;
         if (options.frame) {
             controls_.frame = *options.frame;
             controls_.playing = false;
@@ -247,7 +247,8 @@ class Preview {
             last = Clock::now();
             begin_picture(whole_ms);
             act();
-            play(std::min(whole_ms * 1e-3, kLongestStep_s));
+            // Playing starts with the first sea.
+            if (frame_ != nullptr) play_on(controls_, std::min(whole_ms * 1e-3, kLongestStep_s), shot_.shot);
             move(std::min(whole_ms * 1e-3, kLongestStep_s));
             take_what_is_ready();
             if (options_.screenshot && !readout_.message.empty()) throw PreviewError(readout_.message);
@@ -257,6 +258,7 @@ class Preview {
             ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
             if (is_screenshot_due()) {
                 save_window(size, *options_.screenshot);
+                tell_speed();
                 return;
             }
             const auto presenting = Clock::now();
@@ -303,6 +305,7 @@ class Preview {
         }
         if (clicks.shot_camera || clicks.reset) readout_.follows_shot = true;
         if (clicks.copy) copy();
+        if (clicks.save && options_.save) save_shot();
         for (const Window::Press& press : window_.take_pressed())
             if (!io.WantTextInput) act_on(press);
     }
@@ -310,7 +313,7 @@ class Preview {
     void act_on(const Window::Press& press) {
         const auto step = [&](int frames) {
             controls_.playing = false;
-            controls_.frame = std::round(controls_.frame) + frames;
+            go_to(controls_, std::round(controls_.frame) + frames, shot_.shot);
         };
         if (press.key == GLFW_KEY_RIGHT) return step(1);
         if (press.key == GLFW_KEY_LEFT) return step(-1);
@@ -334,35 +337,38 @@ class Preview {
                 readout_.follows_shot = true;
                 return;
             case GLFW_KEY_SPACE:
-                controls_.playing = !controls_.playing;
-                return;
+                return play_or_pause(controls_, shot_.shot);
             default:
                 return;
         }
     }
 
-    // Copies the changed keys, with the camera's current pose.
-    void copy() {
+    // What the panel asks for, with the camera's current pose.
+    Scene scene_now() const {
         Scene now = controls_.scene;
         if (!readout_.follows_shot) {
             const auto millimetres = [](glm::dvec3 v_m) { return glm::round(v_m * 1e3) / 1e3; };
             now.camera.position_m = millimetres(camera_.position_m());
             now.camera.look_at_m = millimetres(camera_.middle_m());
         }
-        const std::string keys = shot_text(now, shot_);
+        return now;
+    }
+
+    void copy() {
+        const std::string keys = shot_text(scene_now(), shot_);
         glfwSetClipboardString(window_.get(),
                                keys.empty() ? "# nothing differs from the shot\n" : keys.c_str());
     }
 
-    void play(double step_s) {
-        // Playing starts with the first sea.
-        if (!controls_.playing || frame_ == nullptr) return;
-        controls_.frame += step_s * controls_.speed * shot_.shot.fps;
-        if (!controls_.repeat) return;
-        // The last frame is shown as long as the others.
-        const double first = shot_.shot.first_frame, length = shot_.shot.last_frame + 1.0 - first;
-        const double within = std::fmod(controls_.frame - first, length);
-        controls_.frame = first + (within < 0.0 ? within + length : within);
+    void save_shot() {
+        const Scene now = scene_now();
+        try {
+            options_.save(now, shot_);
+            shot_ = controls_.scene = now;
+            save_error_.clear();
+        } catch (const std::runtime_error& error) {
+            save_error_ = error.what();
+        }
     }
 
     // Moves the camera by mouse and keys. Until the first movement it follows the shot's.
@@ -443,7 +449,9 @@ class Preview {
         sea_.show(shot_.shot.time_s(controls_.frame), may_be_wet ? std::optional<View>(view) : std::nullopt);
         frame_ = sea_.newest();
         const LiveStatus status = sea_.status();
-        readout_.building_sea = status.building;
+        if (!std::exchange(readout_.building_sea, status.building)) asked_at_ = Clock::now();
+        readout_.built = status.built;
+        readout_.waited_s = 1e-3 * milliseconds_since(asked_at_);
         readout_.building_sky = skies_.is_busy();
         readout_.message = status.error.empty() ? skies_.error() : status.error;
         is_under_water_ = sea_.water_over_eye().has_value();
@@ -489,7 +497,8 @@ class Preview {
         const View view = view_now();
         readout_.camera_m = view.position_m;
         readout_.drawn_px = view.resolution;
-        if (is_under_water_) {  // nothing rather than a wrong picture
+        // Nothing rather than a wrong picture, or the sky of half the globe over a sea that isn't there yet.
+        if (is_under_water_ || frame_ == nullptr) {
             glBindFramebuffer(GL_FRAMEBUFFER, 0);
             glViewport(0, 0, size.x, size.y);
             glClearColor(0.0f, 0.0f, 0.0f, 1.0f);
@@ -497,9 +506,9 @@ class Preview {
             return;
         }
         const auto start = Clock::now();
-        ProjectedGridOptions grid_options;
-        if (frame_ != nullptr) grid_options = frame_->build->grid;
-        grid_options.cell_px = std::max(controls_.scene.surface.cell_px / controls_.pixel_size, 1.0);
+        ProjectedGridOptions grid_options = frame_->build->grid;
+        // Of the drawn picture's pixels, as in `pelagic render` of that size: as many times fewer vertices.
+        grid_options.cell_px = controls_.scene.surface.cell_px;
         const ProjectedGrid grid = projected_grid(view, grid_options);
         smooth(readout_.times.grid_ms, milliseconds_since(start));
         renderer_.draw(view, grid, controls_.draw);
@@ -520,11 +529,27 @@ class Preview {
 
     bool is_screenshot_due() {
         if (!options_.screenshot || frame_ == nullptr) return false;
-        return ++pictures_ >= options_.screenshot_after;
+        if (pictures_++ == 0) first_picture_ = Clock::now();
+        return pictures_ >= options_.screenshot_after;
+    }
+
+    // The first picture compiles the shaders, and doesn't count.
+    void tell_speed() const {
+        const double seconds = 1e-3 * milliseconds_since(first_picture_);
+        std::cout << "picture: " << options_.screenshot->string() << '\n';
+        if (pictures_ > 1)
+            std::cout << (pictures_ - 1) / seconds << " pictures a second, " << readout_.drawn_px.x << " x "
+                      << readout_.drawn_px.y << ", drawn by " << readout_.device << '\n';
+        const PictureTimes& times = readout_.times;
+        std::cout << "milliseconds: grid " << times.grid_ms << ", panel " << times.panel_ms << ", submitting "
+                  << times.gpu.submit_ms << ", upload " << times.gpu.upload_ms << ", sea " << times.gpu.sea_ms
+                  << ", sky " << times.gpu.sky_ms << ", showing " << times.gpu.show_ms << ", presenting "
+                  << times.present_ms << "; beside it: transforms " << times.transforms_ms << ", packing "
+                  << times.packing_ms << std::endl;
     }
 
     const WindowOptions options_;
-    const Scene shot_;
+    Scene shot_;  // as its file has it
     Glfw glfw_;
     Window window_;
     Gui gui_;
@@ -540,6 +565,7 @@ class Preview {
     long uploaded_ = 0;  // the frame's number
     double shown_frame_ = 1.0;
     int pictures_ = 0;
+    Clock::time_point first_picture_, asked_at_ = Clock::now();
     bool is_flying_ = false, save_picture_ = false, is_under_water_ = false;
     std::string upload_error_, save_error_, note_;
     LiveWorker<Scene, LiveSky> skies_;

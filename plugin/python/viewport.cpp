@@ -133,6 +133,7 @@ class GpuSea {
           frame_(sea_),
           packed_(sea_, 0) {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
+        ellipse_table_ = packed_.layout()->ellipse_texels();
     }
 
     bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
@@ -187,6 +188,11 @@ class GpuSea {
             made[kNames[p]] =
                 view_of(self, sea.packed_.planes()[p].data(), {plane.size.y, plane.size.x, plane.channels});
         }
+        if (made.empty()) return made;  // no time was set
+        const int columns = sea.packed_.layout()->ellipse_columns();
+        made["ellipse_table"] =
+            view_of(self, &sea.ellipse_table_[0].x,
+                    {static_cast<py::ssize_t>(sea.ellipse_table_.size()) / columns, columns, 4});
         if (!sea.train_table_.empty())
             made["train_table"] =
                 view_of(self, &sea.train_table_[0].x,
@@ -281,7 +287,7 @@ class GpuSea {
     std::shared_ptr<const Sea<float>> sea_;
     Frame<float> frame_;
     PackedFrame packed_;
-    std::vector<glm::vec4> train_table_;
+    std::vector<glm::vec4> train_table_, ellipse_table_;
     mutable std::mutex mutex_;
 };
 

@@ -206,4 +206,12 @@ glm::dvec3 Rasteriser::weights(std::uint32_t triangle, glm::dvec2 pixel) const {
     return sum > 0.0 ? weight / sum : glm::dvec3(1.0 / 3.0);
 }
 
+glm::dvec2 Rasteriser::relative_change(std::uint32_t triangle, glm::dvec2 pixel) const {
+    const auto corners = corners_on_screen(triangle);
+    const glm::dvec3 plane = glm::cross(corners[1], corners[2]) + glm::cross(corners[2], corners[0]) +
+                             glm::cross(corners[0], corners[1]);
+    const double here = glm::dot(plane, glm::dvec3(pixel, 1.0));
+    return here != 0.0 ? glm::dvec2(plane) / here : glm::dvec2(0.0);
+}
+
 }  // namespace pelagic

@@ -43,6 +43,10 @@ class Rasteriser {
     // the nearest weights.
     glm::dvec3 weights(std::uint32_t triangle, glm::dvec2 pixel) const;
 
+    // How 1/w changes from one pixel to the next, to the right and down, as a part of what it is at the point. It is
+    // linear on the triangle's plane.
+    glm::dvec2 relative_change(std::uint32_t triangle, glm::dvec2 pixel) const;
+
   private:
     // A triangle on the screen, or a part of a clipped one, in 1/256 of a pixel from the top left corner.
     struct Piece {

@@ -14,6 +14,7 @@
 #include "core/base/precision.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
+#include "core/surface/pixel_footprint.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
@@ -280,14 +281,29 @@ class RendererOf final : public Impl {
                 pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
-            batch_.pixel_axis_m[i] = glm::vec<2, T>(pixel_axis_m);
+            const auto pixel = pixel_on_mesh(
+                triangle, first_row, batch_.sea[i],
+                PixelFootprint<double>{.width = pixel_m, .axis_x = pixel_axis_m.x, .axis_y = pixel_axis_m.y});
+            batch_.pixel_axis_m[i] = glm::vec<2, T>(pixel.axis_x, pixel.axis_y);
             // Rounding must not reach the rung below the frame's first.
-            batch_.pixel_m[i] = std::max(static_cast<T>(pixel_m), first_pixel_m_);
+            batch_.pixel_m[i] = std::max(static_cast<T>(pixel.width), first_pixel_m_);
             const glm::dvec3 way = eye - position;
             const double distance = glm::length(way);
             // At the eye itself, which the near plane keeps from happening, up is as good as any.
             batch_.to_eye[i] = distance > 0.0 ? glm::vec3(way / distance) : glm::vec3(0.0f, 0.0f, 1.0f);
         });
+    }
+
+    PixelFootprint<double> pixel_on_mesh(std::uint32_t triangle, int first_row, std::size_t sample,
+                                         PixelFootprint<double> at_rest) const {
+        const double tangent = view_.pixel_tangent();
+        const glm::dvec2 from_middle = seen_at(first_row, sample) - 0.5 * glm::dvec2(view_.resolution);
+        const glm::dvec3 ray =
+            view_.forward + tangent * (from_middle.x * view_.right - from_middle.y * view_.up);
+        const glm::dvec2 nearer =
+            raster_.relative_change(triangle, centre(first_row, sample)) / (sampling_.stride * tangent);
+        return footprint_on_mesh(at_rest, view_.right.x, view_.right.y, view_.up.x, view_.up.y, ray.x, ray.y,
+                                 nearer.x, -nearer.y);
     }
 
     // The batch's samples into the picture's pixels.

@@ -16,8 +16,7 @@ namespace pelagic {
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // 100 000 camera keys are 10 MiB
-constexpr std::size_t kMostOfPath = 4096;                  // in messages [bytes]: no longer one can be opened
+constexpr std::size_t kMostOfPath = 4096;  // in messages [bytes]: no longer one can be opened
 
 // A measured spectrum is data of the scene: its file is read here, and the scene forgets where it came from.
 void load_measured(Reader& reader, const std::filesystem::path& folder, SeaState& sea) {
@@ -107,7 +106,7 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
 Scene load_shot(const std::filesystem::path& file, const FilesCheck& check_files) {
     std::string text;
     try {
-        text = read_text_file(file, kMostBytes);
+        text = read_text_file(file, kMostShotBytes);
     } catch (const TextFileError& error) {
         throw ShotError(line_text(shortened(file.string(), kMostOfPath)) + ": the shot file " + error.what() +
                         "; accepted: a TOML file of at most 16 MiB");

@@ -2,6 +2,7 @@
 // (core/scene/keys.h).
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <stdexcept>
@@ -23,6 +24,8 @@ class ShotError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
+
+inline constexpr std::size_t kMostShotBytes = std::size_t{16} << 20;  // 100 000 camera keys are 10 MiB
 
 // The problems of files that the scene names and whose formats this reader doesn't know: pictures of skies.
 // plugin/light has the check for hosts, check_sky().

@@ -90,9 +90,13 @@ keys = [ { frame = 1, position_m = [0.0, -60.0, 4.0], look_at_m = [0.0, 0.0, 1.0
 
 with checking("the camera sees what the shot's camera sees"):
     scene = bpy.context.scene
-    for frame in (1, 7, 30):
+    smooth = pelagic.Scene.from_file(written(text.replace("[camera]", '[camera]\ninterpolation = "smooth"'), "smooth"))
+    for shot, frame in [(there, frame) for frame in (1, 7, 30)] + [(smooth, frame) for frame in (1, 7, 13, 21, 30)]:
+        if shot == smooth and frame == 1:
+            imported(folder / "smooth.toml")
+            scene = bpy.context.scene
         scene.frame_set(frame)
-        view = pelagic.View.of_scene(there, frame)
+        view = pelagic.View.of_scene(shot, frame)
         seen = scene.camera.matrix_world
         assert np.allclose(seen.translation, view.position_m, atol=1e-4), frame
         for axis, column in ((view.right, 0), (view.up, 1), (-np.array(view.forward), 2)):

@@ -2,18 +2,19 @@
 # Builds the benchmarks and prints their tables, the numbers first. Some half an hour on two cores.
 #   tests/bench/run.sh [PROGRAM…]      default: all, the light last:
 #     frame ocean construction sky choices sampling query stages conservation trains crate bake optics whitecaps
-#     backoff skyline preview fig10 light played memory picture
+#     backoff skyline sharpness preview window fig10 light played memory picture
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
 [ $# -gt 0 ] || set -- frame ocean construction sky choices sampling query stages conservation trains crate bake \
-    optics whitecaps backoff skyline preview fig10 light played memory picture
+    optics whitecaps backoff skyline sharpness preview window fig10 light played memory picture
 targets=()
 for program in "$@"; do
     case $program in
         ocean | played | memory | picture) targets+=(pelagic_python) ;;
         light) targets+=(pelagic pelagic_python) ;;
+        window) targets+=(pelagic) ;;
         *) targets+=("bench_$program") ;;
     esac
 done
@@ -27,6 +28,8 @@ in_blender() {
 for program in "$@"; do
     if [ "$program" = light ]; then
         in_blender blender_light.py "$PELAGIC_ROOT/build/release/pelagic"
+    elif [ "$program" = window ]; then
+        "$here/window.sh" "$PELAGIC_ROOT/build/release/pelagic"
     elif [ -f "$here/blender_$program.py" ]; then
         in_blender "blender_$program.py"
     elif [ "$program" = fig10 ]; then

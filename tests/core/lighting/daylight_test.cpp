@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include "core/base/constants.h"
 #include "core/lighting/atmosphere.h"
+#include "core/lighting/background.h"
 #include "core/lighting/colour.h"
+#include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/sunlight.h"
 
@@ -238,6 +242,47 @@ TEST(Daylight, SmoothWhereTheSunRises) {
         EXPECT_GT(now, last) << elevation;
         last = now;
     }
+}
+
+// The row of the horizon, away from a rising sun, as a lens of 40° and 1280 columns shows it from a low deck: the last
+// of the sky and the first of the sea are no brighter than 1.5 times and no darker than 1/1.5 of what is beside them.
+// Before, the sea's first row was 10 times as bright as the next while the sun's disc rose.
+TEST(Daylight, NoLineOfLightRunsAlongTheHorizon) {
+    constexpr float kPixel = 5.7e-4f;
+    const WaterBody water;
+    double brightest = 0.0, darkest = 1e9;
+    for (int step = 0; step <= 40; step += step >= 5 && step < 20 ? 1 : 5) {
+        const double elevation = -1.0 + 0.1 * step;
+        const Sky sky = sky_at(elevation, step % 2 == 0 ? 2.0 : 6.0);
+        for (const double azimuth : {15.0, 45.0, 90.0, 180.0}) {
+            const double a = azimuth * kPi / 180.0;
+            const auto direction = [&](float z) {
+                return glm::normalize(
+                    glm::vec3(glm::dvec3(std::cos(a), std::sin(a), static_cast<double>(z))));
+            };
+            std::vector<double> rows;  // from above
+            for (const float row : {1.5f, 0.5f})
+                rows.push_back(bright(background(sky, direction(row * kPixel), kPixel).sky));
+            for (const float row : {0.5f, 1.5f, 2.5f}) {
+                const SeaPoint point{.to_eye = -direction(-row * kPixel),
+                                     .slope_variance = {0.025f, 0.02f, 0.0f}};
+                SeaRadiance lit;
+                shade_sea({.whitecaps = false}, sky, water, {&point, 1}, {&lit, 1});
+                rows.push_back(bright(lit.sun + lit.sky + lit.sea));
+            }
+            for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
+                const double more = rows[i] / std::max(rows[i - 1], rows[i + 1]);
+                const double less = rows[i] / std::min(rows[i - 1], rows[i + 1]);
+                brightest = std::max(brightest, more);
+                darkest = std::min(darkest, less);
+                EXPECT_LT(more, 1.5) << elevation << ' ' << azimuth << ' ' << i;
+                EXPECT_GT(less, 1.0 / 1.5) << elevation << ' ' << azimuth << ' ' << i;
+            }
+        }
+    }
+    std::printf(
+        "    the horizon's row over its neighbours: at most %.2f of the brighter, at least %.2f of the darker\n",
+        brightest, darkest);
 }
 
 TEST(Daylight, SmoothInTheTable) {

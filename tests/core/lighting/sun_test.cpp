@@ -288,7 +288,7 @@ TEST(Sun, OnTheHorizonLightsWhatIsBeneathIt) {
                 const auto frame = optics.slope_frame(flat, vec3(s));
                 const vec3 v(dvec3(-std::cos(view), 0.0, std::sin(view)));
                 for (const double azimuth :
-                     {0.0, 0.5 * kRadius, kRadius, 3.0 * kRadius, 0.05, 0.2, 1.0, 2.5}) {
+                     {0.0, 0.5 * kRadius, kRadius, 3.0 * kRadius, 0.05, 0.2, 1.0, 2.5, oracle::kPi}) {
                     const dvec3 l(std::cos(visible.centre) * std::cos(azimuth),
                                   std::cos(visible.centre) * std::sin(azimuth), std::sin(visible.centre));
                     const double found =

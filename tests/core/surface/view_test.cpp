@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -32,6 +34,102 @@ TEST(View, FollowsKeysLinearlyAndStandsStillOutside) {
     expect_near(view_at(camera, 20.0).position_m, {10.0, 0.0, 4.0}, 0.0);
     expect_near(view_at(camera, 99.0).position_m, {10.0, 0.0, 4.0}, 0.0);
     expect_near(view_at(camera, 12.5).forward, {0.0, 1.0, 0.0}, 1e-15);
+}
+
+// Keys at uneven frames, with a stand and turns in them.
+Camera smooth_camera() {
+    Camera camera;
+    camera.interpolation = CameraInterpolation::Smooth;
+    camera.keys = {
+        {.frame = 1, .position_m = {0.0, 0.0, 9.0}, .look_at_m = {0.0, 50.0, 0.0}, .fov_deg = 60.0},
+        {.frame = 31,
+         .position_m = {30.0, 5.0, 2.0},
+         .look_at_m = {0.0, 60.0, 1.0},
+         .fov_deg = 4.0,
+         .roll_deg = 9.0},
+        {.frame = 35,
+         .position_m = {38.0, 5.0, 1.0},
+         .look_at_m = {9.0, 66.0, 4.0},
+         .fov_deg = 1.5,
+         .roll_deg = 8.0},
+        {.frame = 75,
+         .position_m = {38.0, 5.0, 1.0},
+         .look_at_m = {9.0, 66.0, 4.0},
+         .fov_deg = 1.5,
+         .roll_deg = 8.0},
+        {.frame = 90, .position_m = {10.0, -40.0, 30.0}, .look_at_m = {-9.0, 6.0, 2.0}, .fov_deg = 90.0}};
+    return camera;
+}
+
+// What a view shows of its pose, the roll as the tilt of its right side.
+std::array<double, 8> numbers_of(const View& view) {
+    return {view.position_m.x, view.position_m.y, view.position_m.z, view.forward.x,
+            view.forward.y,    view.forward.z,    view.right.z,      view.fov_deg()};
+}
+
+TEST(View, SmoothKeysAreMetAndTheWayBetweenHasNoCorner) {
+    const Camera camera = smooth_camera();
+    Camera straight = camera;
+    straight.interpolation = CameraInterpolation::Linear;
+    constexpr double kStep = 1e-5;
+    double largest_corner = 0.0;
+    for (const CameraKey& key : camera.keys) {
+        EXPECT_EQ(numbers_of(view_at(camera, key.frame)), numbers_of(view_at(straight, key.frame)));
+        if (&key == &camera.keys.front() || &key == &camera.keys.back()) continue;
+        const auto jump = [&](const Camera& of, std::size_t i) {
+            const auto at = [&](double frame) { return numbers_of(view_at(of, frame))[i]; };
+            return std::abs(at(key.frame + kStep) - 2.0 * at(key.frame) + at(key.frame - kStep)) / kStep;
+        };
+        for (std::size_t i = 0; i < 8; ++i) {
+            EXPECT_LT(jump(camera, i), 1e-3) << "number " << i << ", key at " << key.frame;
+            largest_corner = std::max(largest_corner, jump(straight, i));
+        }
+    }
+    EXPECT_GT(largest_corner, 1.0) << "nothing to round";
+}
+
+TEST(View, SmoothHeightsAndAnglesKeepBetweenTheirKeys) {
+    const Camera camera = smooth_camera();
+    for (std::size_t i = 0; i + 1 < camera.keys.size(); ++i) {
+        const CameraKey &from = camera.keys[i], &to = camera.keys[i + 1];
+        for (int step = 0; step <= 100; ++step) {
+            const View view = view_at(camera, from.frame + 0.01 * step * (to.frame - from.frame));
+            const auto expect_between = [&](double value, double a, double b) {
+                EXPECT_GE(value, std::min(a, b) - 1e-9) << "between keys " << i << " and " << i + 1;
+                EXPECT_LE(value, std::max(a, b) + 1e-9) << "between keys " << i << " and " << i + 1;
+            };
+            expect_between(view.position_m.z, from.position_m.z, to.position_m.z);
+            expect_between(view.fov_deg(), *from.fov_deg, *to.fov_deg);
+        }
+    }
+    EXPECT_EQ(view_at(camera, 50.0), view_at(camera, 40.0)) << "equal keys are a stand";
+    EXPECT_EQ(view_at(camera, -5.0), view_at(camera, 1.0));
+    EXPECT_EQ(view_at(camera, 95.0), view_at(camera, 90.0));
+}
+
+TEST(View, OneOrTwoSmoothKeysAreTheLinearOnes) {
+    for (const std::size_t count : {1, 2}) {
+        Camera smooth = smooth_camera();
+        smooth.keys.resize(count);
+        Camera straight = smooth;
+        straight.interpolation = CameraInterpolation::Linear;
+        for (double frame = 0.0; frame < 40.0; frame += 0.25)
+            EXPECT_EQ(view_at(smooth, frame), view_at(straight, frame));
+    }
+}
+
+// Keys on a circle, at any angle to the axes, give nearly the circle: straight lines would cut off 8 % of its radius.
+TEST(View, ASmoothWayDoesNotDependOnTheAxes) {
+    for (const double turned : {0.0, 0.3, 0.7}) {
+        Camera camera;
+        camera.interpolation = CameraInterpolation::Smooth;
+        for (int i = 0; i < 9; ++i) {
+            const double angle = turned + i * kPi / 4.0;
+            camera.keys.push_back({.frame = 10 * i, .position_m = {std::cos(angle), std::sin(angle), 2.0}});
+        }
+        for (double frame = 10.0; frame <= 70.0; frame += 0.5)
+            EXPECT_NEAR(glm::length(glm::dvec2(view_at(camera, frame).position_m)), 1.0, 0.02) << turned;
+    }
 }
 
 TEST(View, KeysMayZoomAndRoll) {

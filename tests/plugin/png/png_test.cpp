@@ -73,6 +73,22 @@ TEST(Png, SaysThatItIsSrgbAndOfEightBits) {
     EXPECT_EQ(file, encode({.width = 4, .height = 2, .bytes = pattern(4, 2)}));
 }
 
+TEST(Png, HoldsAlpha) {
+    std::vector<std::uint8_t> bytes;
+    for (int i = 0; i < 4 * 5 * 3; ++i) bytes.push_back(static_cast<std::uint8_t>(7 * i));
+    const std::string file = encode({.width = 5, .height = 3, .bytes = bytes, .has_alpha = true});
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    ASSERT_NE(png_image_begin_read_from_memory(&image, file.data(), file.size()), 0) << image.message;
+    image.format = PNG_FORMAT_RGBA;
+    std::vector<std::uint8_t> read(PNG_IMAGE_SIZE(image));
+    ASSERT_NE(png_image_finish_read(&image, nullptr, read.data(), 0, nullptr), 0) << image.message;
+    EXPECT_EQ(read, bytes);
+    EXPECT_TRUE(is_whole(file));
+    EXPECT_FALSE(is_whole(file.substr(0, file.size() - 20)));
+    EXPECT_THROW(encode({.width = 5, .height = 4, .bytes = bytes, .has_alpha = true}), std::invalid_argument);
+}
+
 TEST(Png, RefusesSizesThatItCannotHold) {
     const std::vector<std::uint8_t> rgb = pattern(4, 2);
     EXPECT_THROW(encode({.width = 0, .height = 2, .bytes = {}}), std::invalid_argument);

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <utility>
+
 #include "core/scene/keys.h"
 
 namespace pelagic {
@@ -23,7 +27,10 @@ TEST(Panel, ShowsKeysOfTheTable) {
                 EXPECT_LT(k.soft->low, k.soft->high) << k.path;
                 EXPECT_TRUE(!k.soft->is_logarithmic || k.soft->low > 0.0) << k.path;
             };
-            if (key->type == KeyType::Number || key->type == KeyType::Integer) expect_slider(*key);
+            if (key->type == KeyType::Integer && !key->soft)
+                EXPECT_LT(key->least, key->largest) << path;
+            else if (key->type == KeyType::Number || key->type == KeyType::Integer)
+                expect_slider(*key);
             for (const Key& inner : key->entry_keys) expect_slider(inner);
         }
     }
@@ -36,9 +43,66 @@ TEST(Controls, BeginAsTheShotHasIt) {
     const Controls still = controls_for(scene);
     EXPECT_EQ(still.frame, 25.0);
     EXPECT_FALSE(still.draw.lighting.whitecaps);
-    EXPECT_FALSE(still.repeat) << "a sea to be watched";
-    scene.camera.keys = {{}, {.frame = 40}};
-    EXPECT_TRUE(controls_for(scene).repeat) << "a shot to be watched";
+}
+
+TEST(Controls, ThePlayheadStaysInTheShot) {
+    Shot shot;
+    for (const auto& [first, last] : {std::pair{1, 24}, std::pair{-5, 3}, std::pair{7, 7}}) {
+        shot.first_frame = first;
+        shot.last_frame = last;
+        for (const bool repeat : {true, false}) {
+            Scene scene;
+            scene.shot = shot;
+            Controls controls = controls_for(scene);
+            EXPECT_TRUE(controls.repeat && controls.playing);
+            controls.repeat = repeat;
+            double furthest = controls.frame;
+            for (int picture = 0; picture < 900; ++picture) {
+                play_on(controls, 0.11, shot);
+                furthest = std::max(furthest, controls.frame);
+                ASSERT_GE(controls.frame, first);
+                ASSERT_LT(controls.frame, last + 1.0) << (repeat ? "repeated" : "once");
+            }
+            EXPECT_GE(furthest, last) << "it plays all of it";
+            EXPECT_EQ(controls.playing, repeat || first == last);
+            if (!repeat && first != last) {
+                EXPECT_EQ(controls.frame, last);
+                play_or_pause(controls, shot);
+                EXPECT_TRUE(controls.playing && controls.frame == first) << "from the start again";
+            }
+        }
+        Controls controls;
+        for (const double frame : {-100.0, 271.0, first + 0.5}) {
+            go_to(controls, frame, shot);
+            EXPECT_GE(controls.frame, first);
+            EXPECT_LE(controls.frame, last);
+        }
+    }
+}
+
+TEST(Controls, WhatHappensBeforeTheFirstSeaIsSaid) {
+    Readout readout;
+    EXPECT_EQ(sea_words(readout).find("0.00"), std::string::npos);
+    EXPECT_FALSE(sea_words(readout).empty());
+    readout.building_sea = true;
+    readout.built = 0.42;
+    readout.waited_s = 12.0;
+    EXPECT_EQ(sea_words(readout), "Building the sea: 42 %, 12 s");
+    readout.has_sea = true;
+    EXPECT_NE(sea_words(readout).find("last one plays on"), std::string::npos);
+    readout.building_sea = false;
+    readout.significant_height_m = 2.91;
+    EXPECT_EQ(sea_words(readout).find("Significant height 2.91 m"), 0u);
+}
+
+// Each thing that an artist asked for can be turned.
+TEST(Panel, HasTheWholeWeather) {
+    std::string all;
+    for (const PanelSection& section : panel_sections())
+        for (const std::string_view path : section.paths) all += std::string(path) + ' ';
+    for (const char* path :
+         {"shot.seed", "sea.depth_m", "sea.spectrum", "sea.spreading", "sea.swell", "effects.whitecaps"})
+        EXPECT_NE(all.find(path), std::string::npos) << path;
 }
 
 }  // namespace

@@ -46,11 +46,12 @@ struct Answers {
 
 // The points asked of both: rest [m], cell and pixel [m].
 struct Asked {
-    std::vector<glm::vec2> rest_m;
+    std::vector<glm::vec2> rest_m, cell_axis_m, pixel_axis_m;
     std::vector<float> cell_m, pixel_m;
 };
 
-// Footprints from below the ladder to beyond it, at distances where such pixels occur.
+// Footprints from below the ladder to beyond it, at distances where such pixels occur: round ones, and ellipses up to
+// thirty times as long as wide.
 Asked points(std::size_t count) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
@@ -61,6 +62,10 @@ Asked points(std::size_t count) {
         asked.rest_m.emplace_back(distance_m * std::cos(angle), distance_m * std::sin(angle));
         asked.pixel_m.push_back(pixel_m);
         asked.cell_m.push_back(8.0f * pixel_m);
+        const float turn = 6.2831853f * unit(random),
+                    ratio = i % 3 == 0 ? 0.0f : std::pow(30.0f, unit(random));
+        asked.pixel_axis_m.push_back(ratio * pixel_m * glm::vec2(std::cos(turn), std::sin(turn)));
+        asked.cell_axis_m.push_back(8.0f * asked.pixel_axis_m.back());
     }
     return asked;
 }
@@ -87,7 +92,9 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
                            .count = count,
                            .rest_m = {asked.rest_m.data()},
                            .cell_m = {asked.cell_m.data()},
-                           .pixel_m = {asked.pixel_m.data()}},
+                           .pixel_m = {asked.pixel_m.data()},
+                           .cell_axis_m = {asked.cell_axis_m.data()},
+                           .pixel_axis_m = {asked.pixel_axis_m.data()}},
              results);
 
     gpu::need_context();
@@ -96,8 +103,10 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
     SeaTextures textures;
     textures.upload(packed);
     std::vector<glm::vec4> inputs;
-    for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t i = 0; i < count; ++i) {
         inputs.emplace_back(asked.rest_m[i], asked.cell_m[i], asked.pixel_m[i]);
+        inputs.emplace_back(asked.cell_axis_m[i], asked.pixel_axis_m[i]);
+    }
     ShaderSource query_source;
     query_source.add_constants(query_constants(*packed.layout(), asks_coverage));
     query_source.add_files(query_files());
@@ -105,16 +114,16 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
         const ShaderProgram program = gpu::program_of(gpu::caller(query_source, "", body));
         program.use();
         textures.bind(program, at.origin_m);
-        return gpu::run(program, inputs, 1);
+        return gpu::run(program, inputs, 2);
     };
     const auto cells =
-        ask("vec4 p = given(0); vec3 d = query_cell(vec2(p.x, p.y), p.z);\n"
+        ask("vec4 p = given(0); vec3 d = query_cell(vec2(p.x, p.y), vec3(p.z, given(1).xy));\n"
             "answer = vec4(p.x + d.y, p.y + d.z, d.x, 1.0);");
     const auto pixels =
-        ask("vec4 p = given(0); PixelAnswer a = query_pixel(vec2(p.x, p.y), p.w);\n"
+        ask("vec4 p = given(0); PixelAnswer a = query_pixel(vec2(p.x, p.y), vec3(p.w, given(1).zw));\n"
             "answer = vec4(a.normal, a.coverage);");
     const auto hidden =
-        ask("vec4 p = given(0); PixelAnswer a = query_pixel(vec2(p.x, p.y), p.w);\n"
+        ask("vec4 p = given(0); PixelAnswer a = query_pixel(vec2(p.x, p.y), vec3(p.w, given(1).zw));\n"
             "answer = vec4(a.hidden.xx, a.hidden.yy, a.hidden.xy, a.rung);");
 
     const auto hs_m = static_cast<float>(4.0 * std::sqrt(sea->total().m0));

@@ -38,7 +38,8 @@ LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 640x400x24" "$program" preview
 grep -q "the camera is under water" "$folder/diving.txt" || fail "no word of the water: $(cat "$folder/diving.txt")"
 
 LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s "-screen 0 640x400x24" "$program" preview "$folder/small.toml" \
-    --size 640x360 --scale 4 --screenshot "$folder/window.png" --after 3
+    --size 640x360 --screenshot "$folder/window.png" --after 3 > "$folder/window.txt"
+grep -q "320 x 180, drawn by" "$folder/window.txt" || fail "not half as large by itself: $(cat "$folder/window.txt")"
 
 # The panel covers the left half: sky and sea are on the right, text and sliders on the left.
 python3 - "$folder/window.png" <<'PYTHON'

@@ -2,6 +2,8 @@
 #include "plugin/render/picture_files.h"
 
 #include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
@@ -249,6 +251,71 @@ TEST(PictureFiles, NameTheKeysThatTheyDependOn) {
         EXPECT_EQ(bytes.find("pelagic." + key.path + '\0') != std::string::npos, is_given && is_said)
             << key.path;
     }
+}
+
+// Every layer of the table under its channels' names, and no other; alpha; and what the numbers mean, in OpenEXR's own
+// words.
+TEST(PictureFiles, HoldTheLayersThatAreAskedFor) {
+    const glm::ivec2 resolution(5, 3);
+    Picture picture = pattern(resolution);
+    const std::size_t pixels = picture.layers.size();
+    for (const PictureLayerRow& row : kPictureLayers)
+        for (std::size_t i = 0; !row.light && i < pixels * row.components; ++i)
+            picture.data[index(row.layer)].push_back(static_cast<float>(i) / 64.0f);
+    picture.alpha.assign(pixels, 0.5f);
+    Scene scene;
+    const Sky sky = some_sky(100.0f);
+    for (const PictureLayerRow& asked : kPictureLayers) {
+        RenderOptions options;
+        options.layers.reset().set(index(asked.layer));
+        const std::string bytes = encode_exr({scene, options, sky, ""}, picture, 1);
+        const Read file = read(bytes, resolution);
+        EXPECT_EQ(file.channels.size(), 4 + asked.components) << asked.name;  // with R, G, B and A
+        EXPECT_EQ(file.channels.at("A").at(7), 0.5f);
+        for (std::size_t c = 0; c < asked.components; ++c) {
+            const std::vector<float>& values = file.channels.at(asked.channels[c]);
+            for (std::size_t i = 0; i < pixels; ++i) {
+                const float expected = asked.light
+                                           ? (picture.layers[i].*asked.light)[static_cast<int>(c)]
+                                           : picture.data[index(asked.layer)][i * asked.components + c];
+                ASSERT_NEAR(values[i], expected, 5e-4f * expected) << asked.channels[c] << i;
+            }
+        }
+    }
+    for (const char* light : {"daylight", "skies/noon.exr"}) {
+        scene.light.sky = light;
+        const RenderOptions options;
+        const std::string bytes = encode_exr({scene, options, sky, ""}, picture, 1);
+        MemoryStream stream(bytes);
+        const Imf::InputFile file(stream);
+        const auto& primaries =
+            file.header().typedAttribute<Imf::ChromaticitiesAttribute>("chromaticities").value();
+        EXPECT_EQ(primaries.red, Imath::V2f(0.64f, 0.33f));
+        EXPECT_EQ(primaries.white, Imath::V2f(0.3127f, 0.329f));
+        // 1 is a thousand cd/m²; the unit of somebody's picture isn't known.
+        const auto* white = file.header().findTypedAttribute<Imf::FloatAttribute>("whiteLuminance");
+        ASSERT_EQ(white != nullptr, scene.light.sky == Light{}.sky);
+        if (white) {
+            EXPECT_EQ(white->value(), 1000.0f);
+        }
+    }
+}
+
+// What is asked for is a part of what a picture is made of.
+TEST(PictureFiles, AreOfTheirShutterAlphaAndLayers) {
+    const Scene scene;
+    const auto of = [&](const auto& change) {
+        RenderOptions options;
+        change(options);
+        return PictureFingerprint({.scene = scene, .options = options, .sky_content = ""}).of(1);
+    };
+    std::vector<std::string> all{
+        of([](RenderOptions&) {}), of([](RenderOptions& o) { o.shutter_frames = 0.5; }),
+        of([](RenderOptions& o) { o.shutter_frames = 0.25; }), of([](RenderOptions& o) { o.alpha = true; })};
+    for (const PictureLayerRow& row : kPictureLayers)
+        all.push_back(of([&](RenderOptions& o) { o.layers.flip(index(row.layer)); }));
+    std::sort(all.begin(), all.end());
+    EXPECT_EQ(std::adjacent_find(all.begin(), all.end()), all.end());
 }
 
 TEST(PictureFiles, NamesHaveFourDigits) {

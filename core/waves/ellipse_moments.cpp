@@ -1,0 +1,153 @@
+#include "core/waves/ellipse_moments.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/constants.h"
+#include "core/plan/taps.h"
+#include "core/spectrum/gauss.h"
+
+namespace pelagic {
+namespace {
+
+constexpr int kNodesARung = EllipseTable::kNodesARung, kNodesAnOctave = EllipseTable::kNodesAnOctave,
+              kRatios = EllipseTable::kRatios, kDirections = EllipseTable::kDirections;
+constexpr int kSectors = 48;  // of half a turn: a wave and its opposite count alike
+static_assert(kSectors % EllipseTable::kDirections == 0);
+
+// A few per cent of a cascade's band, by direction.
+struct Band {
+    int cascade;
+    double k;                                      // where its slopes are
+    std::array<double, kSectors> slopes, strains;  // k²E and choppiness² coth² k²E of each sector
+};
+
+std::vector<Band> bands_of(const Plan& plan) {
+    const DirectionalSpectrum& spectrum = plan.from->spectrum;
+    const double choppiness2 = plan.choppiness * plan.choppiness;
+    const auto panels = spectrum.panels();
+    const auto& rule = GaussLegendre<4>::rule();
+    std::vector<Band> bands;
+    for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
+        const CascadePlan& cascade = plan.cascades[c];
+        // Resolutions that were chosen for the finest footprint end where nothing passes, and must not decide about
+        // coarser ones' bits.
+        const double end = plan.from->scene.waves.cascades.empty()
+                               ? cascade.k_upper
+                               : std::min(cascade.k_upper, kPi * cascade.resolution / cascade.size_m);
+        for (std::size_t p = 0; p + 1 < panels.size(); ++p) {
+            const double from = std::max(panels[p], cascade.k_lower), to = std::min(panels[p + 1], end);
+            if (!(from < to)) continue;
+            double energy = 0.0, slopes = 0.0, strains = 0.0, k = 0.0;
+            for (std::size_t i = 0; i < rule.node.size(); ++i) {
+                const double at = 0.5 * (from + to) + 0.5 * (to - from) * rule.node[i];
+                const double e = 0.5 * (to - from) * rule.weight[i] * spectrum.omnidirectional(at);
+                const double ratio = spectrum.dispersion().horizontal_ratio(at);
+                energy += e;
+                k += at * at * at * e;
+                slopes += at * at * e;
+                strains += choppiness2 * ratio * ratio * at * at * e;
+            }
+            if (!(slopes > 0.0)) continue;
+            Band band{.cascade = c, .k = k / slopes, .slopes = {}, .strains = {}};
+            const double all = spectrum.arc(band.k, 0.0, kTwoPi), step = kPi / kSectors;
+            if (!(all > 0.0)) continue;
+            for (int s = 0; s < kSectors; ++s) {
+                const double first = (s - 0.5) * step;
+                const double share = (spectrum.arc(band.k, first, first + step) +
+                                      spectrum.arc(band.k, first + kPi, first + kPi + step)) /
+                                     all;
+                band.slopes[s] = share * slopes;
+                band.strains[s] = share * strains;
+            }
+            bands.push_back(band);
+        }
+    }
+    return bands;
+}
+
+}  // namespace
+
+EllipseMoments::EllipseMoments(const Plan& plan, const std::vector<double>& ladder_m)
+    : widths_(kNodesARung * (static_cast<int>(ladder_m.size()) - 1) + 1) {
+    const std::vector<Band> bands = bands_of(plan);
+    std::vector<double> whole_m;
+    for (const CascadePlan& cascade : plan.cascades)
+        whole_m.push_back(whole_footprint_m(cascade, plan.filter));
+    values_.resize(static_cast<std::size_t>(widths_) * kRatios * kDirections);
+    std::array<HiddenMoments<double>, kSectors> wave;  // moments of a sector, for slopes and strains of 1
+    for (int s = 0; s < kSectors; ++s) {
+        const double x = std::cos(kPi * s / kSectors), y = std::sin(kPi * s / kSectors);
+        wave[s] = {x * x,         x * y,         y * y,         x * x * x * x,
+                   x * x * x * y, x * x * y * y, x * y * y * y, y * y * y * y};
+    }
+    const auto node = [&](int width, int ratio) {
+        const int lower = std::min(width / kNodesARung, static_cast<int>(ladder_m.size()) - 2);
+        const double t = static_cast<double>(width) / kNodesARung - lower;
+        const double width_m = (1.0 - t) * ladder_m[lower] + t * ladder_m[lower + 1];
+        const double length_m = width_m * std::exp2(static_cast<double>(ratio) / kNodesAnOctave);
+        // By the angle between wave and axis, and the wave's own: what is hidden of slopes and strains.
+        std::array<std::array<double, kSectors>, kSectors> slopes{}, strains{};
+        for (const Band& band : bands) {
+            const double shown = (1.0 - t) * plan.filter.weight(band.k, ladder_m[lower]) +
+                                 t * plan.filter.weight(band.k, ladder_m[lower + 1]);
+            const Taps<double> taps = taps_of(std::max(width_m, whole_m[band.cascade]), length_m);
+            if (!(shown > 0.0) || last_tap(taps.reach) == 0) continue;
+            for (int angle = 0; angle < kSectors; ++angle) {
+                const double response = tap_response(taps, band.k * std::cos(kPi * angle / kSectors));
+                const double hidden = shown * shown * (1.0 - response) * (1.0 + response);
+                for (int s = 0; s < kSectors; ++s) {
+                    slopes[angle][s] += hidden * band.slopes[s];
+                    strains[angle][s] += hidden * band.strains[s];
+                }
+            }
+        }
+        for (int d = 0; d < kDirections; ++d) {
+            HiddenMoments<double> sum{};
+            for (int s = 0; s < kSectors; ++s) {
+                const int angle = (s - d * (kSectors / kDirections) + kSectors) % kSectors;
+                for (std::size_t m = 0; m < sum.size(); ++m)
+                    sum[m] += wave[s][m] * (m < kHiddenSlopes ? slopes : strains)[angle][s];
+            }
+            HiddenMoments<float>& to =
+                values_[(static_cast<std::size_t>(width) * kRatios + ratio) * kDirections + d];
+            std::transform(sum.begin(), sum.end(), to.begin(),
+                           [](double v) { return static_cast<float>(v); });
+        }
+    };
+    tbb::parallel_for(0, widths_ * (kRatios - 1),
+                      [&](int i) { node(i / (kRatios - 1), i % (kRatios - 1) + 1); });
+}
+
+HiddenMoments<double> EllipseMoments::hidden(double rung, double ratio, double direction) const {
+    HiddenMoments<double> sum{};
+    if (values_.empty()) return sum;
+    struct At {
+        int node;
+        double share;  // of the next
+    };
+    const auto between = [](double x, int nodes) {
+        const int node = std::clamp(static_cast<int>(x), 0, std::max(nodes - 2, 0));
+        return At{node, x - node};
+    };
+    const At w = between(rung * kNodesARung, widths_);
+    const At r = between(std::log2(ratio) * kNodesAnOctave, kRatios);
+    const double turn = direction / kPi;
+    const double around = (turn - std::floor(turn)) * kDirections;
+    const int before = std::min(static_cast<int>(around), kDirections - 1);
+    for (int corner = 0; corner < 8; ++corner) {
+        const int dw = corner & 1, dr = corner >> 1 & 1, dd = corner >> 2;
+        const double share = (dw ? w.share : 1.0 - w.share) * (dr ? r.share : 1.0 - r.share) *
+                             (dd ? around - before : 1.0 - (around - before));
+        if (share == 0.0) continue;
+        const HiddenMoments<float>& of =
+            values_[(static_cast<std::size_t>(w.node + dw) * kRatios + r.node + dr) * kDirections +
+                    (before + dd) % kDirections];
+        for (std::size_t m = 0; m < sum.size(); ++m) sum[m] += share * static_cast<double>(of[m]);
+    }
+    return sum;
+}
+
+}  // namespace pelagic

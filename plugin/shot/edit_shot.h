@@ -1,0 +1,16 @@
+// A shot file's text with other values.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// `text`, a shot file that describes `base`, with the keys written into it whose values differ in `scene`, each where it
+// stands or else in its table; comments and everything else stay. Text that gives its tables in another way than under
+// their [headers] or inline may come out wrong: read it again, with parse_shot(). ShotError for what is no TOML.
+std::string edited_shot(std::string_view text, const Scene& scene, const Scene& base);
+
+}  // namespace pelagic

@@ -18,6 +18,7 @@ import math
 
 WATER_INDEX = 1.34
 SPREAD = 0.2
+NESTED = 0.75  # kNested of special.glsl
 LEAST_VARIANCE = 1e-7  # of a glassy sea
 LEAST_ALPHA = 5e-4  # a third of what the sun's own width adds; below, Cycles takes a lobe for a mirror, which no lamp lights
 
@@ -31,8 +32,8 @@ NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0472
 
 def add_facets(tree, ripples, ripple_length_m, detail_distance_m, wind_angle, time):
     """Adds the group. time: a vector, the ripples' places along z and w of their noise [s]. Normal and Roughness of a
-    sample's lobe; Fresnel: what it reflects; Reflection: that of it which no wave blocks; Foam Ratio: how much more foam
-    shows of itself than water (foam.glsl)."""
+    sample's lobe; Fresnel: what it reflects; Reflection: that of it which no wave blocks. Light that
+    meets hidden waves twice (sky.glsl, sea.glsl) is left out: a twentieth at grazing angles."""
     return tree.call("Pelagic Facets", _facets, {"Ripples": ripples, "Ripple Length": ripple_length_m,
                                                  "Detail Distance": detail_distance_m, "Wind Angle": wind_angle,
                                                  "Time": time})
@@ -103,9 +104,9 @@ def _facets(tree, asked):
     fresnel = (steep_part + flat_part) / (steep + flat)
     x = x + own * ((flat_part - steep_part) / (flat_part + steep_part) - (flat - steep) / (flat + steep))
 
-    # The part that no wave blocks on the way of the mirrored light l: (1 + Λv)/(1 + Λv + Λl). Cycles itself leaves out
-    # what a lobe mirrors below the horizon, hence the mean height of the rest of it, and takes away what the lobe's facets
-    # hide of each other, which is in Λ already.
+    # What the eye sees of the facet and the mirrored light l reaches, over what Smith's masking, by which facets are drawn,
+    # shows of it: lit_part() of slopes.glsl. Cycles itself leaves out what a lobe mirrors below the horizon, hence the
+    # mean height of the rest of it, and takes away what the lobe's facets hide of each other, which is in Λ already.
     s_x, s_y = slope(x)
     upright = 1.0 / (1.0 + s_x * s_x).plus_product(s_y, s_y).sqrt()
     tilted = (k + x).at_least(0.0)
@@ -114,7 +115,11 @@ def _facets(tree, asked):
     blur = 2.0 * sigma * own
     l_z = 0.5 * (l_z + (l_z * l_z).plus_product(2.5 * blur, blur).sqrt())
     seen = 1.0 + _smith_lambda(tree, k)
-    open_part = seen / (seen + _smith_lambda(tree, l_z / deviation(l_x, l_y)))
+    l_deviation = deviation(l_x, l_y)
+    nested = NESTED * seen * (1.0 - (-2.0 * k * tilted).at_least(-80.0).exp())
+    reached = 1.0 - (-2.0 * sigma * tilted * l_z / (l_deviation * l_deviation)).at_least(-80.0).exp()
+    open_part = ((1.0 - NESTED) * seen / (seen + _smith_lambda(tree, l_z / l_deviation))).plus_product(nested, reached)
+    fresnel_seen = fresnel * (1.0 - NESTED + nested)  # weighted by visible_part() over Smith's
     open_part = open_part * (1.0 + _smith_lambda(tree, tilted / own.at_least(1e-3))).at_most(1.5)
     facet = (normal + x_axis * -s_x + y_axis * -s_y).normalized()
 
@@ -130,9 +135,8 @@ def _facets(tree, asked):
 
     return {"Normal": transformed(tree, facet, "NORMAL", "OBJECT", "WORLD").normalized(),
             "Roughness": (2.0 * lobe).sqrt().at_least(LEAST_ALPHA).sqrt(),
-            "Fresnel": fresnel, "Reflection": fresnel * open_part,
-            "Foam Normal": transformed(tree, foam_facet, "NORMAL", "OBJECT", "WORLD").normalized(),
-            "Foam Ratio": (1.0 + _smith_lambda(tree, foam_k)) / seen}
+            "Fresnel": fresnel_seen, "Reflection": fresnel * open_part,
+            "Foam Normal": transformed(tree, foam_facet, "NORMAL", "OBJECT", "WORLD").normalized()}
 
 
 def _slope_frame(tree, _):

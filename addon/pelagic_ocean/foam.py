@@ -9,9 +9,9 @@ DENSE = 0.4  # the share of dense foam, the mean over the foam's lifetime: foam.
 MEAN, DEVIATION, A, B = 1.0319, 0.2058, 1.5438, 0.0912
 
 
-def add_foam(tree, coverage, ratio, size, detail_distance_m, wind_angle):
+def add_foam(tree, coverage, size, detail_distance_m, wind_angle):
     """Adds the group. Foam: the share of it that the eye sees; Density: of what is there, 0 … 1."""
-    return tree.call("Pelagic Foam", _foam, {"Coverage": coverage, "Ratio": ratio, "Size": size,
+    return tree.call("Pelagic Foam", _foam, {"Coverage": coverage, "Size": size,
                                              "Detail Distance": detail_distance_m, "Wind Angle": wind_angle})
 
 
@@ -31,8 +31,7 @@ def _foam(tree, asked):
     away = tree.add("ShaderNodeCameraData", output="View Distance") / asked["Detail Distance"]
     detail = 1.0 / (1.0 + away * away)
     mask, density = tree.mix(detail, coverage, mask), tree.mix(detail, DENSE, density)
-    # visible_coverage() of foam.glsl; nothing where there is none.
-    seen = asked["Coverage"].above(0.0) * mask * asked["Ratio"] / (mask * (asked["Ratio"] - 1.0) + 1.0)
+    seen = asked["Coverage"].above(0.0) * mask  # nothing where there is none
     return {"Foam": seen, "Density": density}
 
 

@@ -105,7 +105,7 @@ def new_material():
 
     part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
     coverage = tree.attribute("whitecap_coverage", "Fac")
-    foam = add_foam(tree, coverage, part["Foam Ratio"], size=1.0,
+    foam = add_foam(tree, coverage, size=1.0,
                     detail_distance_m=400.0, wind_angle=wind)
 
     mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],

@@ -189,8 +189,9 @@ vec2 mean_visible_slope(VisibleSlopes seen) {
 // times visible_part(): five coefficients, for θ 0 … 90°, σ_v 0.005 … 0.4 and half to twice as much across.
 // The error times F̄, its share of the light, is at most 0.014; rms 0.005.
 float reflected_again(vec3 v, vec3 variance) {
-    float sine = max(sqrt(v.x * v.x + v.y * v.y), 1.0e-6f);
-    float sigma = max(sqrt(max(variance_towards(v, variance), 0.0f)) / sine, 1.0e-6f);
+    float sine = sqrt(v.x * v.x + v.y * v.y);
+    vec3 towards = sine > 1.0e-6f ? v / sine : vec3(1.0f, 0.0f, 0.0f);
+    float sigma = sqrt(max(variance_towards(towards, variance), 1.0e-12f));
     float across = sqrt(max(determinant_of(variance), 0.0f)) / sigma;
     float kappa = max(v.z, 0.0f) / ((1.0f + sine) * sigma);
     float power = 4.513f * sqrt(kappa) + kappa * (1.05f * across - 2.903f) + 3.531f * sigma - 4.119f;

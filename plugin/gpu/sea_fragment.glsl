@@ -1,24 +1,9 @@
 // A pixel of the sea: the query at the point at rest that it shows, and the light from there.
 
-in vec2 rest_m;
-in vec3 pixel_m;  // width and long axis, on the sea at rest
-in vec3 from_eye_m;
-
 uniform float curvature_per_m;
 
-// On the triangle that is drawn.
-vec3 pixel_on_mesh() {
-    float tangent = length(view_right);
-    if (!(tangent > 0.0)) return pixel_m;  // parallel rays
-    vec3 ray = view_forward + view_right * (gl_FragCoord.x - view_centre.x) + view_up * (gl_FragCoord.y - view_centre.y);
-    vec2 nearer = vec2(dFdx(gl_FragCoord.w), dFdy(gl_FragCoord.w)) / (gl_FragCoord.w * tangent);
-    PixelFootprint drawn =
-        footprint_on_mesh(PixelFootprint(pixel_m.x, pixel_m.y, pixel_m.z), view_right.x / tangent,
-                          view_right.y / tangent, view_up.x / tangent, view_up.y / tangent, ray.x, ray.y, nearer.x, nearer.y);
-    return vec3(drawn.width, drawn.axis_x, drawn.axis_y);
-}
-
 void main() {
+    read_point();
     if (kWireframe) {
         write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), vec3(0.0), 1.0);
         return;
@@ -36,7 +21,7 @@ void main() {
                                            sky_irradiance, water_reflectance));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)
-        path = air_path(-pixel_ray(), length(from_eye_m),
+        path = air_path(-pixel_ray(), point_distance_m(),
                         AirView(air_azimuth, air_to_sun, air_reach_m.x, air_reach_m.y, air_reach_m.z, air_sky_rows.x, air_sky_rows.y));
     write_terms(terms.sun * path.transmittance, terms.sky * path.transmittance, terms.sea * path.transmittance,
                 terms.foam * path.transmittance, path.scattered, 1.0);

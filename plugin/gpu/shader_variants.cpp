@@ -31,6 +31,14 @@ std::vector<std::string_view> output_files(const DrawOptions& options) {
     return {"plugin/gpu/sea_outputs.glsl"};
 }
 
+const char* vertex_file(const DrawOptions& options) {
+    return options.for_host ? "plugin/gpu/host_vertex.glsl" : "plugin/gpu/sea_vertex.glsl";
+}
+const char* points_file(const DrawOptions& options) {
+    return is_lit_afterwards(options) ? "plugin/gpu/sea_points_texture.glsl"
+                                      : "plugin/gpu/sea_points_in.glsl";
+}
+
 // The constants that the shaders of sea and sky share.
 std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
@@ -93,6 +101,10 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
            "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
 }
 
+bool is_lit_afterwards(const DrawOptions& options) {
+    return !options.for_host && !options.wireframe;
+}
+
 ShaderVariant::ShaderVariant(std::string constants, std::vector<std::string_view> vertex,
                              std::vector<std::string_view> fragment)
     : constants_(std::move(constants)), vertex_(std::move(vertex)), fragment_(std::move(fragment)) {
@@ -115,14 +127,21 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     return {query_constants(layout, coverage) + lighting_constants(lighting, sky_map_size) +
                 picture_constants(options),
-            joined({query_files(),
-                    {options.for_host ? "plugin/gpu/host_vertex.glsl" : "plugin/gpu/sea_vertex.glsl"}}),
+            is_lit_afterwards(options) ? std::vector<std::string_view>{"plugin/gpu/full_vertex.glsl"}
+                                       : joined({query_files(), {vertex_file(options)}}),
             joined({query_files(),
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
                     {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "plugin/gpu/rays.glsl"},
                     output_files(options),
-                    {"plugin/gpu/false_colour.glsl", "plugin/gpu/sea_fragment.glsl"}})};
+                    {"plugin/gpu/false_colour.glsl", points_file(options), "plugin/gpu/sea_fragment.glsl"}})};
+}
+
+ShaderVariant ShaderVariant::of_points(const SeaLayout& layout) {
+    return {query_constants(layout, false), joined({query_files(), {vertex_file({})}}),
+            joined({query_files(),
+                    {"plugin/gpu/rays.glsl", "plugin/gpu/sea_points_in.glsl",
+                     "plugin/gpu/sea_points_fragment.glsl"}})};
 }
 
 ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size) {

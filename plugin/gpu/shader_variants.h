@@ -11,9 +11,15 @@
 
 namespace pelagic {
 
+// Whether the sea is drawn in two passes: where each pixel is at rest, and then its light, once. A driver in software
+// shades small triangles in blocks of pixels, and most of a block lies outside.
+bool is_lit_afterwards(const DrawOptions& options);
+
 class ShaderVariant {
   public:
     static ShaderVariant of_sea(const SeaLayout& layout, const DrawOptions& options, int sky_map_size);
+    // The first of two passes.
+    static ShaderVariant of_points(const SeaLayout& layout);
     static ShaderVariant of_sky(const DrawOptions& options, int sky_map_size);
     static ShaderVariant of_screen(bool layers, bool plain);
 

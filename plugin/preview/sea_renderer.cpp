@@ -34,6 +34,8 @@ constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
                                                         "foam_picture", "air_picture"};
 
+constexpr std::array<const char*, 2> kPointNames{"first_points", "second_points"};
+
 void set_uniform(GLint at, const glm::vec3& v) {
     glUniform3f(at, v.x, v.y, v.z);
 }
@@ -66,9 +68,12 @@ struct SeaRenderer::Implementation {
 
     void upload_grid(const ProjectedGrid& grid);
     void make_pictures(glm::ivec2 size, bool layers);
+    static void require_framebuffer();
     void make_dither();
     void set_common(const ShaderProgram& program, const View& view) const;
     void set_air(double height_m);
+    void draw_grid(const ShaderProgram& program, const View& view, const ProjectedGrid& grid);
+    void draw_over_all(const ShaderProgram& program) const;
     void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
@@ -91,8 +96,9 @@ struct SeaRenderer::Implementation {
     glm::ivec2 grid_size{0};
     GLsizei grid_index_count = 0;
 
-    GlFramebuffer framebuffer;
+    GlFramebuffer framebuffer, points_framebuffer;
     std::array<GlTexture, kTerms> pictures;
+    std::array<GlTexture, kPointNames.size()> points;  // what each pixel of the sea shows, before its light
     GlTexture depth;
     glm::ivec2 picture_size{0};
     bool picture_layers = false, picture_plain = false;
@@ -135,6 +141,9 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     glUniform1i(program.uniform("air_table"), kAirTable);
     glUniform1i(program.uniform("dither"), kDither);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
+    // No program reads both kinds.
+    for (std::size_t i = 0; i < kPointNames.size(); ++i)
+        glUniform1i(program.uniform(kPointNames[i]), kPictures + static_cast<int>(i));
     return programs.emplace(variant.key(), std::move(program)).first->second;
 }
 
@@ -174,6 +183,13 @@ void SeaRenderer::Implementation::upload_grid(const ProjectedGrid& grid) {
 
 // Pictures.
 
+void SeaRenderer::Implementation::require_framebuffer() {
+    const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        throw PreviewError("the driver cannot draw into pictures of 32-bit floats (framebuffer status " +
+                           std::to_string(status) + "): update it, or use pelagic render");
+}
+
 void SeaRenderer::Implementation::make_pictures(glm::ivec2 size, bool layers) {
     if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > largest_texture)
         throw PreviewError("a picture of " + std::to_string(size.x) + " x " + std::to_string(size.y) +
@@ -199,10 +215,20 @@ void SeaRenderer::Implementation::make_pictures(glm::ivec2 size, bool layers) {
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
     glDrawBuffers(kTerms, attachments.data());
     glReadBuffer(GL_COLOR_ATTACHMENT0);
-    const GLenum status = glCheckFramebufferStatus(GL_FRAMEBUFFER);
-    if (status != GL_FRAMEBUFFER_COMPLETE)
-        throw PreviewError("the driver cannot draw into pictures of 32-bit floats (framebuffer status " +
-                           std::to_string(status) + "): update it, or use pelagic render");
+    require_framebuffer();
+    glBindFramebuffer(GL_FRAMEBUFFER, points_framebuffer.name());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        edit_texture(points[i]);
+        texels_as_they_are();
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, size.x, size.y, 0, GL_RGBA, GL_FLOAT, nullptr);
+        glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i), GL_TEXTURE_2D,
+                               points[i].name(), 0);
+    }
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.name(), 0);
+    glDrawBuffers(static_cast<GLsizei>(points.size()),
+                  std::array<GLenum, 2>{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1}.data());
+    require_framebuffer();
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
     picture_size = size;
     picture_layers = layers;
 }
@@ -231,10 +257,8 @@ void SeaRenderer::Implementation::set_air(double height_m) {
     air_height_m = height_m;
 }
 
-void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
-                                           const DrawOptions& options) {
-    const SeaLayout& layout = sea.layout();
-    const ShaderProgram& program = program_of(ShaderVariant::of_sea(layout, options, sky_map_size));
+void SeaRenderer::Implementation::draw_grid(const ShaderProgram& program, const View& view,
+                                            const ProjectedGrid& grid) {
     program.use();
     set_common(program, view);
     sea.bind(program, grid.origin_m);
@@ -242,7 +266,6 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid
     glUniform1f(program.uniform("eye_height_m"), static_cast<float>(view.position_m.z));
     glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
     upload_grid(grid);
-
     const glm::mat4 clip(view.clip_from(glm::dvec3(grid.origin_m, 0.0), kNear_m));
     glUniformMatrix4fv(program.uniform("clip_from_grid"), 1, GL_FALSE, glm::value_ptr(clip));
     // Reversed depth, near/distance, keeps precision out to the horizon.
@@ -250,9 +273,40 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid
         glUniform2f(program.uniform("depth_of_distance"), 0.0f, static_cast<float>(kNear_m));
     else
         glUniform2f(program.uniform("depth_of_distance"), 1.0f, static_cast<float>(-2.0 * kNear_m));
-    glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
     glDrawElements(GL_TRIANGLES, grid_index_count, GL_UNSIGNED_INT, nullptr);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+}
+
+// One triangle at the far plane. The program must be in use.
+void SeaRenderer::Implementation::draw_over_all(const ShaderProgram& program) const {
+    glUniform1f(program.uniform("farthest"), reversed_depth ? 0.0f : 1.0f);
+    glBindVertexArray(no_array.name());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
+                                           const DrawOptions& options) {
+    const SeaLayout& layout = sea.layout();
+    const ShaderProgram& program = program_of(ShaderVariant::of_sea(layout, options, sky_map_size));
+    if (!is_lit_afterwards(options)) {
+        glPolygonMode(GL_FRONT_AND_BACK, options.wireframe ? GL_LINE : GL_FILL);
+        draw_grid(program, view, grid);
+        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+        return;
+    }
+    glBindFramebuffer(GL_FRAMEBUFFER, points_framebuffer.name());
+    draw_grid(program_of(ShaderVariant::of_points(layout)), view, grid);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    program.use();
+    set_common(program, view);
+    sea.bind(program, grid.origin_m);
+    set_uniforms(program, air);
+    glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
+    for (std::size_t i = 0; i < points.size(); ++i) bind_texture(kPictures + static_cast<int>(i), points[i]);
+    // Where something is nearer than the far plane.
+    glDepthMask(GL_FALSE);
+    glDepthFunc(reversed_depth ? GL_LESS : GL_GREATER);
+    draw_over_all(program);
+    glDepthMask(GL_TRUE);
 }
 
 void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& options) {
@@ -260,10 +314,8 @@ void SeaRenderer::Implementation::draw_sky(const View& view, const DrawOptions& 
     program.use();
     set_common(program, view);
     set_uniforms(program, air);
-    glUniform1f(program.uniform("farthest"), reversed_depth ? 0.0f : 1.0f);
-    glBindVertexArray(no_array.name());
     glDepthFunc(reversed_depth ? GL_GEQUAL : GL_LEQUAL);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+    draw_over_all(program);
 }
 
 SeaRenderer::SeaRenderer() : implementation_(std::make_unique<Implementation>()) {}

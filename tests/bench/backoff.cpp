@@ -136,7 +136,11 @@ void back_off(double elevation_deg, double wind_mps, double choppiness = 1.0) {
             "  %4g deg %5g m/s   %-5s %10.4f %10.4f %8.1f %% %8.1f %% %8.1f %% %10.2f %% %9.0f m   %s\n",
             elevation_deg, wind_mps, kTermName[t], first[t], last[t], 100.0 * (last[t] / first[t] - 1.0),
             100.0 * (integral[t] / first[t] - 1.0), 100.0 * (most[t] / least[t] - 1.0), 100.0 * largest[t],
-            at_m[t], t == All ? (largest[t] <= 0.02 ? "<= 2 % met" : "<= 2 % missed") : "");
+            at_m[t],
+            t == All
+                ? (std::abs(last[t] / first[t] - 1.0) <= 0.03 && largest[t] <= 0.005 ? "<= 3 %, 0.5 % met"
+                                                                                     : "<= 3 %, 0.5 % missed")
+                : "");
 }
 
 }  // namespace

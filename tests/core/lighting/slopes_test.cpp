@@ -222,6 +222,15 @@ TEST(Slopes, FacetsThatAreSeenLeanTowardsTheEye) {
         }
 }
 
+// Straight from above the line of sight has no direction, and a flat sea shows nothing of itself.
+TEST(Slopes, NothingMeetsTheSeaAgainSeenFromAbove) {
+    for (const float sigma : {0.0f, 1e-3f, 0.05f, 0.15f})
+        EXPECT_LT(
+            Optics().reflected_again(vec3(0.0f, 0.0f, 1.0f), vec3(sigma * sigma, 2.0f * sigma * sigma, 0.0f)),
+            0.01f)
+            << sigma;
+}
+
 // What reflected_again() fits, by summation. Errors are times F̄, their share of the light.
 TEST(Slopes, LightThatMeetsTheSeaAgain) {
     Optics optics;

@@ -1,0 +1,9 @@
+// The points at rest that the pixels show, for sea_points_texture.glsl: their light is computed afterwards, once a pixel.
+layout(location = 0) out vec4 first_out;
+layout(location = 1) out vec4 second_out;
+
+void main() {
+    vec3 drawn = pixel_on_mesh();
+    first_out = vec4(rest_m, drawn.x, drawn.y);
+    second_out = vec4(drawn.z, point_distance_m(), 0.0, 0.0);
+}

@@ -169,11 +169,12 @@ class Lights(unittest.TestCase):
         atlas = light.sky_map
         size = atlas.shape[0]
         self.assertEqual(atlas.shape, (size, size * 3 // 2, 4))
-        fine, first = atlas[:size, :size, :3], 0
+        # The finest has no ground: the others are means of the next finer one from level 2 on.
+        whole, size = size, size // 2
+        fine = atlas[whole - 2 * size:whole - size, whole:whole + size, :3]
         while size > 1:
             size //= 2
             fine = fine.reshape(size, 2, size, 2, 3).mean(axis=(1, 3))
-            whole = atlas.shape[0]
             np.testing.assert_allclose(atlas[whole - 2 * size:whole - size, whole:whole + size, :3], fine, rtol=1e-4)
 
     def test_exposure_is_in_stops(self):

@@ -100,7 +100,9 @@ TEST(Ellipses, RoundOnesAreRoundToTheBit) {
                                                : of.vectors(VectorProduct::checked(row.product))[i];
                 };
                 ASSERT_EQ(value(same), value(expected)) << row.name << " " << i;
-                if (i % 2) ASSERT_EQ(value(mixed), value(expected)) << row.name << " beside ellipses " << i;
+                if (i % 2) {
+                    ASSERT_EQ(value(mixed), value(expected)) << row.name << " beside ellipses " << i;
+                }
             }
     }
 }

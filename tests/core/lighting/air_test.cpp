@@ -191,8 +191,9 @@ TEST(Air, IsFiniteEverywhere) {
         for (const double height_m : {-1e3, 0.0, 1e-9, 0.5, 99999.0, 100001.0, 400e3, 1e9, 1e15}) {
             const Air air = sky.air->seen_from(height_m);
             for (int i = 0; i <= 64; ++i) {
-                const glm::vec3 sky = sky_through(air, glm::vec3(towards(kPi * (i / 64.0 - 0.5), 1.0)));
-                ASSERT_TRUE(is_finite(sky) && sky.x >= 0.0f) << sun_deg << " " << height_m << " " << i;
+                const glm::vec3 through = sky_through(air, glm::vec3(towards(kPi * (i / 64.0 - 0.5), 1.0)));
+                ASSERT_TRUE(is_finite(through) && through.x >= 0.0f)
+                    << sun_deg << " " << height_m << " " << i;
             }
             for (const double elevation : {-0.5 * kPi, -1.0, -1e-6, 0.0, 0.4, 0.5 * kPi})
                 for (const double azimuth : {0.0, kPi, -kPi, 1.0})

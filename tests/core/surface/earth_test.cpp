@@ -28,7 +28,9 @@ TEST(Earth, KeepsDistancesAzimuthsAndHeights) {
                 EXPECT_NEAR(glm::length(p - kCentre), kEarthRadius_m + z, 1e-6 + 1e-10 * s);
                 const double turn = std::atan2(std::hypot(p.x, p.y), p.z + kEarthRadius_m);
                 EXPECT_NEAR(turn * kEarthRadius_m, s, 1e-6 + 1e-9 * s);
-                if (s > 0.0) EXPECT_NEAR(std::remainder(std::atan2(p.y, p.x) - azimuth, kTwoPi), 0.0, 1e-12);
+                if (s > 0.0) {
+                    EXPECT_NEAR(std::remainder(std::atan2(p.y, p.x) - azimuth, kTwoPi), 0.0, 1e-12);
+                }
                 const glm::dvec3 up = earth_up(flat, kEarthCurvature_per_m);
                 EXPECT_NEAR(glm::dot(up, glm::normalize(p - kCentre)), 1.0, 1e-9);
                 EXPECT_NEAR(glm::length(up), 1.0, 1e-9);

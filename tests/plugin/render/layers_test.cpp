@@ -84,7 +84,7 @@ TEST(PictureLayers, EachIsAskedForByItsName) {
     }
     EXPECT_EQ(parse_picture_layers("all"), all);
     EXPECT_TRUE(parse_picture_layers("none").none());
-    EXPECT_EQ(parse_picture_layers("sun,sky,sea,foam"), light_layers());
+    EXPECT_EQ(parse_picture_layers("sun,sky,sea,foam,air"), light_layers());
     for (const char* wrong : {"", "Depth", "depth,", "depth,,sun", "all,depth", "z"})
         EXPECT_THROW(parse_picture_layers(wrong), std::invalid_argument) << wrong;
 }
@@ -297,6 +297,7 @@ double difference(const Picture& a, const Picture& b) {
 TEST(PictureLayers, ShutterAccumulates) {
     Scene scene = moving_scene();
     scene.camera.resolution = {48, 30};
+    scene.surface.earth_curvature = false;  // whose horizon lies between two rows of samples
     const Picture mean = accumulated(scene, 5, 0.5);
     RenderOptions options = with_all(scene);
     options.samples = kShutterSamples;

@@ -10,6 +10,7 @@
 #include "core/base/constants.h"
 #include "core/evaluate/evaluate.h"
 #include "core/plan/plan.h"
+#include "core/surface/earth.h"
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
 #include "plugin/render/render.h"
@@ -36,7 +37,11 @@ inline std::vector<double> skyline_of_query(const Scene& scene, int frame) {
     const int width = view.resolution.x;
     const glm::dvec2 ahead = glm::normalize(glm::dvec2(view.forward)), right(ahead.y, -ahead.x);
     const double flat = std::hypot(view.forward.x, view.forward.y);
-    const double horizon_px = 0.5 * view.resolution.y + view.forward.z / flat / pixel;
+    // On the earth's sphere, as the picture is, or on a flat sea.
+    const double curvature_per_m = projected_grid_options(*prepared).curvature_per_m;
+    const double dip = std::acos(1.0 / (1.0 + std::max(view.position_m.z, 0.0) * curvature_per_m));
+    const double horizon_px =
+        0.5 * view.resolution.y + std::tan(std::atan2(view.forward.z, flat) + dip) / pixel;
     std::vector<double> top_px(static_cast<std::size_t>(width), horizon_px);
     const double above_m = std::max(prepared->extent.height_m - view.position_m.z, 0.0);
     const double farthest_m = std::max(above_m / (0.05 * pixel), 100.0);
@@ -65,7 +70,8 @@ inline std::vector<double> skyline_of_query(const Scene& scene, int frame) {
                                .cell_m = {cell_m.data()}},
                  results);
         const auto seen = [&](std::size_t i) {
-            const glm::dvec3 way = glm::dvec3(position[i]) - glm::dvec3(0.0, 0.0, view.position_m.z);
+            const glm::dvec3 way =
+                on_earth(glm::dvec3(position[i]), curvature_per_m) - glm::dvec3(0.0, 0.0, view.position_m.z);
             const double depth = glm::dot(way, view.forward);
             return depth < 0.1 ? glm::dvec2(NAN)
                                : glm::dvec2(0.5 * width + glm::dot(way, view.right) / depth / pixel,

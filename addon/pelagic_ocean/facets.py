@@ -33,7 +33,8 @@ NOISE_MEAN, NOISE_DEVIATION = 0.5, 0.0472
 def add_facets(tree, ripples, ripple_length_m, detail_distance_m, wind_angle, time):
     """Adds the group. time: a vector, the ripples' places along z and w of their noise [s]. Normal and Roughness of a
     sample's lobe; Fresnel: what it reflects; Reflection: that of it which no wave blocks. Light that
-    meets hidden waves twice (sky.glsl, sea.glsl) is left out: a twentieth at grazing angles."""
+    meets hidden waves twice (sky.glsl, sea.glsl) is left out. Facing a sun 30° high, for slopes of 0.14, it is to what meets
+    them once as 0.02 at 45° off the zenith, 0.08 at 70°, 0.11 at 80°, 0.06 at 86°; the sky's as 0.08 at 80°."""
     return tree.call("Pelagic Facets", _facets, {"Ripples": ripples, "Ripple Length": ripple_length_m,
                                                  "Detail Distance": detail_distance_m, "Wind Angle": wind_angle,
                                                  "Time": time})
@@ -75,17 +76,18 @@ def _facets(tree, asked):
 
     # The eye sees slopes −x σ along and y across the line of sight: y is normal, and x has the density (k + x)₊ φ(x). The
     # places of lobes have the part `rest` of that variance, weighted by how much the eye sees of a whole lobe (moments by
-    # Stein's lemma). k + x is drawn as the square of a normal number: its mean and variance are right.
+    # Stein's lemma; the logarithm of the generating function is ½ rest t² + ln N(k + rest t), N = kΦ + φ). x is drawn as a
+    # quadratic of a normal number: mean and variance are right, and the skewness within 1 %.
     mills = _mills(tree, k)
     mean = 1.0 / (k + mills)
     own = (lobe * (1.0 - cosine * cosine)).at_least(0.0).sqrt() / sigma  # a lobe's deviation, in units of σ
     rest = 1.0 - own * own
     wide = rest * (1.0 + rest * mean * (mills - mean))
-    middle = k + rest * mean
-    part = 0.5 * wide / (middle + (middle * middle - 0.5 * wide).sqrt())
-    root, step = (middle - part).sqrt(), part.sqrt()
+    third = rest * rest * rest * (mean * (mills - mean) * (mills - mean) - mills - mean * mean * (mills - mean))
+    bend = third / (6.0 * wide)
+    step = (wide - 2.0 * bend * bend).sqrt()
     along = -(z_x * w_x).plus_product(z_y, w_y)
-    x = rest * mean - part + step * along * (2.0 * root + step * along)
+    x = rest * mean - bend + along * step.plus_product(bend, along)
     across = (z_y * w_x) - z_x * w_y
 
     def slope(x):

@@ -30,9 +30,12 @@ def _foam(tree, asked):
 
     away = tree.add("ShaderNodeCameraData", output="View Distance") / asked["Detail Distance"]
     detail = 1.0 / (1.0 + away * away)
-    mask, density = tree.mix(detail, coverage, mask), tree.mix(detail, DENSE, density)
+    # Dense foam fades as foam does. (If density faded by itself, where it is 0 between the foam would count: half way at a
+    # coverage of a half an eighth of the dense foam would be lost.)
+    dense = tree.mix(detail, DENSE * coverage, mask * density)
+    mask = tree.mix(detail, coverage, mask)
     seen = asked["Coverage"].above(0.0) * mask  # nothing where there is none
-    return {"Foam": seen, "Density": density}
+    return {"Foam": seen, "Density": dense / mask.at_least(1e-6)}
 
 
 def foam_pattern(tree, place):

@@ -38,9 +38,6 @@ constexpr double kSlack = 0.92;
 // crests come before the lens, gets no more rows than kBeside diagonals have cells, and columns are no more than
 // kAcross diagonals have. kSpare cells more let small pictures have a round grid.
 constexpr double kFine = 4.0, kBeside = 1.0, kAcross = 6.0, kSpare = 64.0;
-// The mean over a pixel halves waves that are 1.66 pixels long; a footprint those of three (core/plan/filter.h). So much
-// of a pixel is one that blurs as pixels do.
-constexpr double kPixel = 0.6;
 // Rows are so close together that cells of their length hide heights of kHeight_px (standard deviation), if cells are no
 // larger than kHeightCell_px across; otherwise of more in proportion. The skyline of a gale is then within a pixel of the
 // sea's own in 99 % of a picture's columns (tests/bench, "skyline"). Rows that heights alone ask for are no more than
@@ -462,7 +459,7 @@ double cell_angle_of(const View& view, const ProjectedGridOptions& options, cons
 // A pixel's footprint across the view, at a distance from the nadir. `cosine` is that of the angle between the
 // optical axis and the direction to the point. Away from the eye it is longer by foreshortening().
 double pixel_width_m(const View& view, const Station& at, double radius_m, double cosine) {
-    return kPixel * view.pixel_tangent() * cosine * std::hypot(radius_m, at.effective_height_m);
+    return view.pixel_tangent() * cosine * std::hypot(radius_m, at.effective_height_m);
 }
 double foreshortening(const Station& at, double radius_m) {
     return std::hypot(radius_m, at.effective_height_m) / at.effective_height_m;

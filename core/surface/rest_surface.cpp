@@ -115,8 +115,7 @@ class CameraGrid : public RestSurface {
     }
 
   protected:
-    // The camera over its nadir.
-    virtual View seen(int frame) const { return view_at(camera_, frame); }
+    View seen(int frame) const { return view_at(camera_, frame); }
 
     template <class T>
     void lay_out(int frame, RestPoints<T>& points) const {
@@ -143,32 +142,6 @@ class CameraGrid : public RestSurface {
     ProjectedGridOptions options_;
 };
 
-// The same on one earth that stays: it touches z = 0 at the origin, where the shot's axes are its own, and points rest
-// where the plane's lie as far from the origin in the same direction (azimuthal equidistant projection).
-class Planet final : public CameraGrid {
-  public:
-    Planet(const Scene& scene, const SeaReach& reach) : CameraGrid(scene, reach) {
-        options_.curvature_per_m = kEarthCurvature_per_m;
-    }
-    std::string describe() const override { return CameraGrid::describe() + ", on the earth's sphere"; }
-    void points_at(int frame, RestPoints<float>& points) const override { lay_round(frame, points); }
-    void points_at(int frame, RestPoints<double>& points) const override { lay_round(frame, points); }
-
-  private:
-    View seen(int frame) const override { return over_nadir(view_at(camera_, frame)); }
-
-    template <class T>
-    void lay_round(int frame, RestPoints<T>& points) const {
-        lay_out(frame, points);
-        const glm::dvec3 up = earth_up(points.origin_m, kEarthCurvature_per_m);
-        for (glm::vec<2, T>& rest : points.rest_m) {
-            const glm::dvec3 there = from_level(earth_up(glm::dvec2(rest), kEarthCurvature_per_m), up);
-            rest = glm::vec<2, T>(earth_place(there) - points.origin_m);
-        }
-        points.touches_at_m = glm::dvec2(0.0);
-    }
-};
-
 template <class Kind>
 std::unique_ptr<const RestSurface> make(const Scene& scene, const SeaReach& reach) {
     return std::make_unique<const Kind>(scene, reach);
@@ -182,7 +155,6 @@ struct SurfaceRow {
 constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
     {SurfaceKind::Patch, make<Patch>},
     {SurfaceKind::ProjectedGrid, make<CameraGrid>},
-    {SurfaceKind::Planet, make<Planet>},
 });
 
 }  // namespace

@@ -115,7 +115,7 @@ def judge_pictures(draw, folder, keys, shot):
     held = common_files.check_folder(pelagic, out)
     picture = next(value for path, value in held.items() if path.endswith(".exr"))
     for channel in "RGB":
-        parts = sum(picture[f"{layer}.{channel}"].astype("f8") for layer in ("sun", "sky", "sea", "foam"))
+        parts = sum(picture[f"{layer}.{channel}"].astype("f8") for layer in ("sun", "sky", "sea", "foam", "air"))
         error = abs(parts - picture[channel])
         campaign.expect((error <= 5e-3 * parts + 1e-6).all(), f"layers add up to another {channel}, by {error.max()}")
     if draw.random() < 0.3:

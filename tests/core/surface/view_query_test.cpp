@@ -177,7 +177,8 @@ TEST(ViewQuery, AtTheHorizonAllIsVariance) {
     for (std::size_t i = answers.vectors(Product::Position).size() - grid.columns - 1;
          i < answers.vectors(Product::Position).size(); ++i) {
         EXPECT_EQ(answers.vectors(Product::Position)[i].z, 0.0f);
-        EXPECT_EQ(answers.vectors(Product::Normal)[i], glm::vec3(0.0f, 0.0f, 1.0f));
+        // A pixel there is an ellipse of finite length. What of the slopes across it is left is far below what one sees.
+        EXPECT_LT(glm::length(glm::vec2(answers.vectors(Product::Normal)[i])), 1e-3);
         EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].x, whole.xx, 1e-6);
         EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].y, whole.yy, 1e-6);
     }

@@ -107,7 +107,8 @@ Scene camera_scene() {
 
 // The mesh of each frame is the core's answer for that frame's own grid, with the footprints of its points.
 TEST(ProjectedGridBake, IsWhatTheCameraSeesAtEachFrame) {
-    const Scene scene = camera_scene();
+    Scene scene = camera_scene();
+    scene.surface.earth_curvature = false;  // the query's answer is that over a flat sea
     const Plan plan = plan_bake(scene);
     const auto sequence = make_sequence(plan);
     Frame<float> frame(std::make_shared<const Sea<float>>(plan));

@@ -167,7 +167,7 @@ Scene scene_at(glm::dvec2 place_m, double height_m = 4.0) {
     scene.shot.last_frame = 4;
     scene.sea.wind_speed_mps = 12.0;
     scene.waves.cascades = {{.size_m = 200.0, .resolution = 128}, {.size_m = 31.0, .resolution = 64}};
-    scene.surface = {.size_m = 100.0, .resolution = 32, .cell_px = 6.0};
+    scene.surface = {.size_m = 100.0, .resolution = 32, .cell_px = 6.0, .earth_curvature = false};
     scene.camera.resolution = {192, 108};
     scene.camera.position_m = glm::dvec3(place_m, height_m);
     scene.camera.look_at_m = glm::dvec3(place_m + glm::dvec2(10.0, 40.0), height_m - 3.0);

@@ -178,6 +178,7 @@ class Meshes(InFolder):
     def test_a_projected_grid(self):
         scene = shot()
         scene.surface.kind = "projected-grid"
+        scene.surface.earth_curvature = False  # a Sea's own grid is flat
         scene.output.maps, scene.output.cascade_tiles = (), False
         for x_m, origin_m in ((1234.5, [0, 0, 0]), (-1e7 + 0.5, [-9998336, 0, 0])):
             scene.camera.position_m, scene.camera.look_at_m = (x_m, 2.25, 4.0), (x_m, 60.0, 2.0)

@@ -49,7 +49,7 @@ def values(name):
 
 
 combined, depth, position = values("Combined"), values("Depth")[..., 0], values("P")[..., :3]
-layers = sum(values(name)[..., :3] for name in ("sun", "sky", "sea", "foam"))
+layers = sum(values(name)[..., :3] for name in ("sun", "sky", "sea", "foam", "air"))
 assert np.allclose(layers, combined[..., :3], rtol=5e-3, atol=1e-3), "the layers add up"
 sea = depth < 1e9
 assert 0.3 < sea.mean() < 0.9, sea.mean()

@@ -93,9 +93,8 @@ py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
     if (!height_m) std::fill_n(air.texels.begin(), kRow * Air::kRows, glm::vec4(0.0f));
     py::dict uniforms = dict_of(air_uniforms(air));
     uniforms["eye_height_m"] = height_m.value_or(0.0);
-    return py::make_tuple(uniforms,
-                          array_of<float>(std::move(air.texels),
-                                          {Air::kRows + Air::kSkyRows, Air::kLayers * Air::kColumns, 4}));
+    return py::make_tuple(uniforms, array_of<float>(std::move(air.texels), {Air::kRows + Air::kSkyRows,
+                                                                            Air::kLayers * Air::kColumns}));
 }
 
 double checked_footprint(double finest_m) {

@@ -142,7 +142,9 @@ TEST(ProjectedGridBake, IsWhatTheCameraSeesAtEachFrame) {
                                .count = count,
                                .rest_m = {grid.rest_m.data()},
                                .cell_m = {grid.cell_m.data()},
-                               .pixel_m = {grid.cell_m.data()}},
+                               .pixel_m = {grid.cell_m.data()},
+                               .cell_axis_m = {grid.cell_axis_m.data()},
+                               .pixel_axis_m = {grid.cell_axis_m.data()}},
                  results);
         float nearest_m = 1e9f;
         for (std::size_t i = 0; i < count; ++i) {

@@ -95,6 +95,8 @@ Reference reference_of(const Scene& scene, int frame) {
     Points<double> points{.origin_m = at.origin_m, .count = at.rest_m.size(), .rest_m = {at.rest_m.data()}};
     if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};
     if (!at.pixel_m.empty()) points.pixel_m = {at.pixel_m.data()};
+    if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
+    if (!at.pixel_axis_m.empty()) points.pixel_axis_m = {at.pixel_axis_m.data()};
     evaluate(sea, 0, points, results);
     for (glm::dvec3& place : reference.places_m) place += glm::dvec3(at.origin_m, 0.0);
     return reference;

@@ -188,7 +188,8 @@ class Meshes(InFolder):
             frame.set(scene.shot.time_s(2))
             baked = self.baked(scene, 2)
             self.assertEqual(baked["origin_m"].tolist(), origin_m)
-            self.compare(frame.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m), baked,
+            self.compare(frame.evaluate(grid.rest_m, grid.origin_m, cell_m=grid.cell_m, pixel_m=grid.cell_m,
+                                        cell_axis_m=grid.cell_axis_m, pixel_axis_m=grid.cell_axis_m), baked,
                          grid.origin_m)
             np.testing.assert_array_equal(grid.quads.ravel(), baked["face_corners"])
 

@@ -25,7 +25,7 @@ image = nodes.new("CompositorNodeImage")
 image.image = bpy.data.images.load(os.path.join(folder, "sea.0003.exr"))
 passes = {socket.name for socket in image.outputs if socket.enabled}
 expected = {"Combined", "Alpha", "Depth", "P", "N", "forward", "backward", "Vector", "coverage", "slope_variance", "sun",
-            "sky", "sea", "foam"}
+            "sky", "sea", "foam", "air"}
 assert passes >= expected, f"passes {sorted(passes)}"
 assert image.outputs["Depth"].type == "VALUE" and image.outputs["Vector"].type == "RGBA"
 

@@ -100,6 +100,7 @@ double fresnel(double cos_theta) {
 // one.
 TEST(Render, FlatSeaUnderUniformSkyIsFresnelsAndTheWaters) {
     Scene scene = calm_scene();
+    scene.surface.earth_curvature = false;
     scene.quality.level = QualityLevel::Preview;
     const Picture picture = picture_of(scene);
     const View view = view_at(scene.camera, 1);

@@ -124,7 +124,6 @@ class CameraGrid : public RestSurface {
         if (has_ladder_) keep_to_rungs(grid, projected_grid_needs(view, options_));
         points.origin_m = grid.origin_m;
         points.curvature_per_m = grid.curvature_per_m;
-        points.touches_at_m = grid.origin_m;
         points.rest_m.assign(grid.rest_m.begin(), grid.rest_m.end());
         points.cell_m.assign(grid.cell_m.begin(), grid.cell_m.end());
         points.cell_axis_m.assign(grid.cell_axis_m.begin(), grid.cell_axis_m.end());

@@ -47,9 +47,8 @@ struct SurfaceNeeds {
 template <class T>
 struct RestPoints {
     glm::dvec2 origin_m{0.0};
-    // Of the earth on which displaced points are laid (earth.h), round the place where it touches z = 0.
+    // Of the earth on which displaced points are laid (earth.h). It touches z = 0 at the origin.
     double curvature_per_m = 0.0;
-    glm::dvec2 touches_at_m{0.0};
     std::vector<glm::vec<2, T>> rest_m{};
     // Footprints as in Points (core/evaluate/evaluate.h); empty: the query's own.
     std::vector<T> cell_m{}, pixel_m{};

@@ -186,15 +186,13 @@ class MeshPart final : public OutputPart {
     // What a flat sea's answers are on the earth.
     template <class T>
     static void lay_on_earth(const RestPoints<T>& at, Values& values) {
-        const glm::dvec2 from_m = at.origin_m - at.touches_at_m;
         const auto turn = [&](std::vector<glm::vec3>& directions) {
             for (std::size_t i = 0; i < directions.size(); ++i)
                 directions[i] = from_level(glm::dvec3(directions[i]),
-                                           earth_up(from_m + glm::dvec2(at.rest_m[i]), at.curvature_per_m));
+                                           earth_up(glm::dvec2(at.rest_m[i]), at.curvature_per_m));
         };
         for (glm::vec3& position : values.vectors(Product::Position))
-            position = on_earth(glm::dvec3(from_m, 0.0) + glm::dvec3(position), at.curvature_per_m) -
-                       glm::dvec3(from_m, 0.0);
+            position = on_earth(glm::dvec3(position), at.curvature_per_m);
         turn(values.vectors(Product::Normal));
         turn(values.vectors(Product::Velocity));
     }

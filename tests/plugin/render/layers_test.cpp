@@ -18,18 +18,10 @@
 #include "core/surface/view.h"
 #include "plugin/render/motion.h"
 #include "plugin/render/render.h"
+#include "tests/plugin/render/uniform_sky.h"
 
 namespace pelagic {
 namespace {
-
-constexpr float kSkyRadiance = 5.0f;
-
-Sky uniform_sky() {
-    Sky sky;
-    sky.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(kSkyRadiance)));
-    sky.sky_irradiance = glm::vec3(kSkyRadiance * static_cast<float>(kPi));
-    return sky;
-}
 
 // A camera that travels and turns, over waves.
 Scene moving_scene() {

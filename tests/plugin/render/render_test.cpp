@@ -16,19 +16,10 @@
 
 #include "core/base/constants.h"
 #include "core/surface/view.h"
+#include "tests/plugin/render/uniform_sky.h"
 
 namespace pelagic {
 namespace {
-
-constexpr float kSkyRadiance = 5.0f;
-
-// The same radiance from everywhere, the lower hemisphere included, and no sun.
-Sky uniform_sky() {
-    Sky sky;
-    sky.map = SkyMap(4, std::vector<glm::vec3>(16, glm::vec3(kSkyRadiance)));
-    sky.sky_irradiance = glm::vec3(kSkyRadiance * static_cast<float>(kPi));
-    return sky;
-}
 
 Scene small_scene() {
     Scene scene;

@@ -125,6 +125,18 @@ void add_sea(Built& out) {
                                  .may_be_infinite = true}),
         row<&SeaState::spectrum>(
             {.name = "spectrum", .help = "how the energy is shared among the wavelengths", .feeds = kWaves}),
+        row<&SeaState::short_waves>(
+            {.name = "short_waves",
+             .help = "beyond a few peak wavenumbers: elfouhaily, the tail and the spreading that have the slopes of "
+                     "sun glitter; none, the spectrum's own",
+             .feeds = kWaves}),
+        row<&SeaState::significant_height_m>(
+            {.name = "significant_height_m",
+             .help = "of the wind sea or the measured one, without swell. Without it: what wind, fetch and depth give",
+             .unit = "m",
+             .range = limits::kSignificantHeight_m,
+             .soft = SoftRange{0.0, 15.0},
+             .feeds = kWaves}),
         row<&SeaState::spreading>(
             {.name = "spreading", .help = "how it is shared among the directions", .feeds = kWaves}),
         entries<&SeaState::swell>(

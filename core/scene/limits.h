@@ -40,6 +40,7 @@ inline constexpr double kLoopTolerance_frames =
 inline constexpr Range kWindSpeed_mps{0.0, 80.0};
 inline constexpr Range kAngle_deg{-1e6, 1e6};  // any number of turns that leaves ten digits of the angle
 inline constexpr Range kFetch_m{1.0, 1e8};
+inline constexpr Range kSignificantHeight_m{0.0, 50.0};
 inline constexpr Range kDepth_m{0.01, 1e6};  // or infinite
 inline constexpr int kSwells = 64;           // each is a spectrum of its own in every integral
 inline constexpr Range kSwellHeight_m{0.0, 50.0};

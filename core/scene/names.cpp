@@ -11,11 +11,16 @@ namespace {
 constexpr std::array kSpectra = std::to_array<Word<SpectrumKind>>({
     {SpectrumKind::PiersonMoskowitz, "pierson-moskowitz"},
     {SpectrumKind::Jonswap, "jonswap"},
+    {SpectrumKind::Jonswap1973, "jonswap-1973"},
     {SpectrumKind::Tma, "tma"},
     {SpectrumKind::Elfouhaily, "elfouhaily"},
     {SpectrumKind::Omega2, "omega-2"},
     {SpectrumKind::Phillips, "phillips"},
     {SpectrumKind::File, "file"},
+});
+constexpr std::array kShortWaves = std::to_array<Word<ShortWaves>>({
+    {ShortWaves::Elfouhaily, "elfouhaily"},
+    {ShortWaves::None, "none"},
 });
 constexpr std::array kSpreadings = std::to_array<Word<SpreadingKind>>({
     {SpreadingKind::Hasselmann, "hasselmann"},
@@ -109,6 +114,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::span<const Word<SpectrumKind>> words_of(SpectrumKind) {
     return kSpectra;
+}
+std::span<const Word<ShortWaves>> words_of(ShortWaves) {
+    return kShortWaves;
 }
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind) {
     return kSpreadings;

@@ -17,7 +17,17 @@
 
 namespace pelagic {
 
-enum class SpectrumKind { PiersonMoskowitz, Jonswap, Tma, Elfouhaily, Omega2, Phillips, File };
+enum class SpectrumKind {
+    PiersonMoskowitz,
+    Jonswap,
+    Jonswap1973,
+    Tma,
+    Elfouhaily,
+    Omega2,
+    Phillips,
+    File
+};
+enum class ShortWaves { Elfouhaily, None };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
@@ -89,6 +99,9 @@ struct SeaState {
     double fetch_m = 300e3;                                    // > 0
     double depth_m = std::numeric_limits<double>::infinity();  // > 0
     SpectrumKind spectrum = SpectrumKind::Jonswap;
+    // The tail and the spreading that take the spectrum's place beyond a few peak wavenumbers.
+    ShortWaves short_waves = ShortWaves::Elfouhaily;
+    std::optional<double> significant_height_m;  // of the wind sea or the measured one, instead of its own
     SpreadingKind spreading = SpreadingKind::Hasselmann;
     std::vector<Swell> swell;
     std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File

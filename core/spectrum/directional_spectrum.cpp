@@ -7,20 +7,13 @@ namespace pelagic {
 
 namespace {
 
-// Below this wind [m/s] there is no wind sea: Pierson–Moskowitz' Hs would be 2e-8 m.
-constexpr double kCalmWind = 1e-3;
-
 // A system with less than this share of m0 says nothing about the sea's longest waves.
 constexpr double kNotableShare = 0.02;
 
 }  // namespace
 
-DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea) : dispersion_{sea.depth_m} {
-    if (sea.spectrum == SpectrumKind::File) {
-        systems_.push_back(WaveSystem::measured(sea, dispersion_));
-    } else if (sea.wind_speed_mps >= kCalmWind) {
-        systems_.push_back(WaveSystem::wind_sea(sea, dispersion_));
-    }
+DirectionalSpectrum::DirectionalSpectrum(const SeaState& sea)
+    : dispersion_{sea.depth_m}, systems_(WaveSystem::sea(sea, dispersion_)) {
     for (const Swell& swell : sea.swell) {
         if (swell.height_m > 0.0) systems_.push_back(WaveSystem::swell(swell, dispersion_));
     }

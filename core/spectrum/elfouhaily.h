@@ -45,11 +45,6 @@ inline double inverse_wave_age(double wind_speed_mps, double fetch_m) {
     return 0.84 * std::pow(std::tanh(std::pow(reduced_fetch / 2.2e4, 0.4)), -0.75);
 }
 
-inline double peak_wavenumber(double wind_speed_mps, double fetch_m) {
-    const double age = inverse_wave_age(wind_speed_mps, fetch_m);
-    return kGravity / (wind_speed_mps * wind_speed_mps) * age * age;
-}
-
 }  // namespace elfouhaily
 
 struct Elfouhaily {
@@ -61,8 +56,15 @@ struct Elfouhaily {
     double alpha_p, alpha_m;
 
     Elfouhaily(double wind_speed_mps, double fetch_m)
-        : age(elfouhaily::inverse_wave_age(wind_speed_mps, fetch_m)),
-          k_p(elfouhaily::peak_wavenumber(wind_speed_mps, fetch_m)),
+        : Elfouhaily(wind_speed_mps, Age{elfouhaily::inverse_wave_age(wind_speed_mps, fetch_m)}) {}
+
+    // Under waves of any inverse wave age.
+    struct Age {
+        double value;
+    };
+    Elfouhaily(double wind_speed_mps, Age inverse_wave_age)
+        : age(inverse_wave_age.value),
+          k_p(kGravity / (wind_speed_mps * wind_speed_mps) * age * age),
           c_p(elfouhaily::phase_speed(k_p)) {
         // γ is given for Ω up to 5 (Eq. 3): younger seas keep its value there.
         ln_gamma = std::log(age < 1.0 ? 1.7 : 1.7 + 6.0 * std::log10(std::min(age, 5.0)));

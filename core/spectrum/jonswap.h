@@ -1,33 +1,94 @@
 // JONSWAP: the sea that a wind raises over a limited fetch.
 //
-//   S(ω) = α g² ω⁻⁵ exp(−5/4 (ωp/ω)⁴) γ^exp(−(ω − ωp)² / (2 σ² ωp²))
-//   α = 0.076 (U²/(F g))^0.22,  ωp = 22 (g²/(U F))^⅓,  γ = 3.3,  σ = 0.07 (ω ≤ ωp), 0.09 above
+//   S(ω) = α g² ω⁻⁵ exp(−5/4 (ωp/ω)⁴) γ^exp(−(ω − ωp)² / (2 σ² ωp²)),  σ = 0.07 (ω ≤ ωp), 0.09 above
 //                                                                       (Hasselmann et al. 1973, §2)
-// Taken at its word, 10 000 km of fetch make a sea of 37 m: growth stops where the peak reaches that of the
-// fully developed sea, ωp = 0.877 g/U19.5. The longest fetch that counts follows from it, and is used for α
-// too.
+// The shape is theirs. Its parameters are a choice:
+//
+//   Jonswap      the heights of the growth law that later measurements agree on,
+//                  ε̃ = 5.2e-7 X̃^0.9,  ε̃ = m0 g²/U⁴,  X̃ = g F/U²        (Kahma & Calkoen 1992)
+//                up to Pierson & Moskowitz' height, which it reaches at X̃ = 1.5e4. On the way there γ falls from 3.3 to 1
+//                by 6 a decade of wave age (Donelan, Hamilton & Hui 1985, their slope), and α to Pierson & Moskowitz'
+//                8.1e-3 as X̃^−0.22 (the exponent of 1973). The peak follows from both: within 6 % of Kahma & Calkoen's
+//                ω̃p = 13.7 X̃^−0.27 for X̃ ≤ 1e3, and Pierson & Moskowitz' at full development.
+//   Jonswap1973  as printed:
+//                  α = 0.076 X̃^−0.22,  ωp = 22 (g²/(U F))^⅓,  γ = 3.3
+//                Its Hs at 14 m/s and 300 km is 5.3 m, where the growth law has 4.4. Taken at its word, 10 000 km of fetch
+//                make a sea of 37 m: growth stops where the peak reaches that of the fully developed sea, and the fetch at
+//                which it does so is used for α too.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "core/spectrum/gauss.h"
 #include "core/spectrum/pierson_moskowitz.h"
 
 namespace pelagic {
 
-struct Jonswap {
-    static constexpr double kLnGamma = 1.1939224684724346;  // γ = 3.3
+struct JonswapShape {
+    static constexpr double kLnSharpest = 1.1939224684724346;  // γ = 3.3
     static constexpr double kSigmaBelow = 0.07;
     static constexpr double kSigmaAbove = 0.09;
-    static constexpr double kDevelopedPeak = 0.877;  // ωp U19.5 / g of Pierson & Moskowitz
 
     double alpha;
     double omega_p;  // rad/s
+    double ln_gamma;
 
+    // S [m² s] at ω > 0 [rad/s].
+    double density(double omega) const {
+        const double r = omega_p / omega;
+        const double off_peak = (omega - omega_p) / ((omega > omega_p ? kSigmaAbove : kSigmaBelow) * omega_p);
+        return alpha * kGravity * kGravity / fifth_power(omega) *
+               std::exp(-1.25 * (r * r) * (r * r) + ln_gamma * std::exp(-0.5 * off_peak * off_peak));
+    }
+
+    double peak_omega() const { return omega_p; }
+};
+
+struct Jonswap : JonswapShape {
     Jonswap(double wind_speed_mps, double fetch_m) {
+        // Beyond what was measured, on a metre of fetch, waves would be steeper than they can stand.
+        constexpr double kLargestAlpha = 0.03;
+        constexpr double kFetchExponent = 0.22;
+        const double square = wind_speed_mps * wind_speed_mps / kGravity;
+        const double m0_unit = square * square;
+        const double developed =
+            std::pow(PiersonMoskowitz(wind_speed_mps).m0() / (kGrowth * m0_unit), 1.0 / kGrowthExponent);  // X̃
+        const double fetch =
+            std::min(kGravity * fetch_m / (wind_speed_mps * wind_speed_mps), developed);
+        // Wave age goes as X̃^−0.27.
+        const double gamma = 1.0 + 6.0 * 0.27 * std::log10(developed / fetch);
+        ln_gamma = std::min(std::log(gamma), kLnSharpest);
+        alpha = std::min(PiersonMoskowitz::kAlpha * std::pow(developed / fetch, kFetchExponent), kLargestAlpha);
+        const double m0 = kGrowth * std::pow(fetch, kGrowthExponent) * m0_unit;
+        omega_p = std::sqrt(std::sqrt(alpha * kGravity * kGravity * unit_m0(ln_gamma) / m0));
+    }
+
+    // ∫S dω over α g²/ωp⁴: ⅕ for γ = 1.
+    static double unit_m0(double ln_gamma) {
+        const JonswapShape unit{1.0 / (kGravity * kGravity), 1.0, ln_gamma};
+        double peaked = 0.0;  // what γ adds, within a few σ of the peak
+        for (const auto& [from, to] : {std::array{0.3, 0.75}, {0.75, 1.0}, {1.0, 1.3}, {1.3, 1.9}})
+            peaked += GaussLegendre<16>::rule().integrate(from, to, [&](double omega) {
+                return unit.density(omega) - JonswapShape{unit.alpha, 1.0, 0.0}.density(omega);
+            });
+        return 0.2 + peaked;
+    }
+
+  private:
+    static constexpr double kGrowth = 5.2e-7;  // Kahma & Calkoen's composite data
+    static constexpr double kGrowthExponent = 0.9;
+};
+
+struct Jonswap1973 : JonswapShape {
+    static constexpr double kDevelopedPeak = 0.877;  // ωp U19.5 / g of Pierson & Moskowitz
+
+    Jonswap1973(double wind_speed_mps, double fetch_m) {
         const double effective_m = std::min(fetch_m, developed_fetch_m(wind_speed_mps));
         alpha = 0.076 * std::pow(wind_speed_mps * wind_speed_mps / (effective_m * kGravity), 0.22);
         omega_p = 22.0 * std::cbrt(kGravity * kGravity / (wind_speed_mps * effective_m));
+        ln_gamma = kLnSharpest;
     }
 
     // The fetch [m] at which the sea is fully developed.
@@ -35,16 +96,6 @@ struct Jonswap {
         const double developed_omega = kDevelopedPeak * kGravity / (kU195OverU10 * wind_speed_mps);
         return kGravity * kGravity / (wind_speed_mps * std::pow(developed_omega / 22.0, 3));
     }
-
-    // S [m² s] at ω > 0 [rad/s].
-    double density(double omega) const {
-        const double r = omega_p / omega;
-        const double off_peak = (omega - omega_p) / ((omega > omega_p ? kSigmaAbove : kSigmaBelow) * omega_p);
-        return alpha * kGravity * kGravity / fifth_power(omega) *
-               std::exp(-1.25 * (r * r) * (r * r) + kLnGamma * std::exp(-0.5 * off_peak * off_peak));
-    }
-
-    double peak_omega() const { return omega_p; }
 };
 
 }  // namespace pelagic

@@ -12,10 +12,10 @@
 namespace pelagic {
 
 struct Tma {
-    Jonswap jonswap;
+    JonswapShape jonswap;
     double sqrt_depth_over_g;  // s
 
-    Tma(const Jonswap& deep, double depth_m)
+    Tma(const JonswapShape& deep, double depth_m)
         : jonswap(deep), sqrt_depth_over_g(std::sqrt(depth_m / kGravity)) {}
 
     // φ at ω [rad/s]: 0 … 1.

@@ -14,6 +14,15 @@ namespace {
 
 constexpr double kRadiansPerDegree = kPi / 180.0;
 
+// Below this wind [m/s] there is no wind sea: Pierson–Moskowitz' Hs would be 2e-8 m.
+constexpr double kCalmWind = 1e-3;
+
+// Where the short waves begin to count, in peak wavenumbers, and where they are all that counts, relative to that. Below 3
+// the spectra are what was measured; from some 10 on slopes are of waves that know the wind alone.
+constexpr double kJoinFrom = 3.0, kJoinWidth = 10.0 / 3.0;
+// Elfouhaily's sea is given from full development to this inverse wave age (Eq. 3).
+constexpr double kOldest = 0.84, kYoungest = 5.0;
+
 template <class Law>
 concept InWavenumber = requires(const Law& law) {
     law.density_k(1.0);
@@ -38,12 +47,14 @@ auto with_shape(const SpreadingLaw& law, const WavePoint& point, Use&& use) {
         law);
 }
 
-EnergyLaw wind_energy(const SeaState& sea) {
+EnergyLaw energy_law(const SeaState& sea) {
     switch (sea.spectrum) {
         case SpectrumKind::PiersonMoskowitz:
             return PiersonMoskowitz(sea.wind_speed_mps);
         case SpectrumKind::Jonswap:
             return Jonswap(sea.wind_speed_mps, sea.fetch_m);
+        case SpectrumKind::Jonswap1973:
+            return Jonswap1973(sea.wind_speed_mps, sea.fetch_m);
         case SpectrumKind::Tma:
             return Tma(Jonswap(sea.wind_speed_mps, sea.fetch_m), sea.depth_m);
         case SpectrumKind::Elfouhaily:
@@ -55,10 +66,16 @@ EnergyLaw wind_energy(const SeaState& sea) {
         case SpectrumKind::File:
             break;
     }
-    throw std::invalid_argument("a measured spectrum is not a wind's: use WaveSystem::measured");
+    if (!sea.measured) {
+        throw std::invalid_argument(
+            "spectrum = \"file\" without a measured spectrum: give spectrum_file and spectrum_time");
+    }
+    return MeasuredEnergy(*sea.measured);
 }
 
-SpreadingLaw wind_spreading(const SeaState& sea, double peak_wavenumber, const Dispersion& dispersion) {
+SpreadingLaw spreading_law(const SeaState& sea, double peak_wavenumber, const Dispersion& dispersion) {
+    if (sea.spectrum == SpectrumKind::File)
+        return MeasuredSpreading(*sea.measured, sea.wind_direction_deg * kRadiansPerDegree);
     const double peak_omega = dispersion.omega(peak_wavenumber);
     switch (sea.spreading) {
         case SpreadingKind::DonelanBanner:
@@ -90,29 +107,79 @@ double peak_wavenumber(const EnergyLaw& law, const Dispersion& dispersion) {
         law);
 }
 
-WaveSystem WaveSystem::wind_sea(const SeaState& sea, const Dispersion& dispersion) {
-    EnergyLaw energy = wind_energy(sea);
-    SpreadingLaw spreading = wind_spreading(sea, pelagic::peak_wavenumber(energy, dispersion), dispersion);
-    return {std::move(energy), std::move(spreading), sea.wind_direction_deg * kRadiansPerDegree, dispersion};
-}
-
 WaveSystem WaveSystem::swell(const Swell& swell, const Dispersion& dispersion) {
     const SwellEnergy energy(swell);
     return {energy, SwellSpreading{energy.omega_p}, swell.direction_deg * kRadiansPerDegree, dispersion};
 }
 
-WaveSystem WaveSystem::measured(const SeaState& sea, const Dispersion& dispersion) {
-    if (!sea.measured) {
-        throw std::invalid_argument(
-            "spectrum = \"file\" without a measured spectrum: give spectrum_file and spectrum_time");
+std::vector<WaveSystem> WaveSystem::sea(const SeaState& sea, const Dispersion& dispersion) {
+    const bool is_measured = sea.spectrum == SpectrumKind::File;
+    const bool has_wind = sea.wind_speed_mps >= kCalmWind;
+    if (!is_measured && !has_wind) return {};
+    const EnergyLaw energy = energy_law(sea);
+    const double peak = pelagic::peak_wavenumber(energy, dispersion);
+    const SpreadingLaw spreading = spreading_law(sea, peak, dispersion);
+    const double wind_direction = sea.wind_direction_deg * kRadiansPerDegree;
+    const double direction = is_measured ? 0.0 : wind_direction;  // a buoy's directions are absolute
+
+    const bool is_elfouhaily =
+        sea.spectrum == SpectrumKind::Elfouhaily && sea.spreading == SpreadingKind::Elfouhaily;
+    std::vector<WaveSystem> systems;
+    if (sea.short_waves == ShortWaves::None || !has_wind || is_elfouhaily) {
+        systems = {WaveSystem(energy, spreading, direction, dispersion)};
+    } else {
+        Join join{Join::Side::Left, kJoinFrom * peak, 0.0};
+        if (const auto* buoy = std::get_if<MeasuredEnergy>(&energy))
+            join.from = std::max(join.from, dispersion.wavenumber(buoy->edge_omegas().back()));
+        join.to = kJoinWidth * join.from;
+        systems = {WaveSystem(energy, spreading, direction, dispersion, join)};
+        if (!(systems.front().m0() > 0.0)) return {};  // a buoy's hour without waves is a calm, whatever the wind
+
+        join.side = Join::Side::Right;
+        const double age = sea.wind_speed_mps * dispersion.omega(peak) / kGravity;  // U/cp, in deep water
+        const auto* whole = std::get_if<Elfouhaily>(&energy);
+        const Elfouhaily tail = whole ? *whole
+                                      : Elfouhaily(sea.wind_speed_mps,
+                                                   Elfouhaily::Age{std::clamp(age, kOldest, kYoungest)});
+        systems.push_back(WaveSystem(tail, ElfouhailySpreading(sea.wind_speed_mps, tail.c_p), wind_direction,
+                                     dispersion, join));
+        systems.back().peak_wavenumber_ = peak;
     }
-    return {MeasuredEnergy(*sea.measured),
-            MeasuredSpreading(*sea.measured, sea.wind_direction_deg * kRadiansPerDegree), 0.0, dispersion};
+
+    double own = 0.0;
+    for (const WaveSystem& system : systems) own += system.m0();
+    const auto m0_of = [](double height_m) { return height_m * height_m / 16.0; };
+    const double wanted = std::min(sea.significant_height_m ? m0_of(*sea.significant_height_m) : own,
+                                   m0_of(kMostHeightOverDepth * sea.depth_m));
+    if (wanted != own && own > 0.0) {
+        // The wind's short waves stay as they are, unless they alone are higher than half of what is wanted.
+        double left = wanted;
+        if (systems.size() > 1 && systems.back().m0() > 0.0) {
+            systems.back() = systems.back().scaled(std::min(1.0, 0.5 * wanted / systems.back().m0()));
+            left -= systems.back().m0();
+        }
+        systems.front() = systems.front().scaled(left / systems.front().m0());
+    }
+    return systems;
+}
+
+WaveSystem WaveSystem::scaled(double energy_factor) const {
+    WaveSystem out = *this;
+    out.scale_ *= energy_factor;
+    out.m0_ *= energy_factor;
+    return out;
+}
+
+double Join::share(double k) const {
+    if (side == Side::None) return 1.0;
+    const double x = std::clamp(std::log(k / from) / std::log(to / from), 0.0, 1.0);
+    const double right = x * x * x * (10.0 - x * (15.0 - 6.0 * x));
+    return side == Side::Left ? 1.0 - right : right;
 }
 
 WaveSystem::WaveSystem(EnergyLaw energy, SpreadingLaw spreading, double direction,
-                       const Dispersion& dispersion)
-    : energy_(std::move(energy)), spreading_(std::move(spreading)), direction_(direction) {
+                       const Dispersion& dispersion, Join join)
+    : energy_(std::move(energy)), spreading_(std::move(spreading)), direction_(direction), join_(join) {
     peak_wavenumber_ = pelagic::peak_wavenumber(energy_, dispersion);
     find_panels(dispersion);
     const auto& rule = GaussLegendre<8>::rule();
@@ -128,6 +195,8 @@ double WaveSystem::energy(const WavePoint& point) const {
 }
 
 double WaveSystem::law_energy(const WavePoint& point) const {
+    const double counted = scale_ * join_.share(point.k);
+    if (!(counted > 0.0)) return 0.0;
     const double undamped = std::visit(
         [&]<class Law>(const Law& law) {
             if constexpr (InWavenumber<Law>) {
@@ -137,7 +206,7 @@ double WaveSystem::law_energy(const WavePoint& point) const {
             }
         },
         energy_);
-    return undamped * viscous_cutoff(point.k);
+    return counted * undamped * viscous_cutoff(point.k);
 }
 
 double WaveSystem::density(const WavePoint& point, double theta) const {
@@ -187,7 +256,7 @@ void WaveSystem::find_panels(const Dispersion& dispersion) {
     // Where the laws are not smooth.
     std::vector<double> kinks;
     const auto kink_at = [&](double omega) { kinks.push_back(dispersion.wavenumber(omega)); };
-    if (std::holds_alternative<Jonswap>(energy_) || std::holds_alternative<Omega2>(energy_)) {
+    if (std::holds_alternative<JonswapShape>(energy_) || std::holds_alternative<Omega2>(energy_)) {
         kinks.push_back(peak_wavenumber_);
     } else if (const auto* tma = std::get_if<Tma>(&energy_)) {
         kinks.push_back(peak_wavenumber_);
@@ -196,6 +265,7 @@ void WaveSystem::find_panels(const Dispersion& dispersion) {
     } else if (const auto* buoy = std::get_if<MeasuredEnergy>(&energy_)) {
         for (double omega : buoy->edge_omegas()) kink_at(omega);
     }
+    if (join_.side != Join::Side::None) kinks.insert(kinks.end(), {join_.from, join_.to});
     if (const auto* hasselmann = std::get_if<HasselmannSpreading>(&spreading_)) {
         kink_at(hasselmann->meeting_omega());
     } else if (const auto* donelan = std::get_if<DonelanBannerSpreading>(&spreading_)) {

@@ -1,4 +1,9 @@
 // One wave system: a wind sea or a swell, with its energy law, its spreading and its direction.
+//
+// A wind sea is two systems where SeaState::short_waves asks for it. The spectra were measured near their peaks; what they
+// say of short waves gives half the slopes that sun glitter shows (Cox & Munk 1954), almost as many of them against the
+// wind as with it. From 3 to 10 peak wavenumbers (of a buoy: from the end of its band to 3.3 times as far) the spectrum is
+// blended into the short waves of Elfouhaily et al. 1997 under the same wind, with their spreading.
 #pragma once
 
 #include <complex>
@@ -23,18 +28,34 @@ namespace pelagic {
 
 // Laws in ω have density(ω) [m² s] and peak_omega(); laws in k have density_k(k) [m³] and peak_wavenumber().
 using EnergyLaw =
-    std::variant<PiersonMoskowitz, Jonswap, Tma, Elfouhaily, Omega2, Phillips, SwellEnergy, MeasuredEnergy>;
+    std::variant<PiersonMoskowitz, JonswapShape, Tma, Elfouhaily, Omega2, Phillips, SwellEnergy, MeasuredEnergy>;
 
 // Laws in ω have at(ω), laws in k at_wavenumber(k); each gives one of the shapes of angular.h.
 using SpreadingLaw = std::variant<HasselmannSpreading, DonelanBannerSpreading, CosineSpreading,
                                   ElfouhailySpreading, SwellSpreading, MeasuredSpreading>;
 
+// The share of a system's energy that counts, by wavenumber [rad/m]: all of it, or what is left of the join or right of
+// it. A quintic in ln k, twice differentiable at both ends.
+struct Join {
+    enum class Side { None, Left, Right };
+    Side side = Side::None;
+    double from = 0.0, to = 0.0;
+
+    double share(double k) const;
+};
+
 class WaveSystem {
   public:
-    static WaveSystem wind_sea(const SeaState& sea, const Dispersion& dispersion);
     static WaveSystem swell(const Swell& swell, const Dispersion& dispersion);
-    // Throws std::invalid_argument, see MeasuredEnergy.
-    static WaveSystem measured(const SeaState& sea, const Dispersion& dispersion);
+    // What SeaState has beside its swells: the wind's waves or the measured ones, and the short ones joined to them. Its
+    // height is significant_height_m, or what follows from the law, but at most kMostHeightOverDepth times the depth: higher
+    // waves have broken. Empty without wind. Throws std::invalid_argument, see MeasuredEnergy.
+    static std::vector<WaveSystem> sea(const SeaState& sea, const Dispersion& dispersion);
+
+    // Hs over depth that waves can have (Thornton & Guza 1982 saw 0.42 … 0.6).
+    static constexpr double kMostHeightOverDepth = 0.6;
+
+    WaveSystem scaled(double energy_factor) const;
 
     // S_k [m³], viscous cutoff included; 0 outside panels(), where the laws' quotients of vanishing numbers
     // end.
@@ -60,13 +81,16 @@ class WaveSystem {
     const std::vector<double>& kinks() const { return kinks_; }
 
   private:
-    WaveSystem(EnergyLaw energy, SpreadingLaw spreading, double direction, const Dispersion& dispersion);
+    WaveSystem(EnergyLaw energy, SpreadingLaw spreading, double direction, const Dispersion& dispersion,
+               Join join = {});
     double law_energy(const WavePoint& point) const;
     void find_panels(const Dispersion& dispersion);
 
     EnergyLaw energy_;
     SpreadingLaw spreading_;
     double direction_;
+    Join join_;
+    double scale_ = 1.0;
     double peak_wavenumber_ = 0.0;
     double m0_ = 0.0;
     std::vector<double> panels_;

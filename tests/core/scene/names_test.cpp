@@ -20,7 +20,7 @@ void expect_words(const std::vector<std::string>& words) {
 
 TEST(Names, AreTheShotFilesWords) {
     expect_words<SpectrumKind>(
-        {"pierson-moskowitz", "jonswap", "tma", "elfouhaily", "omega-2", "phillips", "file"});
+        {"pierson-moskowitz", "jonswap", "jonswap-1973", "tma", "elfouhaily", "omega-2", "phillips", "file"});
     expect_words<SpreadingKind>({"hasselmann", "donelan-banner", "cosine", "elfouhaily"});
     expect_words<WaveModel>({"fft", "trochoid"});
     expect_words<SurfaceKind>({"patch", "projected-grid", "near-far", "cage", "planet"});

@@ -41,6 +41,7 @@ Binned binned(const MeasuredSpectrum& hour) {
 DirectionalSpectrum sea_of(const MeasuredSpectrum& hour) {
     SeaState state;
     state.spectrum = SpectrumKind::File;
+    state.short_waves = ShortWaves::None;  // the buoy's own waves
     state.measured = hour;
     return DirectionalSpectrum(state);
 }

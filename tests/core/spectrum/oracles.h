@@ -31,7 +31,7 @@ double log_simpson(double a, double b, int n, F&& f) {
 }
 
 inline const std::vector<SpectrumKind> kAnalytic = {
-    SpectrumKind::PiersonMoskowitz, SpectrumKind::Jonswap, SpectrumKind::Tma,
+    SpectrumKind::PiersonMoskowitz, SpectrumKind::Jonswap, SpectrumKind::Jonswap1973, SpectrumKind::Tma,
     SpectrumKind::Elfouhaily,       SpectrumKind::Omega2,  SpectrumKind::Phillips};
 
 inline const std::vector<SpreadingKind> kSpreadings = {SpreadingKind::Hasselmann,

@@ -97,6 +97,7 @@ TEST(SpectralMoments, EnergyPeriodOfPiersonMoskowitz) {
     // ∫S/ω dω over ∫S dω with t = β(ω0/ω)⁴: Γ(5/4)/(β^¼ ω0).
     SeaState state;
     state.spectrum = SpectrumKind::PiersonMoskowitz;
+    state.short_waves = ShortWaves::None;
     const SpectralMoments all = moments(DirectionalSpectrum(state), 0.0, oracle::kInfinity);
     const double w0 = 9.81 / (1.026 * 10.0);
     EXPECT_NEAR(all.energy_period_s(), 2 * kPi * std::tgamma(1.25) / (std::pow(0.74, 0.25) * w0), 1e-5);

@@ -1,0 +1,16 @@
+// Waves that no sea has: steeper than they can stand, or higher than their water is deep.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/problem.h"
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// The values of a valid SeaState (core/scene/validate.h) that ask for such waves, and the height that they may have: swells
+// and sea.significant_height_m. What wind and fetch give is kept to the depth by itself (WaveSystem::sea). Limits are of
+// significant heights: 0.142 λ tanh(k d) with the peak's λ (Miche 1944; a single wave there may be no higher), and 0.6 d.
+std::vector<Problem> impossible_waves(const SeaState& sea);
+
+}  // namespace pelagic

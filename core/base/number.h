@@ -44,5 +44,9 @@ template <class T>
 T complementary_error(T x) {  // erfc
     return std::erfc(x);
 }
+template <class T>
+T exponential(T x) {
+    return std::exp(x);
+}
 
 }  // namespace pelagic

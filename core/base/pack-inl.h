@@ -89,6 +89,11 @@ HWY_INLINE Pack<D> cube_root(Pack<D> x) {
     return hn::CopySign(y, x.v);
 }
 
+template <class D>
+HWY_INLINE Pack<D> exponential(Pack<D> x) {
+    return hn::Exp(D(), x.v);
+}
+
 // erfc(x) = exp(−x²) f(t)/(1 + 2x) for x ≥ 0 with t = (x − 3)/(x + 3); erfc(x) = 2 − erfc(−x) below 0. f is a
 // Chebyshev series, fitted at 64 nodes to erfc computed with 40 digits. Relative error 2e-6 in single
 // precision (from rounding x²) and 4e-15 in double, where the result is a normal number.

@@ -5,6 +5,7 @@
 
 #include "core/base/constants.h"
 #include "core/scene/text.h"
+#include "core/scene/validate.h"
 #include "core/spectrum/wave_system.h"
 
 namespace pelagic {
@@ -22,21 +23,23 @@ Limit highest(double k, const Dispersion& dispersion) {
     return {std::min(steepest, deepest), deepest < steepest};
 }
 
-// Two digits are enough for a limit, rounded down.
-std::string height_text(double height_m) {
-    const double unit = std::pow(10.0, std::floor(std::log10(height_m)) - 1.0);
-    return "0 … " + number_text(std::floor(height_m / unit + 1e-9) * unit);
+// Two digits are enough for a limit; rounded down.
+std::string two_digits(double value) {
+    const double digits = 1.0 - std::floor(std::log10(value));
+    const double scale = std::pow(10.0, digits);
+    return number_text(std::floor(value * scale + 1e-9) / scale);
 }
 
 void check(std::vector<Problem>& problems, const std::string& key, double height_m, double k,
            const Dispersion& dispersion, const std::string& remedy) {
     const Limit limit = highest(k, dispersion);
-    if (!(height_m > limit.height_m)) return;
+    constexpr double kRounding = 1.0 + 1e-9;
+    if (!(height_m > limit.height_m * kRounding)) return;
     const std::string why =
         limit.is_depths
             ? "is more than water of " + number_text(dispersion.depth_m) + " m can carry: higher waves have broken"
-            : "is more than waves can have that are " + short_number_text(kTwoPi / k) + " m long: they break";
-    problems.push_back({key, number_text(height_m), why, height_text(limit.height_m) + remedy});
+            : "is more than waves can have that are " + two_digits(kTwoPi / k) + " m long: they break";
+    problems.push_back({key, number_text(height_m), why, "0 … " + two_digits(limit.height_m) + remedy});
 }
 
 }  // namespace
@@ -56,6 +59,11 @@ std::vector<Problem> impossible_waves(const SeaState& sea) {
                   systems.front().peak_wavenumber(), dispersion, ", or more wind or fetch, which make longer waves");
     }
     return problems;
+}
+
+std::vector<Problem> problems_of(const Scene& scene) {
+    std::vector<Problem> problems = validate(scene);
+    return problems.empty() ? impossible_waves(scene.sea) : problems;
 }
 
 }  // namespace pelagic

@@ -13,4 +13,7 @@ namespace pelagic {
 // significant heights: 0.142 λ tanh(k d) with the peak's λ (Miche 1944; a single wave there may be no higher), and 0.6 d.
 std::vector<Problem> impossible_waves(const SeaState& sea);
 
+// All that is wrong with a scene: what validate() finds or, where that is nothing, impossible waves.
+std::vector<Problem> problems_of(const Scene& scene);
+
 }  // namespace pelagic

@@ -48,37 +48,12 @@ class MomentSum {
     T weight_ = T(0), origin_ = T(0), first_ = T(0), second_ = T(0), third_ = T(0);
 };
 
-namespace whitecaps_detail {
-
-template <class T>
-T from_normal(T y, T skewness) {
-    const T s = std::clamp(skewness, T(-kLargestSkewness), T(kLargestSkewness));
-    if (std::abs(s) < T(kNoSkewness)) return y;
-    const T root = T(1) + (s / T(6)) * (y - s / T(6));
-    return (T(2) / s) * (root * root * root - T(1));
-}
-
-// Quantile of the standard normal distribution by Newton's method on erfc; p in (0, 1).
-inline double normal_quantile(double p) {
-    double y = 0.0;
-    for (int i = 0; i < 100; ++i) {
-        const double excess = 0.5 * std::erfc(-y / std::sqrt(2.0)) - p;
-        const double density = std::exp(-0.5 * y * y) / std::sqrt(kTwoPi);
-        const double step = std::clamp(excess / std::max(density, 1e-300), -0.5, 0.5);
-        y -= step;
-        if (std::abs(step) < 1e-14) break;
-    }
-    return y;
-}
-
-}  // namespace whitecaps_detail
-
 // Monahan and O'Muircheartaigh 1980: W = 2.95e-6 U10^3.52, U10 in m/s. Limited to 0.99, reached at 37 m/s.
 inline double observed_coverage(double wind_speed_mps) {
     return std::min(2.95e-6 * std::pow(std::max(wind_speed_mps, 0.0), 3.52), 0.99);
 }
 
-// The threshold ε at which the whole sea, all waves of the spectrum included, has the coverage observed at
+// The threshold ε, below 1, at which the whole sea, all waves of the spectrum included, has the coverage observed at
 // this wind. −∞ (no foam) without wind or without convergence. `third_moment`: as coverage() will be called.
 inline double calibrated_threshold(const SpectralMoments& all_waves, double wind_speed_mps,
                                    bool third_moment) {
@@ -87,9 +62,13 @@ inline double calibrated_threshold(const SpectralMoments& all_waves, double wind
     const double w = observed_coverage(wind_speed_mps);
     constexpr double kNoFoam = 1e-9;  // a square millimetre in a thousand square metres
     if (w < kNoFoam || !(j.variance > 0.0)) return -std::numeric_limits<double>::infinity();
-    const double sigma = std::sqrt(j.variance);
-    const double skewness = third_moment ? j.third / j.variance / sigma : 0.0;
-    return j.mean + sigma * whitecaps_detail::from_normal(whitecaps_detail::normal_quantile(w), skewness);
+    // Water that is stretched doesn't break: where even ε = 1 has less foam, the law has left its data.
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (coverage(j, middle, third_moment) < w ? low : high) = middle;
+    }
+    return high;
 }
 
 }  // namespace pelagic

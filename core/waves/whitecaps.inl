@@ -66,15 +66,23 @@ namespace whitecaps_detail {
 inline constexpr double kLargestSkewness = 2.0;
 inline constexpr double kNoSkewness = 1e-4;  // the correction is below single precision
 
+// A standard normal deviate, and what turns its density into that of the deviate that it stands for.
+template <class T>
+struct NormalDeviate {
+    T y, root;
+};
+
 // Maps the deviate z of a Pearson III (shifted gamma) variable of mean 0, variance 1 and the given skewness
 // to the standard normal deviate of equal probability: Wilson and Hilferty 1931. Increasing in z; the
-// identity for skewness → 0.
+// identity for skewness → 0. The root is (1 + s z/2)^⅓.
 template <class T>
-inline T to_normal(T z, T skewness) {
+inline NormalDeviate<T> to_normal(T z, T skewness) {
     const T clamped = minimum(maximum(skewness, T(-kLargestSkewness)), T(kLargestSkewness));
     const T s = select(magnitude(clamped) < T(kNoSkewness), T(1), clamped);
-    const T y = (T(6) / s) * (cube_root(T(1) + T(0.5) * s * z) - T(1)) + s * T(1.0 / 6.0);
-    return select(magnitude(clamped) < T(kNoSkewness), z, y);
+    const T root = cube_root(T(1) + T(0.5) * s * z);
+    const T y = (T(6) / s) * (root - T(1)) + s * T(1.0 / 6.0);
+    return NormalDeviate<T>(select(magnitude(clamped) < T(kNoSkewness), z, y),
+                            select(magnitude(clamped) < T(kNoSkewness), T(1), root));
 }
 
 }  // namespace whitecaps_detail
@@ -82,17 +90,44 @@ inline T to_normal(T z, T skewness) {
 // Beyond this many standard deviations the coverage is 0 or 1 (ε = −∞: no foam).
 inline constexpr double kFarthestDeviate = 30.0;
 
-// The fraction of a footprint with J < threshold, 0 … 1. From two moments: ½(1 + erf((ε − μ)/(√2 σ))) (Dupuy
-// and Bruneton 2012, Eq. 6). The third makes the distribution of J a shifted gamma: at a skewness of 0.24 and
-// a coverage of 0.005 the Gaussian is 85 % too large. Variance 0 gives a step, without a division.
+// E[J; J < μ + σ z], σ² > 0. Of a Gaussian it is μ Φ(z) − σ φ(z); of a shifted gamma of skewness s, σ² (1 + s z/2) times
+// the density of J in place of σ φ. With Wilson and Hilferty's normal deviate y both are μ Φ(y) − σ (1 + s z/2)^⅓ φ(y).
+template <class T>
+inline T mean_below(JacobianMoments<T> j, T sigma, T z, bool third_moment) {
+    const T inside = minimum(maximum(z, T(-kFarthestDeviate)), T(kFarthestDeviate));
+    T y = inside;
+    T root = T(1);
+    if (third_moment) {
+        whitecaps_detail::NormalDeviate<T> normal =
+            whitecaps_detail::to_normal(inside, j.third / (sigma * sigma) / sigma);
+        y = normal.y;
+        root = normal.root;
+    }
+    const T share = minimum(T(0.5) * complementary_error(y * T(-0.70710678118654752440)), T(1));
+    return j.mean * share - sigma * root * (T(0.39894228040143267794) * exponential(T(-0.5) * y * y));
+}
+
+// The area of sea over that at rest: E[max(J, 0)]. What is folded over lies under it and is no sea to be seen.
+template <class T>
+inline T sea_area(JacobianMoments<T> j, bool third_moment) {
+    const T sigma = square_root(select(j.variance > T(0), j.variance, T(1)));
+    const T folded = mean_below(j, sigma, T(0) - j.mean / sigma, third_moment);
+    return maximum(select(j.variance > T(0), j.mean - folded, j.mean), T(0));
+}
+
+// The share of a footprint's sea that has J < threshold, 0 … 1: E[max(J, 0); J < ε]/E[max(J, 0)], since a patch at rest of
+// area A covers A·J of sea. (Dupuy and Bruneton 2012, Eq. 6, counts patches at rest.) From two moments J is Gaussian. The
+// third makes its distribution a shifted gamma: at a skewness of 0.24 and a coverage of 0.005 the Gaussian is 85 % too
+// large. Variance 0 gives a step, without a division; a footprint that is folded altogether is foam.
 template <class T>
 inline T coverage(JacobianMoments<T> j, T threshold, bool third_moment) {
     const T sigma = square_root(select(j.variance > T(0), j.variance, T(1)));
     const T deviate = (threshold - j.mean) / sigma;
-    T z = minimum(maximum(deviate, T(-kFarthestDeviate)), T(kFarthestDeviate));
-    if (third_moment) z = whitecaps_detail::to_normal(z, j.third / (sigma * sigma) / sigma);
-    const T part = minimum(T(0.5) * complementary_error(z * T(-0.70710678118654752440)), T(1));
-    const T within =
-        select(deviate < T(-kFarthestDeviate), T(0), select(deviate > T(kFarthestDeviate), T(1), part));
+    const T folded = mean_below(j, sigma, T(0) - j.mean / sigma, third_moment);
+    const T sea = j.mean - folded;
+    const T foam = mean_below(j, sigma, deviate, third_moment) - folded;
+    const T least = T(1e-3) * sigma;  // less than that is rounding in single precision
+    const T share = select(sea > least, minimum(maximum(foam / maximum(sea, least), T(0)), T(1)), T(1));
+    const T within = select(threshold > T(0), select(deviate > T(kFarthestDeviate), T(1), share), T(0));
     return select(j.variance > T(0), within, select(j.mean < threshold, T(1), T(0)));
 }

@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "core/plan/plan.h"
-#include "core/scene/validate.h"
+#include "core/spectrum/possible.h"
 #include "plugin/bake/check.h"
 #include "plugin/bake/foreign.h"
 #include "plugin/bake/output_part.h"
@@ -39,7 +39,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 void refuse_invalid(const Scene& scene, const std::vector<int>& frames) {
     std::string problems;
-    for (const Problem& problem : validate(scene))
+    for (const Problem& problem : problems_of(scene))
         problems += (problems.empty() ? "" : "\n") + text_of(problem);
     if (!problems.empty()) throw std::invalid_argument(problems);
     for (std::size_t i = 0; i < frames.size(); ++i)

@@ -18,6 +18,7 @@
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
+#include "plugin/cli/warnings.h"
 #include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
@@ -95,6 +96,7 @@ int run(const Arguments& arguments) {
     options.max_memory_bytes = memory_of(arguments.max_memory);
     options.trust_times = arguments.trust_times;
 
+    print_warnings(arguments.shot, scene);
     StopSignals stop;
     Progress progress;
     options.cancel = &stop.cancelled();

@@ -22,6 +22,7 @@
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
+#include "plugin/cli/warnings.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/render/render.h"
@@ -138,6 +139,7 @@ Verb add_explain(CLI::App& program) {
                 const Plan plan = plan_bake(scene);
                 std::cout << explain(plan);
                 print_memory(scene, plan);
+                print_warnings(arguments->shot, scene);
                 return arguments->measure ? print_prices(scene, *arguments) : int{kDone};
             }};
 }

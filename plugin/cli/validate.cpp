@@ -13,6 +13,7 @@
 #include "plugin/cli/help.h"
 #include "plugin/cli/text.h"
 #include "plugin/cli/verb.h"
+#include "plugin/cli/warnings.h"
 #include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 
@@ -55,6 +56,7 @@ Verb add_validate(CLI::App& program) {
                         const Scene scene = load_shot(file, check_sky);
                         const Plan plan = plan_bake(scene);
                         std::cout << file << ": fine\n    " << summary(scene, plan) << std::endl;
+                        print_warnings(file, scene);
                     } catch (const ShotError& error) {
                         std::cerr << error.what() << std::endl;
                         status = kRefused;

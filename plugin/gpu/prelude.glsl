@@ -7,6 +7,7 @@ float maximum(float a, float b) { return max(a, b); }
 float magnitude(float x) { return abs(x); }
 float minus_product(float c, float a, float b) { return c - a * b; }
 float square_root(float x) { return sqrt(x); }
+float exponential(float x) { return exp(x); }
 
 // One step of Newton's method corrects the hardware's pow(), which has no guaranteed precision.
 float cube_root(float x) {

@@ -10,7 +10,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
-#include "core/scene/validate.h"
+#include "core/spectrum/possible.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/preview/live.h"
 
@@ -42,7 +42,7 @@ bool fits(const Plan& plan, const LiveLimits& limits) {
 std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits,
                                             const BuildWatch& watch) {
     std::string problems;
-    for (const Problem& problem : validate(scene))
+    for (const Problem& problem : problems_of(scene))
         problems += (problems.empty() ? "" : "\n") + text_of(problem);
     if (!problems.empty()) throw std::invalid_argument(problems);
     const auto start = std::chrono::steady_clock::now();

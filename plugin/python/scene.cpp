@@ -15,7 +15,7 @@
 #include "core/scene/names.h"
 #include "core/scene/shot_text.h"
 #include "core/scene/text.h"
-#include "core/scene/validate.h"
+#include "core/spectrum/possible.h"
 #include "plugin/files/files.h"
 #include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
@@ -189,7 +189,7 @@ double significant_height_of(const Scene& scene) {
 
 std::vector<std::string> problem_lines(const Scene& scene) {
     std::vector<std::string> lines;
-    for (const Problem& problem : validate(scene)) lines.push_back(text_of(problem));
+    for (const Problem& problem : problems_of(scene)) lines.push_back(text_of(problem));
     return lines;
 }
 

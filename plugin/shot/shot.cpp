@@ -5,7 +5,7 @@
 
 #include "core/scene/names.h"
 #include "core/scene/text.h"
-#include "core/scene/validate.h"
+#include "core/spectrum/possible.h"
 #include "plugin/shot/bounds.h"
 #include "plugin/shot/ndbc.h"
 #include "plugin/shot/read_scene.h"
@@ -96,7 +96,7 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     read_scene(reader, root, scene);
     load_measured(reader, file.parent_path(), scene.sea);
     find_sky(reader, file.parent_path(), scene.light);
-    for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
+    for (Problem& problem : problems_of(scene)) reader.refuse_value(std::move(problem));
     if (!reader.has_failed("light.sky"))
         for (Problem& problem : check_files(scene)) reader.refuse_value(std::move(problem));
     if (reader.problem_count() > 0) throw ShotError(reader.report());

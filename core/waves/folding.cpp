@@ -1,0 +1,55 @@
+#include "core/waves/folding.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/scene/text.h"
+#include "core/spectrum/spectral_moments.h"
+#include "core/waves/whitecaps.h"
+
+namespace pelagic {
+namespace {
+
+double share_of(const SpectralMoments& all, double choppiness) {
+    const double c = choppiness * choppiness;
+    const auto j = jacobian_moments<double>(0.0, 0.0, 0.0,
+                                            {c * all.xxxx, c * all.xxxy, c * all.xxyy, c * all.xyyy, c * all.yyyy});
+    if (!(j.variance > 0.0)) return 0.0;
+    const double sigma = std::sqrt(j.variance);
+    const double y = whitecaps_detail::to_normal(-j.mean / sigma, j.third / (j.variance * sigma)).y;
+    return 0.5 * std::erfc(-y / std::sqrt(2.0));
+}
+
+SpectralMoments all_of(const DirectionalSpectrum& spectrum) {
+    return moments(spectrum, 0.0, std::numeric_limits<double>::infinity());
+}
+
+// Two digits: "8.2".
+std::string percent_text(double share) {
+    const double percent = 100.0 * share;
+    const double unit = percent < 10.0 ? 0.1 : 1.0;
+    return number_text(std::round(percent / unit) * unit);
+}
+
+}  // namespace
+
+double folded_share(const DirectionalSpectrum& spectrum, double choppiness) {
+    return share_of(all_of(spectrum), choppiness);
+}
+
+std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
+    constexpr double kMuch = 0.05;
+    const double choppiness = prepared.scene.waves.choppiness;
+    const SpectralMoments all = all_of(prepared.spectrum);
+    const double share = share_of(all, choppiness);
+    if (!(share > kMuch)) return {};
+    double less = 0.0, more = choppiness;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = 0.5 * (less + more);
+        (share_of(all, middle) > kMuch ? more : less) = middle;
+    }
+    return {"the surface folds over itself on " + percent_text(share) + " % of its area; waves.choppiness = " +
+            number_text(std::floor(100.0 * less) / 100.0) + " leaves 5 %"};
+}
+
+}  // namespace pelagic

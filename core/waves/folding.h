@@ -1,0 +1,19 @@
+// How much of a sea folds over itself: choppiness moves crests together until they cross.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/plan/prepared_scene.h"
+
+namespace pelagic {
+
+// The share of the surface, by area at rest, whose Jacobian is below 0 with all waves of the spectrum; 0 … 1. From J's first
+// three cumulants (core/waves/whitecaps.h).
+double folded_share(const DirectionalSpectrum& spectrum, double choppiness);
+
+// What an artist should know of a sea before it is built, a sentence each: a surface that folds over itself on more than 5 %
+// of its area, and the choppiness that leaves that much.
+std::vector<std::string> sea_warnings(const PreparedScene& prepared);
+
+}  // namespace pelagic

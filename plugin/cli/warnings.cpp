@@ -1,0 +1,14 @@
+#include "plugin/cli/warnings.h"
+
+#include <iostream>
+
+#include "core/waves/folding.h"
+
+namespace pelagic::cli {
+
+void print_warnings(const std::string& shot, const Scene& scene) {
+    for (const std::string& warning : sea_warnings(*prepare(scene)))
+        std::cerr << shot << ": note: " << warning << std::endl;
+}
+
+}  // namespace pelagic::cli

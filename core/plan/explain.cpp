@@ -54,7 +54,7 @@ std::string trains_text(const Plan& plan) {
     const auto shown = [&](double footprint_m) {
         int count = 0;
         for (int i = 0; i < trains.count; ++i)
-            count += plan.filter.weight(kTwoPi / trains.wavelength_m(i), footprint_m) > 0.0;
+            count += plan.filter.weight(kTwoPi / trains.wavelengths_m[i], footprint_m) > 0.0;
         return count;
     };
     std::string page = format(

@@ -41,15 +41,31 @@ double shortest_for_m(const TrainsPlan& plan, int below, double nyquist_m) {
            std::pow(nyquist_m / plan.longest_m, plan.count / static_cast<double>(plan.count - below));
 }
 
+// The wavelength of the bin's mean wavenumber; of a bin without energy the geometric middle.
+double mean_wavelength_m(const DirectionalSpectrum& spectrum, double longer_m, double shorter_m) {
+    const double middle_m = std::sqrt(longer_m * shorter_m);
+    const auto panels = spectrum.panels();
+    if (panels.empty()) return middle_m;
+    const double first = std::max(kTwoPi / longer_m, panels.front());
+    const double last = std::min(kTwoPi / shorter_m, panels.back());
+    double energy = 0.0, mean = 0.0;
+    auto next = std::upper_bound(panels.begin(), panels.end(), first);
+    for (double from = first; from < last;) {
+        const double to = next != panels.end() ? std::min(*next++, last) : last;
+        const auto sum = [&](auto&& of) { return GaussLegendre<8>::rule().integrate(from, to, of); };
+        energy += sum([&](double k) { return spectrum.omnidirectional(k); });
+        mean += sum([&](double k) { return k * spectrum.omnidirectional(k); });
+        from = to;
+    }
+    if (!(energy > 0.0) || !(mean > 0.0)) return middle_m;
+    return std::clamp(kTwoPi * energy / mean, shorter_m, longer_m);
+}
+
 }  // namespace
 
 double TrainsPlan::edge_m(int i) const {
     if (i == count) return shortest_m;
     return longest_m * std::pow(shortest_m / longest_m, i / static_cast<double>(count));
-}
-
-double TrainsPlan::wavelength_m(int i) const {
-    return longest_m * std::pow(shortest_m / longest_m, (i + 0.5) / static_cast<double>(count));
 }
 
 std::size_t TrainsPlan::sea_bytes(bool double_precision) const {
@@ -87,7 +103,10 @@ TrainsPlan resolve_trains(const PreparedScene& prepared, double finest_footprint
         }
         plan.shortest_m = std::min(plan.shortest_m, plan.longest_m / kLeastRange);
     }
-    for (int i = 0; i < plan.count; ++i) plan.below_pixel += plan.wavelength_m(i) < nyquist_m;
+    for (int i = 0; i < plan.count; ++i) {
+        plan.wavelengths_m.push_back(mean_wavelength_m(spectrum, plan.edge_m(i), plan.edge_m(i + 1)));
+        plan.below_pixel += plan.wavelengths_m.back() < nyquist_m;
+    }
     return plan;
 }
 

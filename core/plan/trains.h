@@ -1,12 +1,15 @@
 // Which wave trains a scene has: how many, and between which wavelengths.
 //
 // The trains' wavelengths are a geometric progression (Bruneton, Neyret, Holzschuch 2010, §7.1): the range
-// from longest_m down to shortest_m is cut into `count` bins of equal ratio, one train in the middle of each.
-// What the spectrum holds outside the range is not sampled: it is integrated and kept as variance
-// (core/waves/trains.h), so that nothing is missing, however the range is chosen.
+// from longest_m down to shortest_m is cut into `count` bins of equal ratio. A train has the energy of its bin and the
+// mean wavenumber there, weighted by energy: in the middle of a wide bin, where few trains have much to stand for, it
+// would be steeper than the waves that it stands for. What the spectrum holds outside the range is not sampled: it is
+// integrated and kept as variance (core/waves/trains.h), as is the slope that a bin has and its train hasn't, so that
+// nothing is missing, however the range is chosen.
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "core/plan/prepared_scene.h"
 
@@ -19,7 +22,7 @@ struct TrainsPlan {
 
     // Bin i, 0 … count − 1, longest first: its longer edge (edge_m(count) is shortest_m), and its train.
     double edge_m(int i) const;
-    double wavelength_m(int i) const;
+    std::vector<double> wavelengths_m{};
 
     // What a Sea holds of them (Trains<T>, core/waves/trains.h).
     std::size_t sea_bytes(bool double_precision) const;

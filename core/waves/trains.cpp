@@ -99,6 +99,25 @@ SpectralMoments weighted(const Trains<T>& trains, std::size_t i, double weight) 
     return moments;
 }
 
+// What a bin's waves have and one train of wavenumber k with their energy lacks: slopes and strains, in the bin's own
+// directions. The mean of k² is no less than the square of the mean.
+SpectralMoments beyond_train(const SpectralMoments& bin, double k, double horizontal_ratio) {
+    SpectralMoments rest;
+    const auto lacking = [](double of, double train) { return of > train ? 1.0 - train / of : 0.0; };
+    const double slopes = lacking(bin.xx + bin.yy, k * k * bin.m0);
+    rest.xx = slopes * bin.xx;
+    rest.xy = slopes * bin.xy;
+    rest.yy = slopes * bin.yy;
+    const double strains = lacking(bin.xxxx + 2.0 * bin.xxyy + bin.yyyy,
+                                   horizontal_ratio * horizontal_ratio * k * k * bin.m0);
+    rest.xxxx = strains * bin.xxxx;
+    rest.xxxy = strains * bin.xxxy;
+    rest.xxyy = strains * bin.xxyy;
+    rest.xyyy = strains * bin.xyyy;
+    rest.yyyy = strains * bin.yyyy;
+    return rest;
+}
+
 // Trains [0, full) have weight 1, trains [full, any) a weight between 0 and 1, the rest 0.
 struct Passing {
     std::size_t full, any;
@@ -131,7 +150,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
     Trains<T> trains;
     for (int i = 0; i < plan.count; ++i) {
         const Bin bin(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1));
-        const double wavelength_m = plan.wavelength_m(i), k = kTwoPi / wavelength_m;
+        const double wavelength_m = plan.wavelengths_m[i], k = kTwoPi / wavelength_m;
         const auto bits = philox({static_cast<std::uint32_t>(i), 0, 0, kTrainStream}, scene.shot.seed);
         const double theta = bin.energy() > 0.0 ? direction(spectrum, bin.wavenumber(uniform(bits[2])),
                                                             uniform(bits[0], bits[1]))
@@ -174,9 +193,11 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
         trains.steepness2.push_back(std::min(static_cast<T>(q * q), T(1)));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));
+        trains.outside += beyond_train(moments(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1)), k,
+                                       dispersion.horizontal_ratio(k));
     }
 
-    trains.outside = moments(spectrum, 0.0, kTwoPi / plan.longest_m);
+    trains.outside += moments(spectrum, 0.0, kTwoPi / plan.longest_m);
     trains.outside += moments(spectrum, kTwoPi / plan.shortest_m, std::numeric_limits<double>::infinity());
     trains.outside.scale_strain(choppiness * choppiness);
     trains.before.resize(trains.count() + 1);

@@ -72,7 +72,8 @@ TEST(TrainsPlan, DefaultRangeHoldsTheSea) {
 }
 
 TEST(TrainsPlan, TenTrainsAreBelowThePixel) {
-    const Scene scene = trochoid();
+    Scene scene = trochoid();
+    scene.sea.short_waves = ShortWaves::None;  // Elfouhaily's end at some millimetres
     for (const double footprint_m : {0.005, 0.02, 0.1, 1.0, 30.0, 1000.0}) {
         const TrainsPlan plan = resolve_trains(*prepare(scene), footprint_m);
         EXPECT_GE(plan.below_pixel, 10) << footprint_m;
@@ -113,16 +114,25 @@ TEST(TrainsPlan, CascadesTakeOverWhereTheirLargestTileCan) {
     EXPECT_EQ(resolve_trains(*prepare(scene), 0.1).shortest_m, 10.0);  // eight of them fit into the tile
 }
 
-TEST(Trains, AreAGeometricProgression) {
+// Bins of equal ratio, a train in each, at the mean wavenumber of the bin's energy.
+TEST(Trains, AreTheMeansOfAGeometricProgression) {
     const Scene scene = trochoid();
     const TrainsPlan plan = resolve_trains(*prepare(scene), 0.5);
     const auto trains = trains_of(scene, 0.5);
     ASSERT_EQ(trains.count(), 60u);
     const double ratio = std::pow(plan.longest_m / plan.shortest_m, 1.0 / 60.0);
-    for (std::size_t i = 1; i < trains.count(); ++i)
-        EXPECT_NEAR(trains.wavelength_m[i - 1] / trains.wavelength_m[i], ratio, 1e-12);
-    EXPECT_NEAR(plan.longest_m / trains.wavelength_m.front(), std::sqrt(ratio), 1e-12);
-    EXPECT_NEAR(trains.wavelength_m.back() / plan.shortest_m, std::sqrt(ratio), 1e-12);
+    const DirectionalSpectrum spectrum(scene.sea);
+    for (int i = 0; i < 60; ++i) {
+        EXPECT_NEAR(plan.edge_m(i) / plan.edge_m(i + 1), ratio, 1e-12);
+        const double from = kTwoPi / plan.edge_m(i), to = kTwoPi / plan.edge_m(i + 1);
+        double energy = 0.0, mean = 0.0;
+        for (int n = 0; n < 4000; ++n) {
+            const double k = from + (to - from) * (n + 0.5) / 4000;
+            energy += spectrum.omnidirectional(k);
+            mean += k * spectrum.omnidirectional(k);
+        }
+        EXPECT_NEAR(trains.wavelength_m[static_cast<std::size_t>(i)] * mean / energy / kTwoPi, 1.0, 1e-5) << i;
+    }
 }
 
 // The integrals of the bins and of the band split at different places; each is exact to 1e-7.
@@ -179,7 +189,7 @@ TEST(TrainVariance, OfOneTrochoidIsTheClosedForm) {
     for (const double kh : {0.9, 0.3, 0.01}) {
         const auto trains = trains_of(one_train(kh, 1.0));
         const double k = kTwoPi / trains.wavelength_m[0], q = k * trains.height_m[0];
-        ASSERT_NEAR(q, kh, 1e-3 * kh);  // not all of the swell's spectrum is in the range
+        ASSERT_NEAR(q, kh, 6e-3 * kh);  // the mean of a swell's wavenumbers lies half a per cent above their peak
         const SpectralMoments& own = trains.alone[0];
         const double closed = 1.0 - std::sqrt(1.0 - q * q);
         EXPECT_NEAR(own.mss(), closed, 1e-12);
@@ -218,9 +228,9 @@ TEST(Trains, ThatWouldLoopAreLimited) {
     for (const double choppiness : {1.0, 10.0}) {
         const auto trains = trains_of(one_train(5.0, choppiness));
         const double k = kTwoPi / trains.wavelength_m[0];
-        EXPECT_NEAR(k * trains.height_m[0], 5.0, 0.01);  // the energy is unchanged
+        EXPECT_NEAR(k * trains.height_m[0], 5.0, 0.03);  // the energy is unchanged
         EXPECT_LE(k * trains.horizontal_m[0], 1.0 + 1e-15);
-        EXPECT_NEAR(trains.alone[0].mss(), 25.0, 0.1);  // (kh)²/(1 + 0)
+        EXPECT_NEAR(trains.alone[0].mss(), 25.0, 0.3);  // (kh)²/(1 + 0)
         for (const double footprint_m : {0.0, 2.7, 3.0, 4.0, 1e3})
             for (const auto m : kSpectralMoments) {
                 EXPECT_TRUE(std::isfinite(resolved(trains, {}, footprint_m).*m));
@@ -269,7 +279,13 @@ TEST(TrainVariance, OutsideTheRangeIsTheRestOfTheSpectrum) {
     EXPECT_GT(rest.m0, 0.5 * spectrum.m0());
     rest += moments(spectrum, kTwoPi / 0.02, kInfinity);
     rest.scale_strain(0.25);
-    for (const auto m : kSpectralMoments) EXPECT_EQ(trains.outside.*m, rest.*m);
+    // And what the bins have and their trains lack: slopes and strains, never energy.
+    for (const auto m : {&SpectralMoments::m0, &SpectralMoments::m_minus1, &SpectralMoments::east})
+        EXPECT_EQ(trains.outside.*m, rest.*m);
+    for (const auto m : {&SpectralMoments::xx, &SpectralMoments::yy, &SpectralMoments::xxxx}) {
+        EXPECT_GT(trains.outside.*m, rest.*m);
+        EXPECT_LT(trains.outside.*m, rest.*m + 0.005 * moments(spectrum, 0.0, kInfinity).*m);
+    }
     EXPECT_NEAR(total(trains).m0, spectrum.m0(), 1e-6 * spectrum.m0());
 }
 
@@ -293,6 +309,26 @@ TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
 // Over seeds, the energy-weighted means of k̂ and of its square are the spectrum's. The standard error over
 // 400 seeds is √(Σh⁴)/(Σh² √400), some 0.02 (a dozen trains hold the energy); the tolerance is three times
 // that.
+// Down to one train for everything: no steeper than the spectrum, and what it lacks is hidden.
+TEST(TrainVariance, OfFewTrainsIsTheSpectrumsToo) {
+    for (Scene scene : many_seas())
+        for (const int count : {1, 2, 5, 20}) {
+            scene.waves.trains = count;
+            const Trains<double> trains = trains_of(scene);
+            const SpectralMoments spectrum =
+                moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
+            double shown = 0.0, energy = 0.0;
+            for (const SpectralMoments& alone : trains.alone) {
+                shown += alone.mss();
+                energy += alone.m0;
+            }
+            EXPECT_GE(energy, 0.98 * spectrum.m0) << count;
+            // A trochoid of steepness q has up to 2 times the slopes of its sinusoid; these are at most 7 % above it.
+            EXPECT_LE(shown, 1.07 * spectrum.mss()) << count;
+            EXPECT_NEAR(total(trains).mss() / spectrum.mss(), 1.0, 0.07) << count;
+        }
+}
+
 TEST(Trains, DirectionsFollowTheSpectrum) {
     Scene scene = trochoid();
     scene.sea.wind_direction_deg = 130.0;

@@ -127,12 +127,14 @@ void add_sea(Built& out) {
             {.name = "spectrum", .help = "how the energy is shared among the wavelengths", .feeds = kWaves}),
         row<&SeaState::short_waves>(
             {.name = "short_waves",
-             .help = "beyond a few peak wavenumbers: elfouhaily, the tail and the spreading that have the slopes of "
-                     "sun glitter; none, the spectrum's own",
+             .help =
+                 "beyond a few peak wavenumbers: elfouhaily, the tail and the spreading that have the slopes of "
+                 "sun glitter; none, the spectrum's own",
              .feeds = kWaves}),
         row<&SeaState::significant_height_m>(
             {.name = "significant_height_m",
-             .help = "of the wind sea or the measured one, without swell. Without it: what wind, fetch and depth give",
+             .help =
+                 "of the wind sea or the measured one, without swell. Without it: what wind, fetch and depth give",
              .unit = "m",
              .range = limits::kSignificantHeight_m,
              .soft = SoftRange{0.0, 15.0},

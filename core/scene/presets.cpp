@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/scene/names.h"
+#include "core/scene/text.h"
 
 namespace pelagic {
 namespace {
@@ -134,6 +135,15 @@ const Preset* find_preset(std::string_view name) {
     for (const Preset& preset : presets())
         if (preset.name == name) return &preset;
     return nullptr;
+}
+
+Problem unknown_preset(const std::string& key, const std::string& name) {
+    std::vector<std::string> names;
+    for (const Preset& preset : presets()) names.push_back(preset.name);
+    const std::string near = nearest(name, names);
+    return {key, quoted_text(name),
+            "is no preset" + (near.empty() ? std::string() : ", the nearest is " + quoted_text(near)),
+            "beaufort-0 … beaufort-12, glassy-swell, trade-wind, …: pelagic presets lists them"};
 }
 
 void apply(const Preset& preset, Scene& scene) {

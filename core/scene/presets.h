@@ -36,6 +36,9 @@ std::span<const Preset> presets();
 // Null: there is none.
 const Preset* find_preset(std::string_view name);
 
+// What is wrong with a name that no preset has, for `key`; with the nearest that there is.
+Problem unknown_preset(const std::string& key, const std::string& name);
+
 void apply(const Preset& preset, Scene& scene);
 
 }  // namespace pelagic

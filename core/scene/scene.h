@@ -17,16 +17,7 @@
 
 namespace pelagic {
 
-enum class SpectrumKind {
-    PiersonMoskowitz,
-    Jonswap,
-    Jonswap1973,
-    Tma,
-    Elfouhaily,
-    Omega2,
-    Phillips,
-    File
-};
+enum class SpectrumKind { PiersonMoskowitz, Jonswap, Jonswap1973, Tma, Elfouhaily, Omega2, Phillips, File };
 enum class ShortWaves { Elfouhaily, None };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };

@@ -53,14 +53,14 @@ struct Jonswap : JonswapShape {
         constexpr double kFetchExponent = 0.22;
         const double square = wind_speed_mps * wind_speed_mps / kGravity;
         const double m0_unit = square * square;
-        const double developed =
-            std::pow(PiersonMoskowitz(wind_speed_mps).m0() / (kGrowth * m0_unit), 1.0 / kGrowthExponent);  // X̃
-        const double fetch =
-            std::min(kGravity * fetch_m / (wind_speed_mps * wind_speed_mps), developed);
+        const double developed = std::pow(PiersonMoskowitz(wind_speed_mps).m0() / (kGrowth * m0_unit),
+                                          1.0 / kGrowthExponent);  // X̃
+        const double fetch = std::min(kGravity * fetch_m / (wind_speed_mps * wind_speed_mps), developed);
         // Wave age goes as X̃^−0.27.
         const double gamma = 1.0 + 6.0 * 0.27 * std::log10(developed / fetch);
         ln_gamma = std::min(std::log(gamma), kLnSharpest);
-        alpha = std::min(PiersonMoskowitz::kAlpha * std::pow(developed / fetch, kFetchExponent), kLargestAlpha);
+        alpha =
+            std::min(PiersonMoskowitz::kAlpha * std::pow(developed / fetch, kFetchExponent), kLargestAlpha);
         const double m0 = kGrowth * std::pow(fetch, kGrowthExponent) * m0_unit;
         omega_p = std::sqrt(std::sqrt(alpha * kGravity * kGravity * unit_m0(ln_gamma) / m0));
     }

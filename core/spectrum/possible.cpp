@@ -35,10 +35,10 @@ void check(std::vector<Problem>& problems, const std::string& key, double height
     const Limit limit = highest(k, dispersion);
     constexpr double kRounding = 1.0 + 1e-9;
     if (!(height_m > limit.height_m * kRounding)) return;
-    const std::string why =
-        limit.is_depths
-            ? "is more than water of " + number_text(dispersion.depth_m) + " m can carry: higher waves have broken"
-            : "is more than waves can have that are " + two_digits(kTwoPi / k) + " m long: they break";
+    const std::string why = limit.is_depths ? "is more than water of " + number_text(dispersion.depth_m) +
+                                                  " m can carry: higher waves have broken"
+                                            : "is more than waves can have that are " +
+                                                  two_digits(kTwoPi / k) + " m long: they break";
     problems.push_back({key, number_text(height_m), why, "0 … " + two_digits(limit.height_m) + remedy});
 }
 
@@ -56,7 +56,8 @@ std::vector<Problem> impossible_waves(const SeaState& sea) {
         const std::vector<WaveSystem> systems = WaveSystem::sea(sea, dispersion);
         if (!systems.empty())
             check(problems, "sea.significant_height_m", *sea.significant_height_m,
-                  systems.front().peak_wavenumber(), dispersion, ", or more wind or fetch, which make longer waves");
+                  systems.front().peak_wavenumber(), dispersion,
+                  ", or more wind or fetch, which make longer waves");
     }
     return problems;
 }

@@ -133,14 +133,15 @@ std::vector<WaveSystem> WaveSystem::sea(const SeaState& sea, const Dispersion& d
             join.from = std::max(join.from, dispersion.wavenumber(buoy->edge_omegas().back()));
         join.to = kJoinWidth * join.from;
         systems = {WaveSystem(energy, spreading, direction, dispersion, join)};
-        if (!(systems.front().m0() > 0.0)) return {};  // a buoy's hour without waves is a calm, whatever the wind
+        if (!(systems.front().m0() > 0.0))
+            return {};  // a buoy's hour without waves is a calm, whatever the wind
 
         join.side = Join::Side::Right;
         const double age = sea.wind_speed_mps * dispersion.omega(peak) / kGravity;  // U/cp, in deep water
         const auto* whole = std::get_if<Elfouhaily>(&energy);
-        const Elfouhaily tail = whole ? *whole
-                                      : Elfouhaily(sea.wind_speed_mps,
-                                                   Elfouhaily::Age{std::clamp(age, kOldest, kYoungest)});
+        const Elfouhaily tail =
+            whole ? *whole
+                  : Elfouhaily(sea.wind_speed_mps, Elfouhaily::Age{std::clamp(age, kOldest, kYoungest)});
         systems.push_back(WaveSystem(tail, ElfouhailySpreading(sea.wind_speed_mps, tail.c_p), wind_direction,
                                      dispersion, join));
         systems.back().peak_wavenumber_ = peak;

@@ -27,8 +27,8 @@
 namespace pelagic {
 
 // Laws in ω have density(ω) [m² s] and peak_omega(); laws in k have density_k(k) [m³] and peak_wavenumber().
-using EnergyLaw =
-    std::variant<PiersonMoskowitz, JonswapShape, Tma, Elfouhaily, Omega2, Phillips, SwellEnergy, MeasuredEnergy>;
+using EnergyLaw = std::variant<PiersonMoskowitz, JonswapShape, Tma, Elfouhaily, Omega2, Phillips, SwellEnergy,
+                               MeasuredEnergy>;
 
 // Laws in ω have at(ω), laws in k at_wavenumber(k); each gives one of the shapes of angular.h.
 using SpreadingLaw = std::variant<HasselmannSpreading, DonelanBannerSpreading, CosineSpreading,

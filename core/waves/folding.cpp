@@ -12,8 +12,8 @@ namespace {
 
 double share_of(const SpectralMoments& all, double choppiness) {
     const double c = choppiness * choppiness;
-    const auto j = jacobian_moments<double>(0.0, 0.0, 0.0,
-                                            {c * all.xxxx, c * all.xxxy, c * all.xxyy, c * all.xyyy, c * all.yyyy});
+    const auto j = jacobian_moments<double>(
+        0.0, 0.0, 0.0, {c * all.xxxx, c * all.xxxy, c * all.xxyy, c * all.xyyy, c * all.yyyy});
     if (!(j.variance > 0.0)) return 0.0;
     const double sigma = std::sqrt(j.variance);
     const double y = whitecaps_detail::to_normal(-j.mean / sigma, j.third / (j.variance * sigma)).y;
@@ -48,8 +48,9 @@ std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
         const double middle = 0.5 * (less + more);
         (share_of(all, middle) > kMuch ? more : less) = middle;
     }
-    return {"the surface folds over itself on " + percent_text(share) + " % of its area; waves.choppiness = " +
-            number_text(std::floor(100.0 * less) / 100.0) + " leaves 5 %"};
+    return {"the surface folds over itself on " + percent_text(share) +
+            " % of its area; waves.choppiness = " + number_text(std::floor(100.0 * less) / 100.0) +
+            " leaves 5 %"};
 }
 
 }  // namespace pelagic

@@ -108,8 +108,8 @@ SpectralMoments beyond_train(const SpectralMoments& bin, double k, double horizo
     rest.xx = slopes * bin.xx;
     rest.xy = slopes * bin.xy;
     rest.yy = slopes * bin.yy;
-    const double strains = lacking(bin.xxxx + 2.0 * bin.xxyy + bin.yyyy,
-                                   horizontal_ratio * horizontal_ratio * k * k * bin.m0);
+    const double strains =
+        lacking(bin.xxxx + 2.0 * bin.xxyy + bin.yyyy, horizontal_ratio * horizontal_ratio * k * k * bin.m0);
     rest.xxxx = strains * bin.xxxx;
     rest.xxxy = strains * bin.xxxy;
     rest.xxyy = strains * bin.xxyy;
@@ -193,8 +193,9 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
         trains.steepness2.push_back(std::min(static_cast<T>(q * q), T(1)));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));
-        trains.outside += beyond_train(moments(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1)), k,
-                                       dispersion.horizontal_ratio(k));
+        trains.outside +=
+            beyond_train(moments(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1)), k,
+                         dispersion.horizontal_ratio(k));
     }
 
     trains.outside += moments(spectrum, 0.0, kTwoPi / plan.longest_m);

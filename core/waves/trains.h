@@ -52,7 +52,8 @@ struct Trains {
     // Moments of each train at weight 1; of trains 0 … i − 1; of trains i and up, with those outside the
     // range.
     std::vector<SpectralMoments> alone, before, from;
-    SpectralMoments outside;  // moments beyond the range, and of bins beyond their trains: hidden, never shown
+    SpectralMoments
+        outside;  // moments beyond the range, and of bins beyond their trains: hidden, never shown
 
     // `alone` and `from` again, as the vectorised query reads them.
     std::vector<HiddenMoments<T>> hidden_alone, hidden_from;

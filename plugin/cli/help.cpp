@@ -222,6 +222,15 @@ const char* const kKeysFooter =
     "  pelagic keys\n"
     "  pelagic keys | grep wind";
 
+const char* const kPresets =
+    "List the named seas, or print one.\n"
+    "A shot file that begins with preset = \"NAME\" lies on top of it.";
+const char* const kPresetName = "Print this one's keys, as a shot file has them";
+const char* const kPresetsFooter =
+    "Examples:\n"
+    "  pelagic presets\n"
+    "  pelagic presets beaufort-7";
+
 std::string version_text() {
 #ifdef __clang__
     const std::string compiler = "clang " __clang_version__;

@@ -59,6 +59,9 @@ extern const char* const kVerifyThreads;
 extern const char* const kValidate;
 extern const char* const kValidateFooter;
 
+extern const char* const kPresets;
+extern const char* const kPresetsFooter;
+extern const char* const kPresetName;
 extern const char* const kKeys;
 extern const char* const kKeysFooter;
 

@@ -21,5 +21,6 @@ Verb add_explain(CLI::App& program);
 Verb add_verify(CLI::App& program);
 Verb add_validate(CLI::App& program);
 Verb add_keys(CLI::App& program);
+Verb add_presets(CLI::App& program);
 
 }  // namespace pelagic::cli

@@ -32,11 +32,8 @@ py::list described_presets() {
 
 void apply_preset(Scene& scene, const std::string& name) {
     if (const Preset* preset = find_preset(name)) return apply(*preset, scene);
-    std::vector<std::string> names;
-    for (const Preset& preset : presets()) names.push_back(preset.name);
-    const std::string near = nearest(name, names);
-    throw py::value_error("\"" + name + "\" is no preset" +
-                          (near.empty() ? "" : ", the nearest is \"" + near + "\"") +
+    const Problem problem = unknown_preset("preset", name);
+    throw py::value_error(problem.value + ' ' + problem.problem +
                           "; accepted: the names of pelagic.presets()");
 }
 

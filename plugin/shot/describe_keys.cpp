@@ -31,9 +31,11 @@ void describe(std::string& out, const Key& key) {
 }  // namespace
 
 std::string describe_keys() {
-    std::string out;
+    std::string out =
+        "preset\n      a named sea, first in the file; all below lies on top of it\n"
+        "      a string, one of what pelagic presets lists\n";
     for (const KeyTable& table : key_tables()) {
-        out += (out.empty() ? "[" : "\n[") + table.name + "]  " + table.help + '\n';
+        out += "\n[" + table.name + "]  " + table.help + '\n';
         for (const Key& key : table.keys) describe(out, key);
     }
     return out;

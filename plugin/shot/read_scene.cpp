@@ -8,6 +8,7 @@
 
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
+#include "core/scene/presets.h"
 #include "core/scene/text.h"
 
 namespace pelagic {
@@ -338,16 +339,29 @@ void read_table(Reader& reader, const toml::table& table, const KeyTable& about,
     }
 }
 
+// The sea that all else lies on top of. Only a string can stand there: a table would be the file's own.
+void read_preset(Reader& reader, const toml::node& node, Scene& scene) {
+    const toml::source_position at = node.source().begin;
+    const auto* name = node.as_string();
+    if (!name)
+        return reader.refuse(at, {"preset", text_of(node), "is " + type_of(node),
+                                  "a string, the name of a preset: pelagic presets lists them"});
+    if (const Preset* preset = find_preset(name->get())) return apply(*preset, scene);
+    reader.refuse(at, unknown_preset("preset", name->get()));
+}
+
 }  // namespace
 
 void read_scene(Reader& reader, const toml::table& root, Scene& scene) {
+    if (const toml::node* preset = root.get("preset")) read_preset(reader, *preset, scene);
     KnownKeys tables;
     for (const KeyTable& table : key_tables()) {
-        tables.accepted += (tables.names.empty() ? "the tables " : ", ") + table.name;
+        tables.accepted += (tables.names.empty() ? "preset and the tables " : ", ") + table.name;
         tables.names.push_back(table.name);
     }
     for (const auto& at : in_order(root)) {
         const auto& [name_in_file, node] = at;
+        if (name_in_file.str() == "preset") continue;
         const auto table =
             std::find_if(key_tables().begin(), key_tables().end(),
                          [&, name = name_in_file.str()](const KeyTable& t) { return t.name == name; });

@@ -29,7 +29,8 @@ TEST(ImpossibleWaves, AreSwellsThatBreak) {
     expect_refused(sea, "sea.swell[0].height_m", "they break");
     sea.depth_m = 4.0;
     sea.swell = {{2.5, 12.0, 0.0}};
-    expect_refused(sea, "sea.swell[0].height_m", "water of 4 m can carry: higher waves have broken; accepted: 0 … 2.4");
+    expect_refused(sea, "sea.swell[0].height_m",
+                   "water of 4 m can carry: higher waves have broken; accepted: 0 … 2.4");
 }
 
 TEST(ImpossibleWaves, AreHeightsBeyondTheWindsWaves) {

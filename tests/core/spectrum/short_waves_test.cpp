@@ -87,7 +87,8 @@ TEST(ShortWaves, JoinWithoutAStep) {
         const double peak = sea.peak_wavenumber();
         for (double k = (kind == SpectrumKind::File ? 40.0 : 1.5) * peak; k < 100.0 * peak; k *= 1.02) {
             const double here = k * k * k * sea.omnidirectional(k), next = k * 1.02;
-            EXPECT_NEAR(next * next * next * sea.omnidirectional(next) / here, 1.0, 0.12) << static_cast<int>(kind);
+            EXPECT_NEAR(next * next * next * sea.omnidirectional(next) / here, 1.0, 0.12)
+                << static_cast<int>(kind);
         }
     }
 }
@@ -99,7 +100,8 @@ TEST(ShortWaves, AreElfouhailysOwnWhereTheSeaIs) {
         state.fetch_m = without.fetch_m = fetch;
         const DirectionalSpectrum joined(state), own(without);
         for (double k = 0.01; k < 1e3; k *= 1.3)
-            EXPECT_NEAR(joined.omnidirectional(k), own.omnidirectional(k), 1e-12 * own.omnidirectional(k)) << k;
+            EXPECT_NEAR(joined.omnidirectional(k), own.omnidirectional(k), 1e-12 * own.omnidirectional(k))
+                << k;
     }
 }
 

@@ -131,7 +131,8 @@ TEST(Trains, AreTheMeansOfAGeometricProgression) {
             energy += spectrum.omnidirectional(k);
             mean += k * spectrum.omnidirectional(k);
         }
-        EXPECT_NEAR(trains.wavelength_m[static_cast<std::size_t>(i)] * mean / energy / kTwoPi, 1.0, 1e-5) << i;
+        EXPECT_NEAR(trains.wavelength_m[static_cast<std::size_t>(i)] * mean / energy / kTwoPi, 1.0, 1e-5)
+            << i;
     }
 }
 
@@ -189,7 +190,8 @@ TEST(TrainVariance, OfOneTrochoidIsTheClosedForm) {
     for (const double kh : {0.9, 0.3, 0.01}) {
         const auto trains = trains_of(one_train(kh, 1.0));
         const double k = kTwoPi / trains.wavelength_m[0], q = k * trains.height_m[0];
-        ASSERT_NEAR(q, kh, 6e-3 * kh);  // the mean of a swell's wavenumbers lies half a per cent above their peak
+        ASSERT_NEAR(q, kh,
+                    6e-3 * kh);  // the mean of a swell's wavenumbers lies half a per cent above their peak
         const SpectralMoments& own = trains.alone[0];
         const double closed = 1.0 - std::sqrt(1.0 - q * q);
         EXPECT_NEAR(own.mss(), closed, 1e-12);

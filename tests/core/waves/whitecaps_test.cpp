@@ -63,7 +63,8 @@ double density(double j, double mean, double sigma, double skewness) {
     if (skewness == 0.0) return std::exp(-0.5 * z * z) / std::sqrt(2.0 * kPi) / sigma;
     const double shape = 4.0 / (skewness * skewness), x = shape + 2.0 * z / skewness;
     if (x <= 0.0) return 0.0;
-    return std::exp((shape - 1.0) * std::log(x) - x - std::lgamma(shape)) * 2.0 / (std::abs(skewness) * sigma);
+    return std::exp((shape - 1.0) * std::log(x) - x - std::lgamma(shape)) * 2.0 /
+           (std::abs(skewness) * sigma);
 }
 
 // Shares of the sea's area, counted by quadrature: ∫ J p dJ from 0 to the threshold over ∫ J p dJ from 0 on.

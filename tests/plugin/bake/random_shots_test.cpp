@@ -41,15 +41,27 @@ class RandomShot {
              << "\n";
         shot << "wind_direction_deg = " << uniform(-360.0, 720.0) << "\n";
         shot << "fetch_m = " << pick({1.0, 100.0, 300e3, 1e7}) << "\n";
-        if (chance(0.5)) shot << "depth_m = " << pick({0.01, 0.5, 5.0, 100.0}) << "\n";
+        const double depth = chance(0.5) ? pick({0.01, 0.5, 5.0, 100.0}) : 1e6;
+        if (depth < 1e6) shot << "depth_m = " << depth << "\n";
         shot << "spectrum = \""
-             << pick({"pierson-moskowitz", "jonswap", "tma", "elfouhaily", "omega-2", "phillips"}) << "\"\n";
+             << pick({"pierson-moskowitz", "jonswap", "jonswap-1973", "tma", "elfouhaily", "omega-2",
+                      "phillips"})
+             << "\"\n";
+        if (chance(0.3)) shot << "short_waves = \"none\"\n";
+        if (chance(0.1)) shot << "significant_height_m = 0.001\n";
         shot << "spreading = \"" << pick({"hasselmann", "donelan-banner", "cosine", "elfouhaily"}) << "\"\n";
-        if (chance(0.4))
-            shot << "swell = [ { height_m = " << pick({0.0, 0.01, 2.0, 15.0})
-                 << ", period_s = " << pick({2.0, 11.0, 22.0}) << ", direction_deg = " << uniform(0.0, 360.0)
-                 << " }" << (chance(0.3) ? ", { height_m = 1.0, period_s = 7.0, direction_deg = 45.0 }" : "")
-                 << " ]\n";
+        if (chance(0.4)) {
+            // Steep swell in shallow water, but none that breaks: that is refused.
+            const double period = pick({2.0, 11.0, 22.0});
+            const auto height = [&](double wanted, double of_period) {
+                return std::min({wanted, 0.5 * depth, 0.1 * of_period * of_period});
+            };
+            shot << "swell = [ { height_m = " << height(pick({0.0, 0.01, 2.0, 15.0}), period)
+                 << ", period_s = " << period << ", direction_deg = " << uniform(0.0, 360.0) << " }";
+            if (chance(0.3))
+                shot << ", { height_m = " << height(1.0, 7.0) << ", period_s = 7.0, direction_deg = 45.0 }";
+            shot << " ]\n";
+        }
         shot << "[waves]\nchoppiness = " << pick({0.0, 0.5, 1.0, 1.0, 3.0, 10.0}) << "\n";
         if (chance(0.25)) {
             shot << "model = \"trochoid\"\ntrains = " << pick({1, 7, 60, 200}) << "\n";

@@ -3,9 +3,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
+#include "core/scene/canonical.h"
+#include "core/scene/presets.h"
+#include "plugin/shot/shot.h"
 #include "tests/plugin/cli/program.h"
 #include "tests/plugin/cli/small_shot.h"
+#include "tests/plugin/shot/no_check.h"
 
 namespace pelagic::test {
 namespace {
@@ -42,7 +47,7 @@ TEST_F(Cli, HelpOfTheProgramNamesEveryVerb) {
         const Ended ended = cli({flag});
         EXPECT_EQ(ended.status, 0);
         for (const char* part : {"  bake ", "  render ", "  preview ", "  explain ", "  verify ",
-                                 "  validate ", "  keys ", "Examples:", "Exit status"})
+                                 "  validate ", "  keys ", "  presets ", "Examples:", "Exit status"})
             EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
         EXPECT_EQ(ended.err, "");
     }
@@ -63,6 +68,7 @@ TEST_F(Cli, HelpOfEachVerbNamesEachOption) {
         {"verify",
          {"DIR", "--threads", "--help", "missing", "damaged", "stale", "foreign", "Exit status: 0"}},
         {"validate", {"SHOT.toml", "--help"}},
+        {"presets", {"NAME", "--help"}},
         {"keys", {"--help"}}};
     for (const auto& [verb, options] : verbs) {
         if (verb == "preview" && !kHasPreview) continue;
@@ -231,6 +237,45 @@ TEST_F(Cli, KeysDescribesTheShotFile) {
     for (const char* key :
          {"shot.name", "sea.wind_speed_mps", "waves.cascades", "camera.keys", "output.maps"})
         EXPECT_TRUE(has(ended.out, key)) << key;
+}
+
+// What is printed of a preset is a shot file of it.
+TEST_F(Cli, PresetsAreListedAndPrintedAsShotFiles) {
+    const Ended all = cli({"presets"});
+    EXPECT_EQ(all.status, 0);
+    for (const Preset& preset : presets()) {
+        EXPECT_TRUE(has(all.out, preset.name + "  ")) << preset.name;
+        EXPECT_TRUE(has(all.out, preset.label + ": " + preset.help)) << preset.name;
+        const Ended one = cli({"presets", preset.name});
+        EXPECT_EQ(one.status, 0) << preset.name;
+        Scene scene;
+        apply(preset, scene);
+        EXPECT_EQ(canonical(parse_shot(one.out, "preset.toml", no_check)), canonical(scene)) << one.out;
+    }
+    const Ended none = cli({"presets", "glasy-swell"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_TRUE(has(none.err, "the nearest is \"glassy-swell\"")) << none.err;
+}
+
+// What can be built is built, and what should be known of it is said.
+TEST_F(Cli, ASeaThatFoldsIsWarnedOf) {
+    std::ofstream(folder() / "folds.toml") << "[sea]\nwind_speed_mps = 15\n[waves]\nchoppiness = 4\n"
+                                              "[surface]\nresolution = 4\n[shot]\nframes = [1, 1]\n";
+    for (const char* verb : {"validate", "explain", "bake"}) {
+        const Ended ended = cli({verb, "folds.toml"});
+        EXPECT_EQ(ended.status, 0) << verb << ended.err;
+        EXPECT_TRUE(has(ended.err, "folds.toml: note: the surface folds over itself on "))
+            << verb << ended.err;
+        EXPECT_TRUE(has(ended.err, " leaves 5 %")) << verb << ended.err;
+    }
+    std::ofstream(folder() / "breaks.toml")
+        << "[sea]\nswell = [ { height_m = 50, period_s = 1, direction_deg = 0 } ]\n";
+    const Ended refused = cli({"validate", "breaks.toml"});
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_TRUE(
+        has(refused.err,
+            "breaks.toml:2:24: sea.swell[0].height_m = 50: is more than waves can have that are 1.5 m long"))
+        << refused.err;
 }
 
 TEST_F(Cli, ResultsThatCantBePrintedAreAnError) {

@@ -23,7 +23,11 @@ const std::filesystem::path kMadeUp = std::filesystem::path(PELAGIC_SOURCE_DIR) 
 std::string shot_with(const Key& key, const std::string& value) {
     const bool of_trains =
         key.path == "waves.trains" || key.path == "waves.shortest_m" || key.path == "waves.longest_m";
-    return (of_trains ? "waves.model = \"trochoid\"\n" : "") + key.path + " = " + value + '\n';
+    // Waves of any height need a wind that makes them long.
+    const bool is_height = key.path == "sea.significant_height_m";
+    return std::string(of_trains ? "waves.model = \"trochoid\"\n" : "") +
+           (is_height ? "sea.wind_speed_mps = 80\nsea.fetch_m = 1e8\n" : "") + key.path + " = " + value +
+           '\n';
 }
 
 std::string refusal(const std::string& text) {
@@ -96,6 +100,8 @@ class RandomValues {
             case KeyType::Number:
                 if (key.path == "shot.loop_s")
                     return static_cast<double>(index(100));  // whole at whole rates
+                if (key.path == "sea.significant_height_m" || key.path == "sea.swell[].height_m")
+                    return below(0.0, 1e-3);  // higher ones may break
                 if (key.path == "shot.fps") return static_cast<double>(1 + index(60));
                 return below(low, high);
             case KeyType::Word:

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/scene/canonical.h"
+#include "core/scene/presets.h"
 #include "core/scene/text.h"
 #include "temporary_folder.h"
 #include "tests/plugin/shot/no_check.h"
@@ -205,14 +206,33 @@ cascade_tiles = true
     EXPECT_TRUE(s.output.cascade_tiles);
 }
 
+TEST(Shot, APresetIsWhatAllElseLiesOn) {
+    for (const Preset& preset : presets()) {
+        Scene named;
+        apply(preset, named);
+        const std::string first = "preset = \"" + preset.name + "\"\n";
+        EXPECT_EQ(canonical(parse(first)), canonical(named)) << preset.name;
+        named.sea.wind_direction_deg = 77.0;
+        named.waves.choppiness = 0.3;
+        EXPECT_EQ(canonical(parse(first + "[sea]\nwind_direction_deg = 77\n[waves]\nchoppiness = 0.3\n")),
+                  canonical(named))
+            << preset.name;
+    }
+    expect_refused("preset = \"beaufort-13\"\n",
+                   "1:10: preset = \"beaufort-13\": is no preset, the nearest is \"beaufort-1",
+                   "pelagic presets");
+    expect_refused("preset = 7\n", "1:10: preset = 7: is an integer", "the name of a preset");
+    expect_refused("[preset]\n", "1:1: preset = { }: is a table", "the name of a preset");
+}
+
 TEST(Shot, UnknownKeysNameTheNearest) {
     expect_refused("[sea]\nwind_sped_mps = 3\n",
                    "2:1: sea.wind_sped_mps = 3: is an unknown key, the nearest is sea.wind_speed_mps",
                    "in sea the keys wind_speed_mps, wind_direction_deg");
     expect_refused("[see]\n", "1:2: see = { }: is an unknown table, the nearest is sea",
-                   "the tables shot, sea,");
+                   "preset and the tables shot, sea,");
     expect_refused("fps = 24\n", "1:1: fps = 24: is an unknown key, the nearest is shot.fps",
-                   "the tables shot");
+                   "preset and the tables shot");
     expect_refused("[waves]\n\n  fps = 24\n",
                    "3:3: waves.fps = 24: is an unknown key, the nearest is shot.fps",
                    "in waves the keys model");
@@ -395,10 +415,10 @@ TEST(Shot, AllProblemsInTheOrderOfTheFile) {
         "s.toml:2:14: surface.resolution = 0: is outside the range; accepted: 1 … 8192\n"
         "s.toml:4:18: sea.wind_speed_mps = -1: is outside the range; accepted: 0 … 80\n"
         "s.toml:5:1: sea.fetch = 3: is an unknown key, the nearest is sea.fetch_m; accepted: in sea the keys "
-        "wind_speed_mps, wind_direction_deg, fetch_m, depth_m, spectrum, spreading, swell, spectrum_file, "
-        "spectrum_time\n"
+        "wind_speed_mps, wind_direction_deg, fetch_m, depth_m, spectrum, short_waves, significant_height_m, "
+        "spreading, swell, spectrum_file, spectrum_time\n"
         "s.toml:6:12: sea.spectrum = 1: is an integer; accepted: one of \"pierson-moskowitz\" \"jonswap\" "
-        "\"tma\" \"elfouhaily\" \"omega-2\" \"phillips\" \"file\"\n"
+        "\"jonswap-1973\" \"tma\" \"elfouhaily\" \"omega-2\" \"phillips\" \"file\"\n"
         "s.toml:8:7: shot.fps = 0: is outside the range; accepted: 0.001 … 10000");
     // A list of which one entry can't be read isn't judged against that entry's defaults.
     const std::string cascades = refusal(

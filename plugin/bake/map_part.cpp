@@ -81,7 +81,15 @@ class MapPart final : public OutputPart {
         MapSlot& slot = static_cast<MapSlot&>(any_slot);
         const auto& coverage = slot.values.numbers(Product::Coverage);
         slot.coverage.reset();
-        if (!coverage.empty()) slot.coverage = mean_of(coverage);
+        if (!coverage.empty()) {
+            AreaMean mean;  // pixels are patches at rest
+            const auto& moments = slot.values.vectors(Product::JacobianMoments);
+            for (std::size_t i = 0; i < coverage.size(); ++i) {
+                const JacobianMoments<float> j{moments[i].x, moments[i].y, moments[i].z};
+                mean.add(coverage[i], sea_area(j, plan_.knobs.third_moment));
+            }
+            slot.coverage = mean.value();
+        }
         slot.file = std::string();  // let go before the new one is made
         slot.file = encoded(slot, frame);
     }

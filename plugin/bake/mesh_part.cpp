@@ -100,7 +100,7 @@ class MeshPart final : public OutputPart {
         const auto& coverage = slot.values.numbers(Product::Coverage);
         slot.coverage.reset();
         slot.significant_height_m.reset();
-        if (!coverage.empty()) slot.coverage = mean_of(coverage);
+        if (!coverage.empty()) slot.coverage = mean_coverage(slot);
         if (plan_.surface->is_even())
             slot.significant_height_m = significant_height_of(slot.values.vectors(Product::Position));
         slot.text.clear();
@@ -181,6 +181,41 @@ class MeshPart final : public OutputPart {
         if (attributes_.origin) slot.origin_m = local_origin(at.origin_m, finest_of(at.cell_m));
         move_by(slot.values.vectors(Product::Position), at.origin_m - slot.origin_m);
         scale_by(slot.values.vectors(Product::Velocity), scene().shot.time_scale);
+    }
+
+    // Over the faces, as seen from above; a face that is folded over lies under others.
+    double mean_coverage(const MeshSlot& slot) const {
+        const auto& positions = slot.values.vectors(Product::Position);
+        const auto& coverage = slot.values.numbers(Product::Coverage);
+        AreaMean mean;
+        const auto add = [&](std::initializer_list<std::int32_t> corners) {
+            double twice_area = 0.0, sum = 0.0;
+            const std::int32_t* before = corners.end() - 1;
+            for (const std::int32_t* at = corners.begin(); at != corners.end(); before = at++) {
+                const glm::dvec2 a(positions[*before]), b(positions[*at]);
+                twice_area += a.x * b.y - a.y * b.x;
+                sum += static_cast<double>(coverage[*at]);
+            }
+            mean.add(sum / static_cast<double>(corners.size()), std::max(twice_area, 0.0));
+        };
+        if (plan_.surface->is_constant()) {
+            const auto side = static_cast<std::int32_t>(std::lround(std::sqrt(static_cast<double>(positions.size()))));
+            for (std::int32_t y = 0; y + 1 < side; ++y)
+                for (std::int32_t x = 0; x + 1 < side; ++x) {
+                    const std::int32_t i = y * side + x;
+                    add({i, i + 1, i + side + 1, i + side});
+                }
+            return mean.value();
+        }
+        const std::int32_t* corner = slot.faces.indices.data();
+        for (const std::int32_t count : slot.faces.counts) {
+            if (count == 3)
+                add({corner[0], corner[1], corner[2]});
+            else
+                add({corner[0], corner[1], corner[2], corner[3]});
+            corner += count;
+        }
+        return mean.value();
     }
 
     // What a flat sea's answers are on the earth.

@@ -15,12 +15,6 @@ std::string OutputPart::file(int frame) const {
     return files.prefix + usd::frame_number(frame) + files.suffix;
 }
 
-double mean_of(std::span<const float> values) {
-    double sum = 0.0;
-    for (const float value : values) sum += static_cast<double>(value);
-    return sum / static_cast<double>(values.size());
-}
-
 std::vector<std::unique_ptr<OutputPart>> make_parts(const Plan& plan) {
     struct PartRow {
         OutputKind kind;

@@ -114,8 +114,18 @@ std::unique_ptr<OutputPart> make_mesh_part(const Plan& plan, const PlannedOutput
 std::unique_ptr<OutputPart> make_map_part(const Plan& plan, const PlannedOutput& output,
                                           const std::shared_ptr<SquareCache>& squares);
 
-// The mean of at least one value.
-double mean_of(std::span<const float> values);
+// A mean whose parts count by the area of sea that they stand for [any unit, ≥ 0]. 0 without any area.
+class AreaMean {
+  public:
+    void add(double value, double area) {
+        sum_ += value * area;
+        area_ += area;
+    }
+    double value() const { return area_ > 0.0 ? sum_ / area_ : 0.0; }
+
+  private:
+    double sum_ = 0.0, area_ = 0.0;
+};
 
 // The parts of the plan's outputs, in their order.
 std::vector<std::unique_ptr<OutputPart>> make_parts(const Plan& plan);

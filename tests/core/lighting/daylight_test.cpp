@@ -296,6 +296,37 @@ TEST(Daylight, SmoothInTheTable) {
     }
 }
 
+// What smooth water mirrors: the finest level of a map of default size is the model itself, down to the horizon. While
+// its texels were means, and the spline between them flattened them again, 5 % were missing beside a low sun. In the
+// last half degree before a sun on the horizon of clear air it is up to 3.4 % off (12 before).
+TEST(Daylight, TheMapIsTheModel) {
+    struct Case {
+        double elevation, turbidity, least;
+    };
+    for (const auto& [elevation, turbidity, least] :
+         {Case{0.0, 2.0, 0.6}, Case{0.0, 3.0, 0.0}, Case{5.0, 8.0, 0.0}, Case{60.0, 2.0, 0.0}}) {
+        const double sun = elevation * kPi / 180.0;
+        const Atmosphere air(turbidity, sun);
+        const Sky sky =
+            daylight_sky({.sun_elevation_deg = elevation, .sun_azimuth_deg = 0.0, .turbidity = turbidity});
+        const std::vector<double> azimuths{0.1, 1.6, 3.0};
+        for (int row = 0; row < 200; ++row) {
+            const double e = least * kPi / 180.0 + 5.7e-4 * (row + 0.5);
+            const auto light = air.scattered(e, azimuths);
+            for (std::size_t k = 0; k < azimuths.size(); ++k) {
+                const glm::dvec3 to(std::cos(e) * std::cos(azimuths[k]), std::cos(e) * std::sin(azimuths[k]),
+                                    std::sin(e));
+                const double cosine = to.x * std::cos(sun) + to.z * std::sin(sun);
+                const double expected =
+                    luminance(colour_of(light[k].by_air) * air_phase(cosine) +
+                              colour_of(light[k].by_haze) * haze_phase(cosine) + colour_of(light[k].more));
+                const double found = bright(sky.map.open_radiance(sky_map_place(glm::vec3(to))));
+                EXPECT_NEAR(found / expected, 1.0, 0.01) << elevation << ' ' << turbidity << ' ' << e;
+            }
+        }
+    }
+}
+
 TEST(Daylight, EveryPixelIsARadiance) {
     // No exception: SkyMap would throw for invalid radiances.
     for (const double turbidity : {1.7, 10.0})

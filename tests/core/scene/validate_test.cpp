@@ -269,13 +269,13 @@ TEST(Validate, APlanetIsRoundAndSeenOnItsNearSide) {
     expect_refused(planet([](Scene& s) {
                        s.camera.position_m = {7e6, 0.0, -3e6};
                    }),
-                   {"camera.position_m", "quarter", "nearer to the origin"});
+                   {"camera.position_m", "[7000000, 0, -3000000]", "nearer to the origin"});
     expect_refused(planet([](Scene& s) {
                        s.camera.keys = {
-                           {.frame = 1, .position_m = {0.0, 0.0, 9.0}, .look_at_m = {1.0, 0.0, 9.0}},
-                           {.frame = 9, .position_m = {1e7, 0.0, 9.0}, .look_at_m = {1.0, 0.0, 9.0}}};
+                           {.frame = 1, .position_m = {0.0, 0.0, 9.0}, .look_at_m = {0.0, 1.0, 9.0}},
+                           {.frame = 9, .position_m = {1e7, 0.0, 9.0}, .look_at_m = {0.0, 1.0, 9.0}}};
                    }),
-                   {"camera.keys[1].position_m", "quarter", "nearer to the origin"});
+                   {"camera.keys[1].position_m", "[1e7, 0, 9]", "nearer to the origin"});
     expect_good([](Scene& s) { s.camera.position_m = {1e7, 0.0, 9.0}; });
 }
 

@@ -17,7 +17,7 @@ namespace pelagic {
 
 // Empty: there is no air.
 struct Air {
-    static constexpr int kLayers = 3, kColumns = 32, kRows = 48, kHorizonRow = 39, kSkyRows = 40;
+    static constexpr int kLayers = 3, kColumns = 32, kRows = 48, kHorizonRow = 39, kSkyRows = 64;
     glm::vec2 azimuth{1.0f, 0.0f};
     glm::vec3 to_sun{0.0f, 0.0f, 1.0f};
     float nearest_m = 0.0f, horizon_m = 0.0f, farthest_m = 0.0f, dip = 0.0f, sky_span = 1.0f;

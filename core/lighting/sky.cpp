@@ -176,6 +176,7 @@ Sky daylight_sky(const Daylight& daylight, int map_size) {
         const bool aureole = glm::dot(glm::dvec3(direction), sun) > 0.95;  // 18°
         return aureole || direction.z < 0.1f ? 4 : 1;
     };
+    dome.is_smooth = true;
     const BakedSky baked = bake_sky_map(map_size, dome);
     sky.map = baked.map;
     sky.sky_irradiance = baked.irradiance;

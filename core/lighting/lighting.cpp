@@ -63,8 +63,10 @@ void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoin
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
         light.sun_direction = shading.levelled(sky.sun_direction, p.up);
+        const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance(
-            shading.levelled(p.to_eye, p.up), p.normal, p.slope_variance, p.coverage, light);
+            to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance, p.mesh_variance),
+            p.slope_variance, p.coverage, light);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }

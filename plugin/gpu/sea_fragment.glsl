@@ -15,8 +15,10 @@ void main() {
     }
     EarthPoint vertical = earth_up(rest_m.x, rest_m.y, curvature_per_m);
     vec3 up = vec3(vertical.x, vertical.y, vertical.z);
-    SeaTerms terms = sea_radiance(levelled(-pixel_ray(), up), answer.normal,
-                                  vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy), answer.coverage,
+    vec3 to_eye = levelled(-pixel_ray(), up);
+    vec3 hidden = vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy);
+    SeaTerms terms = sea_radiance(to_eye, visible_normal(answer.normal, to_eye, hidden, mesh_variance_along()), hidden,
+                                  answer.coverage,
                                   SeaLight(levelled(sun_direction, up), sun_radiance, sun_angular_radius, sun_irradiance,
                                            sky_irradiance, water_reflectance));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));

@@ -14,11 +14,12 @@ void main() {
         return;
     }
     EarthPoint vertical = earth_up(rest_m.x, rest_m.y, curvature_per_m);
-    vec3 up = vec3(vertical.x, vertical.y, vertical.z);
-    SeaTerms terms = sea_radiance(levelled(-pixel_ray(), up), answer.normal,
-                                  vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy), answer.coverage,
-                                  SeaLight(levelled(sun_direction, up), sun_radiance, sun_angular_radius, sun_irradiance,
-                                           sky_irradiance, water_reflectance));
+    SeaTerms terms =
+        sea_radiance_at(vec3(vertical.x, vertical.y, vertical.z), -pixel_ray(), answer.normal,
+                        vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy), answer.coverage,
+                        SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
+                                 water_reflectance),
+                        PlaceView(air_to_sun, air_by_place));
     AirPath path = AirPath(vec3(1.0), vec3(0.0));
     if (kAir)
         path = air_path(-pixel_ray(), point_distance_m(),

@@ -79,8 +79,10 @@ void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoin
                                            sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
-        const typename Variant::SeaTerms terms =
-            shading.sea_radiance_at(p.up, p.to_eye, p.normal, p.slope_variance, p.coverage, light, place);
+        const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
+        const typename Variant::SeaTerms terms = shading.sea_radiance_at(
+            p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance, p.mesh_variance),
+            p.slope_variance, p.coverage, light, place);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }

@@ -46,6 +46,9 @@ struct SeaPoint {
     float coverage = 0.0f;               // of whitecaps, 0 … 1
     // Unit: the vertical at the point, in the axes of to_eye and of the sky. Normal and slope variance are relative to it.
     glm::vec3 up{0.0f, 0.0f, 1.0f};
+    // Of the slopes that the mesh beneath hides, along the view's horizontal direction; slope_variance is what is left of
+    // these where the normal is finer than the mesh (visible_normal() in slopes.glsl). 0: the mesh is as fine.
+    float mesh_variance = 0.0f;
 };
 
 // The sea as a diffuse surface, linear Rec. 709, for hosts that bring their own optics: the share of the

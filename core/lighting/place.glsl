@@ -25,13 +25,12 @@ vec4 place_lookup(int row, float elevation) {
 // How much of the light below the eye there is at a place; what the place has beyond it is added.
 vec3 place_share(vec3 here, vec3 there) { return min(here / max(there, vec3(1.0e-20f)), vec3(1.0f)); }
 
-// sea_radiance() at a place with that vertical. to_eye: in the eye's axes, as `light`, which is that below the eye. The sky's
-// pattern stays; where the sky is brighter than below the eye, the rest is uniform.
+// sea_radiance() at a place with that vertical. to_eye and normal: relative to it. light: that below the eye, in the eye's
+// axes. The sky's pattern stays; where the sky is brighter than below the eye, the rest is uniform.
 SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance, float coverage, SeaLight light, PlaceView place) {
-    vec3 v = levelled(to_eye, up);
     float rise = light.sun_direction.z - place.to_sun.z;
     light.sun_direction = levelled(light.sun_direction, up);
-    if (place.by_place == 0.0f || up.z == 1.0f) return sea_radiance(v, normal, slope_variance, coverage, light);
+    if (place.by_place == 0.0f || up.z == 1.0f) return sea_radiance(to_eye, normal, slope_variance, coverage, light);
 
     float below = asin(clamp(place.to_sun.z, -1.0f, 1.0f));
     float here = asin(clamp(levelled(place.to_sun, up).z, -1.0f, 1.0f));
@@ -52,12 +51,12 @@ SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance,
     vec3 share = place_share(sky, sky_before);
     vec3 more = max(sky - sky_before, vec3(0.0f));
     light.sky_irradiance = light.sky_irradiance * share + more;
-    SeaTerms terms = sea_radiance(v, normal, slope_variance, coverage, light);
+    SeaTerms terms = sea_radiance(to_eye, normal, slope_variance, coverage, light);
     if (kSky) {
-        SlopeFrame frame = slope_frame(facing_normal(normal, v), slope_variance);
+        SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
         float clear = kWhitecaps ? 1.0f - clamp(coverage, 0.0f, 1.0f) : 1.0f;
         terms.sky = terms.sky * share +
-                    more * (clear * shown_of_uniform_sky(into_frame(frame, v), frame.variance) / kPi);
+                    more * (clear * shown_of_uniform_sky(into_frame(frame, to_eye), frame.variance) / kPi);
     }
     return terms;
 }

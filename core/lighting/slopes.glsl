@@ -33,6 +33,30 @@ vec3 facing_normal(vec3 normal, vec3 to_eye) {
     return normalize(seen + bend * to_eye);
 }
 
+// The normal of a pixel whose waves are finer than the mesh's. Of waves that the mesh has, the eye sees those that lean to
+// it more often: they take more of the picture. Of those that only the normals have, each takes its part of the mesh,
+// also the back that a crest would hide, and the sea seems to lean away: skies mirrored at grazing angles were 5 to 15 %
+// too bright. So normals lean to the eye as visible ones do. With w = (v·n)/(n_z |v_xy|), 0 for a surface seen edge-on, and
+// the variance s of these slopes along the view, slopes that never face away (a Bessel-3 process) have the mean square
+// w0² + 3 s, where all of them have w0² + s; and so has √(w² + 2 s), which is w′ here. Seen from above it is the mean of
+// slopes weighted by the area that they show, w0 + s/w0.
+//
+// mesh_variance: of the slopes that the mesh hides, along the view's horizontal direction; variance: what is hidden of
+// these by the pixel, (σxx, σyy, σxy). No more is hidden than by the mesh: the normal stays.
+vec3 visible_normal(vec3 normal, vec3 to_eye, vec3 variance, float mesh_variance) {
+    float across2 = max(to_eye.x * to_eye.x + to_eye.y * to_eye.y, 1.0e-12f);
+    float hidden = (variance.x * to_eye.x * to_eye.x + variance.y * to_eye.y * to_eye.y +
+                    2.0f * variance.z * to_eye.x * to_eye.y) / across2;
+    float between = 2.0f * (mesh_variance - hidden);
+    if (!(between > 0.0f) || !(normal.z > 0.0f)) return normal;
+    float height = max(normal.z, 1.0e-6f);
+    float facing = dot(normal, to_eye) / height;  // w |v_xy|
+    float root = sqrt(facing * facing + between * across2);
+    // (w′ − w)/|v_xy|, without cancellation.
+    float lean = facing > 0.0f ? between / (root + facing) : (root - facing) / across2;
+    return normalize(vec3(normal.x + height * lean * to_eye.x, normal.y + height * lean * to_eye.y, normal.z));
+}
+
 // Transforms the covariance of world slopes into the plane of slope s. To first order a slope deviation δ
 // becomes δ/(1 + s²) along s and δ/√(1 + s²) across it, that is n_z (1 − n_xy n_xyᵀ/(1 + n_z)) δ. Variances
 // are at least (1e-5)², with σ a hundredth of the sun disc's own spread, and the correlation at most 1 −

@@ -74,7 +74,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"cameraForward", packed(glm::vec3(view.forward))},
         {"horizontalFieldOfView_deg", view.fov_deg()},
         {"sunDirection", packed(context.sky.sun_direction)},
-        {"exposure", static_cast<double>(shot_exposure(context.scene, context.sky, context.exposure_stops))},
+        {"exposure", static_cast<double>(context.exposure)},
         {"samplesPerPixel", context.options.samples * context.options.samples},
         {"shutter_frames", context.options.shutter_frames},
         {"fingerprint", context.made_of},
@@ -229,7 +229,6 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
 }
 
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame) {
-    const float exposure = shot_exposure(context.scene, context.sky, context.exposure_stops);
     const bool has_alpha = !picture.alpha.empty();
     const std::size_t components = has_alpha ? 4 : 3;
     std::vector<std::uint8_t> bytes(picture.layers.size() * components);
@@ -239,7 +238,7 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
             const std::size_t i = width * row + x;
             const float alpha = has_alpha ? picture.alpha[i] : 1.0f;
             const glm::vec3 radiance = radiance_of(picture.layers[i]) / (alpha > 0.0f ? alpha : 1.0f);
-            const auto shown = display_bytes(radiance, exposure, {static_cast<int>(x), row});
+            const auto shown = display_bytes(radiance, context.exposure, {static_cast<int>(x), row});
             std::copy(shown.begin(), shown.end(),
                       bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
             if (has_alpha) bytes[components * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * alpha));

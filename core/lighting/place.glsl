@@ -22,11 +22,11 @@ vec4 place_lookup(int row, float elevation) {
     return max(sum, vec4(0.0f));
 }
 
-// How much of the light below the eye there is at a place; what the place has beyond it is added.
-vec3 place_share(vec3 here, vec3 there) { return min(here / max(there, vec3(1.0e-20f)), vec3(1.0f)); }
+// How many times the light below the eye there is at a place; what the place has beyond `most` times it is added.
+vec3 place_share(vec3 here, vec3 there, float most) { return min(here / max(there, vec3(1.0e-20f)), vec3(most)); }
 
 // sea_radiance() at a place with that vertical. to_eye and normal: relative to it. light: that below the eye, in the eye's
-// axes. The sky's pattern stays; where the sky is brighter than below the eye, the rest is uniform.
+// axes. The sky's pattern stays; where the sky is much brighter than below the eye, the rest is uniform.
 SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance, float coverage, SeaLight light, PlaceView place) {
     float rise = light.sun_direction.z - place.to_sun.z;
     light.sun_direction = levelled(light.sun_direction, up);
@@ -46,10 +46,11 @@ SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance,
 
     vec3 towards = light.sun_direction + vec3(0.0f, 0.0f, sun_here.w - rise);
     light.sun_direction = normalize(towards);
-    light.sun_radiance = light.sun_radiance * place_share(sun, sun_before) + max(sun - sun_before, vec3(0.0f));
+    light.sun_radiance = light.sun_radiance * place_share(sun, sun_before, 1.0f) + max(sun - sun_before, vec3(0.0f));
     light.sun_irradiance = light.sun_radiance * (kPi * square(light.sun_angular_radius) * max(light.sun_direction.z, 0.0f));
-    vec3 share = place_share(sky, sky_before);
-    vec3 more = max(sky - sky_before, vec3(0.0f));
+    float most = 8.0f;
+    vec3 share = place_share(sky, sky_before, most);
+    vec3 more = max(sky - most * sky_before, vec3(0.0f));
     light.sky_irradiance = light.sky_irradiance * share + more;
     SeaTerms terms = sea_radiance(to_eye, normal, slope_variance, coverage, light);
     if (kSky) {

@@ -343,6 +343,7 @@ void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
     of.light = light_uniforms(sky, water);
     of.sky_map_size = sky.map.size();
     of.air_model = sky.air;
+    of.air = air_uniforms({});  // none until a table is there
     of.air_height_m.reset();
     bind_texture(kSkyMap, of.sky_map);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);

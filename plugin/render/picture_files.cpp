@@ -56,17 +56,11 @@ std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-// ITU-R BT.709, whose white is D65.
-constexpr exr::Chromaticities kRec709{
-    .red = {0.64f, 0.33f}, .green = {0.30f, 0.60f}, .blue = {0.15f, 0.06f}, .white = {0.3127f, 0.3290f}};
-
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
     const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
     std::vector<exr::Attribute> attributes{
         {"content", std::string("radiance; the layers sun, sky, sea and foam add up to R, G, B")},
-        {"unit", radiance_unit(scene)},
-        {"chromaticities", kRec709},
         {"time", scene.shot.time_s(frame)},
         {"fps", scene.shot.fps},
         {"frame", frame},
@@ -80,8 +74,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"fingerprint", context.made_of},
         {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
-    // OpenEXR's own way to say the unit: cd/m² of (1, 1, 1).
-    if (is_in_kcd_m2(scene)) attributes.push_back({"whiteLuminance", 1000.0f});
+    for (exr::Attribute& attribute : radiance_attributes(scene)) attributes.push_back(std::move(attribute));
     for (const PictureLayerRow& row : kPictureLayers)
         if (!row.light && context.options.layers[index(row.layer)])
             attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});

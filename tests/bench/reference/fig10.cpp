@@ -14,7 +14,7 @@
 //   wind, fetch      one sea, of this wind [m/s] and fetch [km], in place of the two
 //   bands            1 prints every band
 // Keys to find the cost of an approximation:
-//   cell             the projected grid's, in pixels; 0: the levels of quality, one after another
+//   cell             the projected grid's, in pixels; 0: the default's, and rows for smaller ones
 //   pixels           tenths of a pixel by which normals are filtered; 0: by the cell
 //   chop             choppiness in per cent
 //   facets           1: mirrors are the facets of the mesh
@@ -168,11 +168,11 @@ const SeaUnderTest kSeas[] = {{"calm", 5.0, 300e3, false}, {"agitated", 13.0, 10
 
 // The cells of the tables, and those of the rows beside them.
 double main_cell(const Settings& settings) {
-    return settings["cell"] > 0 ? settings["cell"] : 2.0;
+    return settings["cell"] > 0 ? settings["cell"] : Surface{}.cell_px;
 }
 std::vector<double> other_cells(const Settings& settings) {
     if (settings["cell"] > 0) return {};
-    return {8.0, 6.0, 4.0, 3.0};
+    return {2.0, 4.0};
 }
 
 Comparison compare(const Settings& settings, const SeaUnderTest& under_test, const View& view,

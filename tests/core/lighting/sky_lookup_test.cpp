@@ -151,18 +151,22 @@ double nine(dvec3 v, dvec3 s, double seen_again) {
         return dvec2(r.x, r.y) / (1.0 + r.z);
     };
     const auto change = [&](dvec2 by) { return (place(1e-6 * by) - place(-1e-6 * by)) / 2e-6; };
-    const double first = std::max(-k, -3.0), step = (3.0 - first) / 9.0;
     const dvec2 p = change(along), q = change(across);
-    const double blur = 0.2 * std::min(dot(p, p) * step * step, dot(q, q));
+    // The area of a lookup's cell, held below half of either variance; the lookups' spread is what is left.
+    const double blur = std::min(0.45 * length(p) * length(q) * (3.0 - std::max(-k, -3.0)) / 9.0,
+                                 0.5 * std::min(dot(p, p), dot(q, q)));
+    const double narrowed = std::sqrt((1.0 - blur / dot(p, p)) / 0.973),
+                 side = std::sqrt(1.5 * (1.0 - blur / dot(q, q)));
+    const double first = std::max(-k, -3.0 * narrowed), step = (3.0 * narrowed - first) / 9.0;
     const double level =
         std::max(0.5 * std::log2(std::max(4.0 * blur, 1e-12) * std::pow(256.0 / 2.5, 2.0)), 0.0);
     double sum = 0.0, total = 0.0;
     for (int i = 0; i < 9; ++i) {
         const double x = first + step * (i + 0.5),
-                     turn = std::sqrt(1.5) * std::array{0.0, 1.0, -1.0}[static_cast<std::size_t>(i % 3)];
+                     turn = side * std::array{0.0, 1.0, -1.0}[static_cast<std::size_t>(i % 3)];
         const dvec2 slope = across * turn - along * x;
         const dvec3 f = normalize(dvec3(-slope.x, -slope.y, 1.0)), r = 2.0 * dot(v, f) * f - v;
-        const double w = sigma * sine * (k + x), weight = w * std::exp(-0.5 * x * x);
+        const double w = sigma * sine * (k + x), weight = w * std::exp(-0.5 * x * x / (narrowed * narrowed));
         const double visible = oracle::visible(w, v, s), lit = std::min(oracle::lit(w, w, v, r, s), visible);
         const double seen = lit > 0.0 ? lit * smooth(dvec2(r.x, r.y) / (1.0 + r.z), level) : 0.0;
         total += weight * visible;

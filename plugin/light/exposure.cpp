@@ -93,7 +93,7 @@ class Meter {
                              .slope_variance = {variance_, variance_, 0.0f},
                              .up = glm::vec3(glm::normalize(at))};
         SeaRadiance lit;
-        shade_sea({.whitecaps = false}, sky_, water_, {&point, 1}, {&lit, 1});
+        shade_sea({.whitecaps = false}, sky_, water_, {&point, 1}, {&lit, 1}, &air_);
         const auto metres = static_cast<float>(distance);
         see_through(air_, {&point.to_eye, 1}, {&metres, 1}, {&lit, 1});
         const double calm = luminance(glm::dvec3(lit.sky + lit.sea + lit.air));

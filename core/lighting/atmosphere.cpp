@@ -100,10 +100,11 @@ class Atmosphere::Tables {
 
     BandValues transmittance(const SightLine& line) const { return sighted(line).passed; }
 
-    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths) const {
+    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths,
+                                     double sun_elevation) const {
         std::vector<Scattered> all(azimuths.size());
         std::vector<Sun> suns;
-        for (const double azimuth : azimuths) suns.emplace_back(sun_elevation_, azimuth);
+        for (const double azimuth : azimuths) suns.emplace_back(sun_elevation, azimuth);
         std::vector<BandValues> row;
         for (const Piece& piece : sighted(line).pieces) {
             more_at(piece.radius - kEarth_km, row);
@@ -412,8 +413,9 @@ BandValues Atmosphere::transmittance(const SightLine& line) const {
 }
 
 std::vector<Atmosphere::Scattered> Atmosphere::scattered(const SightLine& line,
-                                                         std::span<const double> azimuths_rad) const {
-    return tables_->scattered(line, azimuths_rad);
+                                                         std::span<const double> azimuths_rad,
+                                                         double sun_elevation_rad) const {
+    return tables_->scattered(line, azimuths_rad, sun_elevation_rad);
 }
 
 }  // namespace pelagic

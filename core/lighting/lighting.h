@@ -62,10 +62,13 @@ struct SeaAlbedo {
 };
 SeaAlbedo sea_albedo(const WaterBody& water);
 
-// Writes radiance[i] for points[i], on the calling thread. Each depends on its point and the arguments alone,
+struct Air;
+
+// Writes radiance[i] for points[i], on the calling thread. air: before the eye below which `sky` is; points whose sun is
+// another one have their own light (place.glsl). Without it all have that of `sky`. Each depends on its point and the arguments alone,
 // and is finite for finite points. Throws std::invalid_argument if the spans differ in length, or if
 // choice.sky is on and the sky has no map.
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
-               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance);
+               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air = nullptr);
 
 }  // namespace pelagic

@@ -286,7 +286,7 @@ class RendererOf final : public Impl {
                                         .mesh_variance = batch_.mesh_variance[i]};
                 const auto points = std::span(batch_.points).subspan(range.begin(), range.size());
                 const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
-                shade_sea(options_.lighting, sky_, water_, points, lit);
+                shade_sea(options_.lighting, sky_, water_, points, lit, &air_);
                 if (options_.lighting.air)
                     see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
                                 std::span(batch_.distance_m).subspan(range.begin(), range.size()), lit);

@@ -226,15 +226,17 @@ TEST(PictureFiles, ScreensShowTheSumWithTheExposure) {
     const Scene scene;
     const RenderOptions options;
     const Sky sky = some_sky(0.0f);
-    const auto png = [&](double stops) { return encode_png({scene, options, sky, "", stops}, picture, 1); };
-    const std::string black = png(0.0);
+    const auto png = [&](float exposure) {
+        return encode_png({scene, options, sky, "", exposure}, picture, 1);
+    };
+    const std::string black = png(1.0f);
     picture.layers[4].foam = glm::vec3(1.0f);
-    const std::string foam = png(0.0);
+    const std::string foam = png(1.0f);
     EXPECT_NE(foam, black);
-    EXPECT_NE(png(1.0), foam);
+    EXPECT_NE(png(2.0f), foam);
     picture.layers[4] = {
         .sun = glm::vec3(0.25f), .sky = glm::vec3(0.25f), .sea = glm::vec3(0.5f), .foam = {}};
-    EXPECT_EQ(png(0.0), foam);
+    EXPECT_EQ(png(1.0f), foam);
 }
 
 // The keys that a picture depends on, by the table of keys; the camera is said as it is at the frame.

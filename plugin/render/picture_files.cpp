@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "core/base/instruction_set.h"
@@ -45,7 +46,9 @@ Ranges ranges_of(const Sky& sky) {
     float most = largest(sky.sun_irradiance + sky.sky_irradiance);
     if (sky.map.level_count() > 0)
         for (const glm::vec3& texel : sky.map.level(0)) most = std::max(most, largest(texel));
-    return {.sun = type(most + largest(sky.sun_radiance)), .whole = type(most)};
+    // The air takes less from the disc's upper limb than from the mean.
+    const glm::vec3 limb = glm::max(glm::max(sky.limb_low, sky.limb_middle), glm::max(sky.limb_high, 1.0f));
+    return {.sun = type(most + largest(limb * sky.sun_radiance)), .whole = type(most)};
 }
 
 // What a picture depends on, besides the camera at its frame.

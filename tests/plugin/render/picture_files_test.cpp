@@ -137,6 +137,19 @@ TEST(PictureFiles, LayersAreInPlaceAndAddUp) {
     }
 }
 
+// A low sun's upper limb is brighter than its mean, which may still fit into halves: such pictures were refused.
+TEST(PictureFiles, HoldTheDiscsUpperLimb) {
+    const glm::ivec2 resolution(7, 5);
+    Picture picture = pattern(resolution);
+    Sky sky = some_sky(6e4f);
+    sky.limb_high = glm::vec3(1.3f, 1.4f, 1.5f);
+    for (SeaRadiance& pixel : picture.layers) pixel.sky = sky.limb_high * sky.sun_radiance;
+    const Scene scene;
+    const RenderOptions options;
+    const Read file = read(encode_exr({scene, options, sky, ""}, picture, 1), resolution);
+    EXPECT_EQ(file.types.at("sky.G"), Imf::FLOAT);
+}
+
 // Whole is a picture with this fingerprint and all of its bytes: one that was cut short is made again.
 TEST(PictureFiles, AreWholeWithTheirFingerprintAndTheirEnd) {
     const Picture picture = pattern({64, 48});

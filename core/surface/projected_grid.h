@@ -72,8 +72,9 @@ struct ProjectedGrid {
 // The requirements of a pose.
 struct ProjectedGridNeeds {
     ProjectedGridSize size;  // multiples of 16, so that neighbouring poses often agree
-    // Lower bounds of all points' footprints in a grid of this size [m], for a query's levels. Spare rows may
-    // make cells smaller; those are filtered as if they were not.
+    // Lower bounds of the points' footprints in a grid of this size [m], for a query's levels; of pixels, where waves two
+    // deviations high are seen. Spare rows may make cells smaller, and single crests come nearer; those are filtered as
+    // if they did not.
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;
 };
 ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOptions& options);

@@ -130,13 +130,15 @@ void print_sky() {
 }
 
 // The luminance of the rows about the horizon, in the picture's middle column, away from the sun.
+constexpr int kSide = 32;
+
 std::vector<double> horizon_rows(double sun_deg, double turbidity) {
     Scene scene;
     scene.quality.level = QualityLevel::Draft;
     scene.light = {.sun_elevation_deg = sun_deg, .sun_azimuth_deg = 270.0, .turbidity = turbidity};
     scene.sea.wind_speed_mps = 0.5;
-    scene.camera.resolution = {16, 16};
-    scene.camera.fov_deg = 2.0 * std::atan(8.0 * 5.7e-4) / kDegree;
+    scene.camera.resolution = {kSide, kSide};
+    scene.camera.fov_deg = 2.0 * std::atan(kSide / 2 * 5.7e-4) / kDegree;
     scene.camera.position_m = {0.0, 0.0, 4.0};
     const double dip = std::acos(kEarthRadius_m / (kEarthRadius_m + 4.0));
     scene.camera.look_at_m = {0.0, 1e3, 4.0 - 1e3 * std::tan(dip)};
@@ -144,11 +146,11 @@ std::vector<double> horizon_rows(double sun_deg, double turbidity) {
     Picture picture;
     renderer.render(1, picture);
     std::vector<double> rows;
-    for (std::size_t y = 0; y < 16; ++y) {
+    for (std::size_t y = 0; y < kSide; ++y) {
         double sum = 0.0;
-        for (std::size_t x = 0; x < 16; ++x)
-            sum += luminance(glm::dvec3(radiance_of(picture.layers[y * 16 + x])));
-        rows.push_back(sum / 16.0);
+        for (std::size_t x = 0; x < kSide; ++x)
+            sum += luminance(glm::dvec3(radiance_of(picture.layers[y * kSide + x])));
+        rows.push_back(sum / kSide);
     }
     return rows;
 }
@@ -160,7 +162,8 @@ void print_horizon() {
         for (int step = 0; step <= 40; ++step) {
             const std::vector<double> rows = horizon_rows(-1.0 + 0.1 * step, turbidity);
             bool inside = true;
-            for (std::size_t i = 7; i <= 8; ++i) {  // the last of the sky and the first of the sea
+            for (std::size_t i = kSide / 2 - 1; i <= kSide / 2;
+                 ++i) {  // the last of the sky and the first of the sea
                 const double more = rows[i] / std::max(rows[i - 1], rows[i + 1]),
                              less = rows[i] / std::min(rows[i - 1], rows[i + 1]);
                 inside = inside && more <= 1.5 && less >= 1.0 / 1.5;

@@ -164,6 +164,8 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
         if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))] or meshes.REST not in mesh.attributes:
             signature = meshes.capture(mesh)
         return signature, lambda: surfaces.own_mesh(meshes.rest_of(mesh), meshes.edges_of(mesh), signature), None
+    if settings[PLACE["surface.kind"]] == "planet":
+        raise ValueError("A planet is baked, not shown: bake it, or choose another kind of surface to look at")
     if settings[PLACE["surface.kind"]] == "projected-grid":
         pinhole = pinhole_of(obj, bpy_scene, depsgraph)
         if pinhole is None:

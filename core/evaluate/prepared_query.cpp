@@ -170,10 +170,9 @@ void PreparedQuery<T>::evaluate(const Points<T>& points, const Results<T>& resul
         throw std::logic_error("the frame was set to another time: refresh() makes the query valid again");
     if ((points.cell_axis_m && !points.cell_m) || (points.pixel_axis_m && !points.pixel_m))
         throw std::invalid_argument("a footprint's long axis needs its width as well");
-    if ((points.cell_axis_m || points.pixel_axis_m) &&
-        (planned_->query.lattice || planned_->query.only_cascade))
+    if ((points.cell_axis_m || points.pixel_axis_m) && planned_->query.lattice)
         throw std::invalid_argument("query \"" + planned_->query.name +
-                                    "\" is of a lattice or of one cascade, whose footprints are round");
+                                    "\" is of a lattice, whose footprints are round");
     if (points.count == 0) return;
     const auto at = [&](const Place& place) {
         const Call call = this->call(points, results, place);

@@ -14,6 +14,7 @@
 
 #include "core/base/constants.h"
 #include "core/lighting/colour.h"
+#include "core/lighting/daylight_disc.h"
 #include "core/lighting/sunlight.h"
 
 namespace pelagic {
@@ -86,7 +87,7 @@ class Rows {
         air.horizon_m = static_cast<float>(horizon_m_);
         air.farthest_m = static_cast<float>(farthest_m_);
         air.dip = static_cast<float>(dip_rad());
-        air.texels.resize(std::size_t{Air::kLayers} * Air::kColumns * (Air::kRows + Air::kSkyRows));
+        air.texels.resize(std::size_t{Air::kWidth} * Air::kHeight);
     }
 
   private:
@@ -121,6 +122,9 @@ class DaylightAir final : public AirModel {
         for (int column = 0; column <= Air::kColumns / 2; ++column)
             azimuths.push_back(kTwoPi * column / Air::kColumns);
         air.has_sky = has_sky();
+        air.by_place = by_place(rows.height_m());
+        if (air.by_place > 0.0f)
+            std::ranges::copy(places(), air.texels.end() - Air::kPlaceRows * Air::kWidth);
         tbb::parallel_for(0, Air::kRows + Air::kSkyRows, [&](int row) {
             const bool is_sky = row >= Air::kRows;
             const SightLine line = is_sky ? rows.sky_line(row - Air::kRows) : rows.line(row);
@@ -149,6 +153,55 @@ class DaylightAir final : public AirModel {
     bool has_sky() const override { return true; }
 
   private:
+    // From half a kilometre up, where the sun is less than 0.8° lower at the horizon than below the eye, to the whole from
+    // four on.
+    static float by_place(double height_m) {
+        const double x = std::clamp((height_m - 500.0) / 3500.0, 0.0, 1.0);
+        return static_cast<float>(x * x * (3.0 - 2.0 * x));
+    }
+
+    // The rows of place.glsl.
+    const std::vector<glm::vec4>& places() const {
+        std::call_once(places_made_, [&] {
+            const Atmosphere& atmosphere = before(2.0);
+            places_.resize(std::size_t{Air::kPlaceRows} * Air::kWidth);
+            tbb::parallel_for(0, Air::kWidth, [&](int i) {
+                const double x = 2.0 * i / (Air::kWidth - 1) - 1.0, elevation = 0.5 * kPi * x * x * x;
+                const Disc disc = disc_at(atmosphere, elevation, kSunAngularRadius);
+                // The last that is seen of it is on the horizon.
+                const double rise = elevation <= -kSunAngularRadius
+                                        ? kSunAngularRadius
+                                        : std::sin(disc.elevation_rad) - std::sin(elevation);
+                const auto column = static_cast<std::size_t>(i);
+                places_[column] = glm::dvec4(disc.radiance, rise);
+                places_[column + Air::kWidth] = glm::dvec4(sky_irradiance(atmosphere, elevation), 0.0);
+            });
+        });
+        return places_;
+    }
+
+    // On the level sea. Scattered light without its phase functions is smooth: a few directions do, in rings of equal
+    // irradiance.
+    static glm::dvec3 sky_irradiance(const Atmosphere& atmosphere, double sun_elevation) {
+        constexpr int kRings = 10, kAround = 12;
+        std::vector<double> azimuths;
+        for (int i = 0; i < kAround; ++i) azimuths.push_back(kPi * (i + 0.5) / kAround);
+        BandValues sum{};
+        for (int ring = 0; ring < kRings; ++ring) {
+            const double height2 = (ring + 0.5) / kRings, elevation = std::asin(std::sqrt(height2));
+            const auto all = atmosphere.scattered({.elevation_rad = elevation}, azimuths, sun_elevation);
+            for (std::size_t i = 0; i < azimuths.size(); ++i) {
+                const double cosine = std::sin(elevation) * std::sin(sun_elevation) +
+                                      std::cos(elevation) * std::cos(sun_elevation) * std::cos(azimuths[i]);
+                for (std::size_t b = 0; b < sum.size(); ++b)
+                    sum[b] += (all[i].by_air[b] * air_phase(cosine) + all[i].by_haze[b] * haze_phase(cosine) +
+                               all[i].more[b]) *
+                              (kPi / (kRings * kAround));
+            }
+        }
+        return glm::max(colour_of(sum), glm::dvec3(0.0));
+    }
+
     // The atmosphere for an eye so high up.
     const Atmosphere& before(double height_km) const {
         if (height_km <= low_->highest_km()) return *low_;
@@ -160,7 +213,8 @@ class DaylightAir final : public AirModel {
     }
 
     std::shared_ptr<const Atmosphere> low_;
-    mutable std::once_flag high_made_;
+    mutable std::once_flag high_made_, places_made_;
+    mutable std::vector<glm::vec4> places_;
     mutable std::unique_ptr<const Atmosphere> high_;
     glm::dvec2 azimuth_;
     glm::dvec3 to_sun_, white_;

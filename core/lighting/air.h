@@ -17,12 +17,16 @@ namespace pelagic {
 
 // Empty: there is no air.
 struct Air {
-    static constexpr int kLayers = 3, kColumns = 32, kRows = 48, kHorizonRow = 39, kSkyRows = 40;
+    static constexpr int kLayers = 3, kColumns = 32, kRows = 48, kHorizonRow = 39, kSkyRows = 64,
+                         kPlaceRows = 2;
+    static constexpr int kWidth = kLayers * kColumns, kHeight = kRows + kSkyRows + kPlaceRows;
     glm::vec2 azimuth{1.0f, 0.0f};
     glm::vec3 to_sun{0.0f, 0.0f, 1.0f};
     float nearest_m = 0.0f, horizon_m = 0.0f, farthest_m = 0.0f, dip = 0.0f, sky_span = 1.0f;
     bool has_sky = false;  // otherwise the sky is the map's alone
-    // (kLayers · kColumns) × (kRows + kSkyRows), x fastest: in-scattered light by air, by haze, and more than once, each with one
+    // How far the light of a place is that of its own sun (place.glsl): 0 for eyes so low that all they see has one.
+    float by_place = 0.0f;
+    // kWidth × kHeight, x fastest. Rows of places (place.glsl); before them in-scattered light by air, by haze, and more than once, each with one
     // channel of the mean extinction [1/m] as its fourth number.
     std::vector<glm::vec4> texels;
     bool empty() const { return texels.empty(); }

@@ -13,18 +13,13 @@
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/lighting/columns.h"
 #include "core/lighting/sky_bake.h"
 
 namespace pelagic {
 namespace {
 
-constexpr double kEarth_km = kEarthRadius_km, kTop_km = kAirTop_km;
 constexpr double kSunRadius = 0.00465;  // [rad]
-
-// Scale heights of the exponential densities. Ozone has a triangular profile; its column is 300 Dobson units.
-constexpr double kAirScale_km = 8.0;
-constexpr double kOzoneMiddle_km = 25.0, kOzoneHalfWidth_km = 15.0;
-constexpr double kOzoneColumn_per_m2 = 300.0 * 2.687e20;
 
 // Haze: Ångström exponent and single-scattering albedo of particles over a sea with some land around (purely
 // marine: 0.5 and 0.99; continental: 1.3 and 0.93).
@@ -41,105 +36,13 @@ double air_thickness(double um) {
     return 0.008569 * per * per * (1.0 + 0.0113 * per + 0.00013 * per * per);
 }
 
+constexpr double kOzoneColumn_per_m2 = 300.0 * 2.687e20;  // 300 Dobson units
+
 // Optical thickness of the ozone: its Chappuis band as a Gaussian, with a peak of 5.0e-25 m² at 0.595 μm.
 double ozone_thickness(double um) {
     const double x = (um - 0.595) / 0.054;
     return kOzoneColumn_per_m2 * 5.0e-25 * std::exp(-0.5 * x * x);
 }
-
-// Air, haze and ozone: densities at a height, or columns along a ray, as fractions of the vertical column.
-struct Matter {
-    double air = 0.0, haze = 0.0, ozone = 0.0;
-};
-
-// [1/km]
-Matter density(double height_km) {
-    const double off = std::abs(height_km - kOzoneMiddle_km) / kOzoneHalfWidth_km;
-    return {std::exp(-height_km / kAirScale_km) / kAirScale_km,
-            std::exp(-height_km / kHazeScale_km) / kHazeScale_km,
-            std::max(0.0, 1.0 - off) / kOzoneHalfWidth_km};
-}
-
-// Distance to the top of the atmosphere along a ray, from its start's radius and its cosine with the
-// vertical.
-double to_top(double radius, double cosine) {
-    constexpr double top = kEarth_km + kTop_km;
-    return -radius * cosine + std::sqrt(std::max(0.0, top * top - radius * radius * (1.0 - cosine * cosine)));
-}
-
-double horizon_distance(double radius) {
-    return std::sqrt(std::max(0.0, radius * radius - kEarth_km * kEarth_km));
-}
-
-// Columns of matter from a height to the top, along rays that miss the ground. The table's axes are the
-// distance to the horizon and the distance to the top, which give resolution to grazing rays.
-class Columns {
-  public:
-    Columns() : table_(kHeights * kDistances) {
-        for (std::size_t i = 0; i < kHeights; ++i) {
-            const double horizon = kFarthest * static_cast<double>(i) / (kHeights - 1);
-            const double radius = std::hypot(horizon, kEarth_km);
-            for (std::size_t j = 0; j < kDistances; ++j) {
-                const double least = kEarth_km + kTop_km - radius, most = horizon + kFarthest;
-                const double d = least + (most - least) * static_cast<double>(j) / (kDistances - 1);
-                table_[i * kDistances + j] = integrated(radius, d);
-            }
-        }
-    }
-
-    // cosine: between the ray and the vertical. Rays that meet the ground get the column of the ray that
-    // grazes it.
-    Matter operator()(double radius, double cosine) const {
-        const double horizon = horizon_distance(radius);
-        const double least = kEarth_km + kTop_km - radius, most = horizon + kFarthest;
-        const double skimming = -horizon / radius;
-        const double d = to_top(radius, std::max(cosine, skimming));
-        const double x = std::clamp(horizon / kFarthest, 0.0, 1.0) * (kHeights - 1);
-        const double y =
-            most > least ? std::clamp((d - least) / (most - least), 0.0, 1.0) * (kDistances - 1) : 0.0;
-        const std::size_t i = std::min(static_cast<std::size_t>(x), kHeights - 2);
-        const std::size_t j = std::min(static_cast<std::size_t>(y), kDistances - 2);
-        const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
-        const Matter* low = &table_[i * kDistances + j];
-        const Matter* high = low + kDistances;
-        const auto mixed = [&](double Matter::*kind) {
-            return (1.0 - s) * ((1.0 - t) * low[0].*kind + t * low[1].*kind) +
-                   s * ((1.0 - t) * high[0].*kind + t * high[1].*kind);
-        };
-        return {mixed(&Matter::air), mixed(&Matter::haze), mixed(&Matter::ozone)};
-    }
-
-    // The same without the table, for the ray from this radius that reaches the top at distance d.
-    static Matter integrated(double radius, double d) {
-        constexpr double top = kEarth_km + kTop_km;
-        const double cosine =
-            d > 0.0 ? std::clamp((top * top - radius * radius - d * d) / (2.0 * radius * d), -1.0, 1.0) : 1.0;
-        // Steps are shortest near the lowest point, where the density changes most.
-        const double lowest = std::clamp(-radius * cosine, 0.0, d);
-        Matter column;
-        for (const double length : {-lowest, d - lowest}) {
-            for (int i = 0; i < kSteps; ++i) {
-                const double a = static_cast<double>(i) / kSteps, b = (i + 1.0) / kSteps;
-                const double t = lowest + length * 0.5 * (a * a + b * b);
-                const double dt = std::abs(length) * (b * b - a * a);
-                const double height =
-                    std::sqrt(radius * radius + t * t + 2.0 * radius * t * cosine) - kEarth_km;
-                const Matter at = density(std::max(height, 0.0));
-                column.air += at.air * dt;
-                column.haze += at.haze * dt;
-                column.ozone += at.ozone * dt;
-            }
-        }
-        return column;
-    }
-
-  private:
-    static constexpr std::size_t kHeights = 64, kDistances = 128;
-    static constexpr int kSteps = 48;
-    static inline const double kFarthest = horizon_distance(kEarth_km + kTop_km);
-
-    std::vector<Matter> table_;
-};
 
 // The fraction of a disc above a line that lies `above` radii below its centre.
 double part_above(double above) {
@@ -197,17 +100,20 @@ class Atmosphere::Tables {
 
     BandValues transmittance(const SightLine& line) const { return sighted(line).passed; }
 
-    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths) const {
-        const Ray ray = sighted(line);
+    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths,
+                                     double sun_elevation) const {
         std::vector<Scattered> all(azimuths.size());
-        for (std::size_t k = 0; k < azimuths.size(); ++k) {
-            Scattered& out = all[k];
-            const Sun sun(sun_elevation_, azimuths[k]);
-            for (const Piece& piece : ray.pieces) {
-                const double cosine = sun.cosine(piece.turn);
+        std::vector<Sun> suns;
+        for (const double azimuth : azimuths) suns.emplace_back(sun_elevation, azimuth);
+        std::vector<BandValues> row;
+        for (const Piece& piece : sighted(line).pieces) {
+            more_at(piece.radius - kEarth_km, row);
+            for (std::size_t k = 0; k < all.size(); ++k) {
+                const double cosine = suns[k].cosine(piece.turn);
                 BandValues light;
                 const bool lit = sunlight(piece.radius, cosine, light);
-                const BandValues more = more_at(piece.radius - kEarth_km, cosine);
+                const BandValues more = more_at(row, cosine);
+                Scattered& out = all[k];
                 for (std::size_t b = 0; b < kBandCount; ++b) {
                     out.more[b] += (piece.by_air[b] + piece.by_haze[b]) * more[b];
                     if (!lit) continue;
@@ -449,22 +355,30 @@ class Atmosphere::Tables {
         return sun_elevation_ + kReach * (2.0 * static_cast<double>(j - outer_) / (kInner - 1) - 1.0);
     }
 
-    BandValues more_at(double height, double sine) const {
-        const double x = std::cbrt(std::clamp(height / kTop_km, 0.0, 1.0)) * (kHeights - 1);
+    // The table's row at a height [km], by the sun's elevation.
+    void more_at(double height, std::vector<BandValues>& row) const {
+        const Cubic up(std::cbrt(std::clamp(height / kTop_km, 0.0, 1.0)) * (kHeights - 1), kHeights);
+        row.assign(elevations_, BandValues{});
+        for (std::size_t i = 0; i < 4; ++i)
+            for (std::size_t j = 0; j < elevations_; ++j)
+                for (std::size_t b = 0; b < kBandCount; ++b)
+                    row[j][b] += up.weights[i] * more_[up.nodes[i] * elevations_ + j][b];
+    }
+
+    // In that row, at this sine of the sun's elevation.
+    BandValues more_at(const std::vector<BandValues>& row, double sine) const {
         const double from_sun = std::asin(std::clamp(sine, -1.0, 1.0)) - sun_elevation_;
         const double off = from_sun / kReach;
         double y = static_cast<double>(outer_) + 0.5 * (std::clamp(off, -1.0, 1.0) + 1.0) * (kInner - 1);
         const double beyond = (std::abs(from_sun) - kReach) / kOuterStep;
         if (beyond > 0.0) y += std::copysign(std::min(beyond, static_cast<double>(outer_)), from_sun);
-        const std::size_t i = std::min(static_cast<std::size_t>(x), kHeights - 2);
-        const std::size_t j = std::min(static_cast<std::size_t>(y), elevations_ - 2);
-        const double s = x - static_cast<double>(i), t = y - static_cast<double>(j);
-        const BandValues* low = &more_[i * elevations_ + j];
-        const BandValues* high = low + elevations_;
-        BandValues out;
-        for (std::size_t b = 0; b < kBandCount; ++b)
-            out[b] = (1.0 - s) * ((1.0 - t) * low[0][b] + t * low[1][b]) +
-                     s * ((1.0 - t) * high[0][b] + t * high[1][b]);
+        const Cubic across(y, elevations_);
+        BandValues out{};
+        for (std::size_t j = 0; j < 4; ++j)
+            for (std::size_t b = 0; b < kBandCount; ++b)
+                out[b] += across.weights[j] * row[across.nodes[j]][b];
+        for (double& value : out)
+            value = std::max(value, 0.0);  // a cubic undershoots where dusk falls steeply
         return out;
     }
 
@@ -499,8 +413,9 @@ BandValues Atmosphere::transmittance(const SightLine& line) const {
 }
 
 std::vector<Atmosphere::Scattered> Atmosphere::scattered(const SightLine& line,
-                                                         std::span<const double> azimuths_rad) const {
-    return tables_->scattered(line, azimuths_rad);
+                                                         std::span<const double> azimuths_rad,
+                                                         double sun_elevation_rad) const {
+    return tables_->scattered(line, azimuths_rad, sun_elevation_rad);
 }
 
 }  // namespace pelagic

@@ -60,7 +60,13 @@ class Atmosphere {
     }
     // Along a line of sight, without what its end itself sends. The azimuths are relative to the sun's at the place below
     // the observer, and so is the sun's elevation.
-    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths_rad) const;
+    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths_rad) const {
+        return scattered(line, azimuths_rad, sun_elevation_rad());
+    }
+    // The same under another sun. Light that is scattered more than once is that of a sun at most 33° away from the
+    // atmosphere's own, and of 11° where it isn't made for an eye above 1 km.
+    std::vector<Scattered> scattered(const SightLine& line, std::span<const double> azimuths_rad,
+                                     double sun_elevation_rad) const;
 
     ~Atmosphere();
 

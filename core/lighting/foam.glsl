@@ -41,7 +41,8 @@ vec3 foam_radiance(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance
         inversesqrt(1.0f + dot(mean, mean) + dot(seen.across, seen.across) + dot(seen.along, seen.along));
     MaskedView view = masked_view(v, variance);
     float towards = v.z - mean.x * v.x - mean.y * v.y;
-    float open = lit_part(view, towards, facing, l, variance) / visible_part(view, towards);
+    float nested = nested_part(view, towards);
+    float open = lit_of(view, nested, facing, l, variance) / visible_of(view, nested);
     vec3 sun = sun_radiance * (kPi * square(sun_angular_radius) * facing * up * open);
     return reflectance / kPi * (sun + sky_irradiance * (0.5f + 0.5f * up));
 }

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/lighting/air.h"
+
 namespace pelagic {
 namespace shading {
 
@@ -14,7 +16,11 @@ using namespace glm;
 // The shared source as members of a struct, one instance per variant, so that its constants fold.
 template <LightingChoice kChoice>
 struct Shading {
-    explicit Shading(const SkyMap& sky_map) : map(sky_map), kSkyMapSize(static_cast<float>(sky_map.size())) {}
+    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr)
+        : map(sky_map), seen_air(of_air), kSkyMapSize(static_cast<float>(sky_map.size())) {}
+
+    static constexpr int kAirColumns = Air::kColumns, kAirRows = Air::kRows, kAirSkyRows = Air::kSkyRows,
+                         kAirHorizonRow = Air::kHorizonRow;
 
     static constexpr bool kSun = kChoice.sun, kSky = kChoice.sky, kWater = kChoice.water,
                           kWhitecaps = kChoice.whitecaps,
@@ -23,9 +29,14 @@ struct Shading {
                                        : kChoice.sky_quality == SkyQuality::Nine ? 9
                                                                                  : 0;
     const SkyMap& map;
+    const Air* seen_air;
     const float kSkyMapSize;
 
     vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
+    vec4 air_texel(int column, int row) const {
+        return seen_air
+            ->texels[static_cast<std::size_t>(row) * Air::kWidth + static_cast<std::size_t>(column)];
+    }
 
 // The order matters: each file uses those before it.
 // clang-format off
@@ -38,6 +49,8 @@ struct Shading {
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
 #include "core/lighting/sea.glsl"
+#include "core/lighting/air.glsl"
+#include "core/lighting/place.glsl"
     // clang-format on
 };
 
@@ -51,20 +64,25 @@ SeaAlbedo albedo(const WaterBody& water) {
         .water_index = shading.kWaterIndex};
 }
 
-using Batch = void (*)(const Sky&, const WaterBody&, std::span<const SeaPoint>, std::span<SeaRadiance>);
+using Batch = void (*)(const Sky&, const WaterBody&, std::span<const SeaPoint>, std::span<SeaRadiance>,
+                       const Air*);
 
 template <LightingChoice kChoice>
 void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
-                 std::span<SeaRadiance> radiance) {
+                 std::span<SeaRadiance> radiance, const Air* air) {
     using Variant = Shading<kChoice>;
-    Variant shading(sky.map);
-    typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
-                                     sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
+    const bool by_place = air && air->by_place > 0.0f;
+    Variant shading(sky.map, air);
+    const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
+                                            by_place ? air->by_place : 0.0f};
+    const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
+                                           sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
-        light.sun_direction = shading.levelled(sky.sun_direction, p.up);
-        const typename Variant::SeaTerms terms = shading.sea_radiance(
-            shading.levelled(p.to_eye, p.up), p.normal, p.slope_variance, p.coverage, light);
+        const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
+        const typename Variant::SeaTerms terms = shading.sea_radiance_at(
+            p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance, p.mesh_variance),
+            p.slope_variance, p.coverage, light, place);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }
@@ -108,7 +126,7 @@ SeaAlbedo sea_albedo(const WaterBody& water) {
 }
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
-               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance) {
+               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air) {
     if (points.size() != radiance.size()) {
         throw std::invalid_argument("shade_sea: give one SeaRadiance for each SeaPoint");
     }
@@ -116,7 +134,7 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
         throw std::invalid_argument(
             "shade_sea: the sky has no map; make one with daylight_sky() or picture_sky()");
     }
-    shading::kBatches[shading::number_of(choice)](sky, water, points, radiance);
+    shading::kBatches[shading::number_of(choice)](sky, water, points, radiance, air);
 }
 
 }  // namespace pelagic

@@ -46,6 +46,9 @@ struct SeaPoint {
     float coverage = 0.0f;               // of whitecaps, 0 … 1
     // Unit: the vertical at the point, in the axes of to_eye and of the sky. Normal and slope variance are relative to it.
     glm::vec3 up{0.0f, 0.0f, 1.0f};
+    // Of the slopes that the mesh beneath hides, along the view's horizontal direction; slope_variance is what is left of
+    // these where the normal is finer than the mesh (visible_normal() in slopes.glsl). 0: the mesh is as fine.
+    float mesh_variance = 0.0f;
 };
 
 // The sea as a diffuse surface, linear Rec. 709, for hosts that bring their own optics: the share of the
@@ -59,10 +62,13 @@ struct SeaAlbedo {
 };
 SeaAlbedo sea_albedo(const WaterBody& water);
 
-// Writes radiance[i] for points[i], on the calling thread. Each depends on its point and the arguments alone,
+struct Air;
+
+// Writes radiance[i] for points[i], on the calling thread. air: before the eye below which `sky` is; points whose sun is
+// another one have their own light (place.glsl). Without it all have that of `sky`. Each depends on its point and the arguments alone,
 // and is finite for finite points. Throws std::invalid_argument if the spans differ in length, or if
 // choice.sky is on and the sky has no map.
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
-               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance);
+               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air = nullptr);
 
 }  // namespace pelagic

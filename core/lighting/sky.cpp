@@ -22,6 +22,7 @@
 #include "core/lighting/air.h"
 #include "core/lighting/atmosphere.h"
 #include "core/lighting/colour.h"
+#include "core/lighting/daylight_disc.h"
 #include "core/lighting/sky_bake.h"
 #include "core/lighting/sunlight.h"
 
@@ -93,42 +94,6 @@ class ScatteredTable {
     std::vector<Entry> entries_;
 };
 
-// The part of the sun's disc above the horizon.
-struct Disc {
-    glm::dvec3 radiance{0.0};    // mean over the whole disc, the part below the horizon counted as black
-    double elevation_rad = 0.0;  // of the visible part's centre
-    glm::dvec3 low{0.0}, middle{0.0}, high{0.0};  // radiance, at the limbs of the visible part and half-way
-};
-
-// Integrates strips of equal elevation: near the horizon the lower edge is redder and darker than the upper.
-Disc disc_at(const Atmosphere& air, double elevation_rad, double radius_rad) {
-    constexpr int kStrips = 16;
-    const double lowest = std::max(-radius_rad, -elevation_rad);
-    Disc disc;
-    disc.elevation_rad = elevation_rad;
-    if (lowest >= radius_rad) return disc;
-    const auto at = [&](double up) {
-        return into_gamut(colour_of(air.transmittance(elevation_rad + up))) / (kPi * radius_rad * radius_rad);
-    };
-    disc.low = at(lowest);
-    disc.middle = at(0.5 * (lowest + radius_rad));
-    disc.high = at(radius_rad);
-    const double height = (radius_rad - lowest) / kStrips;
-    glm::dvec3 sum(0.0);
-    double moment = 0.0;
-    for (int i = 0; i < kStrips; ++i) {
-        const double up = lowest + (i + 0.5) * height;
-        const double area = 2.0 * std::sqrt(std::max(0.0, radius_rad * radius_rad - up * up)) * height;
-        const glm::dvec3 light = area * colour_of(air.transmittance(elevation_rad + up));
-        sum += light;
-        moment += luminance(light) * up;
-    }
-    const double area = kPi * radius_rad * radius_rad;  // [sr], for a small disc
-    disc.radiance = into_gamut(sum) / (area * area);
-    if (luminance(sum) > 0.0) disc.elevation_rad += moment / luminance(sum);
-    return disc;
-}
-
 }  // namespace
 
 Sky daylight_sky(const Daylight& daylight, int map_size) {
@@ -176,6 +141,7 @@ Sky daylight_sky(const Daylight& daylight, int map_size) {
         const bool aureole = glm::dot(glm::dvec3(direction), sun) > 0.95;  // 18°
         return aureole || direction.z < 0.1f ? 4 : 1;
     };
+    dome.is_smooth = true;
     const BakedSky baked = bake_sky_map(map_size, dome);
     sky.map = baked.map;
     sky.sky_irradiance = baked.irradiance;

@@ -75,37 +75,48 @@ vec3 sky_seen_again(vec3 v, SlopeFrame frame) {
 
 // What one visible facet mirrors, per its projected area and that of the plane: of the sky, and of the sea again.
 struct FacetLight {
+    float visible;
     vec3 sky;
     float again;
 };
 
-FacetLight facet_light(vec2 slope, float facing, float visible, vec3 v, SlopeFrame frame, MaskedView view, float level) {
+FacetLight facet_light(vec2 slope, float facing, float nested, vec3 v, SlopeFrame frame, MaskedView view, float level) {
     vec3 f = normalize(vec3(-slope.x, -slope.y, 1.0f));
     float cosine = max(dot(v, f), 0.0f);
     vec3 r = 2.0f * cosine * f - v;
     float reflected = facet_fresnel(cosine);
-    float lit = min(lit_part(view, facing, facing, r, frame.variance), visible);
-    return FacetLight(reflected * lit * sky_lookup(sky_place(out_of_frame(frame, r)), level),
+    float visible = visible_of(view, nested);
+    float lit = min(lit_of(view, nested, facing, r, frame.variance), visible);
+    return FacetLight(visible, reflected * lit * sky_lookup(sky_place(out_of_frame(frame, r)), level),
                       reflected * (visible - lit));
 }
 
 // The best quality in real time: nine lookups over the visible slopes. Near grazing the mean and variance of
 // visible slopes differ from those of all slopes, because facets that face the eye count more. Along the line
-// of sight the nine form a midpoint rule, since Fresnel's term, the horizon and the sky's gradient vary
-// there. Across it they alternate between 0 and ±√1.5 σ, which has the right variance. Each lookup has its
-// own Fresnel weight, because near the horizon reflective facets see bright sky; the weights' sum is the
-// effective term.
+// of sight the nine form a midpoint rule over ±3 σ (97.3 % of the variance), since Fresnel's term, the horizon and the
+// sky's gradient vary there. Across it they alternate between the middle and either side. Each lookup has its own
+// Fresnel weight, because near the horizon reflective facets see bright sky; the weights' sum is the effective term.
+//
+// Each lookup is blurred by 0.45 of the area that it stands for in the map, so that none of the sun's aureole falls
+// between them, but by no more than half the smaller variance, since the map's filters are round. What the blur adds to
+// the variance along and across, the lookups' own spread lacks. Both numbers gave the smallest error against the
+// integral, of 0.2 … 0.9 and 0.3 … 0.9, over daylight of turbidities 2 … 6 and suns at 8 … 70°, views from 10 to 87° and
+// σ of 0.05 … 0.22: 4.3 % rms towards the sun, 2.3 % elsewhere (7.2 and 4.6 % with little blur and all the spread).
 vec3 sky_of_nine(vec3 to_eye, SlopeFrame frame) {
     vec3 v = into_frame(frame, to_eye);
     VisibleSlopes seen = visible_slopes(v, frame.variance);
-    float first = max(-seen.tilt, -3.0f);
-    float step_along = (3.0f - first) / 9.0f;
-
-    // Each lookup's blur reaches about halfway to the next: measured to be best for smooth and cloudy skies.
     PlaceChange change = place_changes(to_eye, frame);
     vec2 along = change.by_x * seen.along.x + change.by_y * seen.along.y;
     vec2 across = change.by_x * seen.across.x + change.by_y * seen.across.y;
-    float level = sky_level(0.2f * min(dot(along, along) * square(step_along), dot(across, across)));
+    float along2 = max(dot(along, along), 1.0e-20f);
+    float across2 = max(dot(across, across), 1.0e-20f);
+    float step_along = (3.0f - max(-seen.tilt, -3.0f)) / 9.0f;
+    float blur = min(0.45f * step_along * sqrt(along2 * across2), 0.5f * min(along2, across2));
+    float level = sky_level(blur);
+    float narrowed = sqrt((1.0f - blur / along2) / 0.973f);
+    float side = sqrt(1.5f * (1.0f - blur / across2));
+    float first = max(-seen.tilt, -3.0f * narrowed);
+    step_along = (3.0f * narrowed - first) / 9.0f;
 
     MaskedView view = masked_view(v, frame.variance);
     vec3 sum = vec3(0.0f);
@@ -115,13 +126,13 @@ vec3 sky_of_nine(vec3 to_eye, SlopeFrame frame) {
     for (int i = 0; i < 9; ++i) {
         float x = first + step_along * (float(i) + 0.5f);
         float facing = view.height + sqrt(view.along) * x;
-        float visible = visible_part(view, facing);
-        float part = facing * exp(-0.5f * x * x);
-        FacetLight light = facet_light(seen.across * turn - seen.along * x, facing, visible, v, frame, view, level);
-        total += part * visible;
+        float part = facing * exp(-0.5f * square(x / narrowed));
+        FacetLight light = facet_light(seen.across * (side * turn) - seen.along * x, facing, nested_part(view, facing),
+                                       v, frame, view, level);
+        total += part * light.visible;
         sum += part * light.sky;
         again += part * light.again;
-        turn = turn > 0.5f ? -1.2247449f : (turn < -0.5f ? 0.0f : 1.2247449f);
+        turn = turn > 0.5f ? -1.0f : (turn < -0.5f ? 0.0f : 1.0f);
     }
     return (sum + again * sky_seen_again(v, frame)) / total;
 }
@@ -148,13 +159,13 @@ vec3 sky_integral(vec3 to_eye, SlopeFrame frame) {
     for (int i = 0; i < 32; ++i) {
         float x = first + step_along * (float(i) + 0.5f);
         float facing = view.height + sqrt(view.along) * x;
-        float visible = visible_part(view, facing);
+        float nested = nested_part(view, facing);
         float weight = facing * exp(-0.5f * x * x);
         for (int j = 0; j < 16; ++j) {
             float y = -4.0f + step_across * (float(j) + 0.5f);
             float part = weight * exp(-0.5f * y * y);
-            FacetLight light = facet_light(seen.across * y - seen.along * x, facing, visible, v, frame, view, level);
-            total += part * visible;
+            FacetLight light = facet_light(seen.across * y - seen.along * x, facing, nested, v, frame, view, level);
+            total += part * light.visible;
             sum += part * light.sky;
             again += part * light.again;
         }

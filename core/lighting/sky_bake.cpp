@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -36,21 +37,23 @@ struct Texel {
     glm::dvec3 radiance{0.0};    // sum over the samples above the horizon
     glm::dvec3 irradiance{0.0};  // [radiance sr]
     int above = 0, samples = 0;
-    glm::dvec3 open{0.0};  // sum over all samples, with the sky extended past the horizon
+    glm::dvec3 open{0.0};    // sum over all samples, with the sky extended past the horizon
+    glm::dvec3 middle{0.0};  // that in the texel's middle, of a smooth dome
     bool is_open = false;
 };
 
 // Texels around the horizon to which the sky extends: a lookup reaches 1½ to each side.
 constexpr double kOpenTexels = 2.5;
 
-// The sky past the horizon goes on as it came, but isn't negative: what is at the horizon and by how much that above it,
-// mirrored there, is more or less.
+// The sky past the horizon goes on as it came, by ratios, so that it isn't negative: what is at the horizon, and how many
+// times that above it, mirrored there, is more or less.
 glm::dvec3 beyond_horizon(const SkyDome& dome, glm::dvec2 u, double distance) {
     const auto at = [&](double place) {
         return glm::dvec3(dome.radiance(sky_map_direction(glm::vec2(u * (place / distance)))));
     };
     const glm::dvec3 horizon = at(1.0 - 1e-7);
-    return glm::clamp(2.0 * horizon - at(2.0 - distance), glm::dvec3(0.0), 2.0 * horizon);
+    const glm::dvec3 above = glm::max(at(2.0 - distance), 0.5 * horizon + 1e-300);  // at most twice as bright
+    return horizon * (horizon / above);
 }
 
 Texel sampled(const SkyDome& dome, glm::dvec2 corner, double side) {
@@ -85,7 +88,38 @@ Texel sampled(const SkyDome& dome, glm::dvec2 corner, double side) {
             ++texel.above;
         }
     texel.samples = n * n;
+    if (dome.is_smooth && texel.is_open)
+        texel.middle = distance < 1.0 ? glm::dvec3(dome.radiance(sky_map_direction(glm::vec2(middle))))
+                                      : beyond_horizon(dome, middle, distance);
     return texel;
+}
+
+// Changes the finest level so that its spline (sky_map.glsl) passes through what a smooth dome has in the texels'
+// middles, which means would flatten. Each pass takes a quarter of what is missing of a checkerboard, and of
+// smooth skies nearly all. The outermost texels stay as they are: no lookup is theirs alone.
+void make_spline(const std::vector<Texel>& texels, std::size_t size, std::vector<glm::vec3>& open) {
+    constexpr int kPasses = 8;
+    constexpr std::array kWeights{0.125f, 0.75f, 0.125f};
+    std::vector<glm::vec3> changed(open.size());
+    for (int pass = 0; pass < kPasses; ++pass) {
+        tbb::parallel_for(std::size_t{0}, size, [&](std::size_t row) {
+            for (std::size_t column = 0; column < size; ++column) {
+                const std::size_t i = row * size + column;
+                changed[i] = open[i];
+                if (row == 0 || column == 0 || row + 1 == size || column + 1 == size) continue;
+                glm::vec3 spline(0.0f);
+                bool inside = true;
+                for (std::size_t y = 0; y < 3; ++y)
+                    for (std::size_t x = 0; x < 3; ++x) {
+                        const std::size_t at = i + (y * size + x) - size - 1;
+                        inside = inside && texels[at].is_open;
+                        spline += kWeights[x] * kWeights[y] * open[at];
+                    }
+                if (inside) changed[i] = glm::max(open[i] + glm::vec3(texels[i].middle) - spline, 0.0f);
+            }
+        });
+        open.swap(changed);
+    }
 }
 
 // Texels whose middles lie in a ring round the zenith, and between which angles from it [rad] they reach.
@@ -149,6 +183,7 @@ BakedSky bake_sky_map(int size, const SkyDome& dome) {
                    static_cast<double>(texel.samples);
         open[i] = texel.is_open ? glm::vec3(texel.open / static_cast<double>(texel.samples)) : means[i];
     }
+    if (dome.is_smooth) make_spline(texels, n, open);
     baked.irradiance = irradiance;
     baked.map = SkyMap(size, std::move(means), std::move(open));
     return baked;

@@ -18,6 +18,9 @@ struct SkyDome {
     // Samples per side, ≥ 1, of a texel centred there that spans `angle` [rad] of sky. Samples stand at the
     // centres of equal squares.
     std::function<int(glm::vec3 direction, float angle)> samples;
+    // Whether radiance() varies little over two texels but for the horizon: the map's finest level then passes through
+    // it. Otherwise it is a mean.
+    bool is_smooth = false;
     // A dome that is too large to hold is sampled in rings round the zenith, this high [rad]. Before each ring
     // prepare() hears between which angles from the zenith its directions lie.
     double ring = 10.0;  // all of it at once

@@ -21,7 +21,6 @@ struct SlopeFrame {
 // n + cv mirrors v to the horizon if v_z c² + 2 n_z c + 2 n_z (n·v) − v_z = 0. With n·v ≥ 0 exactly one root
 // is positive if n mirrors v downwards; it is written without cancellation for either sign of n_z. n + cv
 // then points up: its z is the square root of the discriminant. The bounds of 1e-6 keep c finite.
-// has. n + cv then points up: its z is the root of the discriminant. The bounds of 1e-6 keep c finite.
 vec3 facing_normal(vec3 normal, vec3 to_eye) {
     vec3 seen = normal - 2.0f * min(dot(normal, to_eye), 0.0f) * to_eye;
     float below = to_eye.z - 2.0f * dot(seen, to_eye) * seen.z;  // minus the mirrored ray's height
@@ -31,6 +30,30 @@ vec3 facing_normal(vec3 normal, vec3 to_eye) {
         bend = seen.z < 0.0f ? (root - seen.z) / max(to_eye.z, 1.0e-6f) : below / max(seen.z + root, 1.0e-6f);
     }
     return normalize(seen + bend * to_eye);
+}
+
+// The normal of a pixel whose waves are finer than the mesh's. Of waves that the mesh has, the eye sees those that lean to
+// it more often: they take more of the picture. Of those that only the normals have, each takes its part of the mesh,
+// also the back that a crest would hide, and the sea seems to lean away: skies mirrored at grazing angles were 5 to 15 %
+// too bright. So normals lean to the eye as visible ones do. With w = (v·n)/(n_z |v_xy|), 0 for a surface seen edge-on, and
+// the variance s of these slopes along the view, slopes that never face away (a Bessel-3 process) have the mean square
+// w0² + 3 s, where all of them have w0² + s; and so has √(w² + 2 s), which is w′ here. Seen from above it is the mean of
+// slopes weighted by the area that they show, w0 + s/w0.
+//
+// mesh_variance: of the slopes that the mesh hides, along the view's horizontal direction; variance: what is hidden of
+// these by the pixel, (σxx, σyy, σxy). No more is hidden than by the mesh: the normal stays.
+vec3 visible_normal(vec3 normal, vec3 to_eye, vec3 variance, float mesh_variance) {
+    float across2 = max(to_eye.x * to_eye.x + to_eye.y * to_eye.y, 1.0e-12f);
+    float hidden = (variance.x * to_eye.x * to_eye.x + variance.y * to_eye.y * to_eye.y +
+                    2.0f * variance.z * to_eye.x * to_eye.y) / across2;
+    float between = 2.0f * (mesh_variance - hidden);
+    if (!(between > 0.0f) || !(normal.z > 0.0f)) return normal;
+    float height = max(normal.z, 1.0e-6f);
+    float facing = dot(normal, to_eye) / height;  // w |v_xy|
+    float root = sqrt(facing * facing + between * across2);
+    // (w′ − w)/|v_xy|, without cancellation.
+    float lean = facing > 0.0f ? between / (root + facing) : (root - facing) / across2;
+    return normalize(vec3(normal.x + height * lean * to_eye.x, normal.y + height * lean * to_eye.y, normal.z));
 }
 
 // Transforms the covariance of world slopes into the plane of slope s. To first order a slope deviation δ
@@ -133,22 +156,32 @@ MaskedView masked_view(vec3 to_eye, vec3 variance) {
                       max(visible_area(to_eye, variance), 1.0e-6f));
 }
 
-// The visible part of a facet with w = `facing`, per its projected area and that of the plane. Its mean over
-// all slopes, times w, is 1.
+// What nested masking leaves of a facet with w = `facing`, per its projected area and that of the plane.
+float nested_part(MaskedView view, float facing) {
+    float doubled = 2.0f * max(facing, 0.0f) / view.along;
+    return doubled * decay_mean(doubled * view.height);
+}
+
+// The visible part of a facet, by both ways. Its mean over all slopes, times w, is 1.
+float visible_of(MaskedView view, float nested) {
+    return mix(1.0f / view.area, nested, kNested);
+}
 float visible_part(MaskedView view, float facing) {
-    float w = max(facing, 0.0f);
-    return mix(1.0f / view.area, 2.0f * w / view.along * decay_mean(2.0f * w * view.height / view.along), kNested);
+    return visible_of(view, nested_part(view, facing));
 }
 
 // The same of what is seen and lit. `lit` is l·f/f_z, for a mirror equal to `facing`. 0 at and below the frame's
-// horizon.
-float lit_part(MaskedView view, float facing, float lit, vec3 to_light, vec3 variance) {
-    float w = max(facing, 0.0f);
-    float smith = view.area + view.height * smith_lambda(smith_argument(to_light, variance));
+// horizon. Beyond a = 4.5 Λ is below 1e-9.
+float lit_of(MaskedView view, float nested, float lit, vec3 to_light, vec3 variance) {
+    if (!(to_light.z > 0.0f)) return 0.0f;
+    float a = smith_argument(to_light, variance);
+    float smith = view.area + (a < 4.5f ? view.height * smith_lambda(a) : 0.0f);
     float along = max(variance_towards(to_light, variance), 1.0e-20f);
-    float reached = 1.0f - exp(-2.0f * max(lit, 0.0f) * max(to_light.z, 0.0f) / along);
-    return mix((to_light.z > 0.0f ? 1.0f : 0.0f) / smith,
-               2.0f * w / view.along * decay_mean(2.0f * w * view.height / view.along) * reached, kNested);
+    float reached = 1.0f - exp(-2.0f * max(lit, 0.0f) * to_light.z / along);
+    return mix(1.0f / smith, nested * reached, kNested);
+}
+float lit_part(MaskedView view, float facing, float lit, vec3 to_light, vec3 variance) {
+    return lit_of(view, nested_part(view, facing), lit, to_light, variance);
 }
 
 // Eq. 10 with both ways of masking: the density of visible slopes. Its integral is 1 (Eq. 11).

@@ -211,9 +211,12 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
     // Trains see each point's own footprints, whatever the ladder.
     query.cell_m = query.pixel_m = {0.0};
     if (cascades.empty()) return query;
-    // Where the finest cascade's shortest wave is still whole: finer footprints change nothing.
+    // Where the finest cascade's shortest wave is still whole: finer footprints change nothing. A camera's ladder begins at
+    // the nearest rung: what it hides of waves that are within √2 of the shortest isn't worth a second grid of that size.
     const CascadeSize& finest = cascades.back();
-    const double whole_m = rung_below_m(finest.size_m / (0.5 * finest.resolution) / filter.n_max);
+    const double shortest_m = finest.size_m / (0.5 * finest.resolution);
+    const double whole_m =
+        finest_m > 0.0 ? first_rung_m(shortest_m / filter.n_max) : rung_below_m(shortest_m / filter.n_max);
     const double none_m = cascades.front().size_m / filter.n_min;
     if (finest_m > 0.0) query.pixel_m.clear();
     for (double rung_m = std::max(finest_m, whole_m);; rung_m *= 2.0) {

@@ -30,7 +30,7 @@ struct EllipseTable {
 // Whether points of a query may have ellipses, and ask what those hide.
 inline bool has_ellipse_table(const Plan& plan, const Query& query) {
     return (query.products & hidden_products()).any() && query.pixel_m.size() > 1 && !query.lattice &&
-           !query.only_cascade && !plan.cascades.empty();
+           !plan.cascades.empty();
 }
 
 // The last of the taps: they are −last … last.

@@ -227,11 +227,13 @@ void add_surface(Built& out) {
     constexpr const char* kMeanwhile = "use kind = \"patch\"";
     add_table<&Scene::surface>(
         out.tables, out.keys, {"surface", "where the sea is looked at", {}, {}},
-        row<&Surface::kind>({.name = "kind",
-                             .help = "what is baked: a square patch, or the projected grid of the camera. "
-                                     "Pictures show the sea to the horizon, whatever stands here",
-                             .feeds = kSurface,
-                             .unbuilt_choices = {"near-far", "cage", "planet"}}),
+        row<&Surface::kind>(
+            {.name = "kind",
+             .help =
+                 "what is baked: a square patch, or the projected grid of the camera, or "
+                 "that on a sphere that touches z = 0 at the origin. Pictures show the sea to the horizon, whatever stands here",
+             .feeds = feeds(Feed::Surface, Feed::Mesh),
+             .unbuilt_choices = {"near-far", "cage"}}),
         row<&Surface::size_m>({.name = "size_m",
                                .help = "side of the patch, centred on the origin, and of the maps",
                                .unit = "m",

@@ -39,7 +39,7 @@ enum class Feed {
     Light,    // sun and sky
     Water,    // the water body's colour
     Quality,  // the accuracy of waves and light
-    Mesh,     // what a mesh carries, and the format of its files
+    Mesh,     // what a mesh is of and what it carries, and the format of its files
     Maps,     // what is in a map, besides the sea
     Volumes,  // spray and level sets
     Choice,   // whether an output exists; what is in it does not depend on the key

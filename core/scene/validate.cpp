@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/base/constants.h"
 #include "core/scene/cascade_bands.h"
 #include "core/scene/keys.h"
 #include "core/scene/limits.h"
@@ -405,6 +406,29 @@ void check_camera(Checker& check, const Camera& camera) {
     }
 }
 
+// A planet's points rest about the origin (azimuthal equidistant projection): nobody may see farther round it than a
+// quarter of the circle, where the projection stretches waves by half.
+void check_planet(Checker& check, const Scene& scene) {
+    if (scene.surface.kind != SurfaceKind::Planet) return;
+    if (!scene.surface.earth_curvature)
+        check.refuse({"surface.earth_curvature", "false", "leaves no sphere, and surface.kind is a planet",
+                      "true, or kind = \"projected-grid\""});
+    const auto check_place = [&](const std::string& key, const glm::dvec3& place_m) {
+        if (!check.is_good(key)) return;
+        const glm::dvec3 from_centre_m = place_m + glm::dvec3(0.0, 0.0, kEarthRadius_m);
+        const double to_horizon = std::acos(std::min(kEarthRadius_m / glm::length(from_centre_m), 1.0));
+        const double to_nadir = std::atan2(std::hypot(place_m.x, place_m.y), from_centre_m.z);
+        if (to_nadir + to_horizon <= 0.5 * kPi) return;
+        check.refuse({key, vector_text(place_m),
+                      "sees a planet farther from the origin than a quarter of its circle",
+                      "a place nearer to the origin, or lower; the planet's centre is " +
+                          number_text(kEarthRadius_m) + " m below it"});
+    };
+    if (scene.camera.keys.empty()) check_place("camera.position_m", scene.camera.position_m);
+    for (std::size_t i = 0; i < scene.camera.keys.size(); ++i)
+        check_place(indexed("camera.keys", i) + ".position_m", scene.camera.keys[i].position_m);
+}
+
 void check_light(Checker& check, const Light& light) {
     const auto is_exr = [](std::string_view path) {
         constexpr std::string_view kExr = ".exr";
@@ -464,6 +488,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_sea(check, scene.sea);
     check_waves(check, scene.waves);
     check_camera(check, scene.camera);
+    check_planet(check, scene);
     check_light(check, scene.light);
     check_output(check, scene.effects, scene.output);
     check_tiles(check, scene.output, scene.waves);

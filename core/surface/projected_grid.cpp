@@ -38,6 +38,9 @@ constexpr double kSlack = 0.92;
 // crests come before the lens, gets no more rows than kBeside diagonals have cells, and columns are no more than
 // kAcross diagonals have. kSpare cells more let small pictures have a round grid.
 constexpr double kFine = 4.0, kBeside = 1.0, kAcross = 6.0, kSpare = 64.0;
+// What a footprint blurs compared with the mean over a pixel: this halves waves that are 1.66 pixels long, a footprint those
+// of three (core/plan/filter.h). So much of a pixel is one that blurs as pixels do.
+constexpr double kPixel = 0.6;
 // Rows are so close together that cells of their length hide heights of kHeight_px (standard deviation), if cells are no
 // larger than kHeightCell_px across; otherwise of more in proportion. The skyline of a gale is then within a pixel of the
 // sea's own in 99 % of a picture's columns (tests/bench, "skyline"). Rows that heights alone ask for are no more than
@@ -459,10 +462,20 @@ double cell_angle_of(const View& view, const ProjectedGridOptions& options, cons
 // A pixel's footprint across the view, at a distance from the nadir. `cosine` is that of the angle between the
 // optical axis and the direction to the point. Away from the eye it is longer by foreshortening().
 double pixel_width_m(const View& view, const Station& at, double radius_m, double cosine) {
-    return view.pixel_tangent() * cosine * std::hypot(radius_m, at.effective_height_m);
+    return kPixel * view.pixel_tangent() * cosine * std::hypot(radius_m, at.effective_height_m);
 }
 double foreshortening(const Station& at, double radius_m) {
     return std::hypot(radius_m, at.effective_height_m) / at.effective_height_m;
+}
+
+// How near the sea comes that is seen: its waves two deviations high, where the bounds are five. Only single crests come
+// nearer. Footprints for them would ask for grids four times as large, twice, which hardly a pixel reads.
+double nearest_seen_m(const View& view, const ProjectedGridOptions& options, const Station& at,
+                      double nearest_m) {
+    constexpr double kUsual = 2.0 / 5.0;
+    const Polygon slab = in_view(view, at, kUsual * options.bounds.height_m);
+    if (slab.empty()) return nearest_m;
+    return std::max(distances(slab).first - kUsual * options.bounds.reach_m, nearest_m);
 }
 
 // What a cell is across the view where the sea at rest is in view [m].
@@ -497,7 +510,8 @@ ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOpt
                                   cell_width_m(at, cell_angle, rows[i].radius_m)});
     return {.size = {static_cast<int>(columns), static_cast<int>(rows.size()) - 1},
             .finest_cell_m = finest_cell_m,
-            .finest_pixel_m = pixel_width_m(view, at, rows[0].radius_m, at.corner_cos)};
+            .finest_pixel_m =
+                pixel_width_m(view, at, nearest_seen_m(view, options, at, rows[0].radius_m), at.corner_cos)};
 }
 
 ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options) {
@@ -541,7 +555,7 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
             grid.rest_m[here] = glm::vec2(row[i]);
             // A pixel's angle shrinks with the cosine of its distance from the axis, down to the corner's.
             const double ahead_m = std::max(glm::dot(row[i], forward) - down_m, at.corner_cos * distance_m);
-            const double pixel_m = view.pixel_tangent() * ahead_m;
+            const double pixel_m = kPixel * view.pixel_tangent() * ahead_m;
             grid.pixel_m[here] = static_cast<float>(pixel_m);
             grid.pixel_axis_m[here] = glm::vec2(pixel_m * foreshortening(at, r) * away);
             grid.cell_axis_m[here] = glm::vec2(away);  // its length follows below

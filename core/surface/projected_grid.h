@@ -63,8 +63,8 @@ struct ProjectedGrid {
     std::vector<glm::vec2> rest_m{};  // finite, inside the horizon's circle
     // Footprints as in Points (core/evaluate/evaluate.h): the short axis of each, and the long one as a vector.
     // A cell's are its distances to the neighbouring rows and columns, the shorter no less than a cell is wide on
-    // the screen; a pixel's are those of the sea at rest, 0.6 of what it covers, and the long one points away from the camera's nadir
-    // (core/surface/pixel_footprint.inl has them for a sea that is tilted).
+    // the screen; a pixel's are those of the sea at rest, 0.6 of what it covers, and the long one points away from the
+    // camera's nadir (core/surface/pixel_footprint.inl has them for a sea that is tilted).
     std::vector<float> cell_m{}, pixel_m{};
     std::vector<glm::vec2> cell_axis_m{}, pixel_axis_m{};
 };
@@ -72,8 +72,9 @@ struct ProjectedGrid {
 // The requirements of a pose.
 struct ProjectedGridNeeds {
     ProjectedGridSize size;  // multiples of 16, so that neighbouring poses often agree
-    // Lower bounds of all points' footprints in a grid of this size [m], for a query's levels. Spare rows may
-    // make cells smaller; those are filtered as if they were not.
+    // Lower bounds of the points' footprints in a grid of this size [m], for a query's levels; of pixels, where waves two
+    // deviations high are seen. Spare rows may make cells smaller, and single crests come nearer; those are filtered as
+    // if they did not.
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;
 };
 ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOptions& options);

@@ -115,7 +115,8 @@ class CameraGrid : public RestSurface {
     }
 
   protected:
-    View seen(int frame) const { return view_at(camera_, frame); }
+    // The camera over its nadir.
+    virtual View seen(int frame) const { return view_at(camera_, frame); }
 
     template <class T>
     void lay_out(int frame, RestPoints<T>& points) const {
@@ -124,6 +125,7 @@ class CameraGrid : public RestSurface {
         if (has_ladder_) keep_to_rungs(grid, projected_grid_needs(view, options_));
         points.origin_m = grid.origin_m;
         points.curvature_per_m = grid.curvature_per_m;
+        points.touches_at_m = grid.origin_m;
         points.rest_m.assign(grid.rest_m.begin(), grid.rest_m.end());
         points.cell_m.assign(grid.cell_m.begin(), grid.cell_m.end());
         points.cell_axis_m.assign(grid.cell_axis_m.begin(), grid.cell_axis_m.end());
@@ -141,6 +143,32 @@ class CameraGrid : public RestSurface {
     ProjectedGridOptions options_;
 };
 
+// The same on one earth that stays: it touches z = 0 at the origin, where the shot's axes are its own, and points rest
+// where the plane's lie as far from the origin in the same direction (azimuthal equidistant projection).
+class Planet final : public CameraGrid {
+  public:
+    Planet(const Scene& scene, const SeaReach& reach) : CameraGrid(scene, reach) {
+        options_.curvature_per_m = kEarthCurvature_per_m;
+    }
+    std::string describe() const override { return CameraGrid::describe() + ", on the earth's sphere"; }
+    void points_at(int frame, RestPoints<float>& points) const override { lay_round(frame, points); }
+    void points_at(int frame, RestPoints<double>& points) const override { lay_round(frame, points); }
+
+  private:
+    View seen(int frame) const override { return over_nadir(view_at(camera_, frame)); }
+
+    template <class T>
+    void lay_round(int frame, RestPoints<T>& points) const {
+        lay_out(frame, points);
+        const glm::dvec3 up = earth_up(points.origin_m, kEarthCurvature_per_m);
+        for (glm::vec<2, T>& rest : points.rest_m) {
+            const glm::dvec3 there = from_level(earth_up(glm::dvec2(rest), kEarthCurvature_per_m), up);
+            rest = glm::vec<2, T>(earth_place(there) - points.origin_m);
+        }
+        points.touches_at_m = glm::dvec2(0.0);
+    }
+};
+
 template <class Kind>
 std::unique_ptr<const RestSurface> make(const Scene& scene, const SeaReach& reach) {
     return std::make_unique<const Kind>(scene, reach);
@@ -154,11 +182,12 @@ struct SurfaceRow {
 constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
     {SurfaceKind::Patch, make<Patch>},
     {SurfaceKind::ProjectedGrid, make<CameraGrid>},
+    {SurfaceKind::Planet, make<Planet>},
 });
 
 }  // namespace
 
-glm::dvec2 local_origin(glm::dvec2 place_m, double finest_cell_m) {
+glm::dvec3 local_origin(glm::dvec3 place_m, double finest_cell_m) {
     constexpr double kLongest_m = 4096.0;
     // A place is at most half a step away from the origin along each axis. Floats err by 2^−26 steps there, or by 2^−25
     // just beyond: by 2^−7 cells where a step is 2^18 of them.

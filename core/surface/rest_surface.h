@@ -47,8 +47,9 @@ struct SurfaceNeeds {
 template <class T>
 struct RestPoints {
     glm::dvec2 origin_m{0.0};
-    // Of the earth on which displaced points are laid (earth.h). It touches z = 0 at the origin.
+    // Of the earth on which displaced points are laid (earth.h), round the place where it touches z = 0.
     double curvature_per_m = 0.0;
+    glm::dvec2 touches_at_m{0.0};
     std::vector<glm::vec<2, T>> rest_m{};
     // Footprints as in Points (core/evaluate/evaluate.h); empty: the query's own.
     std::vector<T> cell_m{}, pixel_m{};
@@ -59,7 +60,7 @@ struct RestPoints {
 // point near the place, which moves in steps as the place does. It depends on these two alone. The steps are powers of
 // two, at most 4096 m: so long that the origin seldom moves, and so short that the finest cell, seen from the origin,
 // is rounded by no more than a hundredth of itself. finest_cell_m > 0.
-glm::dvec2 local_origin(glm::dvec2 place_m, double finest_cell_m);
+glm::dvec3 local_origin(glm::dvec3 place_m, double finest_cell_m);
 
 // Polygons over the points: counts[i] corners each, counter-clockwise seen from above.
 struct Faces {

@@ -24,13 +24,14 @@ struct Band {
     std::array<double, kSectors> slopes, strains;  // k²E and choppiness² coth² k²E of each sector
 };
 
-std::vector<Band> bands_of(const Plan& plan) {
+std::vector<Band> bands_of(const Plan& plan, const Query& query) {
     const DirectionalSpectrum& spectrum = plan.from->spectrum;
     const double choppiness2 = plan.choppiness * plan.choppiness;
     const auto panels = spectrum.panels();
     const auto& rule = GaussLegendre<4>::rule();
     std::vector<Band> bands;
     for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
+        if (query.only_cascade && *query.only_cascade != c) continue;
         const CascadePlan& cascade = plan.cascades[c];
         // Resolutions that were chosen for the finest footprint end where nothing passes, and must not decide about
         // coarser ones' bits.
@@ -70,9 +71,10 @@ std::vector<Band> bands_of(const Plan& plan) {
 
 }  // namespace
 
-EllipseMoments::EllipseMoments(const Plan& plan, const std::vector<double>& ladder_m)
-    : widths_(kNodesARung * (static_cast<int>(ladder_m.size()) - 1) + 1) {
-    const std::vector<Band> bands = bands_of(plan);
+EllipseMoments::EllipseMoments(const Plan& plan, const Query& query)
+    : widths_(kNodesARung * (static_cast<int>(query.pixel_m.size()) - 1) + 1) {
+    const std::vector<double>& ladder_m = query.pixel_m;
+    const std::vector<Band> bands = bands_of(plan, query);
     std::vector<double> whole_m;
     for (const CascadePlan& cascade : plan.cascades)
         whole_m.push_back(whole_footprint_m(cascade, plan.filter));

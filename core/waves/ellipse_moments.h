@@ -18,7 +18,7 @@ namespace pelagic {
 class EllipseMoments {
   public:
     EllipseMoments() = default;  // nothing is hidden
-    EllipseMoments(const Plan& plan, const std::vector<double>& ladder_m);
+    EllipseMoments(const Plan& plan, const Query& query);
 
     bool empty() const { return values_.empty(); }
     // Linear between the table's nodes (EllipseTable). rung: the lower one's number plus the share of the next.

@@ -100,9 +100,8 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
         }
         statistics_.push_back(
             {whole, std::vector<SpectralMoments>(levels), std::vector<SpectralMoments>(levels - 1)});
-        ellipses_.push_back(has_ellipse_table(plan_, planned.query)
-                                ? EllipseMoments(plan_, planned.query.pixel_m)
-                                : EllipseMoments());
+        ellipses_.push_back(has_ellipse_table(plan_, planned.query) ? EllipseMoments(plan_, planned.query)
+                                                                    : EllipseMoments());
     }
 
     const SpectrumTable table(spectrum);

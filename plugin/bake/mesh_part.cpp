@@ -22,12 +22,9 @@ double significant_height_of(const std::vector<glm::vec3>& points) {
     return 4.0 * std::sqrt(squares / static_cast<double>(points.size()));
 }
 
-void move_by(std::vector<glm::vec3>& positions, glm::dvec2 offset_m) {
-    if (offset_m == glm::dvec2(0.0)) return;
-    for (glm::vec3& p : positions) {
-        p.x = static_cast<float>(offset_m.x + static_cast<double>(p.x));
-        p.y = static_cast<float>(offset_m.y + static_cast<double>(p.y));
-    }
+void move_by(std::vector<glm::vec3>& positions, const glm::dvec3& offset_m) {
+    if (offset_m == glm::dvec3(0.0)) return;
+    for (glm::vec3& p : positions) p = offset_m + glm::dvec3(p);
 }
 
 template <class T>
@@ -43,7 +40,7 @@ void scale_by(std::vector<glm::vec3>& velocities, double time_scale) {
 
 struct MeshSlot final : OutputSlot {
     Faces faces;  // where they vary
-    glm::dvec2 origin_m{0.0};
+    glm::dvec3 origin_m{0.0};
     std::string text;  // of a mesh in text; a crate needs none, its arrays are the values
 };
 
@@ -177,9 +174,11 @@ class MeshPart final : public OutputPart {
         if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
         if (!at.pixel_axis_m.empty()) points.pixel_axis_m = {at.pixel_axis_m.data()};
         state.runner.run(sea, output_.query, points, slot.values);
-        if (at.curvature_per_m != 0.0) lay_on_earth(at, slot.values);
-        if (attributes_.origin) slot.origin_m = local_origin(at.origin_m, finest_of(at.cell_m));
-        move_by(slot.values.vectors(Product::Position), at.origin_m - slot.origin_m);
+        if (attributes_.origin) slot.origin_m = local_origin(place_of_origin(at), finest_of(at.cell_m));
+        if (at.curvature_per_m != 0.0)
+            lay_on_earth(at, slot.origin_m, slot.values);
+        else
+            move_by(slot.values.vectors(Product::Position), glm::dvec3(at.origin_m, 0.0) - slot.origin_m);
         scale_by(slot.values.vectors(Product::Velocity), scene().shot.time_scale);
     }
 
@@ -199,7 +198,8 @@ class MeshPart final : public OutputPart {
             mean.add(sum / static_cast<double>(corners.size()), std::max(twice_area, 0.0));
         };
         if (plan_.surface->is_constant()) {
-            const auto side = static_cast<std::int32_t>(std::lround(std::sqrt(static_cast<double>(positions.size()))));
+            const auto side =
+                static_cast<std::int32_t>(std::lround(std::sqrt(static_cast<double>(positions.size()))));
             for (std::int32_t y = 0; y + 1 < side; ++y)
                 for (std::int32_t x = 0; x + 1 < side; ++x) {
                     const std::int32_t i = y * side + x;
@@ -218,16 +218,26 @@ class MeshPart final : public OutputPart {
         return mean.value();
     }
 
-    // What a flat sea's answers are on the earth.
+    // Of the points' origin, in the world.
     template <class T>
-    static void lay_on_earth(const RestPoints<T>& at, Values& values) {
+    static glm::dvec3 place_of_origin(const RestPoints<T>& at) {
+        const glm::dvec2 from_m = at.origin_m - at.touches_at_m;
+        return glm::dvec3(at.touches_at_m, 0.0) + on_earth(glm::dvec3(from_m, 0.0), at.curvature_per_m);
+    }
+
+    // What a flat sea's answers are on the earth; positions relative to the mesh's origin.
+    template <class T>
+    static void lay_on_earth(const RestPoints<T>& at, const glm::dvec3& mesh_origin_m, Values& values) {
+        const glm::dvec2 from_m = at.origin_m - at.touches_at_m;
+        const glm::dvec3 relative_m = glm::dvec3(at.touches_at_m, 0.0) - mesh_origin_m;
         const auto turn = [&](std::vector<glm::vec3>& directions) {
             for (std::size_t i = 0; i < directions.size(); ++i)
                 directions[i] = from_level(glm::dvec3(directions[i]),
-                                           earth_up(glm::dvec2(at.rest_m[i]), at.curvature_per_m));
+                                           earth_up(from_m + glm::dvec2(at.rest_m[i]), at.curvature_per_m));
         };
         for (glm::vec3& position : values.vectors(Product::Position))
-            position = on_earth(glm::dvec3(position), at.curvature_per_m);
+            position =
+                relative_m + on_earth(glm::dvec3(from_m, 0.0) + glm::dvec3(position), at.curvature_per_m);
         turn(values.vectors(Product::Normal));
         turn(values.vectors(Product::Velocity));
     }
@@ -241,7 +251,7 @@ class MeshPart final : public OutputPart {
                                .velocities = slot.values.vectors(Product::Velocity),
                                .slope_variance = slot.values.vectors(Product::SlopeVariance),
                                .whitecap_coverage = slot.values.numbers(Product::Coverage)};
-        if (attributes_.origin) sample.origin_m = glm::dvec3(slot.origin_m, 0.0);
+        if (attributes_.origin) sample.origin_m = slot.origin_m;
         if (attributes_.faces)
             sample.faces =
                 usd::Faces{.counts = slot.faces.counts, .indices = slot.faces.indices, .st = slot.faces.st};

@@ -93,12 +93,13 @@ std::string dome_file(const Scene& scene, const Sky& sky) {
              .type = fits_halves(picture) ? exr::PixelType::Half : exr::PixelType::Float});
     exr::Header header{
         .attributes = {{"content", std::string("radiance of the sky without the sun's disc")},
-                       {"unit", radiance_unit(scene)},
                        {"projection",
                         std::string("lat-long: the middle column is +x, azimuth grows to the left, "
                                     "the top row is +z; below the horizon what the sea reflects")},
                        {"software", std::string("pelagic " PELAGIC_VERSION)}},
         .compression = exr::Compression::Zip};
+    for (exr::Attribute& attribute : radiance_attributes(scene))
+        header.attributes.push_back(std::move(attribute));
     for (const DescribedKey& key : described(portable(scene), feeds(Feed::Light)))
         std::visit(
             [&](const auto& value) {

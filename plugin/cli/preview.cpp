@@ -19,6 +19,7 @@
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/files/files.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/preview/offscreen.h"
 #include "plugin/preview/window.h"
@@ -79,7 +80,8 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
         .made_of =
             PictureFingerprint(
                 {.scene = scene, .options = options, .sky_content = sky_content(scene), .drawn_by_gpu = true})
-                .of(frame)};
+                .of(frame),
+        .exposure = shot_exposure(scene, sky)};
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
                                                              : encode_png(about, drawn.picture, frame));
     if (!drawn.note.empty()) std::cerr << "pelagic: note: " << drawn.note << '\n';

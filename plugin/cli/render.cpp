@@ -1,5 +1,6 @@
 // pelagic render SHOT.toml
 #include "plugin/render/render.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 
 #include <oneapi/tbb/task_arena.h>
@@ -209,12 +210,13 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
         return done;
     }
     Renderer& renderer = *made;
+    const float exposure = shot_exposure(job.scene, renderer.sky(), job.exposure_stops);
     const auto context_of = [&](int frame) {
         return PictureContext{.scene = job.scene,
                               .options = job.options,
                               .sky = renderer.sky(),
                               .made_of = fingerprint.of(frame),
-                              .exposure_stops = job.exposure_stops};
+                              .exposure = exposure};
     };
     if (!renderer.check_cameras(frames, {.progress =
                                              [&](double part) {

@@ -101,46 +101,20 @@ float share_in(int tile, int r, float t) {
     return both ? 0.0 : t;
 }
 
-// Height, Dx, Dy.
-vec3 cell_cascades(vec2 rest_m, Footprint footprint) {
-    vec3 sum = vec3(0.0);
-    for (int c = 0; c < kCascades; ++c) {
-        Taps taps = taps_in(c, footprint);
-        int last = last_tap(taps);
-        for (int r = 0; r < 2; ++r) {
-            if (r == 1 && !(footprint.rung.t > 0.0)) continue;  // there may be no next rung
-            int tile = (footprint.rung.lower + r) * kCascades + c;
-            if (tile_first[tile].z == 0) continue;
-            float share = share_in(tile, r, footprint.rung.t);
-            if (!(share > 0.0)) continue;
-            for (int j = -last; j <= last; ++j) {
-                Place place = place_in(tile, split_metres(rest_m + float(j) * taps.spacing_m * footprint.axis));
-                float wx[P];
-                float wy[P];
-                bspline_weights(place.rest.x, wx);
-                bspline_weights(place.rest.y, wy);
-                vec4 value = spline_sum(cell_fields, place.texel, wx, wy);
-                sum += share * tap_weight(taps.reach, float(j)) *
-                       (kChoppy ? vec3(value.x, value.y, value.z) : vec3(value.x, 0.0, 0.0));
-            }
-        }
-    }
-    return sum;
-}
-
-struct PixelFields {
-    float slope_x, slope_y, dxx, dyy, dxy;
+// The sums over all cascades, rungs and taps of what these textures hold; `second` only if it is wanted.
+struct FieldSums {
+    vec4 first;
+    float second;
 };
 
-PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
-    vec4 sum = vec4(0.0);
-    float dxy = 0.0;
+FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_rung, vec2 rest_m, Footprint footprint) {
+    FieldSums sums = FieldSums(vec4(0.0), 0.0);
     for (int c = 0; c < kCascades; ++c) {
         Taps taps = taps_in(c, footprint);
         int last = last_tap(taps);
         for (int r = 0; r < 2; ++r) {
             if (r == 1 && !(footprint.rung.t > 0.0)) continue;  // there may be no next rung
-            int tile = (kCellRungs + footprint.rung.lower + r) * kCascades + c;
+            int tile = (first_rung + footprint.rung.lower + r) * kCascades + c;
             if (tile_first[tile].z == 0) continue;
             float share = share_in(tile, r, footprint.rung.t);
             if (!(share > 0.0)) continue;
@@ -151,13 +125,29 @@ PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
                 bspline_weights(place.rest.x, wx);
                 bspline_weights(place.rest.y, wy);
                 float weight = share * tap_weight(taps.reach, float(j));
-                sum += weight * spline_sum(pixel_fields, place.texel, wx, wy);
-                if (kChoppy) dxy += weight * spline_sum(pixel_fields_2, place.texel, wx, wy).x;
+                sums.first += weight * spline_sum(first, place.texel, wx, wy);
+                if (both) sums.second += weight * spline_sum(second, place.texel, wx, wy).x;
             }
         }
     }
+    return sums;
+}
+
+// Height, Dx, Dy.
+vec3 cell_cascades(vec2 rest_m, Footprint footprint) {
+    vec4 sum = cascade_sums(cell_fields, pixel_fields_2, false, 0, rest_m, footprint).first;
+    return kChoppy ? sum.xyz : vec3(sum.x, 0.0, 0.0);
+}
+
+struct PixelFields {
+    float slope_x, slope_y, dxx, dyy, dxy;
+};
+
+PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
+    FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, kChoppy, kCellRungs, rest_m, footprint);
+    vec4 sum = sums.first;
     if (!kChoppy) return PixelFields(sum.x, sum.y, 0.0, 0.0, 0.0);
-    return PixelFields(sum.x, sum.y, sum.z, sum.w, dxy);
+    return PixelFields(sum.x, sum.y, sum.z, sum.w, sums.second);
 }
 
 // What an ellipse hides beyond a round footprint of its width: (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy).

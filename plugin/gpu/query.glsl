@@ -19,6 +19,15 @@ vec3 query_cell(vec2 rest_m, vec3 cell) {
     return sum;
 }
 
+// What a mesh of such cells hides of the slopes: variances (xx, yy, xy).
+vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
+    Footprint footprint = footprint_of(kCellRungs, kPixelRungs, cell);
+    TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0), hidden_of(footprint));
+    if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(cell, finest_m.y), sums);
+    PixelMoments hidden = possible_moments(sums.hidden);
+    return vec3(hidden.xx, hidden.yy, hidden.xy);
+}
+
 struct PixelAnswer {
     vec3 normal;
     PixelMoments hidden;

@@ -5,5 +5,5 @@ layout(location = 1) out vec4 second_out;
 void main() {
     vec3 drawn = pixel_on_mesh();
     first_out = vec4(rest_m, drawn.x, drawn.y);
-    second_out = vec4(drawn.z, point_distance_m(), 0.0, 0.0);
+    second_out = vec4(drawn.z, point_distance_m(), mesh_variance_along(), 0.0);
 }

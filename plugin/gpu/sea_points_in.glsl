@@ -2,9 +2,16 @@
 in vec2 rest_m;
 in vec3 pixel_m;  // width and long axis, on the sea at rest
 in vec3 from_eye_m;
+in vec3 mesh_variance;  // of slopes: xx, yy, xy
 
 void read_point() {}
 float point_distance_m() { return length(from_eye_m); }
+// Of the slopes that the mesh hides, along the view.
+float mesh_variance_along() {
+    vec2 d = from_eye_m.xy;
+    vec3 products = vec3(d.x * d.x, d.y * d.y, 2.0 * d.x * d.y);
+    return dot(mesh_variance, products) / max(dot(d, d), 1.0e-12);
+}
 
 // On the triangle that is drawn.
 vec3 pixel_on_mesh() {

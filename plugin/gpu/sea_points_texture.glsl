@@ -5,6 +5,7 @@ uniform sampler2D second_points;
 vec2 rest_m;
 vec3 drawn_pixel_m;
 float drawn_distance_m;
+float drawn_mesh_variance;
 
 void read_point() {
     vec4 first = texelFetch(first_points, ivec2(gl_FragCoord.xy), 0);
@@ -12,6 +13,7 @@ void read_point() {
     rest_m = first.xy;
     drawn_pixel_m = vec3(first.z, first.w, second.x);
     drawn_distance_m = second.y;
+    drawn_mesh_variance = second.z;
 }
 
 vec3 pixel_on_mesh() {
@@ -20,4 +22,8 @@ vec3 pixel_on_mesh() {
 
 float point_distance_m() {
     return drawn_distance_m;
+}
+
+float mesh_variance_along() {
+    return drawn_mesh_variance;
 }

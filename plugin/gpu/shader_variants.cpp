@@ -132,7 +132,8 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
             joined({query_files(),
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
-                    {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "plugin/gpu/rays.glsl"},
+                    {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "core/lighting/place.glsl",
+                     "plugin/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/gpu/false_colour.glsl", points_file(options), "plugin/gpu/sea_fragment.glsl"}})};
 }

@@ -37,7 +37,7 @@ class ShaderVariant {
     std::vector<std::string_view> vertex_, fragment_;
 };
 
-// The files of core/lighting in order, without air.glsl, background.glsl and tone.glsl.
+// The files of core/lighting in order, without air.glsl, place.glsl, background.glsl and tone.glsl.
 const std::vector<std::string_view>& lighting_files();
 // The files of the shared formulas and of the query; their constants.
 const std::vector<std::string_view>& query_files();

@@ -49,6 +49,7 @@ std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water) {
 std::vector<Uniform> air_uniforms(const Air& air) {
     return {{"air_azimuth", 2, glm::vec4(air.azimuth, 0.0f, 0.0f)},
             vector("air_to_sun", air.to_sun),
+            number("air_by_place", static_cast<double>(air.by_place)),
             vector("air_reach_m", {air.nearest_m, air.horizon_m, air.farthest_m}),
             {"air_sky_rows", 2, glm::vec4(air.dip, air.sky_span, 0.0f, 0.0f)}};
 }

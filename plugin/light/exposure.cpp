@@ -4,12 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <glm/geometric.hpp>
+#include <limits>
 
+#include "core/lighting/air.h"
 #include "core/lighting/background.h"
 #include "core/lighting/colour.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/tone.h"
 #include "core/spectrum/cox_munk.h"
+#include "core/surface/earth.h"
 #include "plugin/light/light.h"
 
 namespace pelagic {
@@ -20,41 +23,89 @@ constexpr int kColumns = 24;  // of places in a view; rows as many as make them 
 // A picture that shows nothing but black, such as one at night, is exposed as if it were this bright.
 constexpr double kDarkest = 1e-5;  // [kcd/m²]
 
+// What is so many times darker than the brightest of a view without the sun, as space beside the earth is, isn't metered:
+// pictures show it black whatever their exposure.
+constexpr double kRange = 1024.0;
+// Air looks alike from heights this much apart, as a logarithm: its table takes tens of milliseconds.
+constexpr double kSameHeight = 0.1;
+
 class Meter {
   public:
-    Meter(const Scene& scene, const Sky& sky) : sky_(sky), water_(make_water(scene)) {
+    Meter(const Scene& scene, const Sky& sky)
+        : sky_(sky),
+          water_(make_water(scene)),
+          curvature_per_m_(scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0) {
         variance_ = static_cast<float>(0.5 * CoxMunk::at_wind(scene.sea.wind_speed_mps).total);
     }
 
     void add(const View& view) {
+        height_m_ = std::max(view.position_m.z, kLeastHeight_m);
+        if (sky_.air && !(std::abs(std::log(height_m_ / air_height_m_)) < kSameHeight)) {
+            air_ = sky_.air->seen_from(height_m_);
+            air_height_m_ = height_m_;
+        }
         const double step = static_cast<double>(view.resolution.x) / kColumns;
         const int rows = std::max(1, static_cast<int>(std::lround(view.resolution.y / step)));
         const double row_step = static_cast<double>(view.resolution.y) / rows;
+        std::vector<Seen> all;
+        double brightest = 0.0;
         for (int row = 0; row < rows; ++row)
-            for (int column = 0; column < kColumns; ++column)
-                add(glm::vec3(view.direction({(column + 0.5) * step, (row + 0.5) * row_step})));
+            for (int column = 0; column < kColumns; ++column) {
+                all.push_back(along(view.direction({(column + 0.5) * step, (row + 0.5) * row_step})));
+                brightest = std::max(brightest, all.back().calm);
+            }
+        for (const Seen& seen : all) {
+            if (seen.whole < brightest / kRange) continue;
+            sum_ += std::log(std::max(seen.whole, kDarkest));
+            ++count_;
+        }
     }
 
     double log_mean() const { return std::exp(sum_ / static_cast<double>(count_)); }
 
   private:
-    void add(glm::vec3 direction) {
-        const glm::vec3 seen =
-            direction.z < 0.0f ? of_sea(-direction) : background(sky_, direction, 1.0f).sky;
-        sum_ += std::log(std::max(luminance(glm::dvec3(seen)), kDarkest));
-        ++count_;
+    static constexpr double kLeastHeight_m = 0.1;
+
+    // Luminance with and without the sun's reflection.
+    struct Seen {
+        double whole, calm;
+    };
+
+    // Distance to the sea at rest [m]; infinite in the sky.
+    double distance_m(glm::dvec3 direction) const {
+        const double up = (1.0 + height_m_ * curvature_per_m_) * direction.z;
+        const double inside = up * up - height_m_ * curvature_per_m_ * (2.0 + height_m_ * curvature_per_m_);
+        if (!(direction.z < 0.0 && inside >= 0.0)) return std::numeric_limits<double>::infinity();
+        return height_m_ * (2.0 + height_m_ * curvature_per_m_) / (std::sqrt(inside) - up);
     }
 
-    glm::vec3 of_sea(glm::vec3 to_eye) const {
-        const SeaPoint point{.to_eye = to_eye, .slope_variance = {variance_, variance_, 0.0f}};
+    Seen along(glm::dvec3 direction) const {
+        const glm::vec3 to(direction);
+        const double distance = distance_m(direction);
+        if (std::isinf(distance)) {
+            const double sky =
+                luminance(glm::dvec3(air_.has_sky ? sky_through(air_, to) : background(sky_, to, 1.0f).sky));
+            return {sky, sky};
+        }
+        const glm::dvec3 at = curvature_per_m_ * (glm::dvec3(0.0, 0.0, height_m_) + distance * direction) +
+                              glm::dvec3(0.0, 0.0, 1.0);
+        const SeaPoint point{.to_eye = -to,
+                             .slope_variance = {variance_, variance_, 0.0f},
+                             .up = glm::vec3(glm::normalize(at))};
         SeaRadiance lit;
-        shade_sea({.whitecaps = false}, sky_, water_, {&point, 1}, {&lit, 1});
-        return lit.sun + lit.sky + lit.sea;
+        shade_sea({.whitecaps = false}, sky_, water_, {&point, 1}, {&lit, 1}, &air_);
+        const auto metres = static_cast<float>(distance);
+        see_through(air_, {&point.to_eye, 1}, {&metres, 1}, {&lit, 1});
+        const double calm = luminance(glm::dvec3(lit.sky + lit.sea + lit.air));
+        return {calm + luminance(glm::dvec3(lit.sun)), calm};
     }
 
     const Sky& sky_;
     WaterBody water_;
+    double curvature_per_m_;
     float variance_;
+    double height_m_ = 0.0, air_height_m_ = 0.0;
+    Air air_;
     double sum_ = 0.0;
     std::size_t count_ = 0;
 };

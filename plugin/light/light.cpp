@@ -26,6 +26,14 @@ WaterKind kind_of(WaterType type) {
     throw std::invalid_argument("water of no type");
 }
 
+// ITU-R BT.709, whose white is D65.
+constexpr exr::Chromaticities kRec709{
+    .red = {0.64f, 0.33f}, .green = {0.30f, 0.60f}, .blue = {0.15f, 0.06f}, .white = {0.3127f, 0.3290f}};
+
+bool is_in_kcd_m2(const Scene& scene) {
+    return scene.light.sky == Light{}.sky;
+}
+
 // `problem` may have names from the file in it.
 Problem sky_problem(const Scene& scene, const std::string& problem, const std::string& accepted) {
     return {"light.sky", quoted_text(scene.light.sky), line_text(problem), accepted};
@@ -87,12 +95,14 @@ Scene portable(Scene scene) {
     return scene;
 }
 
-bool is_in_kcd_m2(const Scene& scene) {
-    return scene.light.sky == Light{}.sky;
-}
-
 std::string radiance_unit(const Scene& scene) {
     return is_in_kcd_m2(scene) ? "kcd/m2, linear Rec. 709" : "the sky picture's own, linear";
+}
+
+std::vector<exr::Attribute> radiance_attributes(const Scene& scene) {
+    std::vector<exr::Attribute> attributes{{"unit", radiance_unit(scene)}, {"chromaticities", kRec709}};
+    if (is_in_kcd_m2(scene)) attributes.push_back({"whiteLuminance", 1000.0f});  // [cd/m²]
+    return attributes;
 }
 
 WaterBody make_water(const Scene& scene) {

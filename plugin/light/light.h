@@ -8,6 +8,7 @@
 #include "core/lighting/water.h"
 #include "core/scene/problem.h"
 #include "core/scene/scene.h"
+#include "plugin/exr/exr.h"
 
 namespace pelagic {
 
@@ -24,7 +25,9 @@ std::string sky_content(const Scene& scene);
 Scene portable(Scene scene);
 // The unit of the sky's radiance, as files say it.
 std::string radiance_unit(const Scene& scene);
-bool is_in_kcd_m2(const Scene& scene);
+// What each EXR of the sky's radiance says of it: that unit, the primaries, and where it is known, in OpenEXR's own way,
+// the luminance of (1, 1, 1).
+std::vector<exr::Attribute> radiance_attributes(const Scene& scene);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
 

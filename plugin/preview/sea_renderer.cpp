@@ -251,8 +251,8 @@ void SeaRenderer::Implementation::set_air(double height_m) {
     const Air seen = air_model->seen_from(height_m);
     texels_as_they_are();
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kLayers * Air::kColumns, Air::kRows + Air::kSkyRows, 0,
-                 GL_RGBA, GL_FLOAT, seen.texels.data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, Air::kWidth, Air::kHeight, 0, GL_RGBA, GL_FLOAT,
+                 seen.texels.data());
     air = air_uniforms(seen);
     air_height_m = height_m;
 }
@@ -343,6 +343,7 @@ void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
     of.light = light_uniforms(sky, water);
     of.sky_map_size = sky.map.size();
     of.air_model = sky.air;
+    of.air = air_uniforms({});  // none until a table is there
     of.air_height_m.reset();
     bind_texture(kSkyMap, of.sky_map);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);

@@ -88,13 +88,12 @@ py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
         const OthersMayRun others_may_run;
         air = light.sky.air->seen_from(height_m.value_or(0.0));
     }
-    constexpr std::size_t kRow = std::size_t{Air::kLayers} * Air::kColumns;
-    air.texels.resize(kRow * (Air::kRows + Air::kSkyRows), glm::vec4(0.0f));
+    constexpr std::size_t kRow = Air::kWidth;
+    air.texels.resize(kRow * Air::kHeight, glm::vec4(0.0f));
     if (!height_m) std::fill_n(air.texels.begin(), kRow * Air::kRows, glm::vec4(0.0f));
     py::dict uniforms = dict_of(air_uniforms(air));
     uniforms["eye_height_m"] = height_m.value_or(0.0);
-    return py::make_tuple(uniforms, array_of<float>(std::move(air.texels), {Air::kRows + Air::kSkyRows,
-                                                                            Air::kLayers * Air::kColumns}));
+    return py::make_tuple(uniforms, array_of<float>(std::move(air.texels), {Air::kHeight, Air::kWidth}));
 }
 
 double checked_footprint(double finest_m) {

@@ -43,7 +43,8 @@ struct Batch {
     std::vector<T> pixel_m;
     std::vector<glm::vec<2, T>> pixel_axis_m;
     std::vector<glm::vec3> to_eye, up;
-    std::vector<float> distance_m;  // of the eye
+    std::vector<float> distance_m;     // of the eye
+    std::vector<float> mesh_variance;  // of the slopes that the mesh hides, along the view
     Values answers;
     std::vector<SeaPoint> points;
     std::vector<SeaRadiance> lit;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "core/base/instruction_set.h"
@@ -45,7 +46,9 @@ Ranges ranges_of(const Sky& sky) {
     float most = largest(sky.sun_irradiance + sky.sky_irradiance);
     if (sky.map.level_count() > 0)
         for (const glm::vec3& texel : sky.map.level(0)) most = std::max(most, largest(texel));
-    return {.sun = type(most + largest(sky.sun_radiance)), .whole = type(most)};
+    // The air takes less from the disc's upper limb than from the mean.
+    const glm::vec3 limb = glm::max(glm::max(sky.limb_low, sky.limb_middle), glm::max(sky.limb_high, 1.0f));
+    return {.sun = type(most + largest(limb * sky.sun_radiance)), .whole = type(most)};
 }
 
 // What a picture depends on, besides the camera at its frame.
@@ -56,17 +59,11 @@ std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-// ITU-R BT.709, whose white is D65.
-constexpr exr::Chromaticities kRec709{
-    .red = {0.64f, 0.33f}, .green = {0.30f, 0.60f}, .blue = {0.15f, 0.06f}, .white = {0.3127f, 0.3290f}};
-
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
     const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
     std::vector<exr::Attribute> attributes{
         {"content", std::string("radiance; the layers sun, sky, sea and foam add up to R, G, B")},
-        {"unit", radiance_unit(scene)},
-        {"chromaticities", kRec709},
         {"time", scene.shot.time_s(frame)},
         {"fps", scene.shot.fps},
         {"frame", frame},
@@ -74,14 +71,13 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
         {"cameraForward", packed(glm::vec3(view.forward))},
         {"horizontalFieldOfView_deg", view.fov_deg()},
         {"sunDirection", packed(context.sky.sun_direction)},
-        {"exposure", static_cast<double>(shot_exposure(context.scene, context.sky, context.exposure_stops))},
+        {"exposure", static_cast<double>(context.exposure)},
         {"samplesPerPixel", context.options.samples * context.options.samples},
         {"shutter_frames", context.options.shutter_frames},
         {"fingerprint", context.made_of},
         {"instructionSet", std::string(instruction_set())},
         {"software", std::string("pelagic " PELAGIC_VERSION)}};
-    // OpenEXR's own way to say the unit: cd/m² of (1, 1, 1).
-    if (is_in_kcd_m2(scene)) attributes.push_back({"whiteLuminance", 1000.0f});
+    for (exr::Attribute& attribute : radiance_attributes(scene)) attributes.push_back(std::move(attribute));
     for (const PictureLayerRow& row : kPictureLayers)
         if (!row.light && context.options.layers[index(row.layer)])
             attributes.push_back({"layer." + std::string(row.name), std::string(row.description)});
@@ -229,7 +225,6 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
 }
 
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame) {
-    const float exposure = shot_exposure(context.scene, context.sky, context.exposure_stops);
     const bool has_alpha = !picture.alpha.empty();
     const std::size_t components = has_alpha ? 4 : 3;
     std::vector<std::uint8_t> bytes(picture.layers.size() * components);
@@ -239,7 +234,7 @@ std::string encode_png(const PictureContext& context, const Picture& picture, in
             const std::size_t i = width * row + x;
             const float alpha = has_alpha ? picture.alpha[i] : 1.0f;
             const glm::vec3 radiance = radiance_of(picture.layers[i]) / (alpha > 0.0f ? alpha : 1.0f);
-            const auto shown = display_bytes(radiance, exposure, {static_cast<int>(x), row});
+            const auto shown = display_bytes(radiance, context.exposure, {static_cast<int>(x), row});
             std::copy(shown.begin(), shown.end(),
                       bytes.begin() + static_cast<std::ptrdiff_t>(components * i));
             if (has_alpha) bytes[components * i + 3] = static_cast<std::uint8_t>(std::lround(255.0f * alpha));

@@ -19,13 +19,13 @@ struct PictureContext {
     const Scene& scene;
     const RenderOptions& options;
     const Sky& sky;
-    std::string made_of;  // PictureFingerprint::of(the frame)
-    double exposure_stops = 0.0;
+    std::string made_of;    // PictureFingerprint::of(the frame)
+    float exposure = 1.0f;  // shot_exposure() (plugin/light/exposure.h)
 };
 
 // Raised by hand when pictures of the same source get other bits; then none that is there counts as whole.
 // tests/plugin/bake/golden_test.cpp notices bits that change without it.
-inline constexpr int kPictureRevision = 4;
+inline constexpr int kPictureRevision = 5;
 
 // What the two files of a frame are made of: the keys that feed pictures, the camera's pose, the resolved
 // plan, the sky's picture, the samples, terms and lookups of the light, the shutter, alpha, the layers, and the
@@ -69,7 +69,7 @@ std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const 
 // the sky's units; halves where no value that the light can give is beyond their range, floats for the others. The
 // header says the colours' primaries, the luminance of (1, 1, 1) where it is known, what each layer holds, and what
 // the picture was made of, and has a checksum of the whole file. The light's layers add up to R, G, B.
-// PNG: display_bytes() of the whole, at the shot's exposure (plugin/light/exposure.h) and so many stops more; with
+// PNG: display_bytes() of the whole at the context's exposure; with
 // alpha of the light divided by it, as the format wants.
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame);
 std::string encode_png(const PictureContext& context, const Picture& picture, int frame);

@@ -157,6 +157,7 @@ class RendererOf final : public Impl {
                            .cell_m = {cell_m_.data()},
                            .cell_axis_m = {cell_axis_m_.data()}},
                  results);
+        find_mesh_variance();
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         for (glm::vec<3, T>& position : position_)
             position = glm::vec<3, T>(on_earth(glm::dvec3(position), grid_.curvature_per_m));
@@ -177,6 +178,25 @@ class RendererOf final : public Impl {
         if (size != triangles_size_) triangles_ = projected_grid_triangles(size);
         triangles_size_ = size;
         raster_.set(clip_, triangles_, raster_size());
+    }
+
+    // What the cells hide of the slopes.
+    void find_mesh_variance() {
+        const std::size_t count = grid_.rest_m.size();
+        mesh_variance_.clear();
+        if (!plan().queries[kQuery].query.products[index(Product::SlopeVariance)]) return;
+        mesh_variance_.resize(count);
+        std::vector<T> width_m = cell_m_;
+        for (T& width : width_m) width = std::max(width, first_pixel_m_);
+        Results<T> results;
+        results.set(Product::SlopeVariance, {mesh_variance_.data()});
+        evaluate(frame_, kQuery,
+                 Points<T>{.origin_m = grid_.origin_m,
+                           .count = count,
+                           .rest_m = {rest_.data()},
+                           .pixel_m = {width_m.data()},
+                           .pixel_axis_m = {cell_axis_m_.data()}},
+                 results);
     }
 
     // Which triangle each sample of the rows shows.
@@ -262,10 +282,11 @@ class RendererOf final : public Impl {
                                         .normal = normal[i],
                                         .slope_variance = slope_variance[i],
                                         .coverage = coverage.empty() ? 0.0f : coverage[i],
-                                        .up = batch_.up[i]};
+                                        .up = batch_.up[i],
+                                        .mesh_variance = batch_.mesh_variance[i]};
                 const auto points = std::span(batch_.points).subspan(range.begin(), range.size());
                 const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
-                shade_sea(options_.lighting, sky_, water_, points, lit);
+                shade_sea(options_.lighting, sky_, water_, points, lit, &air_);
                 if (options_.lighting.air)
                     see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
                                 std::span(batch_.distance_m).subspan(range.begin(), range.size()), lit);
@@ -283,6 +304,7 @@ class RendererOf final : public Impl {
         batch_.to_eye.resize(count);
         batch_.up.resize(count);
         batch_.distance_m.resize(count);
+        batch_.mesh_variance.assign(count, 0.0f);
         const glm::dvec3 eye = view_.position_m - glm::dvec3(grid_.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
@@ -290,12 +312,15 @@ class RendererOf final : public Impl {
             glm::dvec2 rest(0.0), pixel_axis_m(0.0);
             glm::dvec3 position(0.0);
             double pixel_m = 0.0;
+            glm::dvec3 mesh_variance(0.0);
             for (int corner = 0; corner < 3; ++corner) {
                 const std::uint32_t vertex = triangles_[3 * std::size_t{triangle} + corner];
                 rest += weights[corner] * glm::dvec2(rest_[vertex]);
                 position += weights[corner] * glm::dvec3(position_[vertex]);
                 pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
                 pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
+                if (!mesh_variance_.empty())
+                    mesh_variance += weights[corner] * glm::dvec3(mesh_variance_[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
             batch_.up[i] = glm::vec3(earth_up(rest, grid_.curvature_per_m));
@@ -309,6 +334,10 @@ class RendererOf final : public Impl {
             const double distance = glm::length(way);
             batch_.distance_m[i] = static_cast<float>(distance);
             // At the eye itself, which the near plane keeps from happening, up is as good as any.
+            batch_.mesh_variance[i] =
+                static_cast<float>((mesh_variance.x * way.x * way.x + mesh_variance.y * way.y * way.y +
+                                    2.0 * mesh_variance.z * way.x * way.y) /
+                                   std::max(way.x * way.x + way.y * way.y, 1e-12));
             batch_.to_eye[i] = distance > 0.0 ? glm::vec3(way / distance) : glm::vec3(0.0f, 0.0f, 1.0f);
         });
     }
@@ -435,8 +464,9 @@ class RendererOf final : public Impl {
     ProjectedGrid grid_;
     T first_pixel_m_ = T(0);  // the finest rung that the frame reads
     ProjectedGridSize triangles_size_;
-    std::vector<std::uint32_t> triangles_;  // vertex indices
-    std::vector<glm::vec<2, T>> rest_;      // the grid's own, in T
+    std::vector<std::uint32_t> triangles_;       // vertex indices
+    std::vector<glm::vec<2, T>> rest_;           // the grid's own, in T
+    std::vector<glm::vec<3, T>> mesh_variance_;  // (σxx, σyy, σxy) of the slopes that cells hide
     std::vector<T> cell_m_;
     std::vector<glm::vec<2, T>> cell_axis_m_;
     std::vector<glm::vec<3, T>> position_;

@@ -98,6 +98,13 @@ camera = scene.camera
 camera.location, camera.rotation_euler = (0, 0, 9), (1.4, 0, 0)
 sea = add_ocean(surface__kind="projected-grid", sea__wind_speed_mps=3.0)
 
+with checking("a planet is for bakes: the object says so, and shows what it showed"):
+    shown = numbers(sea.data)
+    change(sea, surface__kind="planet")
+    assert "bake" in play.simulation_of(sea).problem and (numbers(sea.data) == shown).all()
+    change(sea, surface__kind="projected-grid")
+    assert not play.simulation_of(sea).problem
+
 with checking("a lens shift: the projected grid is where the picture is"):
     for shift in ((0.4, 0.0), (-0.4, -0.3)):
         camera.data.shift_x, camera.data.shift_y = shift

@@ -1,6 +1,7 @@
 // How sharp pictures are: one sample a pixel against 8 × 8, by band of lines below the horizon. Horizontal detail is the
 // gradient of the logarithm of luminance from pixel to pixel; its correlation with that of 8 × 8 tells detail from
-// aliasing. bench_sharpness [WIDTH [SAMPLES]]
+// aliasing. And rims: pixels on silhouettes outside the range of their 5 × 5 neighbours on the same surface.
+// bench_sharpness [WIDTH [SAMPLES]]
 
 #include <chrono>
 #include <cmath>
@@ -9,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "core/surface/view.h"
 #include "plugin/light/light.h"
 #include "plugin/render/render.h"
 #include "plugin/shot/shot.h"
 #include "tests/bench/timing.h"
+#include "tests/plugin/render/rims.h"
 
 namespace pelagic::bench {
 namespace {
@@ -40,6 +43,7 @@ std::vector<Shown> shots() {
 Picture picture_of(const Scene& scene, int samples, double* seconds = nullptr) {
     RenderOptions options = render_options(scene);
     options.samples = samples;
+    options.layers = parse_picture_layers("depth");
     Picture picture;
     Renderer renderer(scene, options, make_sky(scene), std::array{1});
     const auto before = std::chrono::steady_clock::now();
@@ -49,9 +53,7 @@ Picture picture_of(const Scene& scene, int samples, double* seconds = nullptr) {
 }
 
 double luminance(const Picture& picture, std::size_t i) {
-    const glm::vec3 rgb = radiance_of(picture.layers[i]);
-    return 0.2126 * static_cast<double>(rgb.x) + 0.7152 * static_cast<double>(rgb.y) +
-           0.0722 * static_cast<double>(rgb.z);
+    return pelagic::luminance(picture.layers[i]);
 }
 
 struct Detail {
@@ -96,6 +98,14 @@ void compare(const Shown& shot, int width, int samples) {
                     to, ratio, correlation, 100.0 * mean, verdict(ratio >= 0.85 && ratio <= 1.15),
                     verdict(correlation >= 0.8), verdict(std::abs(mean) <= 0.02));
     }
+    // Silhouettes as one sample sees them: of many, a pixel has several depths.
+    const auto rims_of = [&](const Picture& picture) {
+        return rims(picture, one.data[index(PictureLayer::Depth)], scene.camera.position_m.z,
+                    view_at(scene.camera, 1).pixel_tangent());
+    };
+    const Rims of_one = rims_of(one), of_many = rims_of(many);
+    std::printf("  rims: %d of %d pixels on silhouettes, 8 x 8: %d   %s\n", of_one.outside, of_one.silhouette,
+                of_many.outside, verdict(of_one.outside <= of_many.outside));
 }
 
 }  // namespace

@@ -6,13 +6,15 @@
 // Without `full` the picture is smaller and has fewer samples. Keys:
 //   width, height    the picture's size
 //   strata, passes   strata² samples per pixel and pass
-//   seeds            number of seas averaged
+//   seeds, seed      number of seas averaged, and the first one's seed
 //   waves            the tile's resolution
 //   shading          our pixels have shading² samples
 //   spread           tenths of the sun's radius (see below)
+//   sun              its elevation in degrees
+//   wind, fetch      one sea, of this wind [m/s] and fetch [km], in place of the two
 //   bands            1 prints every band
 // Keys to find the cost of an approximation:
-//   cell             the projected grid's, in pixels
+//   cell             the projected grid's, in pixels; 0: the default's, and rows for smaller ones
 //   pixels           tenths of a pixel by which normals are filtered; 0: by the cell
 //   chop             choppiness in per cent
 //   facets           1: mirrors are the facets of the mesh
@@ -48,9 +50,10 @@ constexpr double kFromBelow = 1.0;  // arbitrary: only ratios of energies are co
 
 struct Settings {
     std::map<std::string, int> number{
-        {"width", 320},  {"height", 180}, {"strata", 4},  {"passes", 4}, {"seeds", 1},
-        {"waves", 1024}, {"facets", 0},   {"bands", 0},   {"chop", 100}, {"spread", kSunSpread_tenths},
-        {"cell", 8},     {"pixels", 10},  {"lattice", 2}, {"shading", 3}};
+        {"width", 320},  {"height", 180}, {"strata", 4},  {"passes", 4},  {"seeds", 1},
+        {"waves", 1024}, {"facets", 0},   {"bands", 0},   {"chop", 100},  {"spread", kSunSpread_tenths},
+        {"cell", 0},     {"pixels", 10},  {"lattice", 2}, {"shading", 3}, {"seed", 1},
+        {"sun", 25},     {"wind", 0},     {"fetch", 10}};
     std::string plot = "fig10.png";
     int operator[](const char* name) const { return number.at(name); }
 };
@@ -104,7 +107,8 @@ double rms_difference(const Bands& bands, const Bands& reference, int term, int 
 
 struct Comparison {
     Bands single, all, small_sun, ours[kMethodCount];
-    double noise[kTerms] = {};  // of `all`: relative, root mean square over bands
+    std::map<double, Bands> by_cell;  // nine lookups, by the projected grid's cells
+    double noise[kTerms] = {};        // of `all`: relative, root mean square over bands
     double small_sun_noise = 0.0;
     double rays = 0.0, missed = 0.0, blocked = 0.0, turned_away = 0.0;
 };
@@ -162,13 +166,23 @@ struct SeaUnderTest {
 // fetch.
 const SeaUnderTest kSeas[] = {{"calm", 5.0, 300e3, false}, {"agitated", 13.0, 10e3, true}};
 
+// The cells of the tables, and those of the rows beside them.
+double main_cell(const Settings& settings) {
+    return settings["cell"] > 0 ? settings["cell"] : Surface{}.cell_px;
+}
+std::vector<double> other_cells(const Settings& settings) {
+    if (settings["cell"] > 0) return {};
+    return {2.0, 4.0};
+}
+
 Comparison compare(const Settings& settings, const SeaUnderTest& under_test, const View& view,
                    const Sky& sky) {
     Comparison sums;
     const Sky wide = with_wider_sun(sky, 0.1f * static_cast<float>(settings["spread"]));
     std::vector<Bands> passes(static_cast<std::size_t>(settings["passes"]));
     std::vector<Bands> small_passes(passes.size());
-    for (int seed = 1; seed <= settings["seeds"]; ++seed) {
+    const int first_seed = settings["seed"];
+    for (int seed = first_seed; seed < first_seed + settings["seeds"]; ++seed) {
         const WaveTile tile({.wind_speed_mps = under_test.wind_speed_mps,
                              .fetch_m = under_test.fetch_m,
                              .choppiness = settings["chop"] * 0.01,
@@ -205,23 +219,34 @@ Comparison compare(const Settings& settings, const SeaUnderTest& under_test, con
             sums.blocked += traced[p].blocked;
             sums.turned_away += traced[p].turned_away;
         }
-        const SeaPixels pixels = sea_pixels(tile, view,
-                                            {.first_row = first_row(view),
-                                             .samples = settings["shading"],
-                                             .cell_px = settings["cell"] * 1.0,
-                                             .pixels = settings["pixels"] * 0.1});
+        const auto seen_at = [&](double cell_px) {
+            return sea_pixels(tile, view,
+                              {.first_row = first_row(view),
+                               .samples = settings["shading"],
+                               .cell_px = cell_px,
+                               .pixels = settings["pixels"] * 0.1});
+        };
+        const auto shaded = [&](const Method& method, const SeaPixels& pixels) {
+            return banded(shaded_lines(pixels, method.choice, wide, kFromBelow));
+        };
+        for (const double cell_px : other_cells(settings))
+            sums.by_cell[cell_px] += shaded(kMethods[kBest], seen_at(cell_px));
+        const SeaPixels pixels = seen_at(main_cell(settings));
         const SeaPixels constant = with_constant_variance(pixels);
         for (int m = 0; m < kMethodCount; ++m)
-            sums.ours[m] += banded(shaded_lines(kMethods[m].constant_variance ? constant : pixels,
-                                                kMethods[m].choice, wide, kFromBelow));
+            sums.ours[m] += shaded(kMethods[m], kMethods[m].constant_variance ? constant : pixels);
     }
     const double n = settings["seeds"] * settings["passes"];
     for (Bands* bands : {&sums.single, &sums.all, &sums.small_sun})
         for (auto& term : bands->energy)
             for (double& energy : term) energy /= n;
-    for (Bands& bands : sums.ours)
+    const auto mean_of_seeds = [&](Bands& bands) {
         for (auto& term : bands.energy)
             for (double& energy : term) energy /= settings["seeds"];
+    };
+    for (Bands& bands : sums.ours) mean_of_seeds(bands);
+    for (auto& [cell_px, bands] : sums.by_cell) mean_of_seeds(bands);
+    sums.by_cell[main_cell(settings)] = sums.ours[kBest];
     for (int t = 0; t < kTerms; ++t) sums.noise[t] = noise_of(passes, t);
     sums.small_sun_noise = noise_of(small_passes, kSun);
     return sums;
@@ -265,6 +290,20 @@ void print_table(const Comparison& result, bool agitated) {
             std::printf(" %-26s", text);
         }
         std::printf("\n");
+    }
+}
+
+void print_cells(const Comparison& result, const View& view) {
+    const int near = band_beyond(view, 33.0), middle = band_beyond(view, 89.0);
+    std::printf("\n  nine lookups, cells of %10s %10s %10s      sun to 33 m, to 89 m, beyond (<= 10 %%)\n",
+                "sun", "refracted", "sky");
+    for (const auto& [cell_px, bands] : result.by_cell) {
+        const auto rms = [&, &bands = bands](int term, int first = 0, int end = kBands) {
+            return 100.0 * rms_difference(bands, result.all, term, first, end);
+        };
+        std::printf("  %13g px %17.1f %% %8.1f %% %8.1f %% %17.1f %% %6.1f %% %6.1f %%\n", cell_px, rms(kSun),
+                    rms(kRefracted), rms(kSky), rms(kSun, 0, near), rms(kSun, near, middle),
+                    rms(kSun, middle));
     }
 }
 
@@ -312,13 +351,15 @@ void add_panels(Sheet& sheet, const char* sea, const Comparison& result) {
 
 void run(const Settings& settings) {
     const View view = camera(settings);
-    const Sky sky = daylight_sky({.sun_elevation_deg = 25.0, .sun_azimuth_deg = 53.0});
+    const Sky sky = daylight_sky({.sun_elevation_deg = settings["sun"] * 1.0, .sun_azimuth_deg = 53.0});
     std::printf("%d x %d pixels, %d samples each, %d seed(s); %d lines in %d bands, up to %.0f m\n",
                 view.resolution.x, view.resolution.y,
                 settings["strata"] * settings["strata"] * settings["passes"], settings["seeds"],
                 view.resolution.y - first_row(view), kBands, kHorizon_m);
     Sheet sheet{.path = settings.plot, .x_label = "foreground ... horizon", .panels = {}};
-    for (const SeaUnderTest& under_test : kSeas) {
+    std::vector<SeaUnderTest> seas(std::begin(kSeas), std::end(kSeas));
+    if (settings["wind"] > 0) seas = {{"another", 1.0 * settings["wind"], 1e3 * settings["fetch"], true}};
+    for (const SeaUnderTest& under_test : seas) {
         std::printf("\nThe sea: %s, wind %.0f m/s over %.0f km\n", under_test.name, under_test.wind_speed_mps,
                     1e-3 * under_test.fetch_m);
         const Comparison result = compare(settings, under_test, view, sky);
@@ -338,11 +379,7 @@ void run(const Settings& settings) {
                     100.0 * rms_difference(result.single, result.all, kSky));
         if (settings["bands"]) print_bands(result);
         print_table(result, under_test.agitated);
-        const int near = band_beyond(view, 33.0), middle = band_beyond(view, 89.0);
-        std::printf("  nine lookups, sun, to 33 m: %.1f %%; to 89 m: %.1f %%; beyond: %.1f %% <= 10 %%\n",
-                    100.0 * rms_difference(result.ours[kBest], result.all, kSun, 0, near),
-                    100.0 * rms_difference(result.ours[kBest], result.all, kSun, near, middle),
-                    100.0 * rms_difference(result.ours[kBest], result.all, kSun, middle));
+        print_cells(result, view);
         add_panels(sheet, under_test.name, result);
     }
     plot(sheet);

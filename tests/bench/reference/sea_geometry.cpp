@@ -122,7 +122,8 @@ bool FinestSea::trace(const SeaRay& ray, SeaHit& hit) const {
 ProjectedSea::ProjectedSea(const WaveTile& tile, const View& view, double cell_px)
     : grid_(projected_grid(view, {.cell_px = cell_px,
                                   .bounds = tile.bounds(),
-                                  .significant_height_m = tile.whole().significant_height_m()})),
+                                  .significant_height_m = tile.whole().significant_height_m(),
+                                  .hidden = tile.hidden_height()})),
       triangles_(projected_grid_triangles({grid_.columns, grid_.rows})) {
     RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<glm::vec3*>(

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/evaluate/evaluate.h"
+#include "core/surface/pixel_footprint.h"
 
 namespace pelagic::bench {
 namespace {
@@ -18,6 +19,18 @@ double radiance_from_below(const LightingChoice& choice, const Sky& sky, const W
     shade_sea(choice, sky, water, {&level, 1}, {&seen, 1});
     const double reflected = choice.fresnel == FresnelFit::Paper ? 0.02 : (0.34 / 2.34) * (0.34 / 2.34);
     return luminance(seen.sea) / (1.0 - reflected);
+}
+
+// As the renderer has it: on the plane of the mesh's triangle. On a plane N·x = c a pixel's 1/w grows with N·ray.
+PixelFootprint<float> pixel_on_mesh(const View& view, glm::vec3 direction, const SeaHit& hit) {
+    const glm::vec3 right(view.right), up(view.up),
+        ray = direction / glm::dot(direction, glm::vec3(view.forward));
+    const float towards = glm::dot(hit.facet_normal, ray);
+    return footprint_on_mesh(
+        PixelFootprint<float>{
+            .width = hit.pixel_m, .axis_x = hit.pixel_axis_m.x, .axis_y = hit.pixel_axis_m.y},
+        right.x, right.y, up.x, up.y, ray.x, ray.y, glm::dot(hit.facet_normal, right) / towards,
+        glm::dot(hit.facet_normal, up) / towards);
 }
 
 }  // namespace
@@ -39,8 +52,9 @@ SeaPixels sea_pixels(const WaveTile& tile, const View& view, const PixelOptions&
             if (!sea.trace({.origin_m = glm::vec3(view.position_m), .direction = direction}, hit)) continue;
             rest_m.push_back(hit.rest_m);
             const auto scale = static_cast<float>(options.pixels);
-            footprints_m.push_back(scale > 0.0f ? scale * hit.pixel_m : hit.cell_m);
-            axes_m.push_back(scale > 0.0f ? scale * hit.pixel_axis_m : hit.cell_axis_m);
+            const auto pixel = pixel_on_mesh(view, direction, hit);
+            footprints_m.push_back(scale > 0.0f ? scale * pixel.width : hit.cell_m);
+            axes_m.push_back(scale > 0.0f ? scale * glm::vec2(pixel.axis_x, pixel.axis_y) : hit.cell_axis_m);
             pixels.points.push_back({.to_eye = -direction});
         }
     }
@@ -70,8 +84,8 @@ Lines shaded_lines(const SeaPixels& pixels, const LightingChoice& choice, const 
     const WaterBody water{.reflectance = glm::vec3(0.05f)};
     const double scale = refracted / radiance_from_below(choice, sky, water);
     // The integral takes a hundred times as long. It is used for sky and water, which vary little between
-    // samples.
-    const std::size_t step = choice.sky_quality == SkyQuality::Integral ? 9 : 1;
+    // samples: a prime number of them is left out, so that each place in a pixel and each column counts.
+    const std::size_t step = choice.sky_quality == SkyQuality::Integral ? 29 : 1;
     Lines lines(pixels.first.size() - 1);
     tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t row) {
         std::vector<SeaPoint> points;
@@ -79,7 +93,9 @@ Lines shaded_lines(const SeaPixels& pixels, const LightingChoice& choice, const 
             points.push_back(pixels.points[i]);
         std::vector<SeaRadiance> radiance(points.size());
         shade_sea(choice, sky, water, points, radiance);
-        const double weight = static_cast<double>(step) / pixels.per_line;
+        const double all = static_cast<double>(pixels.first[row + 1] - pixels.first[row]);
+        const double weight =
+            all / pixels.per_line / static_cast<double>(std::max<std::size_t>(points.size(), 1));
         for (const SeaRadiance& sample : radiance) {
             lines[row].term[kSun] += weight * luminance(sample.sun);
             lines[row].term[kRefracted] += weight * scale * luminance(sample.sea);

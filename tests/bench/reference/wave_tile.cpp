@@ -52,6 +52,7 @@ WaveTile::WaveTile(const WaveTileOptions& options) : size_m_(options.size_m) {
         query("pixels", products(Product::Normal, Product::SlopeVariance), footprints_m)};
     frame_ = std::make_unique<Frame<float>>(std::make_shared<const Sea<float>>(make_plan(scene, queries)));
     frame_->set(kTime_s);
+    hidden_height_ = prepare(scene)->extent.hidden;
 }
 
 SpectralMoments WaveTile::hidden_from_all() const {

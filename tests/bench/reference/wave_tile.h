@@ -38,9 +38,12 @@ class WaveTile {
     SpectralMoments hidden_from_all() const;
     // Of the positions, with room for the highest crest among a few thousand.
     SurfaceBounds bounds() const;
+    // What a mesh of the scene's waves hides: those longer than the tile, too, which is a little more.
+    const HiddenHeight& hidden_height() const { return hidden_height_; }
 
   private:
     double size_m_, shortest_m_;
+    HiddenHeight hidden_height_;
     std::unique_ptr<Frame<float>> frame_;
 };
 

@@ -321,6 +321,39 @@ TEST(Ellipses, HardOnesAreFinite) {
     }
 }
 
+// Cascades asked one by one hide, each of its own waves, what they hide together.
+TEST(Ellipses, HideOfOneCascadeItsShare) {
+    Scene scene = two_tiles();
+    scene.waves.choppiness = 0.0;
+    Query whole = ladder(products(Product::SlopeVariance));
+    std::vector<Query> queries{whole, whole, whole};
+    for (int c : {0, 1}) {
+        queries[c + 1].name = "cascade " + std::to_string(c);
+        queries[c + 1].only_cascade = c;
+    }
+    const auto frame = frame_of<float>(scene, queries);
+    const std::vector<glm::vec2> rest(1), round(1), axis_m{{5.0f, 3.0f}};
+    const std::vector<float> width_m{1.0f};
+    const auto hidden = [&](int query, const std::vector<glm::vec2>& axes_m) {
+        std::vector<glm::vec3> variance(1);
+        Results<float> results;
+        results.set(Product::SlopeVariance, {variance.data()});
+        evaluate(frame, query,
+                 {.count = 1,
+                  .rest_m = {rest.data()},
+                  .pixel_m = {width_m.data()},
+                  .pixel_axis_m = {axes_m.data()}},
+                 results);
+        return variance[0];
+    };
+    const auto more = [&](int query) { return hidden(query, axis_m) - hidden(query, round); };
+    const glm::vec3 sum = more(1) + more(2), together = more(0);
+    EXPECT_GT(more(1).x, 0.0f);
+    EXPECT_GT(more(2).x, 0.0f);
+    // A band's modes and its spectrum's integral differ by some per mille, and nothing hides less than nothing.
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(sum[i], together[i], 0.02f * together.x) << i;
+}
+
 TEST(Ellipses, NeedAWidthAndPointsAnywhere) {
     const std::vector<glm::vec2> rest(1), axis_m(1);
     const std::vector<float> width_m(1);

@@ -66,8 +66,8 @@ TEST(Daylight, CivilTwilightEndsAtThreeLux) {
 TEST(Daylight, NightIsBlackAndFinite) {
     for (const double elevation : {-30.0, -90.0}) {
         const Sky sky = sky_at(elevation);
-        // All visible air is in the earth's shadow. (The interpolated table extends a degree further.)
-        EXPECT_LT(total(sky), 1e-20);
+        // All visible air is in the earth's shadow. (The smooth table extends three degrees further.)
+        EXPECT_LT(total(sky), 1e-18);
         EXPECT_EQ(sky.sun_radiance, glm::vec3(0.0f));
     }
 }
@@ -293,6 +293,37 @@ TEST(Daylight, SmoothInTheTable) {
             return bright(sky.map.radiance({0.0f, -0.9f + static_cast<float>(k) * 1.8f / 250.0f}, 0.0f));
         };
         EXPECT_LT(std::abs(at(i + 1) - 2.0 * at(i) + at(i - 1)) / at(i), 5e-3) << i;
+    }
+}
+
+// What smooth water mirrors: the finest level of a map of default size is the model itself, down to the horizon. While
+// its texels were means, and the spline between them flattened them again, 5 % were missing beside a low sun. In the
+// last half degree before a sun on the horizon of clear air it is up to 3.4 % off (12 before).
+TEST(Daylight, TheMapIsTheModel) {
+    struct Case {
+        double elevation, turbidity, least;
+    };
+    for (const auto& [elevation, turbidity, least] :
+         {Case{0.0, 2.0, 0.6}, Case{0.0, 3.0, 0.0}, Case{5.0, 8.0, 0.0}, Case{60.0, 2.0, 0.0}}) {
+        const double sun = elevation * kPi / 180.0;
+        const Atmosphere air(turbidity, sun);
+        const Sky sky =
+            daylight_sky({.sun_elevation_deg = elevation, .sun_azimuth_deg = 0.0, .turbidity = turbidity});
+        const std::vector<double> azimuths{0.1, 1.6, 3.0};
+        for (int row = 0; row < 200; ++row) {
+            const double e = least * kPi / 180.0 + 5.7e-4 * (row + 0.5);
+            const auto light = air.scattered(e, azimuths);
+            for (std::size_t k = 0; k < azimuths.size(); ++k) {
+                const glm::dvec3 to(std::cos(e) * std::cos(azimuths[k]), std::cos(e) * std::sin(azimuths[k]),
+                                    std::sin(e));
+                const double cosine = to.x * std::cos(sun) + to.z * std::sin(sun);
+                const double expected =
+                    luminance(colour_of(light[k].by_air) * air_phase(cosine) +
+                              colour_of(light[k].by_haze) * haze_phase(cosine) + colour_of(light[k].more));
+                const double found = bright(sky.map.open_radiance(sky_map_place(glm::vec3(to))));
+                EXPECT_NEAR(found / expected, 1.0, 0.01) << elevation << ' ' << turbidity << ' ' << e;
+            }
+        }
     }
 }
 

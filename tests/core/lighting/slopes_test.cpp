@@ -134,6 +134,38 @@ TEST(Slopes, FacingNormalSeenFromBelowIsThePapers) {
     }
 }
 
+// Slopes that the mesh hides and the normals have, between all that never face away (mean square w0² + 3 s) and all that
+// there are: seen as a mesh shows them, each as often as it is there, they lean to the eye as the visible ones do.
+TEST(Slopes, VisibleNormalsHaveTheMeanSquareOfThoseThatNeverFaceAway) {
+    Optics optics;
+    for (const double w0 : {0.01, 0.1, 0.5, 3.0})
+        for (const double hidden : {0.0, 0.02}) {
+            const double sigma = 0.2, turn = 0.7, length = std::hypot(w0, 1.0);
+            const vec3 v(vec2(std::cos(turn), std::sin(turn)) * static_cast<float>(1.0 / length),
+                         static_cast<float>(w0 / length));
+            const vec3 left(static_cast<float>(hidden), static_cast<float>(hidden), 0.0f);
+            const auto w_of = [&](vec3 n) {
+                return dot(dvec3(n), dvec3(v)) / static_cast<double>(n.z) * length;
+            };
+            double square = 0.0, before = 0.0;
+            for (double x = -6.0; x <= 6.0; x += 0.01) {
+                const double s = sigma * x,
+                             share = 0.01 * std::exp(-0.5 * x * x) / std::sqrt(2.0 * oracle::kPi);
+                const vec3 n = normalize(vec3(vec2(v) * static_cast<float>(s * length), 1.0f));
+                const vec3 seen =
+                    optics.visible_normal(n, v, left, static_cast<float>(sigma * sigma + hidden));
+                ASSERT_NEAR(glm::length(seen), 1.0f, 1e-6f);
+                ASSERT_GT(dot(seen, v), 0.0f);
+                before += share * w_of(n) * w_of(n);
+                square += share * w_of(seen) * w_of(seen);
+                // What the pixel hides, it hides of the mesh's: normals as fine as the mesh stay.
+                ASSERT_EQ(optics.visible_normal(n, v, left, 0.999f * static_cast<float>(hidden)), n);
+            }
+            EXPECT_NEAR(before, w0 * w0 + sigma * sigma, 2e-3 * square);
+            EXPECT_NEAR(square, w0 * w0 + 3.0 * sigma * sigma, 2e-3 * square) << w0;
+        }
+}
+
 // p(ζ) within 5 σ. The determinant cancels for strong correlation: with 1 − 0.99², a rounding of 1e-7 becomes
 // 5e-6, times an exponent of up to 12.5.
 TEST(Slopes, DensityIsTheGaussian) {

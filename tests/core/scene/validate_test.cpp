@@ -253,6 +253,32 @@ TEST(Validate, SomethingMustBeBaked) {
                    {"output.cascade_tiles", "true", "at least one map"});
 }
 
+TEST(Validate, APlanetIsRoundAndSeenOnItsNearSide) {
+    const auto planet = [](const std::function<void(Scene&)>& change) {
+        return [change](Scene& s) {
+            s.surface.kind = SurfaceKind::Planet;
+            change(s);
+        };
+    };
+    expect_good(planet([](Scene&) {}));
+    expect_refused(planet([](Scene& s) { s.surface.earth_curvature = false; }),
+                   {"surface.earth_curvature", "false", "projected-grid"});
+    // Straight above the origin at any height; a quarter of the circle away, only at the sea.
+    expect_good(planet([](Scene& s) { s.camera.position_m = {0.0, 0.0, 1e9}; }));
+    expect_good(planet([](Scene& s) { s.camera.position_m = {6.3e6, 0.0, -5.4e6}; }));
+    expect_refused(planet([](Scene& s) {
+                       s.camera.position_m = {7e6, 0.0, -3e6};
+                   }),
+                   {"camera.position_m", "[7000000, 0, -3000000]", "nearer to the origin"});
+    expect_refused(planet([](Scene& s) {
+                       s.camera.keys = {
+                           {.frame = 1, .position_m = {0.0, 0.0, 9.0}, .look_at_m = {0.0, 1.0, 9.0}},
+                           {.frame = 9, .position_m = {1e7, 0.0, 9.0}, .look_at_m = {0.0, 1.0, 9.0}}};
+                   }),
+                   {"camera.keys[1].position_m", "[1e7, 0, 9]", "nearer to the origin"});
+    expect_good([](Scene& s) { s.camera.position_m = {1e7, 0.0, 9.0}; });
+}
+
 TEST(Validate, CascadesReachEachOther) {
     expect_good([](Scene& s) { s.waves.cascades = {{400.0, 16}}; });
     expect_good([](Scene& s) { s.waves.cascades = {{400.0, 512}, {50.0, 512}, {5.0, 8192}}; });

@@ -95,5 +95,41 @@ TEST(Earth, GivesTheGridsHorizonItsDip) {
         }
 }
 
+// A planet's points rest about the origin. On its sphere they are those that the camera's own grid has over its nadir.
+TEST(Planet, IsTheCamerasGridOnOneSphere) {
+    for (const double away_m : {0.0, 40.0, 300e3, 3000e3}) {
+        Scene scene;
+        scene.camera.resolution = {160, 90};
+        scene.surface.kind = SurfaceKind::Planet;
+        const glm::dvec2 place_m = away_m * glm::dvec2(0.8, -0.6);
+        const glm::dvec3 up = earth_up(place_m, kEarthCurvature_per_m);
+        scene.camera.position_m = on_earth(glm::dvec3(place_m, 100.0), kEarthCurvature_per_m);
+        scene.camera.look_at_m = scene.camera.position_m + 1e3 * from_level(glm::dvec3(0.6, 0.79, -0.05), up);
+        const SeaReach reach{.height_m = 2.0, .reach_m = 2.0, .significant_height_m = 1.0, .hidden = {}};
+        const auto planet = make_surface(scene, reach);
+        RestPoints<double> points;
+        planet->points_at(1, points);
+        EXPECT_EQ(points.touches_at_m, glm::dvec2(0.0));
+        EXPECT_NEAR(glm::distance(points.origin_m, place_m), 0.0, 1e-3);
+
+        const ProjectedGrid local =
+            projected_grid(over_nadir(view_at(scene.camera, 1)),
+                           {.cell_px = scene.surface.cell_px,
+                            .bounds = {.height_m = reach.height_m, .reach_m = reach.reach_m},
+                            .significant_height_m = reach.significant_height_m,
+                            .curvature_per_m = kEarthCurvature_per_m});
+        ASSERT_EQ(points.rest_m.size(), local.rest_m.size());
+        for (std::size_t i = 0; i < local.rest_m.size(); i += 7) {
+            const glm::dvec3 there =
+                on_earth(glm::dvec3(points.origin_m + points.rest_m[i], 0.0), kEarthCurvature_per_m);
+            const glm::dvec3 expected =
+                on_earth(glm::dvec3(place_m, 0.0), kEarthCurvature_per_m) +
+                from_level(on_earth(glm::dvec3(glm::dvec2(local.rest_m[i]), 0.0), kEarthCurvature_per_m), up);
+            ASSERT_LT(glm::distance(there, expected), 0.02 + 1e-6 * glm::length(local.rest_m[i]))
+                << away_m << " " << i;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace pelagic

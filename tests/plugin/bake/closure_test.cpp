@@ -24,6 +24,7 @@
 #include "plugin/bake/bake.h"
 #include "plugin/exr/exr.h"
 #include "plugin/files/files.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
 #include "tests/plugin/bake/closure_shots.h"
@@ -72,8 +73,11 @@ Made render_into(const Scene& scene, const fs::path& folder) {
     Picture picture;
     for (const int frame : frames) {
         renderer.render(frame, picture);
-        const PictureContext context{
-            .scene = scene, .options = options, .sky = renderer.sky(), .made_of = fingerprint.of(frame)};
+        const PictureContext context{.scene = scene,
+                                     .options = options,
+                                     .sky = renderer.sky(),
+                                     .made_of = fingerprint.of(frame),
+                                     .exposure = shot_exposure(scene, renderer.sky())};
         files::write_atomically(folder / picture_file(scene.shot, frame, "png"),
                                 encode_png(context, picture, frame));
         files::write_atomically(folder / picture_file(scene.shot, frame, "exr"),

@@ -31,6 +31,7 @@
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
 #include "plugin/files/files.h"
+#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
 #include "tests/plugin/bake/closure_shots.h"
@@ -154,8 +155,11 @@ void add_picture(const Scene& scene, const fs::path& folder, Hashes& hashes) {
     Renderer renderer(scene, options, make_sky(scene), frames);
     Picture picture;
     renderer.render(frames.front(), picture);
-    const PictureContext context{
-        .scene = scene, .options = options, .sky = renderer.sky(), .made_of = "golden"};
+    const PictureContext context{.scene = scene,
+                                 .options = options,
+                                 .sky = renderer.sky(),
+                                 .made_of = "golden",
+                                 .exposure = shot_exposure(scene, renderer.sky())};
     files::write_atomically(folder / "golden.exr", encode_exr(context, picture, frames.front()));
     files::write_atomically(folder / "golden.png", encode_png(context, picture, frames.front()));
     hashes["picture.exr"] = {kPictureRevision, exr_hash(folder / "golden.exr")};

@@ -296,6 +296,23 @@ TEST(StageLightKeys, EveryKeyOfTheLightFeedsIt) {
     EXPECT_GE(count, 4);
 }
 
+// The dome says its primaries and, in daylight, the luminance of (1, 1, 1), as pictures do; a picture of a sky has its own
+// unit. By the names and types in OpenEXR's header.
+TEST_F(StageLightTest, TheDomeSaysWhatItsRadianceIs) {
+    using namespace std::string_literals;
+    Scene scene = small_scene();
+    baked(scene);
+    const std::string daylight = text_of(folder_ / "a-b.sky.exr");
+    EXPECT_NE(daylight.find("chromaticities\0chromaticities\0"s), std::string::npos);
+    EXPECT_NE(daylight.find("whiteLuminance\0float\0"s), std::string::npos);
+    write_sky(folder_ / "noon.exr", 1.0f);
+    scene.light.sky = (folder_ / "noon.exr").string();
+    baked(scene);
+    const std::string picture = text_of(folder_ / "a-b.sky.exr");
+    EXPECT_NE(picture.find("chromaticities\0chromaticities\0"s), std::string::npos);
+    EXPECT_EQ(picture.find("whiteLuminance"), std::string::npos);
+}
+
 TEST_F(StageLightTest, ABakeNeverWritesOverThePictureOfItsSky) {
     const fs::path file = folder_ / "a-b.sky.exr";
     write_sky(file, 1.0f);

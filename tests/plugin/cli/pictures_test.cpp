@@ -5,6 +5,7 @@
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "plugin/render/layers.h"
 #include "tests/plugin/cli/program.h"
 
 namespace pelagic::test {
@@ -123,6 +125,86 @@ TEST_F(Pictures, RenderLeavesAnExrWithLayersAndAPngForEachFrame) {
     EXPECT_EQ(png_size(folder() / "small/small.0003.png"), std::pair(48, 27));
     EXPECT_TRUE(has(ended.out, "small/small.0001.exr")) << ended.out;
     EXPECT_TRUE(has(ended.out, "2 frames rendered")) << ended.out;
+}
+
+// Every other layer of the table, the others, none and all: their channels and no others beside the picture's.
+TEST_F(Pictures, RenderWritesTheLayersThatAreAskedFor) {
+    const auto channels = [&](const std::string& layers, std::vector<std::string> more = {}) {
+        std::vector<std::string> arguments{"render", "small.toml", "--frames", "2",        "--size",
+                                           "12x8",   "--out",      "asked",    "--layers", layers};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Ended ended = cli(arguments);
+        EXPECT_EQ(ended.status, 0) << layers << ended.err;
+        return exr_channels(folder() / "asked/small.0002.exr");
+    };
+    const std::set<std::string> picture{"R", "G", "B"};
+    std::set<std::string> everything = picture;
+    for (const std::size_t first : {std::size_t{0}, std::size_t{1}}) {
+        std::string names;
+        std::set<std::string> expected = picture;
+        for (std::size_t i = first; i < kPictureLayerCount; i += 2) {
+            const PictureLayerRow& row = kPictureLayers[i];
+            names += (names.empty() ? "" : ",") + std::string(row.name);
+            expected.insert(row.channels.begin(), row.channels.begin() + row.components);
+        }
+        EXPECT_EQ(channels(names), expected) << names;
+        everything.insert(expected.begin(), expected.end());
+    }
+    EXPECT_EQ(channels("none"), picture);
+    everything.insert("A");
+    EXPECT_EQ(channels("all", {"--alpha", "--shutter", "0.5"}), everything);
+}
+
+// The primaries, and in daylight the luminance of (1, 1, 1).
+bool says_what_its_radiance_is(const fs::path& file) {
+    const Imf::InputFile exr(file.c_str());
+    return Imf::hasChromaticities(exr.header()) && Imf::hasWhiteLuminance(exr.header()) &&
+           Imf::whiteLuminance(exr.header()) == 1000.0f;
+}
+
+TEST_F(Pictures, RenderSaysWhatItsRadianceIs) {
+    ASSERT_EQ(cli({"render", "small.toml", "--frames", "2", "--size", "12x8", "--layers", "none"}).status, 0);
+    EXPECT_TRUE(says_what_its_radiance_is(folder() / "small/small.0002.exr"));
+}
+
+TEST_F(Pictures, PreviewDrawsAnExrThatSaysWhatItsRadianceIs) {
+    if (!kHasPreview) return;
+    ASSERT_EQ(cli({"preview", "small.toml", "--offscreen", "drawn.exr", "--size", "12x8"}).status, 0);
+    EXPECT_TRUE(says_what_its_radiance_is(folder() / "drawn.exr"));
+}
+
+// An open shutter blurs, alpha leaves the sky out, and neither changes what the sea is made of.
+TEST_F(Pictures, RenderTakesShutterAndAlpha) {
+    const auto rendered = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments{"render", "small.toml", "--frames", "2",
+                                           "--size", "24x14",      "--out",    "as"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Ended ended = cli(arguments);
+        EXPECT_EQ(ended.status, 0) << ended.err;
+        return read_file(folder() / "as/small.0002.png");
+    };
+    const std::string plain = rendered({});
+    EXPECT_EQ(rendered({"--shutter", "0"}), plain);
+    EXPECT_NE(rendered({"--shutter", "0.5"}), plain);
+    const std::string longest = rendered({"--shutter", "4"});
+    EXPECT_NE(longest, plain);
+    // A PNG's colour type: 2 without alpha, 6 with it.
+    constexpr std::size_t kColourType = 25;
+    EXPECT_EQ(plain.at(kColourType), 2);
+    EXPECT_EQ(rendered({"--alpha"}).at(kColourType), 6);
+    const fs::path file = folder() / "as/small.0002.exr";
+    EXPECT_TRUE(exr_channels(file).count("A"));
+    EXPECT_FALSE(rendered({}) == longest || exr_channels(file).count("A")) << "made again as asked";
+}
+
+TEST_F(Pictures, RenderRefusesLayersAndShuttersThatAreNone) {
+    std::vector<std::string> names{"none", "all"};
+    for (const PictureLayerRow& row : kPictureLayers) names.emplace_back(row.name);
+    for (const char* wrong : {"", ",", "depth,", "Depth", "z", "depth;normal", "none,depth"})
+        refused({"render", "small.toml", "--layers", wrong}, 2, names);
+    for (const char* wrong : {"-0.1", "4.01", "nan", "inf", "much"})
+        refused({"render", "small.toml", "--shutter", wrong}, 2, {"shutter"});
+    refused({"render", "small.toml", "--alpha", "0.5"}, 2, {"0.5"});
 }
 
 TEST_F(Pictures, RenderTakesSizeSamplesTermsAndExposure) {

@@ -53,6 +53,37 @@ TEST(Exposure, NoLightGivesABlackOrAWhitePicture) {
     }
 }
 
+// The mean display value from high up, of the pixels that aren't black, as space is.
+double shown_from(double height_m, Case light, bool down) {
+    Scene scene = scene_in(light);
+    scene.camera.position_m = {0.0, 0.0, height_m};
+    scene.camera.look_at_m = {0.0, height_m, down ? 0.0 : 0.9 * height_m};
+    Renderer renderer(scene, render_options(scene), make_sky(scene), std::vector<int>{1});
+    Picture picture;
+    renderer.render(1, picture);
+    const float exposure = shot_exposure(scene, renderer.sky());
+    double sum = 0.0;
+    int shown = 0;
+    for (const SeaRadiance& pixel : picture.layers) {
+        const glm::vec3 colour = display_colour(radiance_of(pixel), exposure);
+        const auto value = static_cast<double>(std::max({colour.x, colour.y, colour.z}));
+        sum += value;
+        shown += value > 0.02;
+    }
+    return sum / shown;
+}
+
+// The air before the sea and the earth's curve are in the meter: the haze seen from an aeroplane, and the earth beside
+// black space. Before, a hazy low sun was burnt out: 0.97 from 8 km, 0.99 from 100 km.
+TEST(Exposure, MetersAirAndTheRoundEarth) {
+    for (const double height_m : {8e3, 100e3, 400e3})
+        for (const bool down : {false, true}) {
+            const double shown = shown_from(height_m, {5, 8}, down);
+            EXPECT_GT(shown, 0.35) << height_m << ' ' << down;
+            EXPECT_LT(shown, 0.75) << height_m << ' ' << down;
+        }
+}
+
 // A shot has one exposure, whatever frames are asked for: that of its camera, or of all of its keys.
 TEST(Exposure, BelongsToTheShot) {
     Scene scene = scene_in({10.0, 3.0});

@@ -2,6 +2,7 @@
 #include "plugin/preview/controls.h"
 
 #include <gtest/gtest.h>
+#include <imgui.h>
 
 #include <algorithm>
 #include <string>
@@ -93,6 +94,66 @@ TEST(Controls, WhatHappensBeforeTheFirstSeaIsSaid) {
     readout.building_sea = false;
     readout.significant_height_m = 2.91;
     EXPECT_EQ(sea_words(readout).find("Significant height 2.91 m"), 0u);
+}
+
+// The panel without a window: pictures of it, with a mouse that clicks.
+class Hand {
+  public:
+    Hand() : context_(ImGui::CreateContext()) {
+        ImGuiIO& io = ImGui::GetIO();
+        io.DisplaySize = {900.0f, 2400.0f};
+        io.DeltaTime = 1.0f / 60.0f;
+        io.IniFilename = nullptr;
+        set_controls_style(1.0f);
+        unsigned char* pixels = nullptr;
+        int width = 0, height = 0;
+        io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        picture();
+        picture();
+    }
+    ~Hand() { ImGui::DestroyContext(context_); }
+    Hand(const Hand&) = delete;
+    Hand& operator=(const Hand&) = delete;
+
+    Clicks clicked_at(float x, float y) {
+        ImGuiIO& io = ImGui::GetIO();
+        io.MousePos = {x, y};
+        picture();
+        io.MouseDown[ImGuiMouseButton_Left] = true;
+        picture();
+        io.MouseDown[ImGuiMouseButton_Left] = false;
+        return picture();
+    }
+
+  private:
+    Clicks picture() {
+        ImGui::NewFrame();
+        const Clicks clicks = draw_controls(controls_, readout_, scene_);
+        ImGui::Render();
+        return clicks;
+    }
+
+    ImGuiContext* context_;
+    Scene scene_;
+    Controls controls_ = controls_for(scene_);
+    Readout readout_;
+};
+
+// Save, copy and reset are buttons that a mouse finds, below everything else, and each tells its own click alone.
+TEST(Panel, SaveShotIsAButton) {
+    Hand hand;
+    int saved = 0, copied = 0, reset = 0;
+    for (float y = 2396.0f; y > 0.0f && saved == 0; y -= 8.0f)
+        for (float x = 24.0f; x < 400.0f; x += 16.0f) {
+            const Clicks clicks = hand.clicked_at(x, y);
+            saved += clicks.save;
+            copied += clicks.copy;
+            reset += clicks.reset;
+            EXPECT_LE(clicks.save + clicks.copy + clicks.reset + clicks.shot_camera, 1) << x << ' ' << y;
+        }
+    EXPECT_GT(saved, 0);
+    EXPECT_GT(copied, 0);
+    EXPECT_GT(reset, 0);
 }
 
 // Each thing that an artist asked for can be turned.

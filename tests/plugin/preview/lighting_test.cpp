@@ -98,6 +98,7 @@ struct Functions {
                  return vec4(effective_fresnel(vec3(sqrt(1.0f - bb * bb), 0.0f, bb), ss), 0.0f, 0.0f, 0.0f);)
     PELAGIC_BOTH(frame_x, SlopeFrame f = slope_frame(facing_normal(nn, vv), ss);
                  return vec4(f.x, f.normal.z);)
+    PELAGIC_BOTH(visible, return vec4(visible_normal(nn, vv, ss, ss.x + cc), 0.0f);)
     PELAGIC_BOTH(frame_variance, SlopeFrame f = slope_frame(facing_normal(nn, vv), ss);
                  return vec4(f.variance, 0.0f) / (f.variance.x + f.variance.y);)
     PELAGIC_BOTH(areas, MaskedView m = masked_view(vv, ss);

@@ -63,6 +63,13 @@ TEST(PreviewsPicture, IsTheCpusFromTheStratosphere) {
     scene.light.turbidity = 6.0;
     compare_frame("from 20 km", scene);
 }
+// From day into night: each place has its own sun.
+TEST(PreviewsPicture, IsTheCpusOverTheTerminator) {
+    Scene scene = scene_of({0.0, 0.0, 400e3}, {0.0, -500e3, 150e3});
+    scene.light.sun_elevation_deg = 3.0;
+    scene.light.sun_azimuth_deg = 90.0;
+    compare_frame("over the terminator", scene);
+}
 TEST(PreviewsPicture, IsTheCpusOfTrains) {
     Scene scene = scene_of({0.0, -60.0, 12.0}, {0.0, 0.0, 2.0});
     scene.waves.model = WaveModel::Trochoid;

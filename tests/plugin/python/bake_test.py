@@ -253,6 +253,26 @@ class Pictures(unittest.TestCase):
         self.assertTrue(is_sea[-1].all() and not is_sea[0].any())
         self.assertTrue((layers["sea"][is_sea][:, 2] > 0.0).all() and (layers["sea"][~is_sea] == 0.0).all())
 
+    def test_layers_alpha_and_shutter(self):
+        shapes = {"depth": (8, 12), "position": (8, 12, 3), "normal": (8, 12, 3), "motion": (8, 12, 4),
+                  "vector": (8, 12, 4), "coverage": (8, 12), "slope_variance": (8, 12, 3)}
+        light = ["air", "foam", "is_sea", "sea", "sky", "sun"]
+        full = pelagic.render(shot(), 1, (12, 8), 1, sky_quality="one", layers=list(shapes), alpha=True, shutter=0.5)
+        self.assertEqual(sorted(full), sorted([*light, "alpha", *shapes]))
+        for name, shape in {**shapes, "alpha": (8, 12)}.items():
+            self.assertEqual((full[name].shape, full[name].dtype), (shape, np.float32), name)
+            self.assertTrue(np.isfinite(full[name]).all(), name)
+        self.assertTrue((full["depth"][~full["is_sea"]] == 1e10).all() and (full["depth"][full["is_sea"]] < 1e9).all())
+        self.assertTrue(full["alpha"].min() >= 0.0 and full["alpha"].max() == 1.0 and full["alpha"][0].max() == 0.0)
+        for name in shapes:
+            one = pelagic.render(shot(), 1, (12, 8), 1, sky_quality="one", layers=[name])
+            self.assertEqual(sorted(one), sorted([*light, name]))
+        for wrong in ({"layers": ["z"]}, {"layers": [""]}, {"shutter": -0.1}, {"shutter": 4.1}, {"shutter": float("nan")}):
+            with self.assertRaises(ValueError, msg=wrong):
+                pelagic.render(shot(), 1, (12, 8), 1, **wrong)
+        with self.assertRaises(TypeError):
+            pelagic.render(shot(), 1, (12, 8), 1, layers=5)
+
     def test_it_is_the_sky_that_sky_has(self):
         scene = shot()
         scene.camera.position_m, scene.camera.look_at_m = (0.0, 0.0, 3.0), (0.0, 10.0, 13.0)

@@ -86,7 +86,7 @@ class Scene(unittest.TestCase):
         self.assertEqual((wind["feeds"], wind["built"], wind["label"]), (["waves"], True, "Wind speed"))
         self.assertLess(wind["soft_range"][1], wind["range"][1])
         self.assertFalse(keys["effects.spray"]["built"])
-        self.assertEqual([c["word"] for c in keys["surface.kind"]["choices"] if c["built"]], ["patch", "projected-grid"])
+        self.assertEqual([c["word"] for c in keys["surface.kind"]["choices"] if c["built"]], ["patch", "projected-grid", "planet"])
         self.assertEqual([k["name"] for k in keys["sea.swell"]["keys"]], ["height_m", "period_s", "direction_deg"])
 
     def test_a_table_lives_as_long_as_somebody_holds_it_and_can_be_given_to_another_scene(self):

@@ -296,7 +296,8 @@ TEST(PictureLayers, ShutterAccumulates) {
     const Picture sharp = picture_of(scene, options);
     options.shutter_frames = 0.5;
     const Picture blurred = picture_of(scene, options);
-    EXPECT_LT(difference(blurred, mean), 0.4 * difference(sharp, mean))
+    // Each sample is of one moment: what is left is the noise of 36 sharp ones.
+    EXPECT_LT(difference(blurred, mean), 0.5 * difference(sharp, mean))
         << difference(blurred, mean) << " against " << difference(sharp, mean);
     const std::vector<float>&depth = blurred.data[index(PictureLayer::Depth)],
           &sharp_depth = sharp.data[index(PictureLayer::Depth)];

@@ -137,6 +137,19 @@ TEST(PictureFiles, LayersAreInPlaceAndAddUp) {
     }
 }
 
+// A low sun's upper limb is brighter than its mean, which may still fit into halves: such pictures were refused.
+TEST(PictureFiles, HoldTheDiscsUpperLimb) {
+    const glm::ivec2 resolution(7, 5);
+    Picture picture = pattern(resolution);
+    Sky sky = some_sky(6e4f);
+    sky.limb_high = glm::vec3(1.3f, 1.4f, 1.5f);
+    for (SeaRadiance& pixel : picture.layers) pixel.sky = sky.limb_high * sky.sun_radiance;
+    const Scene scene;
+    const RenderOptions options;
+    const Read file = read(encode_exr({scene, options, sky, ""}, picture, 1), resolution);
+    EXPECT_EQ(file.types.at("sky.G"), Imf::FLOAT);
+}
+
 // Whole is a picture with this fingerprint and all of its bytes: one that was cut short is made again.
 TEST(PictureFiles, AreWholeWithTheirFingerprintAndTheirEnd) {
     const Picture picture = pattern({64, 48});
@@ -226,15 +239,17 @@ TEST(PictureFiles, ScreensShowTheSumWithTheExposure) {
     const Scene scene;
     const RenderOptions options;
     const Sky sky = some_sky(0.0f);
-    const auto png = [&](double stops) { return encode_png({scene, options, sky, "", stops}, picture, 1); };
-    const std::string black = png(0.0);
+    const auto png = [&](float exposure) {
+        return encode_png({scene, options, sky, "", exposure}, picture, 1);
+    };
+    const std::string black = png(1.0f);
     picture.layers[4].foam = glm::vec3(1.0f);
-    const std::string foam = png(0.0);
+    const std::string foam = png(1.0f);
     EXPECT_NE(foam, black);
-    EXPECT_NE(png(1.0), foam);
+    EXPECT_NE(png(2.0f), foam);
     picture.layers[4] = {
         .sun = glm::vec3(0.25f), .sky = glm::vec3(0.25f), .sea = glm::vec3(0.5f), .foam = {}};
-    EXPECT_EQ(png(0.0), foam);
+    EXPECT_EQ(png(1.0f), foam);
 }
 
 // The keys that a picture depends on, by the table of keys; the camera is said as it is at the frame.

@@ -292,6 +292,28 @@ TEST(Render, SamplesAreAveraged) {
         }
 }
 
+// Waves that only the normals have lean to the eye as visible ones do: finer normals on the same mesh show as much light.
+// With all of them seen alike the two differed by 8 % here.
+TEST(Render, OneSampleShowsAsMuchLightAsMany) {
+    Scene scene = small_scene();
+    scene.camera.resolution = {96, 54};
+    scene.sea.wind_speed_mps = 8.0;
+    scene.waves.cascades = {{120.0, 256}, {9.0, 256}};
+    scene.camera.position_m = {0.0, -60.0, 4.0};
+    scene.camera.look_at_m = {0.0, 0.0, 0.0};
+    RenderOptions options = render_options(scene);
+    options.lighting.air = false;
+    const auto light_of = [&](int samples) {
+        options.samples = samples;
+        const Picture picture = picture_of(scene, options);
+        double sum = 0.0;
+        for (std::size_t i = picture.layers.size() / 3; i < picture.layers.size(); ++i)
+            sum += static_cast<double>(radiance_of(picture.layers[i]).y);
+        return sum;
+    };
+    EXPECT_NEAR(light_of(1) / light_of(8), 1.0, 0.02);
+}
+
 // A term that is off leaves its layer black, and the other layers as they are but for the foam's share.
 TEST(Render, TermsThatAreOffAreBlack) {
     Scene scene = small_scene();

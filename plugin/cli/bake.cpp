@@ -77,7 +77,7 @@ int stopped(const BakeReport& report, const std::string& out, int signal) {
 }
 
 int run(const Arguments& arguments) {
-    const Scene scene = load_shot(arguments.shot, check_sky);
+    const Scene scene = load_shot(arguments.shot, check_scene);
     BakeOptions options;
     if (arguments.frames) {
         try {

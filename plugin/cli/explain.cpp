@@ -135,7 +135,7 @@ Verb add_explain(CLI::App& program) {
     CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);
     return {command, [arguments] {
-                const Scene scene = load_shot(arguments->shot, check_sky);
+                const Scene scene = load_shot(arguments->shot, check_scene);
                 const Plan plan = plan_bake(scene);
                 std::cout << explain(plan);
                 print_memory(scene, plan);

@@ -92,7 +92,7 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
 // Into the shot's file, which keeps all that hasn't changed.
 void save_shot(const fs::path& file, const Scene& scene, const Scene& shot) {
     const std::string text = edited_shot(read_text_file(file, kMostShotBytes), scene, shot);
-    Scene written = parse_shot(text, file, check_sky);
+    Scene written = parse_shot(text, file, check_scene);
     written.quality.level = scene.quality.level;  // --quality may have chosen it
     if (!shot_text(scene, written).empty())
         throw ShotError(
@@ -102,7 +102,7 @@ void save_shot(const fs::path& file, const Scene& scene, const Scene& shot) {
 }
 
 int run(const Arguments& arguments) {
-    Scene scene = load_shot(arguments.shot, check_sky);
+    Scene scene = load_shot(arguments.shot, check_scene);
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
         if (!level)

@@ -96,7 +96,7 @@ struct Job {
 };
 
 Job job_of(const Arguments& arguments) {
-    Job job{.scene = load_shot(arguments.shot, check_sky), .options = {}, .frames = {}, .out = {}};
+    Job job{.scene = load_shot(arguments.shot, check_scene), .options = {}, .frames = {}, .out = {}};
     const Shot& shot = job.scene.shot;
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) job.scene.camera.resolution = size;
     job.options = render_options(job.scene);

@@ -53,7 +53,7 @@ Verb add_validate(CLI::App& program) {
                 int status = kDone;
                 for (const std::string& file : *files) {
                     try {
-                        const Scene scene = load_shot(file, check_sky);
+                        const Scene scene = load_shot(file, check_scene);
                         const Plan plan = plan_bake(scene);
                         std::cout << file << ": fine\n    " << summary(scene, plan) << std::endl;
                         print_warnings(file, scene);

@@ -9,6 +9,8 @@
 #include "core/lighting/air.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/text.h"
+#include "core/scene/validate.h"
+#include "core/spectrum/possible.h"
 #include "plugin/exr/read.h"
 
 namespace pelagic {
@@ -73,6 +75,13 @@ std::vector<Problem> check_sky(const Scene& scene) {
     } catch (const exr::ReadError& error) {
         return {sky_problem(scene, error.problem(), error.accepted())};
     }
+}
+
+std::vector<Problem> check_scene(const Scene& scene) {
+    std::vector<Problem> problems = check_sky(scene);
+    if (!validate(scene).empty()) return problems;
+    for (Problem& problem : impossible_waves(scene.sea)) problems.push_back(std::move(problem));
+    return problems;
 }
 
 std::string sky_content(const Scene& scene) {

@@ -15,6 +15,9 @@ namespace pelagic {
 // What is wrong with the picture that light.sky is the path of, as far as can be said without its pixels: the check
 // of named files that hosts pass to load_shot().
 std::vector<Problem> check_sky(const Scene& scene);
+// The same, and waves that no sea has (core/spectrum/possible.h), where the scene is valid but for them: what hosts check
+// of a shot.
+std::vector<Problem> check_scene(const Scene& scene);
 // The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
 // Throws std::invalid_argument, naming the key and the file, for a picture that can't be read or isn't one of a sky.
 Sky make_sky(const Scene& scene);

@@ -214,14 +214,14 @@ void add_scene(py::module_& module) {
         .def_static(
             "from_file",
             [](const std::filesystem::path& path) {
-                return std::make_shared<Scene>(load_shot(path, check_sky));
+                return std::make_shared<Scene>(load_shot(path, check_scene));
             },
             py::arg("path"),
             "The scene that a shot file describes. ShotError with every problem of the file.")
         .def_static(
             "from_text",
             [](const std::string& text, const std::filesystem::path& folder) {
-                return std::make_shared<Scene>(parse_shot(text, folder / "text", check_sky));
+                return std::make_shared<Scene>(parse_shot(text, folder / "text", check_scene));
             },
             py::arg("text"), py::arg("folder") = ".",
             "The scene that a shot file's text describes; paths in it are from this folder. ShotError with "

@@ -5,7 +5,7 @@
 
 #include "core/scene/names.h"
 #include "core/scene/text.h"
-#include "core/spectrum/possible.h"
+#include "core/scene/validate.h"
 #include "plugin/shot/bounds.h"
 #include "plugin/shot/ndbc.h"
 #include "plugin/shot/read_scene.h"
@@ -75,7 +75,7 @@ void find_sky(Reader& reader, const std::filesystem::path& folder, Light& light)
 
 }  // namespace
 
-Scene parse_shot(std::string_view text, const std::filesystem::path& file, const FilesCheck& check_files) {
+Scene parse_shot(std::string_view text, const std::filesystem::path& file, const SceneCheck& check_scene) {
     const std::string name = line_text(file.string());
     const auto place_text = [&](std::size_t line, std::size_t column) {
         return name + ':' + std::to_string(line) + ':' + std::to_string(column) + ": ";
@@ -96,14 +96,14 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     read_scene(reader, root, scene);
     load_measured(reader, file.parent_path(), scene.sea);
     find_sky(reader, file.parent_path(), scene.light);
-    for (Problem& problem : problems_of(scene)) reader.refuse_value(std::move(problem));
+    for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
     if (!reader.has_failed("light.sky"))
-        for (Problem& problem : check_files(scene)) reader.refuse_value(std::move(problem));
+        for (Problem& problem : check_scene(scene)) reader.refuse_value(std::move(problem));
     if (reader.problem_count() > 0) throw ShotError(reader.report());
     return scene;
 }
 
-Scene load_shot(const std::filesystem::path& file, const FilesCheck& check_files) {
+Scene load_shot(const std::filesystem::path& file, const SceneCheck& check_scene) {
     std::string text;
     try {
         text = read_text_file(file, kMostShotBytes);
@@ -111,7 +111,7 @@ Scene load_shot(const std::filesystem::path& file, const FilesCheck& check_files
         throw ShotError(line_text(shortened(file.string(), kMostOfPath)) + ": the shot file " + error.what() +
                         "; accepted: a TOML file of at most 16 MiB");
     }
-    return parse_shot(text, file, check_files);
+    return parse_shot(text, file, check_scene);
 }
 
 }  // namespace pelagic

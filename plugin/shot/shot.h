@@ -27,18 +27,18 @@ class ShotError : public std::runtime_error {
 
 inline constexpr std::size_t kMostShotBytes = std::size_t{16} << 20;  // 100 000 camera keys are 10 MiB
 
-// The problems of files that the scene names and whose formats this reader doesn't know: pictures of skies.
-// plugin/light has the check for hosts, check_sky().
-using FilesCheck = std::function<std::vector<Problem>(const Scene&)>;
+// The problems that this reader can't see: files that the scene names and whose formats it doesn't know, and seas that
+// can't be. plugin/light has the check for hosts, check_scene().
+using SceneCheck = std::function<std::vector<Problem>(const Scene&)>;
 
 // The scene that a shot file describes, a measured spectrum that it names included; it has passed validate(), and
 // the files that it names have been looked at. The file's first problems and the number of the others are collected
 // into one ShotError; of errors in the TOML itself the first.
-Scene load_shot(const std::filesystem::path& file, const FilesCheck& check_files);
+Scene load_shot(const std::filesystem::path& file, const SceneCheck& check_scene);
 
 // The same for a text that is already in memory: `file` is its name in messages, and the folder that it names
 // paths from.
-Scene parse_shot(std::string_view text, const std::filesystem::path& file, const FilesCheck& check_files);
+Scene parse_shot(std::string_view text, const std::filesystem::path& file, const SceneCheck& check_scene);
 
 // Help: every table and key, with its default, unit, what it accepts, what it does and what depends on it;
 // the words that the parser uses.

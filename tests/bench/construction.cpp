@@ -56,7 +56,7 @@ void sea_row(const Case& c, int repeats, int reference_repeats) {
 }
 
 Scene shot(const char* path) {
-    return load_shot(std::string(PELAGIC_SOURCE_DIR "/examples/") + path, check_sky);
+    return load_shot(std::string(PELAGIC_SOURCE_DIR "/examples/") + path, check_scene);
 }
 
 // A picture's set-up against the picture, as `pelagic render` makes it, with one sample a pixel. The light is

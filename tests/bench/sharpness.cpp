@@ -27,7 +27,7 @@ struct Shown {
 
 std::vector<Shown> shots() {
     const auto file = [](const char* path) {
-        return load_shot(std::string(PELAGIC_SOURCE_DIR "/examples/pictures/") + path, check_sky);
+        return load_shot(std::string(PELAGIC_SOURCE_DIR "/examples/pictures/") + path, check_scene);
     };
     // A gale against the light: the sun is ahead of the camera, 25° high.
     Scene gale;

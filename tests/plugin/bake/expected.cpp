@@ -31,7 +31,7 @@ std::string json_array(const float* values, std::size_t count) {
 }
 
 void write_expected(const std::string& shot_file, const std::string& file) {
-    const Scene scene = load_shot(shot_file, check_sky);
+    const Scene scene = load_shot(shot_file, check_scene);
     Frame<float> frame(std::make_shared<const Sea<float>>(plan_bake(scene)));
     const int quads = scene.surface.resolution;
     const auto rest = rest_points<float>({.per_side = quads + 1,

@@ -193,7 +193,7 @@ TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
                                             static_cast<std::size_t>(threads));
             const fs::path out = folder / std::to_string(threads);
             try {
-                const Scene scene = load_shot(folder / "shot.toml", check_sky);
+                const Scene scene = load_shot(folder / "shot.toml", check_scene);
                 const BakeReport report =
                     bake(scene, {.out = out, .frames = {}, .progress = {}, .cancel = nullptr});
                 ASSERT_EQ(report.done, report.total);
@@ -217,7 +217,7 @@ TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
             if (path.ends_with(".usda") && path.find("mesh/") == 0) expect_bounded(bytes);
         }
     }
-    EXPECT_GE(baked, kEach / 2) << "so many refusals test nothing";
+    EXPECT_GE(baked, kEach * 2 / 5) << "so many refusals test nothing";
 }
 
 // Ten batches of fifty, side by side under ctest.

@@ -169,7 +169,7 @@ TEST_F(Memory, APreviewOfAStormIsBounded) {
     const Peak peak =
         peak_of({"preview", shot, "--offscreen", folder() / "out.png", "--frame", "1", "--size", "640x360"});
     EXPECT_EQ(peak.status, 0);
-    EXPECT_LT(peak.kib, 2200000);
+    EXPECT_LT(peak.kib, 2300000);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ struct FootprintRange {
     double finest_m = 0.0, coarsest_m = 0.0;
 };
 
-// They hold for round footprints. One that is an ellipse shows less of each wave, but reads a cascade up to 1.2 of its
+// Bounds hold for round footprints. One that is an ellipse shows less of each wave, but reads a cascade up to 1.2 of its
 // lengths away (core/plan/taps.inl): ask for a region that is larger by so much.
 //
 // Made from a frame by whoever wants bounds; a frame of which nobody does pays nothing. It must not outlive

@@ -156,7 +156,8 @@ class DaylightAir final : public AirModel {
     // From half a kilometre up, where the sun is less than 0.8° lower at the horizon than below the eye, to the whole from
     // four on.
     static float by_place(double height_m) {
-        const double x = std::clamp((height_m - 500.0) / 3500.0, 0.0, 1.0);
+        const double x = std::clamp(
+            (height_m - kLightByPlaceFrom_m) / (kLightByPlaceWhole_m - kLightByPlaceFrom_m), 0.0, 1.0);
         return static_cast<float>(x * x * (3.0 - 2.0 * x));
     }
 

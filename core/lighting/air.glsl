@@ -1,7 +1,7 @@
 // The air before an eye: between it and the sea, where it takes light away and scatters light of the sun and the sky into the
 // ray, and above the horizon, where it is the sky. The includer defines
 //   const int kAirColumns, kAirRows        the table's size: three such pictures side by side, and below them
-//   const int kAirSkyRows                  rows of the sky
+//   const int kAirSkyRows                  rows of the sky, and then the two of place.glsl
 //   const int kAirHorizonRow               the row of the horizon's distance
 //   vec4 air_texel(int column, int row)    the table (air.h)
 //

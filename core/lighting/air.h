@@ -15,6 +15,10 @@
 
 namespace pelagic {
 
+// Heights of an eye [m] from which the light at places begins to be of their own sun, and from which it wholly is
+// (place.glsl).
+inline constexpr double kLightByPlaceFrom_m = 500.0, kLightByPlaceWhole_m = 4000.0;
+
 // Empty: there is no air.
 struct Air {
     static constexpr int kLayers = 3, kColumns = 32, kRows = 48, kHorizonRow = 39, kSkyRows = 64,

@@ -19,8 +19,6 @@
 namespace pelagic {
 namespace {
 
-constexpr double kSunRadius = 0.00465;  // [rad]
-
 // Haze: Ångström exponent and single-scattering albedo of particles over a sea with some land around (purely
 // marine: 0.5 and 0.99; continental: 1.3 and 0.93).
 constexpr double kHazeReference_um = 0.55, kHazeExponent = 1.0, kHazeAlbedo = 0.97;
@@ -177,8 +175,9 @@ class Atmosphere::Tables {
     bool sunlight(double radius, double cosine, BandValues& light) const {
         const double horizon = -horizon_distance(radius) / radius;  // cosine of its zenith angle
         double part = 1.0;
-        if (cosine < horizon + 2.0 * kSunRadius) {
-            part = part_above((std::asin(std::clamp(cosine, -1.0, 1.0)) - std::asin(horizon)) / kSunRadius);
+        if (cosine < horizon + 2.0 * kSunAngularRadius) {
+            part = part_above((std::asin(std::clamp(cosine, -1.0, 1.0)) - std::asin(horizon)) /
+                              kSunAngularRadius);
             if (part <= 0.0) return false;
         }
         light = transmittance(columns_(radius, cosine));

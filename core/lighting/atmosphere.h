@@ -24,7 +24,8 @@ namespace pelagic {
 
 // Of the model's spherical earth and of its air, of which 1e-6 lies higher.
 inline constexpr double kEarthRadius_km = 1e-3 * kEarthRadius_m, kAirTop_km = 100.0;
-inline constexpr double kHazeScale_km = 1.2;  // of height, in which haze thins out e-fold
+inline constexpr double kSunAngularRadius = 0.00465;  // of its disc [rad]
+inline constexpr double kHazeScale_km = 1.2;          // of height, in which haze thins out e-fold
 
 // A straight line of sight, without refraction. It ends at the latest on the ground or in space.
 struct SightLine {

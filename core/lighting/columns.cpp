@@ -31,12 +31,16 @@ double horizon_distance(double radius) {
     return std::sqrt(std::max(0.0, radius * radius - kEarth_km * kEarth_km));
 }
 
+std::array<double, 4> cubic_weights(double t) {
+    return {t * (t * (1.0 - 0.5 * t) - 0.5), t * t * (1.5 * t - 2.5) + 1.0, t * (t * (2.0 - 1.5 * t) + 0.5),
+            t * t * (0.5 * t - 0.5)};
+}
+
 Cubic::Cubic(double x, std::size_t size) {
     const std::size_t i = std::min(static_cast<std::size_t>(x), size - 2);
     const double t = x - static_cast<double>(i);
     nodes = {i > 0 ? i - 1 : 0, i, i + 1, std::min(i + 2, size - 1)};
-    weights = {t * (t * (1.0 - 0.5 * t) - 0.5), t * t * (1.5 * t - 2.5) + 1.0,
-               t * (t * (2.0 - 1.5 * t) + 0.5), t * t * (0.5 * t - 0.5)};
+    weights = cubic_weights(t);
 }
 
 Columns::Columns() : table_(kHeights * kDistances) {

@@ -25,7 +25,11 @@ double to_top(double radius, double cosine);
 // Distance to the horizon of the earth without its air [km].
 double horizon_distance(double radius);
 
-// Between the values of a table, at x in steps from its first: Catmull and Rom's cubic, which has no kinks. The first
+// Catmull and Rom's weights of the values at −1, 0, 1 and 2, for a place from 0 to 1: a cubic through the values, without
+// kinks between one and the next.
+std::array<double, 4> cubic_weights(double t);
+
+// Between the values of a table, at x in steps from its first, by those weights. The first
 // and the last value repeat past the ends.
 struct Cubic {
     Cubic(double x, std::size_t size);

@@ -7,8 +7,6 @@
 
 namespace pelagic {
 
-inline constexpr double kSunAngularRadius = 0.00465;  // [rad]
-
 // The part of the sun's disc above the horizon.
 struct Disc {
     glm::dvec3 radiance{0.0};    // mean over the whole disc, the part below the horizon counted as black

@@ -30,30 +30,33 @@ vec3 place_share(vec3 here, vec3 there, float most) { return min(here / max(ther
 SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance, float coverage, SeaLight light, PlaceView place) {
     float rise = light.sun_direction.z - place.to_sun.z;
     light.sun_direction = levelled(light.sun_direction, up);
-    if (place.by_place == 0.0f || up.z == 1.0f) return sea_radiance(to_eye, normal, slope_variance, coverage, light);
+    bool is_by_place = place.by_place > 0.0f && up.z < 1.0f;
+    vec3 share = vec3(1.0f);
+    vec3 more = vec3(0.0f);
+    if (is_by_place) {
+        float below = asin(clamp(place.to_sun.z, -1.0f, 1.0f));
+        float here = asin(clamp(levelled(place.to_sun, up).z, -1.0f, 1.0f));
+        here = mix(below, here, place.by_place);
+        vec4 sun_below = place_lookup(0, below);
+        vec4 sun_here = place_lookup(0, here);
+        vec4 sky_below = place_lookup(1, below);
+        vec4 sky_here = place_lookup(1, here);
+        vec3 sun_before = vec3(sun_below.x, sun_below.y, sun_below.z);
+        vec3 sun = vec3(sun_here.x, sun_here.y, sun_here.z);
+        vec3 sky_before = vec3(sky_below.x, sky_below.y, sky_below.z);
+        vec3 sky = vec3(sky_here.x, sky_here.y, sky_here.z);
 
-    float below = asin(clamp(place.to_sun.z, -1.0f, 1.0f));
-    float here = asin(clamp(levelled(place.to_sun, up).z, -1.0f, 1.0f));
-    here = mix(below, here, place.by_place);
-    vec4 sun_below = place_lookup(0, below);
-    vec4 sun_here = place_lookup(0, here);
-    vec4 sky_below = place_lookup(1, below);
-    vec4 sky_here = place_lookup(1, here);
-    vec3 sun_before = vec3(sun_below.x, sun_below.y, sun_below.z);
-    vec3 sun = vec3(sun_here.x, sun_here.y, sun_here.z);
-    vec3 sky_before = vec3(sky_below.x, sky_below.y, sky_below.z);
-    vec3 sky = vec3(sky_here.x, sky_here.y, sky_here.z);
-
-    vec3 towards = light.sun_direction + vec3(0.0f, 0.0f, sun_here.w - rise);
-    light.sun_direction = normalize(towards);
-    light.sun_radiance = light.sun_radiance * place_share(sun, sun_before, 1.0f) + max(sun - sun_before, vec3(0.0f));
-    light.sun_irradiance = light.sun_radiance * (kPi * square(light.sun_angular_radius) * max(light.sun_direction.z, 0.0f));
-    float most = 8.0f;
-    vec3 share = place_share(sky, sky_before, most);
-    vec3 more = max(sky - most * sky_before, vec3(0.0f));
-    light.sky_irradiance = light.sky_irradiance * share + more;
+        vec3 towards = light.sun_direction + vec3(0.0f, 0.0f, sun_here.w - rise);
+        light.sun_direction = normalize(towards);
+        light.sun_radiance = light.sun_radiance * place_share(sun, sun_before, 1.0f) + max(sun - sun_before, vec3(0.0f));
+        light.sun_irradiance = light.sun_radiance * (kPi * square(light.sun_angular_radius) * max(light.sun_direction.z, 0.0f));
+        float most = 8.0f;
+        share = place_share(sky, sky_before, most);
+        more = max(sky - most * sky_before, vec3(0.0f));
+        light.sky_irradiance = light.sky_irradiance * share + more;
+    }
     SeaTerms terms = sea_radiance(to_eye, normal, slope_variance, coverage, light);
-    if (kSky) {
+    if (kSky && is_by_place) {
         SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
         float clear = kWhitecaps ? 1.0f - clamp(coverage, 0.0f, 1.0f) : 1.0f;
         terms.sky = terms.sky * share +

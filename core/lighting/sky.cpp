@@ -22,6 +22,7 @@
 #include "core/lighting/air.h"
 #include "core/lighting/atmosphere.h"
 #include "core/lighting/colour.h"
+#include "core/lighting/columns.h"
 #include "core/lighting/daylight_disc.h"
 #include "core/lighting/sky_bake.h"
 #include "core/lighting/sunlight.h"
@@ -57,7 +58,7 @@ class ScatteredTable {
         const double y = std::clamp(std::abs(azimuth) / kPi, 0.0, 1.0) * kAzimuths;
         const int i = std::min(static_cast<int>(x), kElevations - 1),
                   j = std::min(static_cast<int>(y), kAzimuths - 1);
-        const std::array<double, 4> up = smooth_weights(x - i), across = smooth_weights(y - j);
+        const std::array<double, 4> up = cubic_weights(x - i), across = cubic_weights(y - j);
         Entry mixed;
         for (std::size_t b = 0; b < 4; ++b)
             for (std::size_t a = 0; a < 4; ++a) {
@@ -76,12 +77,6 @@ class ScatteredTable {
     struct Entry {
         glm::dvec3 by_air{0.0}, by_haze{0.0}, more{0.0};
     };
-
-    // Catmull and Rom's: without kinks, and through the table's own values.
-    static std::array<double, 4> smooth_weights(double t) {
-        return {t * (t * (1.0 - 0.5 * t) - 0.5), t * t * (1.5 * t - 2.5) + 1.0,
-                t * (t * (2.0 - 1.5 * t) + 0.5), t * t * (0.5 * t - 0.5)};
-    }
 
     // Past an end the table goes on as it came: mirrored at the sun's meridian, and at the horizon, where it is smooth in
     // the elevation, the square of the index.

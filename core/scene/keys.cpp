@@ -231,7 +231,8 @@ void add_surface(Built& out) {
             {.name = "kind",
              .help =
                  "what is baked: a square patch, or the projected grid of the camera, or "
-                 "that on a sphere that touches z = 0 at the origin. Pictures show the sea to the horizon, whatever stands here",
+                 "that on a sphere that touches z = 0 at the origin. Pictures show the sea to the horizon, whatever stands here; "
+                 "of a planet, with the camera's z as its height",
              .feeds = feeds(Feed::Surface, Feed::Mesh),
              .unbuilt_choices = {"near-far", "cage"}}),
         row<&Surface::size_m>({.name = "size_m",

@@ -18,7 +18,7 @@ std::vector<View> metered_views(const Scene& scene);
 // finite. Metered is the logarithmic mean of the luminance in those views: the sky without the sun's disc, and through the
 // air before it a sea that is at rest in the mean, on the earth's sphere where the shot's is, with the slopes that Cox
 // and Munk 1954 saw at the shot's wind. So nothing has to be rendered; a table of air for each height of the eye takes
-// some 20 ms. `sky` is the shot's own (make_sky()).
+// some 25 ms. `sky` is the shot's own (make_sky()).
 float shot_exposure(const Scene& scene, const Sky& sky, double stops = 0.0);
 
 }  // namespace pelagic

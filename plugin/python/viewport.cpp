@@ -77,6 +77,12 @@ struct GpuLight {
     int map_size = 0;
     std::vector<Uniform> uniforms;
     SkyAtlas atlas;
+    // What was metered last: hosts ask at each redraw, and metering takes tens of milliseconds.
+    struct Metered {
+        std::string made_from;
+        float exposure = 1.0f;
+    };
+    Metered metered{};
 };
 
 // The uniforms and the texture of the air before an eye; of none without a height.
@@ -339,12 +345,17 @@ void add_gpu_light(py::module_& module) {
             "air", &air_of, py::arg("height_m"),
             "(uniforms, air_table) of the air before an eye so high above the sea at rest [m]: uniforms of the sea's "
             "shader by name, and the texture air_table, float32 (height, width, 4), texels as they are. None: no air "
-            "before the sea, for views without an eye. Takes some milliseconds.")
+            "before the sea, for views without an eye. Takes some 25 ms.")
         .def(
             "exposure",
-            [](const GpuLight& self, const Scene& scene, double stops) {
-                require_valid(scene);
-                return shot_exposure(scene, self.sky, stops);
+            [](GpuLight& self, const Scene& scene, double stops) {
+                std::string made_from = canonical(scene) + std::to_string(stops);
+                if (made_from != self.metered.made_from) {
+                    require_valid(scene);
+                    const float exposure = shot_exposure(scene, self.sky, stops);
+                    self.metered = {std::move(made_from), exposure};
+                }
+                return self.metered.exposure;
             },
             py::arg("scene"), py::arg("stops") = 0.0,
             "The uniform exposure, of both shaders: that of a scene that this light serves, as Sky.exposure() has it.");

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/base/instruction_set.h"
+#include "core/lighting/air.h"
 #include "core/lighting/tone.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
@@ -33,13 +34,23 @@ float largest(glm::vec3 c) {
     return std::max({c.x, c.y, c.z});
 }
 
+// Whether some camera of the shot sees places whose sun is higher than that below it (core/lighting/place.glsl).
+bool sees_other_suns(const Scene& scene, const Sky& sky) {
+    const auto is_high = [](const glm::dvec3& position_m) { return position_m.z > kLightByPlaceFrom_m; };
+    return sky.air && scene.surface.earth_curvature &&
+           (is_high(scene.camera.position_m) ||
+            std::any_of(scene.camera.keys.begin(), scene.camera.keys.end(),
+                        [&](const CameraKey& key) { return is_high(key.position_m); }));
+}
+
 // Whether the sun's light, and all of the light, fits into halves: nothing that the sea sends back is
 // brighter than what falls on it, nor than a white surface under it.
 struct Ranges {
     exr::PixelType sun, whole;
 };
 
-Ranges ranges_of(const Sky& sky) {
+Ranges ranges_of(const Scene& scene, const Sky& sky) {
+    if (sees_other_suns(scene, sky)) return {.sun = exr::PixelType::Float, .whole = exr::PixelType::Float};
     const auto type = [](float most) {
         return most < kLargestHalf ? exr::PixelType::Half : exr::PixelType::Float;
     };
@@ -185,7 +196,7 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
     std::vector<glm::vec3> sum(picture.layers.size());
     std::transform(picture.layers.begin(), picture.layers.end(), sum.begin(), radiance_of);
 
-    const Ranges ranges = ranges_of(context.sky);
+    const Ranges ranges = ranges_of(context.scene, context.sky);
     exr::Image image{.width = picture.resolution.x, .height = picture.resolution.y, .channels = {}};
     // Rows from the top, where the writer counts from the bottom: from the last row backwards.
     const auto add = [&](std::span<const char* const> names, const float& first, std::ptrdiff_t pixel_bytes,

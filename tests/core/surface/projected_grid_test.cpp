@@ -401,8 +401,8 @@ TEST(ProjectedGrid, FootprintsAreDistancesAndPixels) {
             const glm::dvec2 cell_axis_m(grid.cell_axis_m[row * stride + column]);
             EXPECT_NEAR(glm::length(cell_axis_m) / largest_m, 1.0, 1e-4);
             EXPECT_LE(grid.cell_m[row * stride + column], 1.0001 * largest_m);
-            // Half a footprint outwards and half inwards span 0.6 of a pixel on the screen; off the axis less, but
-            // more than a third of a pixel within this lens.
+            // Half a footprint outwards and half inwards span 0.6 of a pixel on the screen; off the axis a little
+            // less or more.
             const glm::dvec2 along_m = 0.5 * glm::dvec2(grid.pixel_axis_m[row * stride + column]);
             const double half_m = glm::length(along_m);
             const auto screen = [&](glm::dvec2 q) {

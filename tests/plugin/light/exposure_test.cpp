@@ -28,24 +28,31 @@ Scene scene_in(Case light) {
     return scene;
 }
 
+// The first frame's pixels as they are shown.
+std::vector<glm::vec3> displayed(const Scene& scene) {
+    Renderer renderer(scene, render_options(scene), make_sky(scene), std::vector<int>{1});
+    Picture picture;
+    renderer.render(1, picture);
+    const float exposure = shot_exposure(scene, renderer.sky());
+    std::vector<glm::vec3> colours;
+    for (const SeaRadiance& pixel : picture.layers)
+        colours.push_back(display_colour(radiance_of(pixel), exposure));
+    return colours;
+}
+
 // Deep dusk, the last light, a hazy low sun, the empty shot and noon: none is black, none is white. Before, with the
 // exposure of the sky's irradiance alone: 0.01 at −4° in haze, 0.11 at 2°, 0.93 for the empty shot.
 TEST(Exposure, NoLightGivesABlackOrAWhitePicture) {
     for (const Case light :
          {Case{-4, 2}, Case{-4, 8}, Case{-1, 2}, Case{0.2, 8}, Case{2, 8}, Case{20, 3}, Case{60, 2}}) {
-        const Scene scene = scene_in(light);
-        Renderer renderer(scene, render_options(scene), make_sky(scene), std::vector<int>{1});
-        Picture picture;
-        renderer.render(1, picture);
-        const float exposure = shot_exposure(scene, renderer.sky());
+        const std::vector<glm::vec3> colours = displayed(scene_in(light));
         double sum = 0.0;
         int white = 0;
-        for (const SeaRadiance& pixel : picture.layers) {
-            const glm::vec3 shown = display_colour(radiance_of(pixel), exposure);
+        for (const glm::vec3 shown : colours) {
             sum += static_cast<double>(std::max({shown.x, shown.y, shown.z}));
             white += std::min({shown.x, shown.y, shown.z}) > 0.97f;
         }
-        const auto pixels = static_cast<double>(picture.layers.size());
+        const auto pixels = static_cast<double>(colours.size());
         const std::string which = std::to_string(light.elevation_deg) + " " + std::to_string(light.turbidity);
         EXPECT_GT(sum / pixels, 0.25) << which;
         EXPECT_LT(sum / pixels, 0.80) << which;
@@ -58,14 +65,9 @@ double shown_from(double height_m, Case light, bool down) {
     Scene scene = scene_in(light);
     scene.camera.position_m = {0.0, 0.0, height_m};
     scene.camera.look_at_m = {0.0, height_m, down ? 0.0 : 0.9 * height_m};
-    Renderer renderer(scene, render_options(scene), make_sky(scene), std::vector<int>{1});
-    Picture picture;
-    renderer.render(1, picture);
-    const float exposure = shot_exposure(scene, renderer.sky());
     double sum = 0.0;
     int shown = 0;
-    for (const SeaRadiance& pixel : picture.layers) {
-        const glm::vec3 colour = display_colour(radiance_of(pixel), exposure);
+    for (const glm::vec3 colour : displayed(scene)) {
         const auto value = static_cast<double>(std::max({colour.x, colour.y, colour.z}));
         sum += value;
         shown += value > 0.02;

@@ -105,7 +105,7 @@ TEST(PictureFiles, LayersAreInPlaceAndAddUp) {
     const RenderOptions options;
     for (const float sun : {100.0f, 1e6f}) {
         const Sky sky = some_sky(sun);
-        const PictureContext context{scene, options, sky, "0123456789abcdef"};
+        const PictureContext context{scene, options, sky, "0123456789abcdef", 1.0f};
         const Read file = read(encode_exr(context, picture, 12), resolution);
         EXPECT_EQ(file.channels.size(), 18u);
         EXPECT_EQ(file.fingerprint, "0123456789abcdef");
@@ -146,8 +146,26 @@ TEST(PictureFiles, HoldTheDiscsUpperLimb) {
     for (SeaRadiance& pixel : picture.layers) pixel.sky = sky.limb_high * sky.sun_radiance;
     const Scene scene;
     const RenderOptions options;
-    const Read file = read(encode_exr({scene, options, sky, ""}, picture, 1), resolution);
+    const Read file = read(encode_exr({scene, options, sky, "", 1.0f}, picture, 1), resolution);
     EXPECT_EQ(file.types.at("sky.G"), Imf::FLOAT);
+}
+
+// From high up the sun glitters where it stands higher than below the eye: night there says nothing of it.
+TEST(PictureFiles, HoldTheSunOfPlacesFarAway) {
+    const glm::ivec2 resolution(7, 5);
+    Picture picture = pattern(resolution);
+    for (SeaRadiance& pixel : picture.layers) pixel.sun = glm::vec3(1.3e5f);
+    const Sky sky = daylight_sky({.sun_elevation_deg = -2.0}, 64);
+    const RenderOptions options;
+    Scene scene;
+    scene.camera.position_m.z = 400e3;
+    EXPECT_NO_THROW(encode_exr({scene, options, sky, "", 1.0f}, picture, 1));
+    scene.camera.position_m.z = 4.0;
+    scene.camera.keys = {{.frame = 1, .position_m = {0.0, 0.0, 4.0}},
+                         {.frame = 9, .position_m = {0.0, 0.0, 1e5}}};
+    EXPECT_NO_THROW(encode_exr({scene, options, sky, "", 1.0f}, picture, 1));
+    scene.camera.keys.clear();
+    EXPECT_THROW(encode_exr({scene, options, sky, "", 1.0f}, picture, 1), std::invalid_argument);
 }
 
 // Whole is a picture with this fingerprint and all of its bytes: one that was cut short is made again.
@@ -156,7 +174,7 @@ TEST(PictureFiles, AreWholeWithTheirFingerprintAndTheirEnd) {
     const Scene scene;
     const RenderOptions options;
     const Sky sky = some_sky(100.0f);
-    const PictureContext context{scene, options, sky, "0123456789abcdef"};
+    const PictureContext context{scene, options, sky, "0123456789abcdef", 1.0f};
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("pelagic-pictures-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
@@ -185,7 +203,7 @@ TEST(PictureFiles, ShowEveryDamage) {
     const Scene scene;
     const RenderOptions options;
     const Sky sky = some_sky(100.0f);
-    const PictureContext context{scene, options, sky, "0123456789abcdef"};
+    const PictureContext context{scene, options, sky, "0123456789abcdef", 1.0f};
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("pelagic-damaged-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
@@ -258,7 +276,7 @@ TEST(PictureFiles, NameTheKeysThatTheyDependOn) {
     const Scene scene;
     const RenderOptions options;
     const Sky sky = some_sky(1.0f);
-    const std::string bytes = encode_exr({scene, options, sky, ""}, pattern(resolution), 1);
+    const std::string bytes = encode_exr({scene, options, sky, "", 1.0f}, pattern(resolution), 1);
     for (const Key& key : keys()) {
         if (!key.has_value()) continue;
         const bool is_given = !std::holds_alternative<std::monostate>(value_of(scene, key));
@@ -286,7 +304,7 @@ TEST(PictureFiles, HoldTheLayersThatAreAskedFor) {
     for (const PictureLayerRow& asked : kPictureLayers) {
         RenderOptions options;
         options.layers.reset().set(index(asked.layer));
-        const std::string bytes = encode_exr({scene, options, sky, ""}, picture, 1);
+        const std::string bytes = encode_exr({scene, options, sky, "", 1.0f}, picture, 1);
         const Read file = read(bytes, resolution);
         EXPECT_EQ(file.channels.size(), 4 + asked.components) << asked.name;  // with R, G, B and A
         EXPECT_EQ(file.channels.at("A").at(7), 0.5f);
@@ -303,7 +321,7 @@ TEST(PictureFiles, HoldTheLayersThatAreAskedFor) {
     for (const char* light : {"daylight", "skies/noon.exr"}) {
         scene.light.sky = light;
         const RenderOptions options;
-        const std::string bytes = encode_exr({scene, options, sky, ""}, picture, 1);
+        const std::string bytes = encode_exr({scene, options, sky, "", 1.0f}, picture, 1);
         MemoryStream stream(bytes);
         const Imf::InputFile file(stream);
         const auto& primaries =

@@ -282,7 +282,7 @@ std::size_t held_by(const Trains<T>& trains) {
     std::size_t bytes =
         of(trains.kx_cycles_per_m, trains.ky_cycles_per_m, trains.cycles_per_s, trains.start_cycles,
            trains.height_m, trains.horizontal_m, trains.wavelength_m, trains.alone, trains.before,
-           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength, trains.steepness2);
+           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength);
     for (const auto& amplitude : trains.amplitude) bytes += of(amplitude);
     return bytes;
 }

@@ -105,8 +105,9 @@ std::string explain(const Plan& plan) {
                 page += format("    %-18s ← %s (%s)\n", row.name,
                                field_list(fields_of(products(row.product)) & ~plan.dropped).c_str(), row.why);
         if (planned.query.products[index(Product::SlopeVariance)])
-            page += format("    %-18s   %.3g times that at rest, by area of sea\n", "",
-                           hidden_slope_gain(spectrum, plan.filter, planned.query.pixel_m.front(), plan.choppiness));
+            page += format(
+                "    %-18s   %.3g times that at rest, by area of sea\n", "",
+                hidden_slope_gain(spectrum, plan.filter, planned.query.pixel_m.front(), plan.choppiness));
     }
     if (plan.queries.empty()) page += "  none: no mesh and no maps are asked for\n";
     for (const PlannedOutput& output : plan.outputs)

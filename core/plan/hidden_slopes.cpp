@@ -30,9 +30,10 @@ double hidden_mean_square_slope(const DirectionalSpectrum& spectrum, const Footp
 double hidden_slope_gain(const DirectionalSpectrum& spectrum, const FootprintFilter& filter,
                          double footprint_m, double choppiness) {
     return 1.0 + 0.5 * slope_integral(spectrum, [&](double k) {
-               const double moved = choppiness * spectrum.dispersion().horizontal_ratio(k) * filter.weight(k, footprint_m);
-               return moved * moved;
-           });
+                     const double moved = choppiness * spectrum.dispersion().horizontal_ratio(k) *
+                                          filter.weight(k, footprint_m);
+                     return moved * moved;
+                 });
 }
 
 }  // namespace pelagic

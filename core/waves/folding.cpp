@@ -36,7 +36,8 @@ std::string percent_text(double share) {
 std::vector<std::string> trough_warning(const PreparedScene& prepared) {
     constexpr double kTroughs = 1000.0;
     const double depth_m = prepared.scene.sea.depth_m;
-    const double deepest_m = 0.25 * prepared.extent.significant_height_m * std::sqrt(2.0 * std::log(kTroughs));
+    const double deepest_m =
+        0.25 * prepared.extent.significant_height_m * std::sqrt(2.0 * std::log(kTroughs));
     if (!(deepest_m > depth_m)) return {};
     return {"one trough in a thousand is " + number_text(std::round(10.0 * deepest_m) / 10.0) +
             " m deep and would lie under the bed, in water of " + number_text(depth_m) +

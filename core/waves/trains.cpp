@@ -170,10 +170,11 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         factor(Field::VelocityY, omega * y * horizontal_m);
         factor(Field::VelocityZ, -omega * height_m);
 
-        const SpectralMoments alone = moments_of({.k = {k * x, k * y},
-                                            .energy = bin.energy(),
-                                            .omega = dispersion.omega(k),
-                                            .chop = height_m > 0.0 ? horizontal_m / (k * height_m) : 0.0});
+        const SpectralMoments alone =
+            moments_of({.k = {k * x, k * y},
+                        .energy = bin.energy(),
+                        .omega = dispersion.omega(k),
+                        .chop = height_m > 0.0 ? horizontal_m / (k * height_m) : 0.0});
         trains.alone.push_back(alone);
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));

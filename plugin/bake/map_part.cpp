@@ -127,7 +127,8 @@ class MapPart final : public OutputPart {
 
     // A tile's slopes are at rest: what carries them is the whole sea.
     VectorProduct hidden_product() const {
-        return VectorProduct::checked(output_.cascade ? Product::SlopeVarianceAtRest : Product::SlopeVariance);
+        return VectorProduct::checked(output_.cascade ? Product::SlopeVarianceAtRest
+                                                      : Product::SlopeVariance);
     }
 
     // Each level hides what its own texels are too coarse for, and shows the waves that carry it: the query's ladder, asked
@@ -138,12 +139,15 @@ class MapPart final : public OutputPart {
         slot.hidden.resize(footprints_m.size() - 1);
         for (std::size_t level = 1; level < footprints_m.size(); ++level) {
             const int n = exr::mip_level_size(n_, n_, static_cast<int>(level)).first;
-            const auto nearest = [&](int i) { return static_cast<std::size_t>((2l * i * n_ + n) / (2l * n)); };
+            const auto nearest = [&](int i) {
+                return static_cast<std::size_t>((2l * i * n_ + n) / (2l * n));
+            };
             const int side = output_.cascade ? 1 : n;
             state.level_rest.clear();
             for (int y = 0; y < side; ++y)
                 for (int x = 0; x < side; ++x)
-                    state.level_rest.push_back((*state.rest)[nearest(y) * static_cast<std::size_t>(n_) + nearest(x)]);
+                    state.level_rest.push_back(
+                        (*state.rest)[nearest(y) * static_cast<std::size_t>(n_) + nearest(x)]);
             const T footprint = static_cast<T>(footprints_m[level]);
             Points<T> points{.count = state.level_rest.size(), .rest_m = {state.level_rest.data()}};
             points.pixel_m = {&footprint, 0};
@@ -202,11 +206,11 @@ class MapPart final : public OutputPart {
             }
             case MapKind::SlopeVariance: {
                 const std::vector<glm::vec3>& full = slot.values.vectors(hidden_product());
-                exr::Header header =
-                    header_of(made_of, frame,
-                              {output_.cascade ? "xx, yy and xy of the slope variance that a texel hides, at rest"
-                                               : "xx, yy and xy of the slope variance that a texel hides",
-                               "1", full});
+                exr::Header header = header_of(
+                    made_of, frame,
+                    {output_.cascade ? "xx, yy and xy of the slope variance that a texel hides, at rest"
+                                     : "xx, yy and xy of the slope variance that a texel hides",
+                     "1", full});
                 // A tile's is the same all over a level: packed, nearly nothing.
                 if (output_.cascade) header.compression = exr::Compression::Zip;
                 std::vector<std::vector<glm::vec3>> alike;

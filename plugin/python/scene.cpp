@@ -250,9 +250,10 @@ void add_scene(py::module_& module) {
              "Every problem of the scene, a line each: KEY = VALUE: PROBLEM; accepted: WHAT IS. Empty: it "
              "can be "
              "planned.")
-        .def("warnings", &warnings_of,
-             "What an artist should know of a sea that can be planned, a sentence each: that much of the surface folds over "
-             "itself, that troughs reach the bed. Empty: nothing. ShotError for a scene that can't be.")
+        .def(
+            "warnings", &warnings_of,
+            "What an artist should know of a sea that can be planned, a sentence each: that much of the surface folds over "
+            "itself, that troughs reach the bed. Empty: nothing. ShotError for a scene that can't be.")
         .def(
             "significant_height_m", &significant_height_of,
             "4 times the root of the variance of the surface's height [m]: of its spectrum, without building a Sea.")

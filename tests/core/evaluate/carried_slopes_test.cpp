@@ -49,12 +49,14 @@ class HiddenHeights {
                 const double middle = 0.5 * (low + high);
                 (spectrum.arc(k, -kPi, middle) < wanted ? low : high) = middle;
             }
-            waves_.push_back({k * std::cos(low), k * std::sin(low), std::sqrt(2.0 * energy), kTwoPi * uniform(numbers)});
+            waves_.push_back(
+                {k * std::cos(low), k * std::sin(low), std::sqrt(2.0 * energy), kTwoPi * uniform(numbers)});
         }
     }
     double at(glm::dvec2 x) const {
         double sum = 0.0;
-        for (const Plane& wave : waves_) sum += wave.height_m * std::cos(wave.kx * x.x + wave.ky * x.y + wave.phase);
+        for (const Plane& wave : waves_)
+            sum += wave.height_m * std::cos(wave.kx * x.x + wave.ky * x.y + wave.phase);
         return sum;
     }
 
@@ -74,7 +76,8 @@ std::array<Bin, 20> by_compression(WaveModel model) {
     constexpr int kFacets = 20000;
     constexpr double kSide_m = 1e-5;
     const Scene scene = sea(model);
-    Query query = filtered(products(Product::Displacement, Product::SlopeVariance, Product::SlopeVarianceAtRest), 0.25);
+    Query query =
+        filtered(products(Product::Displacement, Product::SlopeVariance, Product::SlopeVarianceAtRest), 0.25);
     const auto frame = frame_of<double>(scene, {query}, 3.0);
     const auto rest = random_points<double>(2000.0, kFacets);
     std::vector<glm::dvec2> corners;
@@ -89,14 +92,16 @@ std::array<Bin, 20> by_compression(WaveModel model) {
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const auto corner = [&](std::size_t c) {
             const glm::dvec3 d = samples.vectors(Displacement)[3 * i + c];
-            return glm::dvec3(corners[3 * i + c] - rest[i], hidden.at(corners[3 * i + c])) + glm::dvec3(d.x, d.y, 0.0);
+            return glm::dvec3(corners[3 * i + c] - rest[i], hidden.at(corners[3 * i + c])) +
+                   glm::dvec3(d.x, d.y, 0.0);
         };
         const glm::dvec3 a = corner(1) - corner(0), b = corner(2) - corner(0);
         const double area = a.x * b.y - a.y * b.x;
         const double slope_x = (a.z * b.y - b.z * a.y) / area, slope_y = (b.z * a.x - a.z * b.x) / area;
-        const glm::dvec3 answer = samples.vectors(SlopeVariance)[3 * i], still = samples.vectors(SlopeVarianceAtRest)[3 * i];
-        facets.push_back({area / (kSide_m * kSide_m), slope_x * slope_x + slope_y * slope_y, answer.x + answer.y,
-                          still.x + still.y});
+        const glm::dvec3 answer = samples.vectors(SlopeVariance)[3 * i],
+                         still = samples.vectors(SlopeVarianceAtRest)[3 * i];
+        facets.push_back({area / (kSide_m * kSide_m), slope_x * slope_x + slope_y * slope_y,
+                          answer.x + answer.y, still.x + still.y});
     }
     std::erase_if(facets, [](const Facet& f) { return f.j < 0.1; });
     std::sort(facets.begin(), facets.end(), [](const Facet& a, const Facet& b) { return a.j < b.j; });
@@ -123,8 +128,9 @@ TEST(CarriedSlopes, AreThoseOfAFineMeshByCompression) {
             low_rest = std::min(low_rest, rest);
             high_rest = std::max(high_rest, rest);
         }
-        std::printf("    %s: hidden mss of a mesh over what is answered, by compression: %.2f … %.2f; at rest %.2f … %.2f\n",
-                    model == WaveModel::Fft ? "cascades" : "trains", low, high, low_rest, high_rest);
+        std::printf(
+            "    %s: hidden mss of a mesh over what is answered, by compression: %.2f … %.2f; at rest %.2f … %.2f\n",
+            model == WaveModel::Fft ? "cascades" : "trains", low, high, low_rest, high_rest);
         EXPECT_GT(high_rest, 1.2) << "the test has something to see";
         EXPECT_LT(low_rest, 0.9);
     }
@@ -137,7 +143,9 @@ TEST(CarriedSlopes, GainOverAreaAsExpected) {
         const double footprint_m = 0.25;
         const auto frame = frame_of<float>(
             scene,
-            {filtered(products(Product::JacobianMoments, Product::SlopeVariance, Product::SlopeVarianceAtRest), footprint_m)},
+            {filtered(
+                products(Product::JacobianMoments, Product::SlopeVariance, Product::SlopeVarianceAtRest),
+                footprint_m)},
             2.0);
         const auto samples = sample(frame, 0, random_points<float>(3000.0, 40000));
         double carried = 0.0, area = 0.0;
@@ -180,7 +188,8 @@ TEST(CarriedSlopes, AreTheTensorTransformed) {
                     const double j = (1.0 + dxx) * (1.0 + dyy) - dxy * dyx;
                     ASSERT_GT(j, 0.1);
                     // Columns of M⁻¹, rows of M⁻ᵀ.
-                    const glm::dvec2 one(glm::dvec2(1.0 + dyy, -dyx) / j), two(glm::dvec2(-dxy, 1.0 + dxx) / j);
+                    const glm::dvec2 one(glm::dvec2(1.0 + dyy, -dyx) / j),
+                        two(glm::dvec2(-dxy, 1.0 + dxx) / j);
                     const auto product = [&](glm::dvec2 a, glm::dvec2 b) {
                         return a.x * (rest.xx * b.x + rest.xy * b.y) + a.y * (rest.xy * b.x + rest.yy * b.y);
                     };
@@ -198,7 +207,8 @@ TEST(CarriedSlopes, AreFiniteWhereTheSurfaceFolds) {
         for (const float dyy : {0.0f, -1.0f, 1e3f})
             for (const float dxy : {0.0f, 1.0f, -1e3f}) {
                 const auto v = carried_slopes(rest, dxx, dyy, dxy, dxy);
-                ASSERT_TRUE(std::isfinite(v.xx) && std::isfinite(v.yy) && std::isfinite(v.xy)) << dxx << dyy << dxy;
+                ASSERT_TRUE(std::isfinite(v.xx) && std::isfinite(v.yy) && std::isfinite(v.xy))
+                    << dxx << dyy << dxy;
                 EXPECT_GE(v.xx, -1e-6f * v.yy);
                 EXPECT_GE(v.yy, -1e-6f * v.xx);
                 EXPECT_GE(v.xx * v.yy - v.xy * v.xy, -1e-4f * v.xx * v.yy - 1e-12f);

@@ -280,7 +280,8 @@ TEST(Ellipses, TurnWithTheWind) {
         const auto frame = frame_of<float>(scene, {ladder(products(Product::SlopeVarianceAtRest))}, 0.0);
         const double direction = (50.0 + turn_deg) * kPi / 180.0;
         const glm::vec2 axis_m = 4.0f * glm::vec2(std::cos(direction), std::sin(direction));
-        const glm::dvec3 v(ask<float>(frame, {glm::vec2(0.0f)}, {{0.7f, axis_m}}).vectors(SlopeVarianceAtRest)[0]);
+        const glm::dvec3 v(
+            ask<float>(frame, {glm::vec2(0.0f)}, {{0.7f, axis_m}}).vectors(SlopeVarianceAtRest)[0]);
         const double c = std::cos(turn_deg * kPi / 180.0), s = std::sin(turn_deg * kPi / 180.0);
         return glm::dvec3(c * c * v.x + 2.0 * c * s * v.z + s * s * v.y,
                           s * s * v.x - 2.0 * c * s * v.z + c * c * v.y,
@@ -311,7 +312,8 @@ TEST(Ellipses, HardOnesAreFinite) {
                         std::isfinite(answers.vectors(Normal)[i].z) &&
                         std::isfinite(answers.numbers(Coverage)[i]))
                 << i;
-            for (const glm::vec3 v : {answers.vectors(SlopeVariance)[i], answers.vectors(SlopeVarianceAtRest)[i]}) {
+            for (const glm::vec3 v :
+                 {answers.vectors(SlopeVariance)[i], answers.vectors(SlopeVarianceAtRest)[i]}) {
                 EXPECT_GE(v.x, 0.0f);
                 EXPECT_GE(v.x * v.y - v.z * v.z, -1e-9f);
             }

@@ -74,7 +74,8 @@ TEST(SlopeVariance, TurnsWithTheWind) {
     Scene scene;
     const auto at = [&](double direction_deg, double footprint_m) {
         scene.sea.wind_direction_deg = direction_deg;
-        const auto frame = frame_of<double>(scene, {filtered(products(Product::SlopeVarianceAtRest), footprint_m)});
+        const auto frame =
+            frame_of<double>(scene, {filtered(products(Product::SlopeVarianceAtRest), footprint_m)});
         return sample(frame, 0, std::vector<glm::dvec2>{{0.0, 0.0}}).vectors(SlopeVarianceAtRest)[0];
     };
     const auto all = at(0.0, 1e6);

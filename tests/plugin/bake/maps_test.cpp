@@ -178,7 +178,9 @@ TEST_F(BakedMaps, SlopeVarianceOfALevelIsTheQuerys) {
         const test::Plane texels = test::read_level(file, "R", level);
         const int n = 100 >> level;
         for (const int i : {0, n / 3, n - 1}) {
-            const auto at = [&](int t) { return -300.0f + 6.0f * std::round(static_cast<float>(t) * 100.0f / static_cast<float>(n)); };
+            const auto at = [&](int t) {
+                return -300.0f + 6.0f * std::round(static_cast<float>(t) * 100.0f / static_cast<float>(n));
+            };
             const glm::vec2 rest(at(i), at(n / 2));
             const float footprint_m = static_cast<float>(query.pixel_m[static_cast<std::size_t>(level)]);
             glm::vec3 expected(0.0f);
@@ -198,7 +200,8 @@ TEST_F(BakedMaps, SlopeVarianceOfATileIsAtRest) {
     const fs::path file = bake_map(MapKind::SlopeVariance, "tiles/sea.slope-variance.0.0001.exr");
     for (const int level : {0, 2}) {
         const auto texels = test::read_level(file, "R", level).values;
-        EXPECT_EQ(std::vector<float>(texels.size(), texels.front()), std::vector<float>(texels.begin(), texels.end()));
+        EXPECT_EQ(std::vector<float>(texels.size(), texels.front()),
+                  std::vector<float>(texels.begin(), texels.end()));
     }
 }
 

@@ -151,7 +151,7 @@ TEST_F(BakedMaps, SlopeVarianceOfACoarserLevelHidesMore) {
         const auto texels = test::read_level(file, "R", level).values;
         double mean = 0.0;
         for (const float xx : texels) mean += static_cast<double>(xx) / static_cast<double>(texels.size());
-        EXPECT_GE(mean, before);
+        EXPECT_GE(mean, (1.0 - 1e-6) * before);  // but for the rounding of the sum
         before = mean;
         // Carried by the waves that the level's texels show.
         const auto [least, most] = std::minmax_element(texels.begin(), texels.end());

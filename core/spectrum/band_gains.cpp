@@ -21,9 +21,12 @@ double passed(double wavelength_m, double edge_m) {
 double BandGains::of_energy(double k) const {
     const double wavelength_m = kTwoPi / k;
     double gain = 1.0;
-    for (const BandGain& band : bands_)
-        gain *= 1.0 + (band.gain - 1.0) * passed(wavelength_m, band.from_m) *
-                          (1.0 - passed(wavelength_m, band.to_m));
+    for (const BandGain& band : bands_) {
+        const double shortest_m = std::min(band.from_m, band.to_m),
+                     longest_m = std::max(band.from_m, band.to_m);
+        gain *= 1.0 + (band.gain - 1.0) * passed(wavelength_m, shortest_m) *
+                          (1.0 - passed(wavelength_m, longest_m));
+    }
     return gain * gain;
 }
 

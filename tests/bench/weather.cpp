@@ -14,8 +14,8 @@ namespace {
 using namespace pelagic;
 
 void slopes() {
-    std::printf("\nMean square slope, default sea\n  %-8s %8s %10s %8s %22s\n", "m/s", "mss", "Cox & Munk", "ratio",
-                "up / cross (observed)");
+    std::printf("\nMean square slope, default sea\n  %-8s %8s %10s %8s %22s\n", "m/s", "mss", "Cox & Munk",
+                "ratio", "up / cross (observed)");
     double worst = 0.0, least = 1e9, most = 0.0;
     for (double wind = 5.0; wind <= 20.0; wind += 2.5) {
         SeaState state;
@@ -30,8 +30,9 @@ void slopes() {
         least = std::min(least, up);
         most = std::max(most, up);
     }
-    std::printf("  at most %.0f %% off, target 15: %s; up / cross %.2f … %.2f, target 1.3 … 1.6: %s\n", 100.0 * worst,
-                worst <= 0.15 ? "met" : "missed", least, most, least >= 1.3 && most <= 1.6 ? "met" : "missed");
+    std::printf("  at most %.0f %% off, target 15: %s; up / cross %.2f … %.2f, target 1.3 … 1.6: %s\n",
+                100.0 * worst, worst <= 0.15 ? "met" : "missed", least, most,
+                least >= 1.3 && most <= 1.6 ? "met" : "missed");
 }
 
 double height_m(const SeaState& state) {
@@ -39,7 +40,8 @@ double height_m(const SeaState& state) {
 }
 
 void growth() {
-    std::printf("\nSignificant height [m], default sea; in brackets over the smaller of the two laws\n  %-8s", "m/s");
+    std::printf("\nSignificant height [m], default sea; in brackets over the smaller of the two laws\n  %-8s",
+                "m/s");
     for (const double fetch_km : {10.0, 30.0, 100.0, 300.0, 1000.0}) std::printf(" %11.0f km", fetch_km);
     double worst = 0.0;
     for (double wind = 5.0; wind <= 25.0; wind += 5.0) {

@@ -119,6 +119,8 @@ TEST(BandGains, CountWholeWithinAndNotAtAllOutside) {
     for (const double wavelength_m : {5.7, 7.0, 8.8})
         EXPECT_NEAR(gain_at(wavelength_m), 0.75, 1e-12);  // both
     for (const double wavelength_m : {11.3, 20.0, 35.0}) EXPECT_NEAR(gain_at(wavelength_m), 0.5, 1e-12);
+    const std::vector<BandGain> turned{{10.0, 2.0, 1.5}, {40.0, 5.0, 0.5}};  // edges in the other order
+    EXPECT_EQ(DirectionalSpectrum(SeaState{}, turned).m0(), gained.m0());
     EXPECT_NEAR(gain_at(2.0), 1.25, 1e-9) << "half of it at the edge itself";
     // Smooth: no step is larger than a quintic's steepest.
     for (double wavelength_m = 1.0; wavelength_m < 60.0; wavelength_m *= 1.001)

@@ -101,7 +101,7 @@ struct SeaState {
 
 // Waves of these lengths, times this.
 struct BandGain {
-    double from_m = 1.0, to_m = 10.0;  // wavelengths, from < to
+    double from_m = 1.0, to_m = 10.0;  // wavelengths at its edges, in either order
     double gain = 1.0;                 // of amplitudes, ≥ 0
 };
 

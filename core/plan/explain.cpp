@@ -155,10 +155,9 @@ std::string explain(const Plan& plan) {
             continue;
         }
         const std::size_t modes = lattice_modes(cascade.grid_radius());
-        page +=
-            format("     %zu modes, %s\n", modes,
-                   bytes_text(modes * sea_bytes_per_mode(plan.knobs.double_precision, plan.choppiness > 0.0))
-                       .c_str());
+        page += format(
+            "     %zu modes, %s\n", modes,
+            bytes_text(modes * sea_bytes_per_mode(plan.knobs.double_precision, plan.has_strain())).c_str());
         for (const Grid& grid : cascade.grids) {
             const std::size_t bytes =
                 grid.fields.count() * grid_bytes(grid.resolution, plan.knobs.double_precision);

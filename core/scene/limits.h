@@ -55,6 +55,10 @@ inline constexpr Range kTrains{1, 10000};
 inline constexpr Range kTrain_m{1e-3,
                                 1e6};  // the spectra end at a millimetre (core/spectrum/viscous_cutoff.h)
 
+inline constexpr Range kSeaMinusAir_c{-40.0, 40.0};
+inline constexpr Range kWhitecapAmount{0.0, 100.0};
+inline constexpr Range kBreakingFrom_m{0.0, 1e3};
+
 inline constexpr Range kSurfaceSize_m{0.01, 1e6};
 inline constexpr Range kSurfaceResolution{1, 8192};
 inline constexpr Range kCell_px{1.0, 256.0};

@@ -10,6 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/number.h"
 #include "core/base/random.h"
+#include "core/plan/breaking.h"
 #include "core/spectrum/gauss.h"
 #include "core/waves/loop.h"
 
@@ -88,12 +89,21 @@ double trochoid_factor(double steepness) {
     return 2.0 / (1.0 + std::sqrt(std::max(1.0 - steepness * steepness, 0.0)));
 }
 
+// The part of a train's shown strain that a weight leaves.
+template <class T>
+double strain_weight(const Trains<T>& trains, std::size_t i, double weight) {
+    const double most = static_cast<double>(trains.breaking[i]);
+    return most > weight ? weight / most : 1.0;
+}
+
 // A train's moments with its amplitudes multiplied by `weight`.
 template <class T>
 SpectralMoments weighted(const Trains<T>& trains, std::size_t i, double weight) {
-    const double q = steepness(trains, i);
-    SpectralMoments moments = trains.alone[i];
+    const double q = steepness(trains, i), strain = strain_weight(trains, i, weight);
+    SpectralMoments strains = trains.alone[i];
+    SpectralMoments moments = strains;
     moments *= weight * weight;
+    moments.take_strain(strains.scale_strain(strain * strain));
     const double slopes = trochoid_factor(weight * q) / trochoid_factor(q);
     for (double* slope : {&moments.xx, &moments.xy, &moments.yy}) *slope *= slopes;
     return moments;
@@ -146,6 +156,8 @@ template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
     const auto& [scene, spectrum, extent] = prepared;
     const double choppiness = scene.waves.choppiness, loop_s = scene.shot.sea_loop_s();
+    const FootprintFilter filter;
+    const Breaking breaking = breaking_of(scene, filter);
     const Dispersion& dispersion = spectrum.dispersion();
     Trains<T> trains;
     for (int i = 0; i < plan.count; ++i) {
@@ -156,7 +168,10 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
                                                             uniform(bits[0], bits[1]))
                                                 : 0.0;
         const double height_m = std::sqrt(2.0 * bin.energy());
-        const double horizontal_m = std::min(choppiness * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
+        const auto horizontal = [&](double by) {
+            return std::min(by * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
+        };
+        const double horizontal_m = horizontal(choppiness), strained_m = horizontal(breaking.choppiness);
         const double x = std::cos(theta), y = std::sin(theta);
         const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
 
@@ -177,9 +192,9 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         factor(Field::Dy, y * horizontal_m);
         factor(Field::SlopeX, k * x * height_m);
         factor(Field::SlopeY, k * y * height_m);
-        factor(Field::Dxx, -q * x * x);
-        factor(Field::Dyy, -q * y * y);
-        factor(Field::Dxy, -q * x * y);
+        factor(Field::Dxx, -k * strained_m * x * x);
+        factor(Field::Dyy, -k * strained_m * y * y);
+        factor(Field::Dxy, -k * strained_m * x * y);
         factor(Field::VelocityX, omega * x * horizontal_m);
         factor(Field::VelocityY, omega * y * horizontal_m);
         factor(Field::VelocityZ, -omega * height_m);
@@ -187,20 +202,29 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         SpectralMoments alone = moments_of({.k = {k * x, k * y},
                                             .energy = bin.energy(),
                                             .omega = dispersion.omega(k),
-                                            .chop = height_m > 0.0 ? horizontal_m / (k * height_m) : 0.0});
+                                            .chop = height_m > 0.0 ? strained_m / (k * height_m) : 0.0});
         for (double* slope : {&alone.xx, &alone.xy, &alone.yy}) *slope *= trochoid_factor(q);
+        // Of the strain, what the waves that break are shown with at best; the rest is hidden with those outside.
+        const bool breaks = wavelength_m > breaking.from_m;
+        trains.breaking.push_back(breaks ? static_cast<T>(filter.weight(k, breaking.footprint_m)) : T(0));
+        const double most = static_cast<double>(trains.breaking.back());
+        SpectralMoments unseen, seen = alone;
+        unseen.take_strain(alone);
+        trains.outside += unseen.scale_strain(breaks ? hidden_strain_part(most) : 0.0);
+        alone.take_strain(seen.scale_strain(most * most));
         trains.alone.push_back(alone);
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
         trains.steepness2.push_back(std::min(static_cast<T>(q * q), T(1)));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));
-        trains.outside +=
+        SpectralMoments beyond =
             beyond_train(moments(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1)), k,
                          dispersion.horizontal_ratio(k));
+        trains.outside += beyond.scale_strain(breaks ? breaking.choppiness * breaking.choppiness : 0.0);
     }
 
-    trains.outside += moments(spectrum, 0.0, kTwoPi / plan.longest_m);
-    trains.outside += moments(spectrum, kTwoPi / plan.shortest_m, std::numeric_limits<double>::infinity());
-    trains.outside.scale_strain(choppiness * choppiness);
+    trains.outside += moments_with_breaking(spectrum, 0.0, kTwoPi / plan.longest_m, breaking);
+    trains.outside += moments_with_breaking(spectrum, kTwoPi / plan.shortest_m,
+                                            std::numeric_limits<double>::infinity(), breaking);
     trains.before.resize(trains.count() + 1);
     for (std::size_t i = 0; i < trains.count(); ++i)
         (trains.before[i + 1] = trains.before[i]) += trains.alone[i];
@@ -236,6 +260,8 @@ SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, d
         const double slopes = hidden_slope_part(w, std::min(q * q, 1.0));
         SpectralMoments part = trains.alone[i];
         part *= hidden_strain_part(w);
+        SpectralMoments strains = trains.alone[i];
+        part.take_strain(strains.scale_strain(hidden_strain_part(strain_weight(trains, i, w))));
         part.xx = slopes * trains.alone[i].xx;
         part.xy = slopes * trains.alone[i].xy;
         part.yy = slopes * trains.alone[i].yy;

@@ -55,6 +55,10 @@ struct Trains {
     SpectralMoments
         outside;  // moments beyond the range, and of bins beyond their trains: hidden, never shown
 
+    // The most that the strain of those that break counts with (Breaking::footprint_m), of those that don't 0. The moments'
+    // strains are what that lets show; what it hides is outside.
+    std::vector<T> breaking;
+
     // `alone` and `from` again, as the vectorised query reads them.
     std::vector<HiddenMoments<T>> hidden_alone, hidden_from;
     std::vector<T> wavelength, steepness2;  // λ [m], (kH)²
@@ -67,7 +71,7 @@ struct Trains {
 template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan);
 
-// The moments of all trains and of what lies outside their range. Jacobian moments include choppiness². A
+// The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and include choppiness². A
 // train's slope variance along k̂ is (kh)²/(1 + √(1 − k²H²)): appendix A, extended to H ≠ h, without the
 // cancellation of its 1 − √(1 − k²h²).
 template <class T>

@@ -187,18 +187,16 @@ HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, cons
     }
     for (std::size_t i = zone.full(); i < zone.any(); ++i) {
         const V w = zone.weight(d, i, footprints.along(d, trains, i));
-        // Of what those that break show at best; the rest is in the sum of those outside.
+        // Of strain: of what those that break show at best; the rest is in the sum of those outside.
         const V most = hn::Set(d, trains.breaking[i]);
-        const V strain =
-            hidden_strain_part(Pack<D>(hn::IfThenElse(hn::Gt(most, w), hn::Div(w, most), hn::Set(d, T(1)))))
-                .v;
-        const V slope = hidden_slope_part(Pack<D>(w), Pack<D>(hn::Set(d, trains.steepness2[i]))).v;
-        const auto blends = zone.passes(d, i, footprint_m);  // else it is in the looked-up sum
-        const V slope_part = hn::IfThenElseZero(blends, slope),
-                strain_part = hn::IfThenElseZero(blends, strain);
+        const V strain_weight = hn::IfThenElse(hn::Gt(most, w), hn::Div(w, most), hn::Set(d, T(1)));
+        // Else it is in the looked-up sum.
+        const auto blends = zone.passes(d, i, footprint_m);
+        const V part = hn::IfThenElseZero(blends, hidden_part(Pack<D>(w)).v),
+                strain_part = hn::IfThenElseZero(blends, hidden_part(Pack<D>(strain_weight)).v);
         for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
-            sum[m] = hn::MulAdd(m < kHiddenSlopes ? slope_part : strain_part,
-                                hn::Set(d, trains.hidden_alone[i][m]), sum[m]);
+            sum[m] = hn::MulAdd(m < kHiddenSlopes ? part : strain_part, hn::Set(d, trains.hidden_alone[i][m]),
+                                sum[m]);
     }
     for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) hn::Store(sum[m], d, &hidden.moments[m][base]);
 }

@@ -78,17 +78,6 @@ double uniform(std::uint32_t word) {
     return static_cast<double>(word) * 0x1p-32;
 }
 
-template <class T>
-double steepness(const Trains<T>& trains, std::size_t i) {
-    return kTwoPi / trains.wavelength_m[i] * trains.horizontal_m[i];
-}
-
-// The slope variance of a trochoid relative to the sinusoid of the same amplitude (appendix A), for
-// amplitudes wh and wH.
-double trochoid_factor(double steepness) {
-    return 2.0 / (1.0 + std::sqrt(std::max(1.0 - steepness * steepness, 0.0)));
-}
-
 // The part of a train's shown strain that a weight leaves.
 template <class T>
 double strain_weight(const Trains<T>& trains, std::size_t i, double weight) {
@@ -96,16 +85,12 @@ double strain_weight(const Trains<T>& trains, std::size_t i, double weight) {
     return most > weight ? weight / most : 1.0;
 }
 
-// A train's moments with its amplitudes multiplied by `weight`.
+// A train's moments, times this.
 template <class T>
-SpectralMoments weighted(const Trains<T>& trains, std::size_t i, double weight) {
-    const double q = steepness(trains, i), strain = strain_weight(trains, i, weight);
-    SpectralMoments strains = trains.alone[i];
-    SpectralMoments moments = strains;
-    moments *= weight * weight;
-    moments.take_strain(strains.scale_strain(strain * strain));
-    const double slopes = trochoid_factor(weight * q) / trochoid_factor(q);
-    for (double* slope : {&moments.xx, &moments.xy, &moments.yy}) *slope *= slopes;
+SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part, double strain_part) {
+    SpectralMoments moments = trains.alone[i], strains = moments;
+    moments *= part;
+    moments.take_strain(strains.scale_strain(strain_part));
     return moments;
 }
 
@@ -203,18 +188,16 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
                                             .energy = bin.energy(),
                                             .omega = dispersion.omega(k),
                                             .chop = height_m > 0.0 ? strained_m / (k * height_m) : 0.0});
-        for (double* slope : {&alone.xx, &alone.xy, &alone.yy}) *slope *= trochoid_factor(q);
         // Of the strain, what the waves that break are shown with at best; the rest is hidden with those outside.
         const bool breaks = wavelength_m > breaking.from_m;
         trains.breaking.push_back(breaks ? static_cast<T>(filter.weight(k, breaking.footprint_m)) : T(0));
         const double most = static_cast<double>(trains.breaking.back());
         SpectralMoments unseen, seen = alone;
         unseen.take_strain(alone);
-        trains.outside += unseen.scale_strain(breaks ? hidden_strain_part(most) : 0.0);
+        trains.outside += unseen.scale_strain(breaks ? hidden_part(most) : 0.0);
         alone.take_strain(seen.scale_strain(most * most));
         trains.alone.push_back(alone);
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
-        trains.steepness2.push_back(std::min(static_cast<T>(q * q), T(1)));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));
         SpectralMoments beyond =
             beyond_train(moments(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1)), k,
@@ -245,8 +228,11 @@ template <class T>
 SpectralMoments resolved(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m) {
     const Passing pass = passing(trains, filter, footprint_m);
     SpectralMoments sum = trains.before[pass.full];
-    for (std::size_t i = pass.full; i < pass.any; ++i)
-        sum += weighted(trains, i, filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m));
+    for (std::size_t i = pass.full; i < pass.any; ++i) {
+        const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
+        const double strain = strain_weight(trains, i, w);
+        sum += part_of(trains, i, w * w, strain * strain);
+    }
     return sum;
 }
 
@@ -256,16 +242,7 @@ SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, d
     SpectralMoments sum = trains.from[pass.any];
     for (std::size_t i = pass.full; i < pass.any; ++i) {
         const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
-        const double q = steepness(trains, i);
-        const double slopes = hidden_slope_part(w, std::min(q * q, 1.0));
-        SpectralMoments part = trains.alone[i];
-        part *= hidden_strain_part(w);
-        SpectralMoments strains = trains.alone[i];
-        part.take_strain(strains.scale_strain(hidden_strain_part(strain_weight(trains, i, w))));
-        part.xx = slopes * trains.alone[i].xx;
-        part.xy = slopes * trains.alone[i].xy;
-        part.yy = slopes * trains.alone[i].yy;
-        sum += part;
+        sum += part_of(trains, i, hidden_part(w), hidden_part(strain_weight(trains, i, w)));
     }
     return sum;
 }

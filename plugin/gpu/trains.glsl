@@ -2,8 +2,8 @@
 // makes. Only the trains that pass the footprint's filter are read.
 //
 // Texels of train i, in column i: 0: kx, ky [cycles/m], each as (high, low); 1: amplitudes of ηx, ηy, Dxx,
-// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m], squared steepness, and the most that
-// its strain counts with in breaking; 4, 5: its moments; 6, 7: the summed
+// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m], and the most that its strain counts with in breaking; 4, 5: its
+// moments; 6, 7: the summed
 // moments of trains i … last.
 uniform sampler2D train_table;
 uniform sampler2D train_cycles;  // phases at the origin, at the frame's time
@@ -73,15 +73,14 @@ TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
     for (int i = 0; i < end; ++i) {
         vec2 wave = train_sine_cosine(i, x);
         vec4 train = texelFetch(train_table, ivec2(i, 3), 0);
-        float most = train.z * wave.y;
+        float most = train.y * wave.y;
         if (i >= full) {
             float w = train_weight(train.x, footprint_along(i, footprint));
-            most = min(w, train.z) * wave.y;
+            most = min(w, train.y) * wave.y;
             wave *= w;
-            float slope_part = hidden_slope_part(w, train.y);
-            float strain_part = hidden_strain_part(train.z > w ? w / train.z : 1.0);
-            low += vec4(slope_part, slope_part, slope_part, strain_part) *
-                   texelFetch(train_table, ivec2(i, 4), 0);
+            float part = hidden_part(w);
+            float strain_part = hidden_part(train.y > w ? w / train.y : 1.0);
+            low += vec4(part, part, part, strain_part) * texelFetch(train_table, ivec2(i, 4), 0);
             high += strain_part * texelFetch(train_table, ivec2(i, 5), 0);
         }
         vec4 amplitude = texelFetch(train_table, ivec2(i, 1), 0);

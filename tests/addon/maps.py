@@ -115,7 +115,8 @@ for kind in KINDS:
     for path, arrays in [(f"maps/maps.{kind}.0003.exr", patch),
                          *((f"tiles/maps.{kind}.{i}.0003.exr", tile) for i, tile in enumerate(tiles))]:
         with checking(f"{path} is {product} to Blender's images and to Cycles"):
-            expected = arrays[product] if arrays[product].ndim == 3 else np.repeat(arrays[product][..., None], 3, axis=-1)
+            values = arrays[product if product in arrays else f"{product}_at_rest"]  # a tile's are
+            expected = values if values.ndim == 3 else np.repeat(values[..., None], 3, axis=-1)
             assert np.abs(expected).max() > 1e-4 or product == "slope_variance"  # a tile may show all of its own waves
             image = bpy.data.images.load(str(folder / path))
             image.colorspace_settings.name = "Non-Color"
@@ -129,5 +130,5 @@ for kind in KINDS:
             np.testing.assert_allclose(through_cycles("Alpha", image), 1.0, atol=1e-5)
             if product == "coverage":
                 recorded = files[path]["whitecap_coverage"]
-                # The record's mean counts by the area of sea: foam lies where it is squeezed together, so that it is less.
-                assert 0.5 * recorded < in_cycles.mean() < 1.5 * recorded and recorded < seen[..., :3].mean()
+                # The record counts by the area of sea, which is less than that at rest where there is foam.
+                assert recorded < in_cycles.mean() < 2.5 * recorded

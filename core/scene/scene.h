@@ -162,6 +162,8 @@ struct Water {
 // [effects]
 struct Effects {
     bool whitecaps = true;
+    double foam_structure = 1.0;  // 0: smooth coverage … 1: lace
+    double foam_streaks = 0.5;    // 0 … 1, along the wind
     bool spray = false;
     double spray_gain = 1.0;
 };

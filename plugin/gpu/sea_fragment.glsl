@@ -8,7 +8,8 @@ void main() {
         write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), vec3(0.0), 1.0);
         return;
     }
-    PixelAnswer answer = query_pixel(rest_m, pixel_on_mesh());
+    vec3 pixel = pixel_on_mesh();
+    PixelAnswer answer = query_pixel(rest_m, pixel);
     if (kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), vec3(0.0), 1.0);
         return;
@@ -17,8 +18,12 @@ void main() {
     vec3 up = vec3(vertical.x, vertical.y, vertical.z);
     vec3 to_eye = levelled(-pixel_ray(), up);
     vec3 hidden = vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy);
+    SeenFoam foam = plain_foam(0.0);
+    if (kWhitecaps)
+        foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look), rest_m,
+                         pixel, answer.coverage, 1.0, 0.0);
     SeaTerms terms =
-        sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, hidden, mesh_variance_along()), hidden, answer.coverage,
+        sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, hidden, mesh_variance_along()), hidden, foam,
                         SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
                                  water_reflectance),
                         PlaceView(air_to_sun, air_by_place));

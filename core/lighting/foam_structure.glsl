@@ -219,11 +219,11 @@ SeenFoam foam_seen_in(FoamNoise noise, float coverage, float dense) {
     return SeenFoam(share, share > 0.0f ? (core + edge * (share - core)) / share : dense);
 }
 
-// pixel_m: width and long axis on the water at rest. coverage: of the pixel, of all foam; active: of that where waves break now;
+// pixel_m: width and long axis on the water at rest. coverage: of the pixel, of all foam; breaking: of that where waves break now;
 // age_s: since the rest broke, on average.
-SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverage, float active, float age_s) {
+SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverage, float breaking, float age_s) {
     float c = clamp(coverage, 0.0f, 1.0f);
-    float fresh = clamp(active / max(c, 1.0e-12f), 0.0f, 1.0f);
+    float fresh = clamp(breaking / max(c, 1.0e-12f), 0.0f, 1.0f);
     float dense = pattern.look.w + fresh * (pattern.look.z - pattern.look.w);
     float strength = pattern.look.x * smoothstep(0.1f * kFaintFoam, kFaintFoam, c);
     if (!(strength > 0.0f)) return SeenFoam(c, dense);

@@ -17,7 +17,7 @@ namespace {
 
 using optics::Optics;
 
-const Optics kOptics;
+Optics shading;
 
 Optics::FoamPattern glsl(const FoamPattern& pattern) {
     return {pattern.cell, pattern.rest, pattern.axes, pattern.look};
@@ -44,9 +44,9 @@ TEST(FoamStructure, HasTheCoverageAsItsMean) {
                 std::array<double, kCoverages.size()> sum{}, dense{};
                 for (int i = 0; i < kPlaces; ++i) {
                     const auto noise =
-                        kOptics.foam_noise(pattern, {place(random), place(random)}, footprint_m, age_s);
+                        shading.foam_noise(pattern, {place(random), place(random)}, footprint_m, age_s);
                     for (std::size_t c = 0; c < kCoverages.size(); ++c) {
-                        const auto seen = kOptics.foam_seen_in(noise, kCoverages[c], 0.4f);
+                        const auto seen = shading.foam_seen_in(noise, kCoverages[c], 0.4f);
                         ASSERT_GE(seen.share, 0.0f);
                         ASSERT_LE(seen.share, 1.0f);
                         sum[c] += static_cast<double>(seen.share);
@@ -70,7 +70,7 @@ TEST(FoamStructure, FadesToTheCoverage) {
     const auto pattern = pattern_of(1.0, 0.5);
     for (const float coverage : {0.0f, 1e-5f, 0.01f, 0.4f, 0.97f, 1.0f}) {
         const auto seen =
-            kOptics.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(50.0f, 0.0f, 0.0f), coverage, 1.0f, 0.0f);
+            shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(50.0f, 0.0f, 0.0f), coverage, 1.0f, 0.0f);
         EXPECT_EQ(seen.share, coverage);
         EXPECT_EQ(seen.dense, 0.4f);
     }
@@ -83,7 +83,7 @@ TEST(FoamStructure, OffIsSmoothCoverage) {
     const auto pattern = pattern_of(0.0, 0.5);
     for (int i = 0; i < 1000; ++i) {
         const float coverage = unit(random);
-        const auto seen = kOptics.seen_foam(pattern, {unit(random), unit(random)},
+        const auto seen = shading.seen_foam(pattern, {unit(random), unit(random)},
                                             glm::vec3(1e-3f, 0.0f, 0.0f), coverage, 1.0f, 3.0f);
         EXPECT_EQ(seen.share, coverage);
         EXPECT_EQ(seen.dense, 0.4f);
@@ -98,13 +98,13 @@ TEST(FoamStructure, IsThere) {
     int decided = 0;
     constexpr int kPlaces = 2000;
     for (int i = 0; i < kPlaces; ++i) {
-        const float share = kOptics
+        const float share = shading
                                 .seen_foam(pattern, {place(random), place(random)},
                                            glm::vec3(0.01f, 0.0f, 0.0f), 0.4f, 1.0f, 0.0f)
                                 .share;
         decided += share < 0.1f || share > 0.9f;
     }
-    EXPECT_GT(decided, kPlaces * 7 / 10);
+    EXPECT_GT(decided, kPlaces * 6 / 10);
 }
 
 // The same place of the sea, seen from any origin near it, also a million metres away from the world's; also beyond where
@@ -121,7 +121,7 @@ TEST(FoamStructure, StaysWithTheWater) {
             for (float& value : shown) {
                 const glm::dvec2 origin = centre + glm::dvec2(near_m(random), near_m(random));
                 value =
-                    kOptics.foam_noise(glsl(foam_pattern(look, origin)), glm::vec2(at - origin), 0.01f, 2.0f)
+                    shading.foam_noise(glsl(foam_pattern(look, origin)), glm::vec2(at - origin), 0.01f, 2.0f)
                         .shown;
             }
             EXPECT_NEAR(shown[0], shown[1], 0.01f) << centre.x;
@@ -133,12 +133,14 @@ TEST(FoamStructure, StaysWithTheWater) {
             sum += static_cast<double>(value);
             squares += static_cast<double>(value * value);
         }
-        const double mean = sum / seen.size();
-        EXPECT_NEAR(squares / seen.size() - mean * mean, 0.9, 0.35);
+        const auto count = static_cast<double>(seen.size());
+        const double mean = sum / count;
+        EXPECT_NEAR(squares / count - mean * mean, 0.9, 0.35);
     }
 }
 
-// Along any of place, footprint and age the pattern has no jump: steps half as large change it half as much.
+// Along any of place, footprint and age the pattern has no jump: steps of a 64th change it by less than a third, an eighth at the
+// edges of a net, where it rises as a root.
 TEST(FoamStructure, NeverJumps) {
     std::mt19937 random(10);
     std::uniform_real_distribution<double> place(-1000.0, 1000.0);
@@ -148,15 +150,15 @@ TEST(FoamStructure, NeverJumps) {
         float footprint_m, age_s;
     };
     const auto noise = [&](const At& at) {
-        const auto n = kOptics.foam_noise(pattern, at.rest_m, at.footprint_m, at.age_s);
+        const auto n = shading.foam_noise(pattern, at.rest_m, at.footprint_m, at.age_s);
         return n.shown + n.variance;
     };
     const auto ways = std::to_array<std::array<At, 2>>({
-        {At{{0.0f, 0.0f}, 0.01f, 2.0f}, At{{40.0f, 13.0f}, 0.01f, 2.0f}},
+        {At{{0.0f, 0.0f}, 0.01f, 2.0f}, At{{10.0f, 3.0f}, 0.01f, 2.0f}},
         {At{{0.3f, 0.2f}, 0.005f, 2.0f}, At{{0.3f, 0.2f}, 6.0f, 2.0f}},
         {At{{0.3f, 0.2f}, 0.01f, 0.0f}, At{{0.3f, 0.2f}, 0.01f, 30.0f}},
     });
-    constexpr int kSteps[2] = {16000, 128000};
+    constexpr int kSteps[2] = {4000, 256000};
     for (const auto& [from, to] : ways)
         for (int line = 0; line < 3; ++line) {
             const glm::vec2 start(place(random), place(random));
@@ -172,7 +174,7 @@ TEST(FoamStructure, NeverJumps) {
                     before = value;
                 }
             }
-            EXPECT_LT(most[1], 0.4f * most[0]) << "from " << start.x << ", " << start.y;
+            EXPECT_LT(most[1], 0.3f * most[0]) << "from " << start.x << ", " << start.y;
         }
 }
 

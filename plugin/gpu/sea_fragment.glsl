@@ -17,13 +17,13 @@ void main() {
     EarthPoint vertical = earth_up(rest_m.x, rest_m.y, curvature_per_m);
     vec3 up = vec3(vertical.x, vertical.y, vertical.z);
     vec3 to_eye = levelled(-pixel_ray(), up);
-    vec3 hidden = vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy);
     SeenFoam foam = plain_foam(0.0);
     if (kWhitecaps)
         foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look), rest_m,
                          pixel, answer.coverage, 1.0, 0.0);
     SeaTerms terms =
-        sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, hidden, mesh_variance_along()), hidden, foam,
+        sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
+                        answer.slope_variance, foam,
                         SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
                                  water_reflectance),
                         PlaceView(air_to_sun, air_by_place));

@@ -59,6 +59,10 @@ inline constexpr Range kTrains{1, 10000};
 inline constexpr Range kTrain_m{1e-3,
                                 1e6};  // the spectra end at a millimetre (core/spectrum/viscous_cutoff.h)
 
+inline constexpr Range kSeaMinusAir_c{-40.0, 40.0};
+inline constexpr Range kWhitecapAmount{0.0, 100.0};
+inline constexpr Range kBreakingFrom_m{0.0, 1e3};
+
 inline constexpr Range kSurfaceSize_m{0.01, 1e6};
 inline constexpr Range kSurfaceResolution{1, 8192};
 inline constexpr Range kCell_px{1.0, 256.0};
@@ -70,6 +74,8 @@ inline constexpr Range kImageResolution{1, 65536};
 
 inline constexpr Range kSunElevation_deg{-90.0, 90.0};
 inline constexpr Range kVisibility_km{0.1, 1000.0};
+inline constexpr Range kFoamStructure{0.0, 1.0};
+inline constexpr Range kFoamStreaks{0.0, 1.0};
 inline constexpr Range kTurbidity{1.7, 10.0};            // from the clearest air that there is to haze
 inline constexpr Range kChlorophyll_mg_m3{0.01, 100.0};  // from the clearest gyres to a bloom
 inline constexpr Range kMapResolution{1, 8192};

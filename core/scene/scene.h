@@ -19,6 +19,7 @@ namespace pelagic {
 
 enum class SpectrumKind { PiersonMoskowitz, Jonswap, Jonswap1973, Tma, Elfouhaily, Omega2, Phillips, File };
 enum class ShortWaves { Elfouhaily, None };
+enum class WhitecapLaw { Monahan1980, Monahan1986, Callaghan2008 };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
@@ -170,6 +171,12 @@ struct Water {
 // [effects]
 struct Effects {
     bool whitecaps = true;
+    WhitecapLaw whitecap_law = WhitecapLaw::Monahan1980;
+    double sea_minus_air_c = 0.0;  // temperature of the sea less the air's, with Monahan1986
+    double whitecap_amount = 1.0;  // ≥ 0, times the law
+    double breaking_from_m = 1.0;  // the shortest waves that break; 0: all do
+    double foam_structure = 1.0;   // 0: smooth coverage … 1: lace
+    double foam_streaks = 0.5;     // 0 … 1, along the wind
     bool spray = false;
     double spray_gain = 1.0;
 };

@@ -17,6 +17,7 @@ Uniform vector(const char* name, const glm::vec3& value) {
 std::vector<Uniform> query_uniforms(const SeaLayout& layout) {
     std::vector<Uniform> uniforms{
         number("whitecap_threshold", layout.sea().whitecap_threshold()),
+        number("breaking_footprint_m", layout.sea().plan().breaking.footprint_m),
         {"finest_m", 2,
          glm::vec4(static_cast<float>(layout.cells().footprints_m.front()),
                    static_cast<float>(layout.pixels().footprints_m.front()), 0.0f, 0.0f)}};
@@ -44,6 +45,13 @@ std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water) {
             vector("sun_high", disc.high),
             vector("sky_irradiance", sky.sky_irradiance),
             vector("water_reflectance", water.reflectance)};
+}
+
+std::vector<Uniform> foam_uniforms(const FoamPattern& pattern) {
+    return {vector("foam_pattern_cell", pattern.cell),
+            vector("foam_pattern_rest", pattern.rest),
+            {"foam_pattern_axes", 4, pattern.axes},
+            {"foam_pattern_look", 4, pattern.look}};
 }
 
 std::vector<Uniform> air_uniforms(const Air& air) {

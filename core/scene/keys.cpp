@@ -370,6 +370,20 @@ void add_effects_and_quality(Built& out) {
             {.name = "whitecaps",
              .help = "foam where waves break; off, no output has coverage and none is computed",
              .feeds = feeds(Feed::Foam)}),
+        row<&Effects::foam_decay_s>(
+            {.name = "foam_decay_s",
+             .help =
+                 "how long the foam that breaking leaves lives, to 1/e of it; 0: foam only where waves break now",
+             .unit = "s",
+             .range = limits::kFoamDecay_s,
+             .soft = SoftRange{0.0, 10.0},
+             .feeds = feeds(Feed::Foam)}),
+        row<&Effects::foam_drift>(
+            {.name = "foam_drift",
+             .help = "how fast the wind carries that foam along, as a share of its speed",
+             .range = limits::kFoamDrift,
+             .soft = SoftRange{0.0, 0.05},
+             .feeds = feeds(Feed::Foam)}),
         row<&Effects::spray>({.name = "spray",
                               .help = "droplets over breaking crests",
                               .feeds = feeds(Feed::Volumes),

@@ -55,6 +55,9 @@ inline constexpr Range kTrains{1, 10000};
 inline constexpr Range kTrain_m{1e-3,
                                 1e6};  // the spectra end at a millimetre (core/spectrum/viscous_cutoff.h)
 
+inline constexpr Range kFoamDecay_s{0.0, 30.0};  // a history of a thousand steps; 0.5 … 8 s are observed
+inline constexpr Range kFoamDrift{0.0, 1.0};
+
 inline constexpr Range kSurfaceSize_m{0.01, 1e6};
 inline constexpr Range kSurfaceResolution{1, 8192};
 inline constexpr Range kCell_px{1.0, 256.0};

@@ -162,6 +162,8 @@ struct Water {
 // [effects]
 struct Effects {
     bool whitecaps = true;
+    double foam_decay_s = 0.0;  // e-folding time of what breaking leaves; 0: foam is only where waves break
+    double foam_drift = 0.02;   // of the wind's speed, along the wind
     bool spray = false;
     double spray_gain = 1.0;
 };

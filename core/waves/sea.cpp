@@ -11,12 +11,15 @@
 #include "core/base/constants.h"
 #include "core/plan/mode_lattice.h"
 #include "core/spectrum/cell_energies.h"
+#include "core/waves/breaking_rate.h"
 #include "core/waves/level_sums.h"
 #include "core/waves/mode_kernels.h"
 #include "core/waves/whitecaps.h"
 
 namespace pelagic {
 namespace {
+
+constexpr double kBreakingEnd = kTwoPi / 1.0;  // rad/m
 
 // Columns that a task builds: enough for its sums and arrays to be worth making.
 constexpr int kBlockColumns = 16;
@@ -88,7 +91,7 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
         total_ = moments(spectrum, 0.0, std::numeric_limits<double>::infinity());
         total_.scale_strain(choppiness * choppiness);
     }
-    whitecap_threshold_ = calibrated_threshold(total_, scene.sea.wind_speed_mps, plan_.knobs.third_moment);
+    calibrate_whitecaps();
 
     for (const PlannedQuery& planned : plan_.queries) {
         const std::size_t levels = planned.pixel_levels.size();
@@ -108,6 +111,22 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
     Progress progress(watch, plan_);
     for (int c = 0; c < static_cast<int>(plan_.cascades.size()); ++c)
         cascades_.push_back(build(c, table, progress));
+}
+
+template <class T>
+void Sea<T>::calibrate_whitecaps() {
+    const bool third = plan_.knobs.third_moment;
+    FoamLife life;
+    if (plan_.foam)
+        life = {.rate_per_s = plan_.trains ? breaking_rate(trains_, kBreakingEnd)
+                                           : breaking_rate(plan_.from->spectrum, kBreakingEnd),
+                .lasting_s = plan_.foam->weight(0.0, plan_.foam->window_s).foam_s};
+    whitecap_threshold_ = calibrated_threshold(total_, plan_.from->scene.sea.wind_speed_mps, third, life);
+    if (!plan_.foam || !std::isfinite(whitecap_threshold_)) return;
+    const auto j = jacobian_moments<double>(
+        0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
+    foam_left_per_s_ = life.left_per_s(breaking_deviate(j, whitecap_threshold_, third));
+    residual_coverage_ = pelagic::residual_coverage(j, whitecap_threshold_, third, life);
 }
 
 template <class T>

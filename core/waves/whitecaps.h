@@ -53,10 +53,43 @@ inline double observed_coverage(double wind_speed_mps) {
     return std::min(2.95e-6 * std::pow(std::max(wind_speed_mps, 0.0), 3.52), 0.99);
 }
 
+// How foam lives, for its statistics.
+struct FoamLife {
+    double rate_per_s = 0.0;  // √(Var(dJ/dt)/Var(J)), of the waves that break
+    double lasting_s = 0.0;   // ∫ of the share that is left over the foam's age
+
+    // What one breaking leaves, on average: half of what broke is residual foam just after.
+    static constexpr double kLeft = 0.5;
+
+    // What breaking leaves in a second where it goes on: kLeft/d, d being the mean time that J stays below the threshold
+    // at a point of the water. By Rice 1944: the share of time over the rate of crossings, both of the Gaussian whose
+    // deviate at the threshold is y.
+    double left_per_s(double y) const {
+        const double share = 0.5 * std::erfc(-y / std::sqrt(2.0));
+        const double crossings_per_s = rate_per_s / kTwoPi * std::exp(-0.5 * y * y);
+        return share > 0.0 ? kLeft * crossings_per_s / share : 0.0;
+    }
+};
+
+// The standard normal deviate at which J < threshold has the share of points at rest that it has.
+inline double breaking_deviate(const JacobianMoments<double>& j, double threshold, bool third_moment) {
+    const double sigma = std::sqrt(j.variance);
+    const double z = std::clamp((threshold - j.mean) / sigma, -kFarthestDeviate, kFarthestDeviate);
+    return third_moment ? whitecaps_detail::to_normal(z, j.third / (j.variance * sigma)).y : z;
+}
+
+// What is left of what broke, over the whole sea and before it is limited to 1.
+inline double residual_coverage(const JacobianMoments<double>& j, double threshold, bool third_moment,
+                                const FoamLife& life) {
+    const double y = breaking_deviate(j, threshold, third_moment);
+    return life.left_per_s(y) * life.lasting_s * 0.5 * std::erfc(-y / std::sqrt(2.0));
+}
+
 // The threshold ε, below 1, at which the whole sea, all waves of the spectrum included, has the coverage observed at
 // this wind. −∞ (no foam) without wind or without convergence. `third_moment`: as coverage() will be called.
-inline double calibrated_threshold(const SpectralMoments& all_waves, double wind_speed_mps,
-                                   bool third_moment) {
+// Where foam lives, what breaks now and what is left of what broke have that coverage together.
+inline double calibrated_threshold(const SpectralMoments& all_waves, double wind_speed_mps, bool third_moment,
+                                   const FoamLife& life = {}) {
     const auto j = jacobian_moments<double>(
         0.0, 0.0, 0.0, {all_waves.xxxx, all_waves.xxxy, all_waves.xxyy, all_waves.xyyy, all_waves.yyyy});
     const double w = observed_coverage(wind_speed_mps);
@@ -66,7 +99,9 @@ inline double calibrated_threshold(const SpectralMoments& all_waves, double wind
     double low = 0.0, high = 1.0;
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        (coverage(j, middle, third_moment) < w ? low : high) = middle;
+        const double active = coverage(j, middle, third_moment);
+        const double residual = life.lasting_s > 0.0 ? residual_coverage(j, middle, third_moment, life) : 0.0;
+        (active + std::min(residual, 1.0) * (1.0 - active) < w ? low : high) = middle;
     }
     return high;
 }

@@ -8,10 +8,12 @@
 #include <glm/ext/vector_double1.hpp>
 #include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "core/base/precision.h"
+#include "core/effects/foam_history.h"
 #include "core/lighting/air.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
@@ -56,7 +58,9 @@ class RendererOf final : public Impl {
           water_(make_water(scene_)),
           sea_(std::make_shared<const Sea<T>>(plan, watch)),
           frame_(sea_),
-          grid_options_(projected_grid_options(*plan.from)) {}
+          grid_options_(projected_grid_options(*plan.from)) {
+        if (plan.foam) foam_.emplace(sea_);
+    }
 
     const Plan& plan() const override { return sea_->plan(); }
     const Sky& sky() const override { return sky_; }
@@ -129,6 +133,21 @@ class RendererOf final : public Impl {
         if (sky_.air && (air_.empty() || view_.position_m.z != height_m))
             air_ = sky_.air->seen_from(view_.position_m.z);
         lay_out_grid();
+        prepare_foam(scene_.shot.time_s(moment));
+    }
+
+    // Of all that the picture shows, so that its parts don't each go through the earlier times.
+    void prepare_foam(double time_s) {
+        if (!foam_) return;
+        foam_->set(time_s);
+        const std::vector<T> pixel_m(grid_.pixel_m.begin(), grid_.pixel_m.end());
+        const std::vector<glm::vec<2, T>> axis_m(grid_.pixel_axis_m.begin(), grid_.pixel_axis_m.end());
+        foam_->prepare(Points<T>{.origin_m = grid_.origin_m,
+                                 .count = rest_.size(),
+                                 .rest_m = {rest_.data()},
+                                 .pixel_m = {pixel_m.data()},
+                                 .pixel_axis_m = {axis_m.data()}},
+                       kQuery);
     }
 
     void lay_out_grid() {
@@ -257,13 +276,19 @@ class RendererOf final : public Impl {
         find_places(first_row);
         ProductSet wanted = plan().queries[kQuery].query.products;
         wanted &= ~products(Product::Position, Product::Velocity);  // the triangles have them
-        runner_.run(frame_, kQuery,
-                    Points<T>{.origin_m = grid_.origin_m,
-                              .count = count,
-                              .rest_m = {batch_.rest.data()},
-                              .pixel_m = {batch_.pixel_m.data()},
-                              .pixel_axis_m = {batch_.pixel_axis_m.data()}},
-                    wanted, batch_.answers);
+        const Points<T> points{.origin_m = grid_.origin_m,
+                               .count = count,
+                               .rest_m = {batch_.rest.data()},
+                               .pixel_m = {batch_.pixel_m.data()},
+                               .pixel_axis_m = {batch_.pixel_axis_m.data()}};
+        runner_.run(frame_, kQuery, points, wanted, batch_.answers);
+        if (!foam_) return;
+        batch_.foam_active.resize(count);
+        batch_.foam_age_s.resize(count);
+        foam_->add(points, kQuery,
+                   {.coverage = {batch_.answers.numbers(Product::Coverage).data()},
+                    .active = {batch_.foam_active.data()},
+                    .age_s = {batch_.foam_age_s.data()}});
     }
 
     void light_sea() {
@@ -423,7 +448,9 @@ class RendererOf final : public Impl {
             for (const PictureLayer layer :
                  {PictureLayer::Position, PictureLayer::Normal, PictureLayer::SlopeVariance})
                 set(layer, glm::vec3(0.0f));
-            set(PictureLayer::Coverage, glm::vec1(0.0f));
+            for (const PictureLayer layer :
+                 {PictureLayer::Coverage, PictureLayer::FoamActive, PictureLayer::FoamAge})
+                set(layer, glm::vec1(0.0f));
             if (needs_motion(options_.layers))
                 set_motion(motion.of({view_.direction(seen_at(first_row, sample)), 0.0}, glm::dvec3(0.0)));
             return;
@@ -447,6 +474,11 @@ class RendererOf final : public Impl {
             from_level(glm::dvec3(batch_.answers.vectors(Product::Normal)[i]), glm::dvec3(batch_.up[i])));
         set(PictureLayer::SlopeVariance, batch_.answers.vectors(Product::SlopeVariance)[i]);
         set(PictureLayer::Coverage, glm::vec1(coverage.empty() ? 0.0f : coverage[i]));
+        // Foam that doesn't live is all of waves that break now.
+        set(PictureLayer::FoamActive, glm::vec1(foam_              ? batch_.foam_active[i]
+                                                : coverage.empty() ? 0.0f
+                                                                   : coverage[i]));
+        set(PictureLayer::FoamAge, glm::vec1(foam_ ? batch_.foam_age_s[i] : 0.0f));
     }
 
     static constexpr int kQuery = 0;  // the plan's only one
@@ -457,6 +489,7 @@ class RendererOf final : public Impl {
     WaterBody water_;
     std::shared_ptr<const Sea<T>> sea_;
     Frame<T> frame_;
+    std::optional<FoamHistory<T>> foam_;
     ProjectedGridOptions grid_options_;
     View view_;
     Air air_;  // before that view's eye

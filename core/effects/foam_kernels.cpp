@@ -1,0 +1,110 @@
+#include "core/effects/foam_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/effects/foam_kernels.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target first: it includes this file once for each instruction set.
+#include <hwy/highway.h>
+
+#include "core/base/pack-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelagic {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {  // names are this file's own
+
+#include "core/waves/whitecaps.inl"
+
+using D = hn::ScalableTag<float>;
+using N = Pack<D>;
+using Half = hn::Rebind<std::uint16_t, D>;
+using Whole = hn::RebindToUnsigned<D>;
+
+void Deviates(const float* mean, const float* variance, const float* third, float threshold,
+              bool third_moment, std::span<float> y) {
+    const D d;
+    constexpr float kLeastVariance = 1e-6f;  // where no breaking wave is hidden, Φ is a step
+    for (std::size_t i = 0; i < y.size(); i += hn::Lanes(d)) {
+        const N v = maximum(N(hn::LoadU(d, variance + i)), N(kLeastVariance)), sigma = square_root(v);
+        N z = (N(threshold) - N(hn::LoadU(d, mean + i))) / sigma;
+        z = minimum(maximum(z, N(-kFarthestDeviate)), N(kFarthestDeviate));
+        if (third_moment) z = whitecaps_detail::to_normal(z, N(hn::LoadU(d, third + i)) / v / sigma).y;
+        z = minimum(maximum(z, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
+        hn::StoreU(z.v, d, y.data() + i);
+    }
+}
+
+// Φ(y) and its integral, y Φ(y) + φ(y).
+struct Normal {
+    N below, integral;
+};
+HWY_INLINE Normal NormalOf(N y) {
+    const N below = N(0.5) * complementary_error(y * N(-0.70710678118654752440));
+    return {below, y * below + N(0.39894228040143267794) * exponential(N(-0.5) * y * y)};
+}
+
+// The mean of Φ where y goes from a to b evenly.
+HWY_INLINE N MeanBetween(N a, const Normal& at_a, N b, const Normal& at_b) {
+    constexpr float kLevel = 0.02f;  // nearer, the difference of the integrals has too few digits
+    const N way = b - a;
+    const auto is_level = magnitude(way) < N(kLevel);
+    const N mean = (at_b.integral - at_a.integral) / select<D>(is_level, N(1), way);
+    return select<D>(is_level, N(0.5) * (at_a.below + at_b.below), mean);
+}
+
+// y between the samples by a cubic through the four: breaking is shorter than a step.
+void Share(const float* const y[4], std::span<std::uint16_t> share) {
+    const D d;
+    const Half half;
+    const Whole whole;
+    for (std::size_t i = 0; i < share.size(); i += hn::Lanes(d)) {
+        const auto at = [&](int sample) HWY_ATTR { return N(hn::LoadU(d, y[sample] + i)); };
+        const N a = at(1), b = at(2);
+        N middle = N(9.0 / 16.0) * (a + b) - N(1.0 / 16.0) * (at(0) + at(3));
+        middle = minimum(maximum(middle, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
+        const Normal at_a = NormalOf(a), at_b = NormalOf(b), at_middle = NormalOf(middle);
+        N mean = N(0.5) * (MeanBetween(a, at_a, middle, at_middle) + MeanBetween(middle, at_middle, b, at_b));
+        mean = minimum(maximum(mean, N(0)), N(1));
+        const auto bits = hn::Add(hn::BitCast(whole, mean.v), hn::Set(whole, 0x8000u));
+        const auto upper = hn::BitCast(hn::RebindToSigned<Whole>(), hn::ShiftRight<16>(bits));
+        hn::StoreU(hn::DemoteTo(half, upper), half, share.data() + i);
+    }
+}
+
+void Sum(std::span<const FoamShares> shares, std::span<float> foam, std::span<float> age) {
+    const D d;
+    const Half half;
+    const Whole whole;
+    for (std::size_t i = 0; i < foam.size(); i += hn::Lanes(d)) {
+        auto foam_sum = hn::Zero(d), age_sum = hn::Zero(d);
+        for (const FoamShares& of : shares) {
+            const auto bits = hn::ShiftLeft<16>(hn::PromoteTo(whole, hn::LoadU(half, of.share + i)));
+            const auto share = hn::BitCast(d, bits);
+            foam_sum = hn::MulAdd(share, hn::Set(d, of.foam), foam_sum);
+            age_sum = hn::MulAdd(share, hn::Set(d, of.age), age_sum);
+        }
+        hn::StoreU(foam_sum, d, foam.data() + i);
+        hn::StoreU(age_sum, d, age.data() + i);
+    }
+}
+
+FoamKernels Table() {
+    return {&Deviates, &Share, &Sum};
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace pelagic
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pelagic {
+HWY_EXPORT(Table);
+
+FoamKernels foam_kernels() {
+    return HWY_DYNAMIC_DISPATCH(Table)();
+}
+
+}  // namespace pelagic
+#endif

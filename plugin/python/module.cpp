@@ -1,5 +1,7 @@
 // The Python module `pelagic`: thin, because the work is core's. Arrays are numpy's, exceptions Python's, and
 // long work lets other Python threads run.
+#include <pybind11/numpy.h>
+
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "plugin/files/files.h"
@@ -41,7 +43,14 @@ void refuse_objects_without_a_value(const py::module_& module) {
     });
 }
 
+// pybind11 imports numpy when the first array is made. In a daemon thread that may be while the program ends: Python
+// would then end the thread in the middle of our C++, which has no answer to that.
+void import_numpy() {
+    const py::array_t<float> first(0);
+}
+
 PYBIND11_MODULE(pelagic, module) {
+    import_numpy();
     module.doc() =
         "An open sea: a moving surface, and what the surface hides below its own resolution.\n\n"
         "    scene = pelagic.Scene.from_file(\"shot.toml\")\n"

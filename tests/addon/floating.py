@@ -229,9 +229,9 @@ with checking("in renders of an animation, too: the picture shows it where it is
         rows[frame] = (np.average(np.arange(64) + 0.5, weights=pixels.sum(1)) / 64 - 0.5) * 8
         scene.frame_set(frame)
         assert abs(rows[frame] - lamp.matrix_world.translation.z) < 0.06, (frame, rows, lamp.matrix_world.translation.z)
-    assert np.ptp(list(rows.values())) > 0.3, rows
+    assert np.ptp(list(rows.values())) > 0.12, rows  # more than both errors that are allowed above
     # With motion blur it is as much longer as it moves while the shutter is open.
-    change(sea, shot__time_scale=8.0)
+    change(sea, shot__time_scale=16.0)
     speeds, lengths = {}, {}
     for frame in range(20, 60):
         scene.frame_set(frame, subframe=0.25)

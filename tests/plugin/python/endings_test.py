@@ -184,6 +184,11 @@ class AtTheEnd(unittest.TestCase):
             for _ in range(3):
                 self.end_of(work)
 
+    def test_numpy_is_imported_with_the_module(self):
+        """Later it would be within our C++, and a thread that the program's end meets there takes the program with it."""
+        program = "import sys, pelagic; sys.exit('numpy.core.multiarray' not in sys.modules)"
+        self.assertEqual(subprocess.run([sys.executable, "-c", program], env=os.environ, timeout=120).returncode, 0)
+
 
 ARGUMENTS = arguments()
 

@@ -21,6 +21,7 @@ namespace {
 constexpr std::size_t kNodes = FoamPlan::kTileNodes, kStride = FoamPlan::kTileStride;
 constexpr int kSide = FoamPlan::kTileCells + 1;
 constexpr std::size_t kPart = 256;  // points
+constexpr int kSamples = 6;         // that an interval is known by: from two before it to two after it
 
 // Of a division whose divisor is positive.
 std::size_t modulo(std::int64_t n, std::size_t by) {
@@ -61,7 +62,7 @@ struct FoamHistory<T>::Level {
 template <class T>
 struct FoamHistory<T>::Tile {
     Tile(const Place& at, std::size_t kept)
-        : place(at), shares(kept * kStride), deviates(4 * kStride), foam(2 * kStride) {}
+        : place(at), shares(kept * kStride), deviates(kSamples * kStride), foam(2 * kStride) {}
 
     std::span<float> residual() { return {foam.data(), kNodes}; }
     std::span<float> age() { return {foam.data() + kStride, kNodes}; }
@@ -71,9 +72,9 @@ struct FoamHistory<T>::Tile {
 
     Place place;
     Buffer<std::uint16_t> shares;  // of interval n at n modulo their number
-    Buffer<float> deviates;        // of sample n at n modulo 4
+    Buffer<float> deviates;        // of sample n at n modulo kSamples
     Buffer<float> foam;            // what add() reads, at made_at
-    // Shares of intervals begin … end − 1 are there; samples up to end + 1 were taken.
+    // Shares of intervals begin … end − 1 are there; samples up to end + 2 were taken.
     std::int64_t begin = 0, end = 0, next = 0;
     double made_at = 0.0;
     bool is_made = false;
@@ -317,21 +318,21 @@ void FoamHistory<T>::make(std::vector<Place>& places) {
     });
 }
 
-// Takes the samples that the tiles lack. The interval after sample n is known by samples n − 1 … n + 2.
+// Takes the samples that the tiles lack. The interval after sample n is known by samples n − 2 … n + 3.
 template <class T>
 void FoamHistory<T>::advance(const std::vector<Tile*>& tiles) {
     const auto kept = static_cast<std::int64_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
-    std::int64_t from = last_ + 3;
+    std::int64_t from = last_ + 4;
     for (Tile* tile : tiles) {
         const bool holds_first = tile->begin <= first_ && first_ >= tile->end - kept && first_ <= tile->end;
         if (!holds_first) {
             tile->begin = tile->end = first_;
-            tile->next = first_ - 1;
+            tile->next = first_ - 2;
         }
         from = std::min(from, tile->next);
     }
     std::vector<Tile*> due;
-    for (std::int64_t n = from; n <= last_ + 2; ++n)
+    for (std::int64_t n = from; n <= last_ + 3; ++n)
         for (int l = 0; l < FoamPlan::kLevels; ++l) {
             due.clear();
             for (Tile* tile : tiles)
@@ -363,17 +364,18 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
         third[i] = static_cast<float>(moments[i].z);
     }
     const auto deviates = [&](std::int64_t sample) {
-        return tile.deviates.data() + modulo(sample, 4) * kStride;
+        return tile.deviates.data() + modulo(sample, kSamples) * kStride;
     };
     kernels_.deviates(mean.data(), variance.data(), third.data(),
                       static_cast<float>(sea_->whitecap_threshold()), sea_->plan().knobs.third_moment,
                       {deviates(n), kNodes});
     tile.next = n + 1;
-    const std::int64_t interval = n - 2;
+    const std::int64_t interval = n - 3;
     if (interval < tile.end) return;
-    const float* const four[4] = {deviates(n - 3), deviates(n - 2), deviates(n - 1), deviates(n)};
+    const float* const six[kSamples] = {deviates(n - 5), deviates(n - 4), deviates(n - 3),
+                                        deviates(n - 2), deviates(n - 1), deviates(n)};
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
-    kernels_.share(four, {tile.shares.data() + modulo(interval, kept) * kStride, kNodes});
+    kernels_.share(six, {tile.shares.data() + modulo(interval, kept) * kStride, kNodes});
     tile.end = interval + 1;
 }
 

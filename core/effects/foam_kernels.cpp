@@ -53,15 +53,16 @@ HWY_INLINE N MeanBetween(N a, const Normal& at_a, N b, const Normal& at_b) {
     return select<D>(is_level, N(0.5) * (at_a.below + at_b.below), mean);
 }
 
-// y between the samples by a cubic through the four: breaking is shorter than a step.
-void Share(const float* const y[4], std::span<std::uint16_t> share) {
+// y in the middle by the polynomial through all six: breaking is shorter than a step.
+void Share(const float* const y[6], std::span<std::uint16_t> share) {
     const D d;
     const Half half;
     const Whole whole;
     for (std::size_t i = 0; i < share.size(); i += hn::Lanes(d)) {
         const auto at = [&](int sample) HWY_ATTR { return N(hn::LoadU(d, y[sample] + i)); };
-        const N a = at(1), b = at(2);
-        N middle = N(9.0 / 16.0) * (a + b) - N(1.0 / 16.0) * (at(0) + at(3));
+        const N a = at(2), b = at(3);
+        N middle =
+            N(150.0 / 256.0) * (a + b) - N(25.0 / 256.0) * (at(1) + at(4)) + N(3.0 / 256.0) * (at(0) + at(5));
         middle = minimum(maximum(middle, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
         const Normal at_a = NormalOf(a), at_b = NormalOf(b), at_middle = NormalOf(middle);
         N mean = N(0.5) * (MeanBetween(a, at_a, middle, at_middle) + MeanBetween(middle, at_middle, b, at_b));

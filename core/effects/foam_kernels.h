@@ -18,8 +18,8 @@ struct FoamKernels {
     // y of Φ(y) = P(J < threshold), by node, limited to ± kFarthestFoamDeviate. Arrays as long as y's, or Buffers.
     void (*deviates)(const float* mean, const float* variance, const float* third, float threshold,
                      bool third_moment, std::span<float> y);
-    // The mean of Φ(y) over the interval between the second of four deviates, a step apart, and the third.
-    void (*share)(const float* const y[4], std::span<std::uint16_t> share);
+    // The mean of Φ(y) over the interval between the third of six deviates, a step apart, and the fourth.
+    void (*share)(const float* const y[6], std::span<std::uint16_t> share);
     // Σ foam · share and Σ age · share, in the order given.
     void (*sum)(std::span<const FoamShares> shares, std::span<float> foam, std::span<float> age);
 };

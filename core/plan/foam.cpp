@@ -14,7 +14,7 @@ int FoamPlan::intervals() const {
 
 std::size_t FoamPlan::tile_bytes() const {
     const auto kept = static_cast<std::size_t>(intervals() + kSpareIntervals);
-    return kTileStride * (kept * sizeof(std::uint16_t) + 6 * sizeof(float));
+    return kTileStride * (kept * sizeof(std::uint16_t) + 8 * sizeof(float));
 }
 
 FoamPlan::Weight FoamPlan::weight(double from_s, double to_s) const {
@@ -28,12 +28,14 @@ std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m) {
     const Effects& effects = scene.effects;
     if (!effects.whitecaps || !(effects.foam_decay_s > 0.0)) return {};
     constexpr double kFinestCell_m = 0.25;
+    constexpr double kCell =
+        1.4;  // of the finest that breaking resolves: a half as many cells, and none of the foam is lost
     constexpr double kWindow = 3.0;         // 5 % of the foam is older
     constexpr double kStepsOfPeriod = 3.0;  // of the shortest wave that a cell resolves
     FoamPlan foam;
     foam.decay_s = effects.foam_decay_s;
     foam.window_s = kWindow * foam.decay_s;
-    foam.cell_m = std::max(finest_m, kFinestCell_m);
+    foam.cell_m = std::max(kCell * finest_m, kFinestCell_m);
     foam.step_s = std::sqrt(kTwoPi * 2.0 * foam.cell_m / kGravity) / kStepsOfPeriod;
     const double towards = scene.sea.wind_direction_deg * kPi / 180.0;
     foam.drift_mps =

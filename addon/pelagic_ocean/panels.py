@@ -88,6 +88,8 @@ class Main:
                 layout.label(text="Building the sea…", icon="SORTTIME")
             elif simulation.sea:
                 layout.label(text=f"Waves of {simulation.sea.significant_height_m:.1f} m (significant height)")
+                for warning in simulation.warnings:
+                    draw_words(layout.box(), warning)
 
 
 class Sub:

@@ -53,6 +53,11 @@ class Simulation:
         return self._built and self._built.sea
 
     @property
+    def warnings(self):
+        """What an artist should know of the sea, a sentence each."""
+        return self._built.warnings if self._built else ()
+
+    @property
     def needs_view(self):
         """Whether the surface that plays is what a camera sees."""
         return self._built.needs_view

@@ -70,10 +70,10 @@ class BuiltSea:
             ladder_m = surface.ladder_m()
             return [pelagic.Sea.begin(scene, products, cell_m=ladder_m, pixel_m=ladder_m, lattice=surface.lattice)]
 
-        return Job(key, begin, lambda sea: BuiltSea(sea, surface, scene.surface.size_m), view)
+        return Job(key, begin, lambda sea: BuiltSea(sea, surface, scene.surface.size_m, scene.warnings()), view)
 
-    def __init__(self, sea, surface, uv_m):
-        self.sea = sea
+    def __init__(self, sea, surface, uv_m, warnings):
+        self.sea, self.warnings = sea, warnings
         self._fixed, self._uv_m = surface, uv_m
         self._lock = threading.RLock()  # a render has a thread of its own
         self._frame = pelagic.Frame(self.sea)
@@ -115,18 +115,15 @@ class BuiltSea:
         if moment == (self._coming if self._task else self._moment):
             return
         self._finish()
-        before, surface = self._moment, self._surface_at(moment)
+        surface = self._surface_at(moment)
         self._moment = None
         if self._surface is None or len(surface) != len(self._surface):
             self._arrays = {product: np.empty(len(surface) if product == "coverage" else (len(surface), 3), np.float32)
                             for product in self.sea.products}
-        # What a cell hides of the slopes depends on the cell alone, not on the time.
-        wanted = {name: array for name, array in self._arrays.items()
-                  if name != "slope_variance" or before is None or surface is not self._surface}
         self._surface, self._seen_from = surface, (moment.view, moment.share)
         self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, cell_m=surface.cell_m,
                                        pixel_m=surface.cell_m, cell_axis_m=surface.cell_axis_m,
-                                       pixel_axis_m=surface.cell_axis_m, **wanted)
+                                       pixel_axis_m=surface.cell_axis_m, **self._arrays)
         self._coming = moment
 
     def _finish(self):

@@ -319,8 +319,18 @@ void Derive(const DeriveArgs<T>& args) {
         return Vector{normal.x, normal.y, normal.z};
     });
     const Hidden<T> hidden(args);
+    const auto at_rest = [&](std::size_t i) HWY_ATTR {
+        return SlopeVariances<N>{hidden.moment_at(0, i), hidden.moment_at(2, i), hidden.moment_at(1, i)};
+    };
     each(results.vectors(Product::SlopeVariance), [&](std::size_t i) HWY_ATTR {
-        return Vector{hidden.moment_at(0, i), hidden.moment_at(2, i), hidden.moment_at(1, i)};
+        const N dxy = at(Field::Dxy, i);
+        const SlopeVariances<N> carried =
+            carried_slopes(at_rest(i), at(Field::Dxx, i), at(Field::Dyy, i), dxy, dxy);
+        return Vector{carried.xx, carried.yy, carried.xy};
+    });
+    each(results.vectors(Product::SlopeVarianceAtRest), [&](std::size_t i) HWY_ATTR {
+        const SlopeVariances<N> rest = at_rest(i);
+        return Vector{rest.xx, rest.yy, rest.xy};
     });
     if (results.holds(Product::JacobianMoments) || results.holds(Product::Coverage)) DeriveWhitecaps(args);
 }

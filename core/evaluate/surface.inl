@@ -17,3 +17,26 @@ inline SurfaceNormal<T> surface_normal(T slope_x, T slope_y, T dxx, T dyy, T dxy
     return SurfaceNormal<T>(select(length > T(0), x * by, T(0)), select(length > T(0), y * by, T(0)),
                             select(length > T(0), z * by, T(1)));
 }
+
+// Variances of slopes [-], world axes.
+template <class T>
+struct SlopeVariances {
+    T xx, yy, xy;
+};
+
+// Below this |J| hidden slopes are steepened no further: a crest that folds would make them infinite.
+inline constexpr double kLeastJacobian = 0.1;
+
+// Hidden waves ride on the waves that are shown. These move a point at rest x to P(x), M = ∂P/∂x = 1 + ∇D, so that a slope
+// ∇ₓη at rest is M⁻ᵀ ∇ₓη on the sea, and variances Σ at rest are M⁻ᵀ Σ M⁻¹: larger where a crest is compressed, smaller where
+// a trough is stretched. dxy = ∂Dx/∂y, dyx = ∂Dy/∂x: for a sum of waves both are the same.
+template <class T>
+inline SlopeVariances<T> carried_slopes(SlopeVariances<T> rest, T dxx, T dyy, T dxy, T dyx) {
+    const T jacobian = (T(1) + dxx) * (T(1) + dyy) - dxy * dyx;
+    const T by = T(1) / maximum(magnitude(jacobian), T(kLeastJacobian));
+    // M⁻ᵀ = (a, −b; −c, d).
+    const T a = (T(1) + dyy) * by, b = dyx * by, c = dxy * by, d = (T(1) + dxx) * by;
+    return SlopeVariances<T>(a * a * rest.xx - T(2) * a * b * rest.xy + b * b * rest.yy,
+                             c * c * rest.xx - T(2) * c * d * rest.xy + d * d * rest.yy,
+                             (a * d + b * c) * rest.xy - a * c * rest.xx - b * d * rest.yy);
+}

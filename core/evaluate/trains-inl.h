@@ -187,14 +187,10 @@ HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, cons
     }
     for (std::size_t i = zone.full(); i < zone.any(); ++i) {
         const V w = zone.weight(d, i, footprints.along(d, trains, i));
-        const V strain = hidden_strain_part(Pack<D>(w)).v;
-        const V slope = hidden_slope_part(Pack<D>(w), Pack<D>(hn::Set(d, trains.steepness2[i]))).v;
-        const auto blends = zone.passes(d, i, footprint_m);  // else it is in the looked-up sum
-        const V slope_part = hn::IfThenElseZero(blends, slope),
-                strain_part = hn::IfThenElseZero(blends, strain);
+        // Else it is in the looked-up sum.
+        const V part = hn::IfThenElseZero(zone.passes(d, i, footprint_m), hidden_part(Pack<D>(w)).v);
         for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
-            sum[m] = hn::MulAdd(m < kHiddenSlopes ? slope_part : strain_part,
-                                hn::Set(d, trains.hidden_alone[i][m]), sum[m]);
+            sum[m] = hn::MulAdd(part, hn::Set(d, trains.hidden_alone[i][m]), sum[m]);
     }
     for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) hn::Store(sum[m], d, &hidden.moments[m][base]);
 }

@@ -81,7 +81,7 @@ void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoin
         const SeaPoint& p = points[i];
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
-            p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance, p.mesh_variance),
+            p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance),
             p.slope_variance, p.coverage, light, place);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }

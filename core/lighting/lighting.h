@@ -42,12 +42,13 @@ struct SeaRadiance {
 struct SeaPoint {
     glm::vec3 to_eye{0.0f, 0.0f, 1.0f};  // unit
     glm::vec3 normal{0.0f, 0.0f, 1.0f};  // unit, of the resolved waves; may face away from the eye
-    glm::vec3 slope_variance{0.0f};      // (σxx, σyy, σxy) of the hidden waves [-], world axes
-    float coverage = 0.0f;               // of whitecaps, 0 … 1
+    // (σxx, σyy, σxy) of the hidden waves [-], world axes: as the waves that are shown carry them, and at rest.
+    glm::vec3 slope_variance{0.0f}, slope_variance_at_rest{0.0f};
+    float coverage = 0.0f;  // of whitecaps, 0 … 1
     // Unit: the vertical at the point, in the axes of to_eye and of the sky. Normal and slope variance are relative to it.
     glm::vec3 up{0.0f, 0.0f, 1.0f};
-    // Of the slopes that the mesh beneath hides, along the view's horizontal direction; slope_variance is what is left of
-    // these where the normal is finer than the mesh (visible_normal() in slopes.glsl). 0: the mesh is as fine.
+    // Of the slopes that the mesh beneath hides, at rest, along the view's horizontal direction; slope_variance_at_rest is
+    // what is left of these where the normal is finer than the mesh (visible_normal() in slopes.glsl). 0: the mesh is as fine.
     float mesh_variance = 0.0f;
 };
 

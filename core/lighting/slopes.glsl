@@ -41,7 +41,7 @@ vec3 facing_normal(vec3 normal, vec3 to_eye) {
 // slopes weighted by the area that they show, w0 + s/w0.
 //
 // mesh_variance: of the slopes that the mesh hides, along the view's horizontal direction; variance: what is hidden of
-// these by the pixel, (σxx, σyy, σxy). No more is hidden than by the mesh: the normal stays.
+// these by the pixel, (σxx, σyy, σxy); both at rest. No more is hidden than by the mesh: the normal stays.
 vec3 visible_normal(vec3 normal, vec3 to_eye, vec3 variance, float mesh_variance) {
     float across2 = max(to_eye.x * to_eye.x + to_eye.y * to_eye.y, 1.0e-12f);
     float hidden = (variance.x * to_eye.x * to_eye.x + variance.y * to_eye.y * to_eye.y +

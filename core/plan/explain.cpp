@@ -7,6 +7,7 @@
 #include "core/base/constants.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/grid_layout.h"
+#include "core/plan/hidden_slopes.h"
 #include "core/plan/memory.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/plan.h"
@@ -103,6 +104,10 @@ std::string explain(const Plan& plan) {
             if (planned.query.products[index(row.product)])
                 page += format("    %-18s ← %s (%s)\n", row.name,
                                field_list(fields_of(products(row.product)) & ~plan.dropped).c_str(), row.why);
+        if (planned.query.products[index(Product::SlopeVariance)])
+            page += format(
+                "    %-18s   %.3g times that at rest, by area of sea\n", "",
+                hidden_slope_gain(spectrum, plan.filter, planned.query.pixel_m.front(), plan.choppiness));
     }
     if (plan.queries.empty()) page += "  none: no mesh and no maps are asked for\n";
     for (const PlannedOutput& output : plan.outputs)

@@ -12,4 +12,9 @@ namespace pelagic {
 double hidden_mean_square_slope(const DirectionalSpectrum& spectrum, const FootprintFilter& filter,
                                 double footprint_m);
 
+// How much larger the hidden slope variance is by area of sea than at rest, where the waves that are shown carry it: E[J Σ′]/Σ
+// of an isotropic Σ = E[|M|²/(2 J)] (core/evaluate/surface.inl), to second order 1 + ½ λ² ∫ k² S coth²(kd) w² dk.
+double hidden_slope_gain(const DirectionalSpectrum& spectrum, const FootprintFilter& filter,
+                         double footprint_m, double choppiness);
+
 }  // namespace pelagic

@@ -74,6 +74,9 @@ void add_maps(const OutputRow& row, const OutputContext& context, const Square& 
             query.name = (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) +
                          std::string(word_of(map));
             query.products = at.needs() & ~context.gone;
+            // What carries a tile's slopes is the whole sea, not the tile.
+            if (cascade && query.products[index(Product::SlopeVariance)])
+                query.products = products(Product::SlopeVarianceAtRest);
             query.points = static_cast<std::size_t>(n) * n;
             query.lattice = Lattice{-0.5 * size_m, size_m / n};
             query.only_cascade = cascade;

@@ -11,7 +11,16 @@
 
 namespace pelagic {
 
-enum class Product { Position, Displacement, Normal, Velocity, SlopeVariance, JacobianMoments, Coverage };
+enum class Product {
+    Position,
+    Displacement,
+    Normal,
+    Velocity,
+    SlopeVariance,
+    SlopeVarianceAtRest,
+    JacobianMoments,
+    Coverage
+};
 
 struct ProductRow {
     Product product;
@@ -36,9 +45,13 @@ inline constexpr auto kProductTable = std::to_array<ProductRow>({
     {Product::Velocity, "velocity", "velocity", 3,
      fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ), false, "the sums' time derivative",
      "of the water that rests at the point [m/s]"},
-    {Product::SlopeVariance, "slope_variance", "slope variance", 3, FieldSet(), true,
+    {Product::SlopeVariance, "slope_variance", "slope variance", 3,
+     fields(Field::Dxx, Field::Dyy, Field::Dxy), true,
+     "a remainder of the spectrum, carried by the waves that are shown",
+     "xx, yy, xy of the slopes that the pixel footprint hides: larger on crests, smaller in troughs"},
+    {Product::SlopeVarianceAtRest, "slope_variance_at_rest", "slope variance at rest", 3, FieldSet(), true,
      "a remainder of the spectrum: no transform",
-     "xx, yy, xy of the slopes that the pixel footprint hides, at rest positions"},
+     "the same before the waves that are shown compress and stretch it: shown and hidden add up to the spectrum's"},
     {Product::JacobianMoments, "jacobian", "Jacobian moments", 3, fields(Field::Dxx, Field::Dyy, Field::Dxy),
      true, "J and the variance that the footprint hides",
      "mean, variance (not negative) and third cumulant of J in the pixel footprint"},

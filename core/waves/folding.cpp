@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/scene/text.h"
 #include "core/spectrum/spectral_moments.h"
@@ -31,13 +32,20 @@ std::string percent_text(double share) {
     return number_text(std::round(percent / unit) * unit);
 }
 
-}  // namespace
-
-double folded_share(const DirectionalSpectrum& spectrum, double choppiness) {
-    return share_of(all_of(spectrum), choppiness);
+// Linear waves know no bed. Of so many troughs the deepest is √(2 ln n) deviations deep (Rayleigh).
+std::vector<std::string> trough_warning(const PreparedScene& prepared) {
+    constexpr double kTroughs = 1000.0;
+    const double depth_m = prepared.scene.sea.depth_m;
+    const double deepest_m =
+        0.25 * prepared.extent.significant_height_m * std::sqrt(2.0 * std::log(kTroughs));
+    if (!(deepest_m > depth_m)) return {};
+    return {"one trough in a thousand is " + number_text(std::round(10.0 * deepest_m) / 10.0) +
+            " m deep and would lie under the bed, in water of " + number_text(depth_m) +
+            " m (sea.depth_m): all waves together are " +
+            number_text(std::round(10.0 * prepared.extent.significant_height_m) / 10.0) + " m high"};
 }
 
-std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
+std::vector<std::string> folding_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.05;
     const double choppiness = prepared.scene.waves.choppiness;
     const SpectralMoments all = all_of(prepared.spectrum);
@@ -51,6 +59,18 @@ std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     return {"the surface folds over itself on " + percent_text(share) +
             " % of its area; waves.choppiness = " + number_text(std::floor(100.0 * less) / 100.0) +
             " leaves 5 %"};
+}
+
+}  // namespace
+
+double folded_share(const DirectionalSpectrum& spectrum, double choppiness) {
+    return share_of(all_of(spectrum), choppiness);
+}
+
+std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
+    std::vector<std::string> warnings = folding_warning(prepared);
+    for (std::string& warning : trough_warning(prepared)) warnings.push_back(std::move(warning));
+    return warnings;
 }
 
 }  // namespace pelagic

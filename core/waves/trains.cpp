@@ -77,25 +77,11 @@ double uniform(std::uint32_t word) {
     return static_cast<double>(word) * 0x1p-32;
 }
 
+// A train's moments, times this.
 template <class T>
-double steepness(const Trains<T>& trains, std::size_t i) {
-    return kTwoPi / trains.wavelength_m[i] * trains.horizontal_m[i];
-}
-
-// The slope variance of a trochoid relative to the sinusoid of the same amplitude (appendix A), for
-// amplitudes wh and wH.
-double trochoid_factor(double steepness) {
-    return 2.0 / (1.0 + std::sqrt(std::max(1.0 - steepness * steepness, 0.0)));
-}
-
-// A train's moments with its amplitudes multiplied by `weight`.
-template <class T>
-SpectralMoments weighted(const Trains<T>& trains, std::size_t i, double weight) {
-    const double q = steepness(trains, i);
+SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part) {
     SpectralMoments moments = trains.alone[i];
-    moments *= weight * weight;
-    const double slopes = trochoid_factor(weight * q) / trochoid_factor(q);
-    for (double* slope : {&moments.xx, &moments.xy, &moments.yy}) *slope *= slopes;
+    moments *= part;
     return moments;
 }
 
@@ -184,14 +170,13 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         factor(Field::VelocityY, omega * y * horizontal_m);
         factor(Field::VelocityZ, -omega * height_m);
 
-        SpectralMoments alone = moments_of({.k = {k * x, k * y},
-                                            .energy = bin.energy(),
-                                            .omega = dispersion.omega(k),
-                                            .chop = height_m > 0.0 ? horizontal_m / (k * height_m) : 0.0});
-        for (double* slope : {&alone.xx, &alone.xy, &alone.yy}) *slope *= trochoid_factor(q);
+        const SpectralMoments alone =
+            moments_of({.k = {k * x, k * y},
+                        .energy = bin.energy(),
+                        .omega = dispersion.omega(k),
+                        .chop = height_m > 0.0 ? horizontal_m / (k * height_m) : 0.0});
         trains.alone.push_back(alone);
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
-        trains.steepness2.push_back(std::min(static_cast<T>(q * q), T(1)));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));
         trains.outside +=
             beyond_train(moments(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1)), k,
@@ -221,8 +206,10 @@ template <class T>
 SpectralMoments resolved(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m) {
     const Passing pass = passing(trains, filter, footprint_m);
     SpectralMoments sum = trains.before[pass.full];
-    for (std::size_t i = pass.full; i < pass.any; ++i)
-        sum += weighted(trains, i, filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m));
+    for (std::size_t i = pass.full; i < pass.any; ++i) {
+        const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
+        sum += part_of(trains, i, w * w);
+    }
     return sum;
 }
 
@@ -232,14 +219,7 @@ SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, d
     SpectralMoments sum = trains.from[pass.any];
     for (std::size_t i = pass.full; i < pass.any; ++i) {
         const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
-        const double q = steepness(trains, i);
-        const double slopes = hidden_slope_part(w, std::min(q * q, 1.0));
-        SpectralMoments part = trains.alone[i];
-        part *= hidden_strain_part(w);
-        part.xx = slopes * trains.alone[i].xx;
-        part.xy = slopes * trains.alone[i].xy;
-        part.yy = slopes * trains.alone[i].yy;
-        sum += part;
+        sum += part_of(trains, i, hidden_part(w));
     }
     return sum;
 }

@@ -57,7 +57,7 @@ struct Trains {
 
     // `alone` and `from` again, as the vectorised query reads them.
     std::vector<HiddenMoments<T>> hidden_alone, hidden_from;
-    std::vector<T> wavelength, steepness2;  // λ [m], (kH)²
+    std::vector<T> wavelength;  // λ [m]
 
     std::size_t count() const { return height_m.size(); }
 };
@@ -67,9 +67,9 @@ struct Trains {
 template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan);
 
-// The moments of all trains and of what lies outside their range. Jacobian moments include choppiness². A
-// train's slope variance along k̂ is (kh)²/(1 + √(1 − k²H²)): appendix A, extended to H ≠ h, without the
-// cancellation of its 1 − √(1 − k²h²).
+// The moments of all trains and of what lies outside their range. Jacobian moments include choppiness². A train's slope
+// variance along k̂ is (kh)²/2, by position at rest, as a cascade's: what a trochoid's own crest compresses (appendix A:
+// (kh)²/(1 + √(1 − k²H²)) by area of sea) is counted with the waves that carry it (core/evaluate/surface.inl).
 template <class T>
 SpectralMoments total(const Trains<T>& trains);
 

@@ -20,7 +20,8 @@ namespace pelagic {
 namespace {
 
 struct MapSlot final : OutputSlot {
-    std::vector<glm::vec3> hidden;  // of slope variance: by mip level
+    // Of slope variance: the mip levels below the map; of a tile, where a level is alike everywhere, one value each.
+    std::vector<std::vector<glm::vec3>> hidden;
     float whitecap_threshold = 0.0f;
     std::string file;  // encoded
 };
@@ -52,26 +53,27 @@ class MapPart final : public OutputPart {
     OutputMemory memory() const override {
         const std::size_t texels = query().points;
         const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
-        // With mip levels a third more. The file of slope variances is the same all over, and packed to nothing.
+        // With mip levels a third more. A tile's slope variances are the same all over, and packed to nothing.
         struct Encoded {
-            std::size_t file, work;  // [bytes/texel] of the level that is as large as the map
+            std::size_t file, work, levels = 0;  // [bytes/texel] of the level that is as large as the map
         };
-        const auto [file, work] = [&]() -> Encoded {
+        const auto [file, work, levels] = [&]() -> Encoded {
             switch (kind_) {
                 case MapKind::Displacement:
                     return {12, 0};
                 case MapKind::Normal:
                     return {6 * 4 / 3, 12 / 3};
                 case MapKind::SlopeVariance:
-                    return {0, 12 * 4 / 3};
+                    if (output_.cascade) return {0, 12 * 4 / 3};
+                    return {12 * 4 / 3, 0, 12 / 3};
                 case MapKind::Whitecaps:
-                    return has_foam_history() ? Encoded{20 * 4 / 3, 12 + 48 * 4 / 3}
+                    return has_foam_history() ? Encoded{22 * 4 / 3, 12 + 48 * 4 / 3}
                                               : Encoded{16 * 4 / 3, 12 + 24 * 4 / 3};
             }
             throw std::logic_error("a map of no kind");
         }();
         return {.once = texels * 2 * scalar,
-                .slot = texels * (file + (has_foam_history() ? 2 * sizeof(float) : 0)),
+                .slot = texels * (file + levels + (has_foam_history() ? 2 * sizeof(float) : 0)),
                 .encoding = texels * (file + work),  // the file once more, in blocks
                 .remedy = output_.cascade
                               ? "lower the resolutions in waves.cascades, or leave cascade_tiles out"
@@ -107,6 +109,9 @@ class MapPart final : public OutputPart {
     struct State {
         SharedPoints<T> rest;
         QueryRunner<T> runner;
+        // Of slope variance: a mip level's texels, and what they hide.
+        std::vector<glm::vec<2, T>> level_rest;
+        Values level;
     };
 
     template <class T>
@@ -120,26 +125,38 @@ class MapPart final : public OutputPart {
         // A cascade's own tile is a part of the sea, and has no history of all of it.
         if (!output_.cascade) add_foam(foam, points, slot);
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
-        if (kind_ == MapKind::SlopeVariance) slot.hidden = hidden_by_level(sea);
+        if (kind_ == MapKind::SlopeVariance) find_hidden(state, sea, slot);
     }
 
-    // Each level hides what its own texels are too coarse for: the query's ladder, asked at one point of each
-    // level.
+    // A tile's slopes are at rest: what carries them is the whole sea.
+    VectorProduct hidden_product() const {
+        return VectorProduct::checked(output_.cascade ? Product::SlopeVarianceAtRest
+                                                      : Product::SlopeVariance);
+    }
+
+    // Each level hides what its own texels are too coarse for, and shows the waves that carry it: the query's ladder, asked
+    // at those of the map's texels that lie nearest to the level's.
     template <class T>
-    std::vector<glm::vec3> hidden_by_level(const Frame<T>& sea) const {
-        std::vector<glm::vec3> levels;
-        for (const double footprint_m : query().pixel_m) {
-            const glm::vec<2, T> rest(0);
-            const T footprint = static_cast<T>(footprint_m);
-            glm::vec<3, T> hidden(0);
-            Points<T> point{.count = 1, .rest_m = {&rest}};
-            point.pixel_m = {&footprint};
-            Results<T> result;
-            result.set(Product::SlopeVariance, {&hidden});
-            evaluate(sea, output_.query, point, result);
-            levels.emplace_back(hidden);
+    void find_hidden(State<T>& state, const Frame<T>& sea, MapSlot& slot) {
+        const std::vector<double>& footprints_m = query().pixel_m;
+        slot.hidden.resize(footprints_m.size() - 1);
+        for (std::size_t level = 1; level < footprints_m.size(); ++level) {
+            const int n = exr::mip_level_size(n_, n_, static_cast<int>(level)).first;
+            const auto nearest = [&](int i) {
+                return static_cast<std::size_t>((2l * i * n_ + n) / (2l * n));
+            };
+            const int side = output_.cascade ? 1 : n;
+            state.level_rest.clear();
+            for (int y = 0; y < side; ++y)
+                for (int x = 0; x < side; ++x)
+                    state.level_rest.push_back(
+                        (*state.rest)[nearest(y) * static_cast<std::size_t>(n_) + nearest(x)]);
+            const T footprint = static_cast<T>(footprints_m[level]);
+            Points<T> points{.count = state.level_rest.size(), .rest_m = {state.level_rest.data()}};
+            points.pixel_m = {&footprint, 0};
+            state.runner.run(sea, output_.query, points, products(hidden_product()), state.level);
+            slot.hidden[level - 1] = state.level.vectors(hidden_product());
         }
-        return levels;
     }
 
     // Only if the patch is a common period of every cascade that shows in this map, whatever other outputs
@@ -192,18 +209,20 @@ class MapPart final : public OutputPart {
                 return encode_levels(header, levels, red_green_blue(exr::PixelType::Half));
             }
             case MapKind::SlopeVariance: {
-                exr::Header header = header_of(made_of, frame,
-                                               {"xx, yy and xy of the slope variance that a texel hides", "1",
-                                                slot.values.vectors(Product::SlopeVariance)});
-                // The same all over a level: packed, nearly nothing.
-                header.compression = exr::Compression::Zip;
-                std::vector<std::vector<glm::vec3>> texels;
-                std::vector<Level> levels;
-                for (const glm::vec3& hidden : slot.hidden) {
-                    const auto level = static_cast<int>(levels.size());
-                    const int n = exr::mip_level_size(n_, n_, level).first;
-                    texels.emplace_back(static_cast<std::size_t>(n) * n, hidden);
-                    levels.push_back({n, texels.back()});
+                const std::vector<glm::vec3>& full = slot.values.vectors(hidden_product());
+                exr::Header header = header_of(
+                    made_of, frame,
+                    {output_.cascade ? "xx, yy and xy of the slope variance that a texel hides, at rest"
+                                     : "xx, yy and xy of the slope variance that a texel hides",
+                     "1", full});
+                // A tile's is the same all over a level: packed, nearly nothing.
+                if (output_.cascade) header.compression = exr::Compression::Zip;
+                std::vector<std::vector<glm::vec3>> alike;
+                std::vector<Level> levels{{n_, full}};
+                for (const std::vector<glm::vec3>& hidden : slot.hidden) {
+                    const int n = exr::mip_level_size(n_, n_, static_cast<int>(levels.size())).first;
+                    if (output_.cascade) alike.emplace_back(static_cast<std::size_t>(n) * n, hidden.front());
+                    levels.push_back({n, output_.cascade ? alike.back() : hidden});
                 }
                 return encode_levels(header, levels, red_green_blue(exr::PixelType::Float));
             }

@@ -19,7 +19,7 @@ vec3 query_cell(vec2 rest_m, vec3 cell) {
     return sum;
 }
 
-// What a mesh of such cells hides of the slopes: variances (xx, yy, xy).
+// What a mesh of such cells hides of the slopes, at rest: variances (xx, yy, xy).
 vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
     Footprint footprint = footprint_of(kCellRungs, kPixelRungs, cell);
     TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0), hidden_of(footprint));
@@ -30,7 +30,7 @@ vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
 
 struct PixelAnswer {
     vec3 normal;
-    PixelMoments hidden;
+    vec3 slope_variance, slope_variance_at_rest;  // of what is hidden: xx, yy, xy
     float coverage;
     float rung;  // lower + t
 };
@@ -42,11 +42,14 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     PixelFields f = sums.fields;
     PixelMoments hidden = possible_moments(sums.hidden);
     SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy);
+    SlopeVariances carried =
+        carried_slopes(SlopeVariances(hidden.xx, hidden.yy, hidden.xy), f.dxx, f.dyy, f.dxy, f.dxy);
     float foam = 0.0;
     if (kCoverage)
         foam = coverage(jacobian_moments(f.dxx, f.dyy, f.dxy,
                                          HiddenStrain(hidden.xxxx, hidden.xxxy, hidden.xxyy, hidden.xyyy,
                                                       hidden.yyyy)),
                         whitecap_threshold, kThirdMoment);
-    return PixelAnswer(vec3(n.x, n.y, n.z), hidden, foam, float(footprint.rung.lower) + footprint.rung.t);
+    return PixelAnswer(vec3(n.x, n.y, n.z), vec3(carried.xx, carried.yy, carried.xy),
+                       vec3(hidden.xx, hidden.yy, hidden.xy), foam, float(footprint.rung.lower) + footprint.rung.t);
 }

@@ -16,9 +16,9 @@ void main() {
     EarthPoint vertical = earth_up(rest_m.x, rest_m.y, curvature_per_m);
     vec3 up = vec3(vertical.x, vertical.y, vertical.z);
     vec3 to_eye = levelled(-pixel_ray(), up);
-    vec3 hidden = vec3(answer.hidden.xx, answer.hidden.yy, answer.hidden.xy);
     SeaTerms terms =
-        sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, hidden, mesh_variance_along()), hidden, answer.coverage,
+        sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
+                        answer.slope_variance, answer.coverage,
                         SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
                                  water_reflectance),
                         PlaceView(air_to_sun, air_by_place));

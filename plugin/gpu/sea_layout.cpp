@@ -201,7 +201,7 @@ std::vector<glm::vec4> SeaLayout::train_texels() const {
                     amplitude(Field::Dyy)};
         at(2, i) = {amplitude(Field::Dxy), amplitude(Field::Height), amplitude(Field::Dx),
                     amplitude(Field::Dy)};
-        at(3, i) = {trains.wavelength[i], trains.steepness2[i], 0.0f, 0.0f};
+        at(3, i) = {trains.wavelength[i], 0.0f, 0.0f, 0.0f};
         for (std::size_t m = 0; m < from.size(); ++m)
             at(4 + m / 4, i)[static_cast<int>(m % 4)] = trains.hidden_alone[i][m];
     }

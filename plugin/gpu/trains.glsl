@@ -2,7 +2,7 @@
 // makes. Only the trains that pass the footprint's filter are read.
 //
 // Texels of train i, in column i: 0: kx, ky [cycles/m], each as (high, low); 1: amplitudes of ηx, ηy, Dxx,
-// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m], squared steepness; 4, 5: its moments; 6, 7: the summed
+// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m]; 4, 5: its moments; 6, 7: the summed
 // moments of trains i … last.
 uniform sampler2D train_table;
 uniform sampler2D train_cycles;  // phases at the origin, at the frame's time
@@ -70,14 +70,11 @@ TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
     for (int i = 0; i < end; ++i) {
         vec2 wave = train_sine_cosine(i, x);
         if (i >= full) {
-            vec4 train = texelFetch(train_table, ivec2(i, 3), 0);
-            float w = train_weight(train.x, footprint_along(i, footprint));
+            float w = train_weight(texelFetch(train_table, ivec2(i, 3), 0).x, footprint_along(i, footprint));
             wave *= w;
-            float slope_part = hidden_slope_part(w, train.y);
-            float strain_part = hidden_strain_part(w);
-            low += vec4(slope_part, slope_part, slope_part, strain_part) *
-                   texelFetch(train_table, ivec2(i, 4), 0);
-            high += strain_part * texelFetch(train_table, ivec2(i, 5), 0);
+            float part = hidden_part(w);
+            low += part * texelFetch(train_table, ivec2(i, 4), 0);
+            high += part * texelFetch(train_table, ivec2(i, 5), 0);
         }
         vec4 amplitude = texelFetch(train_table, ivec2(i, 1), 0);
         first += amplitude * vec4(wave.x, wave.x, wave.y, wave.y);

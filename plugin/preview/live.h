@@ -31,7 +31,7 @@ struct LiveBuild {
     int query = 0;  // the picture's query, an index into the plan
     ProjectedGridOptions grid;
     double build_s = 0.0;  // time that building took
-    std::string note;      // what was left out so that it fits; empty: nothing
+    std::string note;  // what was left out so that it fits, and sea_warnings(), a line each; empty: nothing
 };
 
 // What a window's sea may hold, and its textures' sides.

@@ -11,6 +11,7 @@
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
 #include "core/spectrum/possible.h"
+#include "core/waves/folding.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/preview/live.h"
 
@@ -54,15 +55,18 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
                          {view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m})},
                          {.double_precision = false});
     };
+    for (const std::string& warning : sea_warnings(*prepared))
+        made.note += (made.note.empty() ? "" : "\n") + warning;
     Plan plan = plan_from(0.0);
     const Plan whole = plan;
+    std::string left_out;
     // Rung by rung of the whole ladder, whose first lets everything pass.
     for (const double rung_m : whole.queries.front().query.pixel_m) {
         if (fits(plan, limits)) break;
         if (rung_m == 0.0) continue;
         plan = plan_from(rung_m);
         const std::size_t needed = live_memory(whole).bytes();
-        made.note =
+        left_out =
             (needed > limits.memory.bytes ? "the sea needs about " + bytes_text(needed) + ", and " +
                                                 limits.memory.whose + " " + bytes_text(limits.memory.bytes)
                                           : "the sea's grids need larger textures than the driver's, " +
@@ -71,6 +75,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
             " m are left out of the picture. To see them, lower the resolutions in waves.cascades, or "
             "quality.level";
     }
+    if (!left_out.empty()) made.note = left_out + (made.note.empty() ? "" : "\n") + made.note;
     if (!fits(plan, limits)) require_memory(live_memory(plan), limits.memory, "this sea");
     made.sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
     made.grid = projected_grid_options(*prepared);

@@ -337,8 +337,8 @@ void add_bake(py::module_& module) {
         .def(
             "at", &maps_at, py::arg("t"),
             "(patch, tiles) at a time [s]: the patch's arrays, and a list of each cascade's, the largest first. "
-            "Each is a dict of float32 (n, n, 3): displacement [m], normal, slope_variance, jacobian, and (n, n): "
-            "coverage. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. Any "
+            "Each is a dict of float32 (n, n, 3): displacement [m], normal, slope_variance (of tiles slope_variance_at_rest: what carries it is the whole "
+            "sea), jacobian, and (n, n): coverage. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. Any "
             "thread may call; calls wait for each other.");
 }
 

@@ -16,6 +16,7 @@
 #include "core/scene/shot_text.h"
 #include "core/scene/text.h"
 #include "core/spectrum/possible.h"
+#include "core/waves/folding.h"
 #include "plugin/files/files.h"
 #include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
@@ -187,6 +188,13 @@ double significant_height_of(const Scene& scene) {
     return prepare(kept)->extent.significant_height_m;
 }
 
+std::vector<std::string> warnings_of(const Scene& scene) {
+    require_valid(scene);
+    const Scene kept = scene;
+    const OthersMayRun others_may_run;
+    return sea_warnings(*prepare(kept));
+}
+
 std::vector<std::string> problem_lines(const Scene& scene) {
     std::vector<std::string> lines;
     for (const Problem& problem : problems_of(scene)) lines.push_back(text_of(problem));
@@ -242,6 +250,10 @@ void add_scene(py::module_& module) {
              "Every problem of the scene, a line each: KEY = VALUE: PROBLEM; accepted: WHAT IS. Empty: it "
              "can be "
              "planned.")
+        .def(
+            "warnings", &warnings_of,
+            "What an artist should know of a sea that can be planned, a sentence each: that much of the surface folds over "
+            "itself, that troughs reach the bed. Empty: nothing. ShotError for a scene that can't be.")
         .def(
             "significant_height_m", &significant_height_of,
             "4 times the root of the variance of the surface's height [m]: of its spectrum, without building a Sea.")

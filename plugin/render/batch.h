@@ -44,7 +44,7 @@ struct Batch {
     std::vector<glm::vec<2, T>> pixel_axis_m;
     std::vector<glm::vec3> to_eye, up;
     std::vector<float> distance_m;     // of the eye
-    std::vector<float> mesh_variance;  // of the slopes that the mesh hides, along the view
+    std::vector<float> mesh_variance;  // of the slopes that the mesh hides at rest, along the view
     Values answers;
     std::vector<float> foam_active, foam_age_s;  // where foam lives
     std::vector<SeaPoint> points;

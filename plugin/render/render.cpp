@@ -199,16 +199,14 @@ class RendererOf final : public Impl {
         raster_.set(clip_, triangles_, raster_size());
     }
 
-    // What the cells hide of the slopes.
+    // What the cells hide of the slopes, at rest.
     void find_mesh_variance() {
         const std::size_t count = grid_.rest_m.size();
-        mesh_variance_.clear();
-        if (!plan().queries[kQuery].query.products[index(Product::SlopeVariance)]) return;
         mesh_variance_.resize(count);
         std::vector<T> width_m = cell_m_;
         for (T& width : width_m) width = std::max(width, first_pixel_m_);
         Results<T> results;
-        results.set(Product::SlopeVariance, {mesh_variance_.data()});
+        results.set(Product::SlopeVarianceAtRest, {mesh_variance_.data()});
         evaluate(frame_, kQuery,
                  Points<T>{.origin_m = grid_.origin_m,
                            .count = count,
@@ -296,6 +294,7 @@ class RendererOf final : public Impl {
         if (count == 0) return;
         const std::vector<glm::vec3>& normal = batch_.answers.vectors(Product::Normal);
         const std::vector<glm::vec3>& slope_variance = batch_.answers.vectors(Product::SlopeVariance);
+        const std::vector<glm::vec3>& at_rest = batch_.answers.vectors(Product::SlopeVarianceAtRest);
         const std::vector<float>& coverage = batch_.answers.numbers(Product::Coverage);
         batch_.points.resize(count);
         batch_.lit.resize(count);
@@ -306,6 +305,7 @@ class RendererOf final : public Impl {
                     batch_.points[i] = {.to_eye = batch_.to_eye[i],
                                         .normal = normal[i],
                                         .slope_variance = slope_variance[i],
+                                        .slope_variance_at_rest = at_rest[i],
                                         .coverage = coverage.empty() ? 0.0f : coverage[i],
                                         .up = batch_.up[i],
                                         .mesh_variance = batch_.mesh_variance[i]};
@@ -344,8 +344,7 @@ class RendererOf final : public Impl {
                 position += weights[corner] * glm::dvec3(position_[vertex]);
                 pixel_m += weights[corner] * static_cast<double>(grid_.pixel_m[vertex]);
                 pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
-                if (!mesh_variance_.empty())
-                    mesh_variance += weights[corner] * glm::dvec3(mesh_variance_[vertex]);
+                mesh_variance += weights[corner] * glm::dvec3(mesh_variance_[vertex]);
             }
             batch_.rest[i] = glm::vec<2, T>(rest);
             batch_.up[i] = glm::vec3(earth_up(rest, grid_.curvature_per_m));

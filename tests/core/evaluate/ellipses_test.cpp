@@ -146,7 +146,7 @@ TEST(Ellipses, FilterTrainsByTheirLengthAlongTheWay) {
     Scene scene;
     scene.waves.model = WaveModel::Trochoid;
     const auto frame =
-        frame_of<double>(scene, {ladder(products(Product::Displacement, Product::SlopeVariance))}, 0.0);
+        frame_of<double>(scene, {ladder(products(Product::Displacement, Product::SlopeVarianceAtRest))}, 0.0);
     const Trains<double>& trains = frame.sea().trains();
     const SpectralMoments whole = total(trains);
     for (const double ratio : {1.5, 10.0, 1000.0})
@@ -161,13 +161,10 @@ TEST(Ellipses, FilterTrainsByTheirLengthAlongTheWay) {
                 const double footprint_m = width_m * std::hypot(1.0, std::sqrt(ratio * ratio - 1.0) * along);
                 const double w = FootprintFilter{}.weight(kTwoPi / lambda_m, footprint_m);
                 height_m += w * trains.height_m[i] * std::cos(kTwoPi * trains.start_cycles[i]);
-                const double q2 = std::pow(std::min(kTwoPi / lambda_m * trains.horizontal_m[i], 1.0), 2.0);
-                hidden += trains.alone[i].mss() * std::max(1.0 - w * w * (1.0 + std::sqrt(1.0 - q2)) /
-                                                                     (1.0 + std::sqrt(1.0 - w * w * q2)),
-                                                           0.0);
+                hidden += trains.alone[i].mss() * (1.0 - w * w);
             }
             const auto answer = ask<double>(frame, {glm::dvec2(0.0)}, {{width_m, ratio * width_m * unit}});
-            const glm::dvec3 variance = answer.vectors(SlopeVariance)[0];
+            const glm::dvec3 variance = answer.vectors(SlopeVarianceAtRest)[0];
             EXPECT_NEAR(answer.vectors(Displacement)[0].z, height_m, 1e-9);
             EXPECT_NEAR(variance.x + variance.y, hidden, 1e-9 * whole.mss());
         }
@@ -179,7 +176,7 @@ TEST(Ellipses, FilterTrainsByTheirLengthAlongTheWay) {
 TEST(Ellipses, ShownAndHiddenAreTheSpectrumAsATensor) {
     const FootprintFilter filter;
     for (const auto& [name, scene] : seas()) {
-        const auto frame = frame_of<float>(scene, {ladder(products(Product::SlopeVariance))}, 0.0);
+        const auto frame = frame_of<float>(scene, {ladder(products(Product::SlopeVarianceAtRest))}, 0.0);
         const Plan& plan = frame.sea().plan();
         const DirectionalSpectrum& spectrum = plan.from->spectrum;
         const SpectralMoments& whole = frame.sea().total();
@@ -241,7 +238,7 @@ TEST(Ellipses, ShownAndHiddenAreTheSpectrumAsATensor) {
                     const glm::vec2 axis_m =
                         static_cast<float>(length_m) * glm::vec2(std::cos(direction), std::sin(direction));
                     const glm::vec3 hidden =
-                        ask<float>(frame, {glm::vec2(0.0f)}, {{f, axis_m}}).vectors(SlopeVariance)[0];
+                        ask<float>(frame, {glm::vec2(0.0f)}, {{f, axis_m}}).vectors(SlopeVarianceAtRest)[0];
                     for (const double error : {hidden.x - xx, hidden.y - yy, hidden.z - xy})
                         worst = std::max(worst, std::abs(error) / whole.mss());
                 }
@@ -256,7 +253,7 @@ TEST(Ellipses, SlopesShownVaryByWhatIsNotHidden) {
     scene.waves.choppiness = 0.0;
     scene.effects.whitecaps = false;
     const auto frame =
-        frame_of<float>(scene, {ladder(products(Product::Normal, Product::SlopeVariance))}, 1.0);
+        frame_of<float>(scene, {ladder(products(Product::Normal, Product::SlopeVarianceAtRest))}, 1.0);
     const SpectralMoments& whole = frame.sea().total();
     const auto rest = random_points<float>(4000.0, 20000);
     for (const double ratio : {2.0, 8.0})
@@ -264,7 +261,7 @@ TEST(Ellipses, SlopesShownVaryByWhatIsNotHidden) {
             const glm::vec2 unit(std::cos(direction), std::sin(direction));
             const std::vector<Ellipse<float>> of(rest.size(), {0.5f, static_cast<float>(0.5 * ratio) * unit});
             const auto answers = ask(frame, rest, of);
-            const glm::dvec3 hidden(answers.vectors(SlopeVariance)[0]);
+            const glm::dvec3 hidden(answers.vectors(SlopeVarianceAtRest)[0]);
             const auto shown = [&](int a, int b) {
                 return mean_of(answers.vectors(Normal),
                                [&](const glm::vec3& n) { return n[a] * n[b] / (n.z * n.z); });
@@ -280,10 +277,11 @@ TEST(Ellipses, TurnWithTheWind) {
     const auto hidden = [&](double turn_deg) {
         Scene scene = two_tiles();
         scene.sea.wind_direction_deg = 20.0 + turn_deg;
-        const auto frame = frame_of<float>(scene, {ladder(products(Product::SlopeVariance))}, 0.0);
+        const auto frame = frame_of<float>(scene, {ladder(products(Product::SlopeVarianceAtRest))}, 0.0);
         const double direction = (50.0 + turn_deg) * kPi / 180.0;
         const glm::vec2 axis_m = 4.0f * glm::vec2(std::cos(direction), std::sin(direction));
-        const glm::dvec3 v(ask<float>(frame, {glm::vec2(0.0f)}, {{0.7f, axis_m}}).vectors(SlopeVariance)[0]);
+        const glm::dvec3 v(
+            ask<float>(frame, {glm::vec2(0.0f)}, {{0.7f, axis_m}}).vectors(SlopeVarianceAtRest)[0]);
         const double c = std::cos(turn_deg * kPi / 180.0), s = std::sin(turn_deg * kPi / 180.0);
         return glm::dvec3(c * c * v.x + 2.0 * c * s * v.z + s * s * v.y,
                           s * s * v.x - 2.0 * c * s * v.z + c * c * v.y,
@@ -314,9 +312,11 @@ TEST(Ellipses, HardOnesAreFinite) {
                         std::isfinite(answers.vectors(Normal)[i].z) &&
                         std::isfinite(answers.numbers(Coverage)[i]))
                 << i;
-            const glm::vec3 v = answers.vectors(SlopeVariance)[i];
-            EXPECT_GE(v.x, 0.0f);
-            EXPECT_GE(v.x * v.y - v.z * v.z, -1e-9f);
+            for (const glm::vec3 v :
+                 {answers.vectors(SlopeVariance)[i], answers.vectors(SlopeVarianceAtRest)[i]}) {
+                EXPECT_GE(v.x, 0.0f);
+                EXPECT_GE(v.x * v.y - v.z * v.z, -1e-9f);
+            }
         }
     }
 }
@@ -325,7 +325,7 @@ TEST(Ellipses, HardOnesAreFinite) {
 TEST(Ellipses, HideOfOneCascadeItsShare) {
     Scene scene = two_tiles();
     scene.waves.choppiness = 0.0;
-    Query whole = ladder(products(Product::SlopeVariance));
+    Query whole = ladder(products(Product::SlopeVarianceAtRest));
     std::vector<Query> queries{whole, whole, whole};
     for (int c : {0, 1}) {
         queries[c + 1].name = "cascade " + std::to_string(c);
@@ -337,7 +337,7 @@ TEST(Ellipses, HideOfOneCascadeItsShare) {
     const auto hidden = [&](int query, const std::vector<glm::vec2>& axes_m) {
         std::vector<glm::vec3> variance(1);
         Results<float> results;
-        results.set(Product::SlopeVariance, {variance.data()});
+        results.set(Product::SlopeVarianceAtRest, {variance.data()});
         evaluate(frame, query,
                  {.count = 1,
                   .rest_m = {rest.data()},

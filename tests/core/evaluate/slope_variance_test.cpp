@@ -61,11 +61,11 @@ TEST(SlopeVariance, OfAHugeFootprintIsTheWholeSpectrum) {
     const SpectralMoments spectrum =
         moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
     const auto frame =
-        frame_of<double>(scene, {filtered(products(Product::Normal, Product::SlopeVariance), 1e5)});
+        frame_of<double>(scene, {filtered(products(Product::Normal, Product::SlopeVarianceAtRest), 1e5)});
     const auto samples = sample(frame, 0, std::vector<glm::dvec2>{{3.0, 4.0}});
-    EXPECT_NEAR(samples.vectors(SlopeVariance)[0].x / spectrum.xx, 1.0, 1e-6);
-    EXPECT_NEAR(samples.vectors(SlopeVariance)[0].y / spectrum.yy, 1.0, 1e-6);
-    EXPECT_NEAR(samples.vectors(SlopeVariance)[0].z / spectrum.xy, 1.0, 1e-6);
+    EXPECT_NEAR(samples.vectors(SlopeVarianceAtRest)[0].x / spectrum.xx, 1.0, 1e-6);
+    EXPECT_NEAR(samples.vectors(SlopeVarianceAtRest)[0].y / spectrum.yy, 1.0, 1e-6);
+    EXPECT_NEAR(samples.vectors(SlopeVarianceAtRest)[0].z / spectrum.xy, 1.0, 1e-6);
     EXPECT_EQ(samples.vectors(Normal)[0], glm::dvec3(0.0, 0.0, 1.0));
 }
 
@@ -74,8 +74,9 @@ TEST(SlopeVariance, TurnsWithTheWind) {
     Scene scene;
     const auto at = [&](double direction_deg, double footprint_m) {
         scene.sea.wind_direction_deg = direction_deg;
-        const auto frame = frame_of<double>(scene, {filtered(products(Product::SlopeVariance), footprint_m)});
-        return sample(frame, 0, std::vector<glm::dvec2>{{0.0, 0.0}}).vectors(SlopeVariance)[0];
+        const auto frame =
+            frame_of<double>(scene, {filtered(products(Product::SlopeVarianceAtRest), footprint_m)});
+        return sample(frame, 0, std::vector<glm::dvec2>{{0.0, 0.0}}).vectors(SlopeVarianceAtRest)[0];
     };
     const auto all = at(0.0, 1e6);
     EXPECT_GT(all.x, 1.1 * all.y);
@@ -88,35 +89,35 @@ TEST(SlopeVariance, TurnsWithTheWind) {
     EXPECT_NEAR(between.z / (0.5 * (along.x - along.y)), 1.0, 0.02);
 }
 
-// What is hidden depends on the footprint alone, not on what else is asked for.
+// What is hidden at rest depends on the footprint alone, not on what else is asked for.
 TEST(SlopeVariance, IsTheSameAskedForAloneOrTogether) {
     const Scene scene;
     const std::vector<glm::dvec2> origin{{0.0, 0.0}};
     const auto of = [&](ProductSet wanted) {
         const auto frame = frame_of<double>(scene, {filtered(wanted, 0.4)});
-        return sample(frame, 0, origin).vectors(SlopeVariance)[0];
+        return sample(frame, 0, origin).vectors(SlopeVarianceAtRest)[0];
     };
-    const auto alone = of(products(Product::SlopeVariance));
-    EXPECT_EQ(alone, of(products(Product::SlopeVariance, Product::Normal)));
-    EXPECT_EQ(alone, of(products(Product::SlopeVariance, Product::Position)));
+    const auto alone = of(products(Product::SlopeVarianceAtRest));
+    EXPECT_EQ(alone, of(products(Product::SlopeVarianceAtRest, Product::Normal)));
+    EXPECT_EQ(alone, of(products(Product::SlopeVarianceAtRest, Product::Position)));
     // And it is not everything: waves of more than 1.6 m show.
-    const auto all = frame_of<double>(scene, {filtered(products(Product::SlopeVariance), 1e6)});
-    EXPECT_LT(alone.x, 0.8 * sample(all, 0, origin).vectors(SlopeVariance)[0].x);
+    const auto all = frame_of<double>(scene, {filtered(products(Product::SlopeVarianceAtRest), 1e6)});
+    EXPECT_LT(alone.x, 0.8 * sample(all, 0, origin).vectors(SlopeVarianceAtRest)[0].x);
 }
 
-// A cascade's own tile hides its own band: what the tiles hide adds up to what the sea hides.
+// A cascade's own tile hides its own band: what the tiles hide adds up to what the sea hides at rest.
 TEST(SlopeVariance, OfTheTilesAddsUp) {
     Scene scene;
     scene.waves.cascades = {{400.0, 160}, {50.0, 64}};
-    std::vector<Query> queries{unfiltered(products(Product::SlopeVariance))};
+    std::vector<Query> queries{unfiltered(products(Product::SlopeVarianceAtRest))};
     for (int i = 0; i < 2; ++i)
-        queries.push_back(tile(products(Product::SlopeVariance), i, scene.waves.cascades[i].size_m,
+        queries.push_back(tile(products(Product::SlopeVarianceAtRest), i, scene.waves.cascades[i].size_m,
                                scene.waves.cascades[i].resolution));
     const auto frame = frame_of<double>(scene, queries);
     const std::vector<glm::dvec2> origin{{0.0, 0.0}};
-    const auto whole = sample(frame, 0, origin).vectors(SlopeVariance)[0];
-    const auto tiles = sample(frame, 1, origin).vectors(SlopeVariance)[0] +
-                       sample(frame, 2, origin).vectors(SlopeVariance)[0];
+    const auto whole = sample(frame, 0, origin).vectors(SlopeVarianceAtRest)[0];
+    const auto tiles = sample(frame, 1, origin).vectors(SlopeVarianceAtRest)[0] +
+                       sample(frame, 2, origin).vectors(SlopeVarianceAtRest)[0];
     // A mode's slope is that at the centre of its cell, so that a band's modes may hold a little more than
     // its integral, which then counts as nothing hidden and not as less: measured 1.05e-3 of the whole.
     EXPECT_NEAR(tiles.x / whole.x, 1.0, 3e-3);

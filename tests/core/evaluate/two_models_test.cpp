@@ -92,11 +92,11 @@ TEST(TwoModels, TogetherAreTheSumOfBoth) {
 // trains' choice of directions and the trochoid's second order.
 TEST(TwoModels, ShownAndHiddenAddUpToTheWholeAtEveryFootprint) {
     for (const Scene& scene : {trains_alone(), trains_and_cascades()}) {
-        Query query = unfiltered(products(Product::SlopeVariance, Product::Normal));
+        Query query = unfiltered(products(Product::SlopeVarianceAtRest, Product::Normal));
         query.pixel_m = query.cell_m = {0.02, 0.1, 0.5, 3.0, 20.0};
         std::vector<Query> queries{query};
         for (double footprint_m : query.pixel_m)
-            queries.push_back(filtered(products(Product::SlopeVariance, Product::Normal), footprint_m));
+            queries.push_back(filtered(products(Product::SlopeVarianceAtRest, Product::Normal), footprint_m));
         const auto frame = frame_of<double>(scene, queries);
         const SpectralMoments whole = frame.sea().total();
         const SpectralMoments spectrum =
@@ -110,8 +110,8 @@ TEST(TwoModels, ShownAndHiddenAddUpToTheWholeAtEveryFootprint) {
             const Where<double> own{.origin_m = {}, .cell_m = {footprint_m}, .pixel_m = {footprint_m}};
             const std::vector<glm::dvec2> point{{1.0, 2.0}};
             for (const auto& hidden :
-                 {sample(frame, 0, point, own).vectors(SlopeVariance)[0],
-                  sample(frame, static_cast<int>(i) + 1, point).vectors(SlopeVariance)[0]}) {
+                 {sample(frame, 0, point, own).vectors(SlopeVarianceAtRest)[0],
+                  sample(frame, static_cast<int>(i) + 1, point).vectors(SlopeVarianceAtRest)[0]}) {
                 // Sampled modes against the integral over the cascades' band: 1e-3 of what they hold.
                 const double room = 1e-12 + 1e-3 * cascades.mss();
                 EXPECT_NEAR(hidden.x + trains.xx + cascades.xx, whole.xx, room) << footprint_m;

@@ -194,7 +194,8 @@ TEST(Sea, HardCasesStayFinite) {
         for (const vec3 n : {up, side, grazing, -up, normalize(vec3(0.0f, -1.0f, 1.0f)), sky.sun_direction})
             for (const vec3 s : {vec3(0.0f), vec3(1e-40f, 0.0f, 0.0f), vec3(1.0f, 1e-6f, 0.0f),
                                  vec3(0.1f, 0.1f, 0.1f), vec3(1e9f, 1e9f, 0.0f)})
-                for (float w : {0.0f, 1e-30f, 1.0f, 2.0f}) points.push_back({v, n, s, w});
+                for (float w : {0.0f, 1e-30f, 1.0f, 2.0f})
+                    points.push_back({.to_eye = v, .normal = n, .slope_variance = s, .coverage = w});
     for (const vec3 sun : {sky.sun_direction, up, side, normalize(vec3(1.0f, 0.0f, -1e-6f)), -up}) {
         sky.sun_direction = sun;
         for (int i = 0; i < 6; ++i) {

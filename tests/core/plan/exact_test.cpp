@@ -122,7 +122,7 @@ std::vector<Case> cases() {
         {"MeshPositions", mesh({}), one(kPosition), kMesh * (8 + 12)},
         {"MeshNormals", mesh({Normal}), one(kPosition | kSlopes | kStrain), kMesh * (8 + 24)},
         {"MeshVelocities", mesh({Velocity}), one(kPosition | kMotion), kMesh * (8 + 24)},
-        {"MeshSlopeVariance", mesh({SlopeVariance}), one(kPosition), kMesh * (8 + 24)},
+        {"MeshSlopeVariance", mesh({SlopeVariance}), one(kPosition | kStrain), kMesh * (8 + 24)},
         {"MeshWhitecaps", mesh({Whitecaps}), one(kPosition | kStrain), kMesh * (8 + 16)},
         {"MeshEverything", mesh(kAll), one(kPosition | kSlopes | kStrain | kMotion), kMesh * (8 + 52)},
         {"WhitecapsOff",
@@ -130,7 +130,7 @@ std::vector<Case> cases() {
              s.output.attributes = {Whitecaps, SlopeVariance};
              s.effects.whitecaps = false;
          },
-         one(kPosition), kMesh * (8 + 24)},
+         one(kPosition | kStrain), kMesh * (8 + 24)},
         // Heights, their slopes and their velocity; J is 1 everywhere.
         {"ChoppinessZero",
          [](Scene& s) {
@@ -144,7 +144,11 @@ std::vector<Case> cases() {
          false},
         {"DisplacementMap", maps({MapKind::Displacement}), one(kPosition), kMap * (8 + 12)},
         {"NormalMap", maps({MapKind::Normal}), one(kSlopes | kStrain), kMap * (8 + 12)},
-        {"SlopeVarianceMap", maps({MapKind::SlopeVariance}), {{}}, kMap * (8 + 12)},
+        // What carries them, at each mip level.
+        {"SlopeVarianceMap",
+         maps({MapKind::SlopeVariance}),
+         {{{64, 32, kStrain}, {64, 16, kStrain}, {30, 8, kStrain}, {14, 4, kStrain}, {6, 2, kStrain}}},
+         kMap * (8 + 12)},
         {"WhitecapsMap", maps({MapKind::Whitecaps}), one(kStrain), kMap * (8 + 16)},
         {"WhitecapsMapChoppinessZero",
          [](Scene& s) {
@@ -224,11 +228,11 @@ std::vector<Case> cases() {
          {{{126, 32, kPosition}, {64, 16, kSlopes | kStrain}}},
          kMap * (8 + 24),
          {query(products(Product::Position, Product::Normal), 3.125, 6.25, false)}},
-        {"VariancesOnly",
+        {"VariancesAtRestOnly",
          nothing,
          {{}},
          kMap * (8 + 12),
-         {query(products(Product::SlopeVariance), 3.125, 3.125, true)}},
+         {query(products(Product::SlopeVarianceAtRest), 3.125, 3.125, true)}},
         // All in double, and once more as files hold it.
         {"Reference",
          [](Scene& s) { s.quality.level = QualityLevel::Reference; },
@@ -282,7 +286,7 @@ std::size_t held_by(const Trains<T>& trains) {
     std::size_t bytes =
         of(trains.kx_cycles_per_m, trains.ky_cycles_per_m, trains.cycles_per_s, trains.start_cycles,
            trains.height_m, trains.horizontal_m, trains.wavelength_m, trains.alone, trains.before,
-           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength, trains.steepness2);
+           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength);
     for (const auto& amplitude : trains.amplitude) bytes += of(amplitude);
     return bytes;
 }
@@ -292,7 +296,7 @@ std::size_t held_by(const Trains<T>& trains) {
 std::size_t trains_bytes(int trains) {
     if (trains == 0) return 0;
     const auto n = static_cast<std::size_t>(trains);
-    return n * (7 * 8 + 13 * 4) + (n + 2 * (n + 1)) * sizeof(SpectralMoments) + (n + (n + 1)) * 8 * 4;
+    return n * (7 * 8 + 12 * 4) + (n + 2 * (n + 1)) * sizeof(SpectralMoments) + (n + (n + 1)) * 8 * 4;
 }
 
 template <class T>

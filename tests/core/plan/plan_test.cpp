@@ -36,12 +36,12 @@ TEST(Plan, HoldsTheFieldsOfWhatIsAskedForAndNoOthers) {
     EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Velocity}))), kPositions | kVelocities);
     EXPECT_EQ(fields_of_plan(plan_bake(scene_with({Whitecaps}))), kPositions | kStrain);
     EXPECT_EQ(fields_of_plan(plan_bake(scene_with({SlopeVariance}))),
-              kPositions);  // an integral of the spectrum
+              kPositions | kStrain);  // an integral of the spectrum, and what carries it
 }
 
-TEST(Plan, HasNoJacobianWithoutWhitecapsAndNormals) {
+TEST(Plan, HasNoJacobianWithoutWhitecapsNormalsAndSlopeVariance) {
     using enum MeshAttribute;
-    Scene scene = scene_with({Velocity, SlopeVariance, Whitecaps});
+    Scene scene = scene_with({Velocity, Whitecaps});
     scene.effects.whitecaps = false;
     const Plan plan = plan_bake(scene);
     EXPECT_EQ(fields_of_plan(plan) & kStrain, FieldSet());

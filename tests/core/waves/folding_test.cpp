@@ -31,6 +31,23 @@ TEST(Folding, WarnsOfMoreThanTwentiethAndSaysWhatLeavesThat) {
     EXPECT_TRUE(sea_warnings(*prepare(choppy(advised))).empty());
 }
 
+// A swell is held to its depth, but several together aren't. Unit: Rayleigh's deepest of a thousand troughs, 0.93 Hs.
+TEST(SeaWarnings, SayThatTroughsReachTheBed) {
+    Scene shallow;
+    shallow.sea.wind_speed_mps = 0.0;
+    shallow.sea.depth_m = 4.0;
+    shallow.waves.choppiness = 0.0;
+    shallow.sea.swell = {{2.4, 12.0, 0.0}, {2.4, 11.0, 30.0}, {2.4, 10.0, 60.0}};  // 4.16 m together
+    const auto of = [&] { return sea_warnings(*prepare(shallow)); };
+    EXPECT_TRUE(of().empty());
+    shallow.sea.swell.push_back({2.4, 9.0, 90.0});  // 4.8 m
+    ASSERT_EQ(of().size(), 1u);
+    EXPECT_NE(of()[0].find("4.5 m deep and would lie under the bed"), std::string::npos) << of()[0];
+    EXPECT_NE(of()[0].find("sea.depth_m"), std::string::npos);
+    shallow.sea.depth_m = 4.6;
+    EXPECT_TRUE(of().empty());
+}
+
 TEST(Folding, GrowsWithChoppinessFromNothing) {
     const auto prepared = prepare(choppy(1.0));
     EXPECT_EQ(folded_share(prepared->spectrum, 0.0), 0.0);

@@ -91,7 +91,7 @@ TEST_F(Explain, GivesEachOutputAndEffectAPrice) {
 }
 
 // One mesh on one grid. Position's three fields are always needed; normals need two slopes for themselves,
-// and J's three fields, which they share with whitecaps; velocities need three; a variance needs none.
+// and J's three fields, which they share with whitecaps and slope variances; velocities need three.
 TEST_F(Explain, CountsWhatNothingElseNeeds) {
     std::map<std::string, long> transforms, lines;
     for (const Price& price : prices(kOneCascade)) {

@@ -322,6 +322,13 @@ TEST(LiveSea, AnImpossibleSceneIsRefusedInWords) {
     EXPECT_EQ(sea.newest(), nullptr);
 }
 
+TEST(LiveBuild, SaysThatASeaFoldsOver) {
+    Scene scene = small_scene();
+    scene.waves.choppiness = 6.0;
+    const auto folding = build_live(scene, {});
+    EXPECT_NE(folding->note.find("folds over itself"), std::string::npos) << folding->note;
+}
+
 // What doesn't fit the driver's textures or the memory is drawn without its shortest waves, and the window says so.
 TEST(LiveBuild, LeavesOutTheShortestWavesWhereTheSeaDoesNotFit) {
     Scene scene;

@@ -9,7 +9,7 @@ import numpy as np
 import pelagic
 
 SIZE_M, RESOLUTION = 40.0, 16
-ALL = ("position", "displacement", "normal", "velocity", "slope_variance", "jacobian", "coverage")
+ALL = ("position", "displacement", "normal", "velocity", "slope_variance", "slope_variance_at_rest", "jacobian", "coverage")
 
 
 def small_scene():
@@ -116,6 +116,16 @@ class Scene(unittest.TestCase):
     def test_words_are_checked_with_the_nearest(self):
         with self.assertRaisesRegex(pelagic.ShotError, 'sea.spectrum = "jonsvap".*nearest is "jonswap"'):
             pelagic.Scene().sea.spectrum = "jonsvap"
+
+    def test_warnings_say_what_a_sea_does_that_can_be_planned(self):
+        scene = small_scene()
+        self.assertEqual(scene.warnings(), [])
+        scene.waves.choppiness = 6.0
+        self.assertEqual(len(scene.warnings()), 1)
+        self.assertIn("folds over itself", scene.warnings()[0])
+        scene.sea.wind_speed_mps = -3.0
+        with self.assertRaises(pelagic.ShotError):
+            scene.warnings()
 
     def test_validate_lists_every_problem_and_a_sea_refuses_them(self):
         scene = small_scene()
@@ -229,7 +239,8 @@ class Query(unittest.TestCase):
             np.testing.assert_array_equal(array, one[name])
         # What a larger footprint hides is slope variance.
         finest = frame.evaluate(self.rest)
-        self.assertTrue((one["slope_variance"][:, :2] > finest["slope_variance"][:, :2]).all())
+        at_rest = "slope_variance_at_rest"
+        self.assertTrue((one[at_rest][:, :2] > finest[at_rest][:, :2]).all())
 
     def test_types_that_would_need_a_copy_are_refused(self):
         points = len(self.rest)
@@ -380,7 +391,7 @@ class Numbers(unittest.TestCase):
 
     def test_only_what_is_asked_for_is_computed(self):
         counts = [pelagic.Sea(small_scene(), products).transforms_per_frame
-                  for products in (("slope_variance",), ("position",), ("position", "normal"), ALL)]
+                  for products in (("slope_variance_at_rest",), ("position",), ("position", "normal"), ALL)]
         self.assertEqual(counts[0], 0)
         self.assertEqual(counts, sorted(set(counts)))
 

@@ -370,6 +370,31 @@ void add_effects_and_quality(Built& out) {
             {.name = "whitecaps",
              .help = "foam where waves break; off, no output has coverage and none is computed",
              .feeds = feeds(Feed::Foam)}),
+        row<&Effects::whitecap_law>(
+            {.name = "whitecap_law",
+             .help =
+                 "how much foam a wind makes: monahan-1980, much in storms; monahan-1986, with sea_minus_air_c; "
+                 "callaghan-2008, which stays at 8 % beyond 23 m/s",
+             .feeds = feeds(Feed::Foam)}),
+        row<&Effects::sea_minus_air_c>(
+            {.name = "sea_minus_air_c",
+             .help = "with monahan-1986: how much warmer the sea is than the air; a warm one foams more",
+             .unit = "°C",
+             .range = limits::kSeaMinusAir_c,
+             .soft = SoftRange{-10.0, 10.0},
+             .feeds = feeds(Feed::Foam)}),
+        row<&Effects::whitecap_amount>({.name = "whitecap_amount",
+                                        .help = "times the law's foam; 0: none",
+                                        .range = limits::kWhitecapAmount,
+                                        .soft = SoftRange{0.0, 4.0},
+                                        .feeds = feeds(Feed::Foam)}),
+        row<&Effects::breaking_from_m>(
+            {.name = "breaking_from_m",
+             .help = "the shortest waves that break; 0: ripples break as well, and foam is a veil",
+             .unit = "m",
+             .range = limits::kBreakingFrom_m,
+             .soft = SoftRange{0.1, 20.0, true},
+             .feeds = feeds(Feed::Foam)}),
         row<&Effects::foam_decay_s>(
             {.name = "foam_decay_s",
              .help =

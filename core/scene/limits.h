@@ -57,6 +57,9 @@ inline constexpr Range kTrain_m{1e-3,
 
 inline constexpr Range kFoamDecay_s{0.0, 30.0};  // a history of a thousand steps; 0.5 … 8 s are observed
 inline constexpr Range kFoamDrift{0.0, 1.0};
+inline constexpr Range kSeaMinusAir_c{-40.0, 40.0};
+inline constexpr Range kWhitecapAmount{0.0, 100.0};
+inline constexpr Range kBreakingFrom_m{0.0, 1e3};
 
 inline constexpr Range kSurfaceSize_m{0.01, 1e6};
 inline constexpr Range kSurfaceResolution{1, 8192};

@@ -19,6 +19,7 @@ namespace pelagic {
 
 enum class SpectrumKind { PiersonMoskowitz, Jonswap, Jonswap1973, Tma, Elfouhaily, Omega2, Phillips, File };
 enum class ShortWaves { Elfouhaily, None };
+enum class WhitecapLaw { Monahan1980, Monahan1986, Callaghan2008 };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
@@ -164,6 +165,11 @@ struct Effects {
     bool whitecaps = true;
     double foam_decay_s = 0.0;  // e-folding time of what breaking leaves; 0: foam is only where waves break
     double foam_drift = 0.02;   // of the wind's speed, along the wind
+    WhitecapLaw whitecap_law = WhitecapLaw::Monahan1980;
+    double sea_minus_air_c =
+        0.0;  // temperature of the sea less that of the air, with WhitecapLaw::Monahan1986
+    double whitecap_amount = 1.0;  // ≥ 0, times the law
+    double breaking_from_m = 1.0;  // the shortest waves that break; 0: all do
     bool spray = false;
     double spray_gain = 1.0;
 };

@@ -1,104 +1,124 @@
-// What foam that lives costs: a run's frames and a frame alone, against the same without it; and what its history holds.
-//   foam [DECAY_S]      default 4
+// Where foam is: its mean over area at every footprint against the law, and how high on the waves it lies.
 
-#include <algorithm>
-#include <chrono>
+#include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <memory>
-#include <vector>
+#include <random>
 
-#include "core/plan/memory.h"
-#include "plugin/bake/sequence.h"
-#include "plugin/light/light.h"
-#include "plugin/render/render.h"
+#include "core/evaluate/values.h"
+#include "core/scene/names.h"
+#include "core/surface/patch.h"
+#include "core/waves/whitecaps.h"
+#include "tests/bench/timing.h"
 
 namespace pelagic::bench {
 namespace {
 
-double seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-template <class Work>
-double time_of(const Work& work) {
-    const double start_s = seconds();
-    work();
-    return seconds() - start_s;
-}
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-    return values[values.size() / 2];
-}
-double mean(const std::vector<double>& values) {
-    double sum = 0.0;
-    for (const double value : values) sum += value;
-    return sum / static_cast<double>(values.size());
-}
-
-void row(const char* what, double ratio, double target) {
-    std::printf("  %-52s %6.2f   target %.1f: %s\n", what, ratio, target, ratio <= target ? "met" : "missed");
-}
-
-// `make(scene)` gives a function of a frame's number. In turn, so that a busy machine slows all alike.
-template <class Make>
-void compare(const Scene& plain, const Scene& living, int frames, const Make& make) {
-    auto without = make(plain), run = make(living);
-    without(1);
-    run(1);
-    std::vector<double> plain_s, run_s, cold_s;
-    for (int frame = 2; frame < frames + 2; ++frame) {
-        plain_s.push_back(time_of([&] { without(frame); }));
-        run_s.push_back(time_of([&] { run(frame); }));
-        if (frame % 4 != 2) continue;
-        auto alone = make(living);
-        cold_s.push_back(time_of([&] { alone(frame); }));
+std::vector<glm::vec2> scattered(int count, unsigned seed) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<float> inside(-5000.0f, 5000.0f);
+    std::vector<glm::vec2> points(count);
+    for (glm::vec2& point : points) {
+        point.x = inside(generator);
+        point.y = inside(generator);
     }
-    // Every few frames a run takes another earlier time: its mean counts.
-    row("a run's frame, on the mean", mean(run_s) / mean(plain_s), 1.3);
-    row("a frame alone", median(cold_s) / median(plain_s), 4.0);
-    std::printf("  %-52s %6.1f ms\n", "without it", 1e3 * median(plain_s));
+    return points;
 }
 
-void mesh(Scene scene, double decay_s) {
-    scene.surface.resolution = 1024;
-    Scene living = scene;
-    living.effects.foam_decay_s = decay_s;
-    std::printf("\nA mesh of 1024^2 with all attributes, computed and encoded as a crate; history %s\n",
-                bytes_text(plan_bake(living).foam_history_bytes()).c_str());
-    compare(scene, living, 12, [](const Scene& shot) {
-        std::shared_ptr<Sequence> sequence = make_sequence(plan_bake(shot));
-        return [sequence, slot = std::make_shared<FrameSlot>()](int frame) {
-            sequence->compute(frame, *slot);
-            sequence->encode(*slot);
-            sequence->write(*slot, [](const FileJob& job) { job.content([](std::string_view) {}); });
-        };
-    });
+Scene sea(SpectrumKind spectrum, double wind_mps, int seed) {
+    Scene scene;
+    scene.shot.seed = static_cast<std::uint64_t>(seed);
+    scene.sea.spectrum = spectrum;
+    scene.sea.wind_speed_mps = wind_mps;
+    return scene;
 }
 
-void picture(Scene scene, double decay_s) {
-    Scene living = scene;
-    living.effects.foam_decay_s = decay_s;
-    const std::vector<int> frames{1};
-    const RenderOptions options = render_options(scene);
-    std::printf("\nA picture of 1280 x 720; history at most %s\n",
-                bytes_text(picture_plan(living, frames, options).foam_history_bytes()).c_str());
-    compare(scene, living, 8, [&](const Scene& shot) {
-        auto renderer = std::make_shared<Renderer>(shot, options, make_sky(shot), frames);
-        return [renderer, into = std::make_shared<Picture>()](int frame) { renderer->render(frame, *into); };
-    });
+// Shares of the sea's area; each footprint sees the same places of the same seas.
+void footprints() {
+    constexpr double kFootprints_m[] = {0.02, 0.05, 0.2, 0.5, 2.0, 10.0, 50.0, 200.0};
+    constexpr int kSeeds = 4, kPoints = 100000;
+    std::printf("Coverage over area, of the law's; footprints [m]\n  %-12s %5s", "", "m/s");
+    for (const double footprint_m : kFootprints_m) std::printf(" %6g", footprint_m);
+    std::printf("\n");
+    double worst = 0.0;
+    for (const SpectrumKind spectrum : {SpectrumKind::Jonswap, SpectrumKind::Elfouhaily})
+        for (const double wind_mps : {8.0, 10.0, 14.0}) {
+            std::printf("  %-12s %5g", std::string(word_of(spectrum)).c_str(), wind_mps);
+            for (const double footprint_m : kFootprints_m) {
+                double foam = 0.0, area = 0.0;
+                for (int seed = 1; seed <= kSeeds; ++seed) {
+                    const Scene scene = sea(spectrum, wind_mps, seed);
+                    Query query;
+                    query.name = "points";
+                    query.products = products(Product::Coverage, Product::JacobianMoments);
+                    query.cell_m = query.pixel_m = {footprint_m};
+                    Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(scene, {query})));
+                    frame.set(3.0);
+                    const auto rest = scattered(kPoints, static_cast<unsigned>(seed));
+                    Values values;
+                    QueryRunner<float>().run(frame, 0, {.count = rest.size(), .rest_m = {rest.data()}},
+                                             values);
+                    for (std::size_t i = 0; i < rest.size(); ++i) {
+                        const glm::vec3 j = values.vectors(Product::JacobianMoments)[i];
+                        const double own = sea_area(JacobianMoments<double>{j.x, j.y, j.z}, true);
+                        area += own;
+                        foam += own * static_cast<double>(values.numbers(Product::Coverage)[i]);
+                    }
+                }
+                const double of_law = foam / area / law_coverage(sea(spectrum, wind_mps, 1));
+                worst = std::max(worst, std::abs(of_law - 1.0));
+                std::printf(" %6.3f", of_law);
+            }
+            std::printf("\n");
+        }
+    std::printf("  furthest off: %.1f %%   target 5 %%: %s\n", 100.0 * worst, verdict(worst <= 0.05));
+}
+
+// Over cells of half a metre.
+void heights() {
+    constexpr int kSide = 1024, kSeeds = 4;
+    std::printf(
+        "\nActive foam, cells of 0.5 m over 512 m, %d seeds: its mean elevation, and how much of it lies where "
+        "coverage > 0.5\n  %-12s %5s %16s %10s %12s\n",
+        kSeeds, "", "m/s", "breaking_from_m", "elevation", "dense part");
+    const auto points = rest_points<float>({.per_side = kSide, .spacing_m = 0.5, .first_m = -256.0});
+    for (const SpectrumKind spectrum : {SpectrumKind::Elfouhaily, SpectrumKind::Jonswap})
+        for (const double from_m : {0.0, 0.5, 1.0, 2.0, 4.0}) {
+            double foam = 0.0, high = 0.0, dense = 0.0;
+            for (int seed = 1; seed <= kSeeds; ++seed) {
+                Scene scene = sea(spectrum, 14.0, seed);
+                scene.effects.breaking_from_m = from_m;
+                Query query;
+                query.name = "cells";
+                query.products = products(Product::Position, Product::Coverage);
+                query.cell_m = query.pixel_m = {0.5};
+                Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(scene, {query})));
+                frame.set(3.0);
+                Values values;
+                QueryRunner<float>().run(frame, 0, {.count = points.size(), .rest_m = {points.data()}},
+                                         values);
+                double height2 = 0.0, foam_height = 0.0;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const double w = static_cast<double>(values.numbers(Product::Coverage)[i]),
+                                 z = static_cast<double>(values.vectors(Product::Position)[i].z);
+                    height2 += z * z;
+                    foam += w;
+                    foam_height += w * z;
+                    if (w > 0.5) dense += w;
+                }
+                high += foam_height / std::sqrt(height2 / static_cast<double>(points.size()));
+            }
+            std::printf("  %-12s %5g %16g %8.2f σ %10.0f %%", std::string(word_of(spectrum)).c_str(), 14.0,
+                        from_m, high / foam, 100.0 * dense / foam);
+            if (spectrum == SpectrumKind::Elfouhaily && from_m == Effects{}.breaking_from_m)
+                std::printf("   targets 1 σ, 25 %%: %s", verdict(high >= foam && dense >= 0.25 * foam));
+            std::printf("\n");
+        }
 }
 
 }  // namespace
 }  // namespace pelagic::bench
 
-int main(int argc, char** argv) {
-    using namespace pelagic;
-    const double decay_s = argc > 1 ? std::atof(argv[1]) : 4.0;
-    Scene scene;
-    scene.sea.wind_speed_mps = 14.0;
-    std::printf("Foam that lives for %g s; wind 14 m/s\n", decay_s);
-    bench::mesh(scene, decay_s);
-    bench::picture(scene, decay_s);
+int main() {
+    pelagic::bench::footprints();
+    pelagic::bench::heights();
 }

@@ -245,7 +245,7 @@ double share_of_law(double footprint_m, int per_side, double spacing_m) {
         foam += area * now.total[i];
         sea += area;
     }
-    return foam / sea / observed_coverage(14.0);
+    return foam / sea / law_coverage(scene_of(2.0));
 }
 
 // All foam together has the law's coverage, at any footprint.

@@ -19,7 +19,6 @@
 namespace pelagic {
 namespace {
 
-
 // Columns that a task builds: enough for its sums and arrays to be worth making.
 constexpr int kBlockColumns = 16;
 
@@ -127,7 +126,8 @@ void Sea<T>::calibrate_whitecaps() {
         life = {.rate_per_s = plan_.trains ? breaking_rate(trains_, plan_.breaking.k_end())
                                            : breaking_rate(plan_.from->spectrum, plan_.breaking.k_end()),
                 .lasting_s = plan_.foam->weight(0.0, plan_.foam->window_s).foam_s};
-    whitecap_threshold_ = calibrated_threshold(total_, law_coverage(plan_.from->scene), plan_.breaking.choppiness, third, life);
+    whitecap_threshold_ =
+        calibrated_threshold(total_, law_coverage(plan_.from->scene), plan_.breaking.choppiness, third, life);
     if (!plan_.foam || !std::isfinite(whitecap_threshold_)) return;
     const auto j = jacobian_moments<double>(
         0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});

@@ -59,7 +59,7 @@ class RendererOf final : public Impl {
           sea_(std::make_shared<const Sea<T>>(plan, watch)),
           frame_(sea_),
           grid_options_(projected_grid_options(*plan.from)) {
-        if (plan.foam) foam_.emplace(sea_);
+        if (plan.foam) history_.emplace(sea_);
     }
 
     const Plan& plan() const override { return sea_->plan(); }
@@ -138,16 +138,16 @@ class RendererOf final : public Impl {
 
     // Of all that the picture shows, so that its parts don't each go through the earlier times.
     void prepare_foam(double time_s) {
-        if (!foam_) return;
-        foam_->set(time_s);
+        if (!history_) return;
+        history_->set(time_s);
         const std::vector<T> pixel_m(grid_.pixel_m.begin(), grid_.pixel_m.end());
         const std::vector<glm::vec<2, T>> axis_m(grid_.pixel_axis_m.begin(), grid_.pixel_axis_m.end());
-        foam_->prepare(Points<T>{.origin_m = grid_.origin_m,
-                                 .count = rest_.size(),
-                                 .rest_m = {rest_.data()},
-                                 .pixel_m = {pixel_m.data()},
-                                 .pixel_axis_m = {axis_m.data()}},
-                       kQuery);
+        history_->prepare(Points<T>{.origin_m = grid_.origin_m,
+                                    .count = rest_.size(),
+                                    .rest_m = {rest_.data()},
+                                    .pixel_m = {pixel_m.data()},
+                                    .pixel_axis_m = {axis_m.data()}},
+                          kQuery);
     }
 
     void lay_out_grid() {
@@ -280,13 +280,13 @@ class RendererOf final : public Impl {
                                .pixel_m = {batch_.pixel_m.data()},
                                .pixel_axis_m = {batch_.pixel_axis_m.data()}};
         runner_.run(frame_, kQuery, points, wanted, batch_.answers);
-        if (!foam_) return;
+        if (!history_) return;
         batch_.foam_active.resize(count);
         batch_.foam_age_s.resize(count);
-        foam_->add(points, kQuery,
-                   {.coverage = {batch_.answers.numbers(Product::Coverage).data()},
-                    .active = {batch_.foam_active.data()},
-                    .age_s = {batch_.foam_age_s.data()}});
+        history_->add(points, kQuery,
+                      {.coverage = {batch_.answers.numbers(Product::Coverage).data()},
+                       .active = {batch_.foam_active.data()},
+                       .age_s = {batch_.foam_age_s.data()}});
     }
 
     void light_sea() {
@@ -474,10 +474,10 @@ class RendererOf final : public Impl {
         set(PictureLayer::SlopeVariance, batch_.answers.vectors(Product::SlopeVariance)[i]);
         set(PictureLayer::Coverage, glm::vec1(coverage.empty() ? 0.0f : coverage[i]));
         // Foam that doesn't live is all of waves that break now.
-        set(PictureLayer::FoamActive, glm::vec1(foam_              ? batch_.foam_active[i]
+        set(PictureLayer::FoamActive, glm::vec1(history_           ? batch_.foam_active[i]
                                                 : coverage.empty() ? 0.0f
                                                                    : coverage[i]));
-        set(PictureLayer::FoamAge, glm::vec1(foam_ ? batch_.foam_age_s[i] : 0.0f));
+        set(PictureLayer::FoamAge, glm::vec1(history_ ? batch_.foam_age_s[i] : 0.0f));
     }
 
     static constexpr int kQuery = 0;  // the plan's only one
@@ -488,7 +488,7 @@ class RendererOf final : public Impl {
     WaterBody water_;
     std::shared_ptr<const Sea<T>> sea_;
     Frame<T> frame_;
-    std::optional<FoamHistory<T>> foam_;
+    std::optional<FoamHistory<T>> history_;
     ProjectedGridOptions grid_options_;
     View view_;
     Air air_;  // before that view's eye

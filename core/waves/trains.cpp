@@ -171,7 +171,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         const auto factor = [&](Field field, double value) {
             trains.amplitude[index(field)].push_back(static_cast<T>(value));
         };
-        const double omega = kTwoPi * cycles_per_s, q = k * horizontal_m;
+        const double omega = kTwoPi * cycles_per_s;
         factor(Field::Height, height_m);
         factor(Field::Dx, x * horizontal_m);
         factor(Field::Dy, y * horizontal_m);

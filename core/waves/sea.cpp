@@ -79,7 +79,6 @@ class Sea<T>::Progress {
 template <class T>
 Sea<T>::Sea(Plan plan, const BuildWatch& watch)
     : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
-    const Scene& scene = plan_.from->scene;
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
     if (plan_.trains) {
         trains_ = make_trains<T>(*plan_.from, *plan_.trains);

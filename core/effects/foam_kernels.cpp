@@ -28,7 +28,7 @@ void Deviates(const float* mean, const float* variance, const float* third, floa
     for (std::size_t i = 0; i < y.size(); i += hn::Lanes(d)) {
         const N v = maximum(N(hn::LoadU(d, variance + i)), N(kLeastVariance)), sigma = square_root(v);
         N z = (N(threshold) - N(hn::LoadU(d, mean + i))) / sigma;
-        z = minimum(maximum(z, N(-kFarthestDeviate)), N(kFarthestDeviate));
+        z = minimum(maximum(z, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
         if (third_moment) z = whitecaps_detail::to_normal(z, N(hn::LoadU(d, third + i)) / v / sigma).y;
         z = minimum(maximum(z, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
         hn::StoreU(z.v, d, y.data() + i);
@@ -53,19 +53,30 @@ HWY_INLINE N MeanBetween(N a, const Normal& at_a, N b, const Normal& at_b) {
     return select<D>(is_level, N(0.5) * (at_a.below + at_b.below), mean);
 }
 
-// y in the middle by the polynomial through all six: breaking is shorter than a step.
+// y at quarters of the interval by the polynomial through all six: breaking is shorter than a step.
+constexpr float kQuarter[6] = {0.0093994140625f, -0.0845947265625f, 0.845947265625f,
+                               0.281982421875f,  -0.0604248046875f, 0.0076904296875f};
 void Share(const float* const y[6], std::span<std::uint16_t> share) {
     const D d;
     const Half half;
     const Whole whole;
     for (std::size_t i = 0; i < share.size(); i += hn::Lanes(d)) {
         const auto at = [&](int sample) HWY_ATTR { return N(hn::LoadU(d, y[sample] + i)); };
-        const N a = at(2), b = at(3);
-        N middle =
-            N(150.0 / 256.0) * (a + b) - N(25.0 / 256.0) * (at(1) + at(4)) + N(3.0 / 256.0) * (at(0) + at(5));
-        middle = minimum(maximum(middle, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
-        const Normal at_a = NormalOf(a), at_b = NormalOf(b), at_middle = NormalOf(middle);
-        N mean = N(0.5) * (MeanBetween(a, at_a, middle, at_middle) + MeanBetween(middle, at_middle, b, at_b));
+        const auto near_quarter = [&](int from, int way) HWY_ATTR {
+            N y_there(0);
+            for (int j = 0; j < 6; ++j) y_there += N(kQuarter[j]) * at(from + way * j);
+            return y_there;
+        };
+        const N middle = N(150.0 / 256.0) * (at(2) + at(3)) - N(25.0 / 256.0) * (at(1) + at(4)) +
+                         N(3.0 / 256.0) * (at(0) + at(5));
+        const N way[5] = {at(2), near_quarter(0, 1), middle, near_quarter(5, -1), at(3)};
+        Normal before = NormalOf(way[0]);
+        N mean(0);
+        for (int part = 0; part < 4; ++part) {
+            const Normal after = NormalOf(way[part + 1]);
+            mean += N(0.25) * MeanBetween(way[part], before, way[part + 1], after);
+            before = after;
+        }
         mean = minimum(maximum(mean, N(0)), N(1));
         const auto bits = hn::Add(hn::BitCast(whole, mean.v), hn::Set(whole, 0x8000u));
         const auto upper = hn::BitCast(hn::RebindToSigned<Whole>(), hn::ShiftRight<16>(bits));

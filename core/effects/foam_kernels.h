@@ -24,7 +24,8 @@ struct FoamKernels {
     void (*sum)(std::span<const FoamShares> shares, std::span<float> foam, std::span<float> age);
 };
 
-inline constexpr float kFarthestFoamDeviate = 8.0f;
+// So far that what lies between two samples isn't bent by the limit.
+inline constexpr float kFarthestFoamDeviate = 1e3f;
 
 // For the CPU that runs this.
 FoamKernels foam_kernels();

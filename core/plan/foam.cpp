@@ -31,7 +31,7 @@ std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m) {
     constexpr double kCell =
         1.4;  // of the finest that breaking resolves: a half as many cells, and none of the foam is lost
     constexpr double kWindow = 3.0;         // 5 % of the foam is older
-    constexpr double kStepsOfPeriod = 3.5;  // of the shortest wave that a cell resolves
+    constexpr double kStepsOfPeriod = 4.0;  // of the shortest wave that a cell resolves
     FoamPlan foam;
     foam.decay_s = effects.foam_decay_s;
     foam.window_s = kWindow * foam.decay_s;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "core/waves/whitecaps.h"
@@ -150,7 +149,7 @@ TEST(LivingFoam, DecaysOverItsTime) {
         Scene scene = scene_of(decay_s);
         scene.effects.foam_drift = 0.0;  // a point of the water keeps its foam
         Shown<> shown(sea_of(scene, 0.2));
-        const auto points = square(60, 0.5);
+        const auto points = square(100, 0.7);
         const double from_s = 30.0, until_s = from_s + decay_s;
         const Foam first = shown.at(from_s, points);
         std::vector<float> broke(points.size());  // later, to first order
@@ -163,8 +162,10 @@ TEST(LivingFoam, DecaysOverItsTime) {
         const Foam last = shown.at(until_s, points);
         const std::vector<float> left = first.residual(), kept = last.residual();
         // Those where the least broke later.
-        std::vector<std::size_t> quiet(points.size());
-        std::iota(quiet.begin(), quiet.end(), std::size_t(0));
+        std::vector<std::size_t> quiet;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (left[i] > 0.05f) quiet.push_back(i);
+        ASSERT_GT(quiet.size(), 40u) << "nothing broke";
         std::sort(quiet.begin(), quiet.end(),
                   [&](std::size_t a, std::size_t b) { return broke[a] * left[b] < broke[b] * left[a]; });
         double before = 0.0, after = 0.0;
@@ -172,7 +173,6 @@ TEST(LivingFoam, DecaysOverItsTime) {
             before += left[quiet[i]];
             after += kept[quiet[i]];
         }
-        ASSERT_GT(before, 0.2) << "nothing broke";
         std::printf("decay of %g s: 1/e after %.3f s\n", decay_s, -decay_s / std::log(after / before));
         EXPECT_NEAR(-decay_s / std::log(after / before), decay_s, 0.1 * decay_s) << decay_s;
     }
@@ -212,7 +212,9 @@ TEST(LivingFoam, OfALoopCloses) {
         for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
         return sum;
     };
-    EXPECT_LT(change(4.0 - 1.0 / 48.0, 0.0), 2.0 * change(2.0, 2.0 + 1.0 / 48.0));
+    double any = 0.0;
+    for (double t_s = 0.5; t_s < 4.0; t_s += 0.5) any = std::max(any, change(t_s, t_s + 1.0 / 48.0));
+    EXPECT_LT(change(4.0 - 1.0 / 48.0, 0.0), 1.5 * any);
 }
 
 // Foam goes with the wind: what is seen τ later is where it was, displaced by the drift.
@@ -236,7 +238,7 @@ TEST(LivingFoam, Drifts) {
 
 // Total coverage over area, of the law's.
 double share_of_law(double footprint_m, int per_side, double spacing_m) {
-    Shown<> shown(sea_of(scene_of(2.0), footprint_m));
+    Shown<> shown(sea_of(scene_of(4.0), footprint_m));
     double foam = 0.0, sea = 0.0;
     const Foam now = shown.at(11.0, square(per_side, spacing_m));
     for (std::size_t i = 0; i < now.total.size(); ++i) {
@@ -245,7 +247,7 @@ double share_of_law(double footprint_m, int per_side, double spacing_m) {
         foam += area * now.total[i];
         sea += area;
     }
-    return foam / sea / law_coverage(scene_of(2.0));
+    return foam / sea / law_coverage(scene_of(4.0));
 }
 
 // All foam together has the law's coverage, at any footprint.

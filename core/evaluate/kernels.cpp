@@ -157,9 +157,30 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
         bspline_weights<P>(Pack<decltype(one)>(hn::Set(one, y.rest[begin])), row_weight);
         std::size_t row[P];
         for (int p = 0; p < P; ++p) {
-            const int at = static_cast<int>(y.node[begin]) - P / 2 + 1 + p;
-            // n may be smaller than the number of taps.
-            row[p] = static_cast<std::size_t>(((at % n) + n) % n) * stride + low;
+            int at = static_cast<int>(y.node[begin]) - P / 2 + 1 + p;
+            // n may be smaller than the number of taps; a division for each row would cost more than the sums.
+            while (at < 0) at += n;
+            while (at >= n) at -= n;
+            row[p] = static_cast<std::size_t>(at) * stride + low;
+        }
+        if (end == begin + 1) {  // scattered: rows and columns at once, nothing kept between
+            for (std::size_t f = 0; f < kFieldCount; ++f) {
+                const T* samples = args.samples[f];
+                if (!samples) continue;
+                auto sum = hn::Zero(taps);
+                for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps)) {
+                    auto column = hn::Mul(hn::Set(taps, hn::GetLane(row_weight[0].v)),
+                                          hn::LoadU(taps, samples + row[0] + k));
+                    for (int p = 1; p < P; ++p)
+                        column = hn::MulAdd(hn::Set(taps, hn::GetLane(row_weight[p].v)),
+                                            hn::LoadU(taps, samples + row[p] + k), column);
+                    sum = hn::MulAdd(column, hn::Load(taps, weights[begin] + k), sum);
+                }
+                const T value = hn::GetLane(hn::SumOfLanes(taps, sum));
+                const T* weight = WeightOf(args, f);
+                chunk.sums[f][begin] += weight ? weight[begin] * value : value;
+            }
+            continue;
         }
         const std::size_t span = static_cast<std::size_t>(high - low) + kTaps;
         for (std::size_t f = 0; f < kFieldCount; ++f) {

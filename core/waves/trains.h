@@ -4,7 +4,8 @@
 //
 // h is the vertical and H the horizontal amplitude: H = choppiness · coth(kd) · h, limited to kH ≤ 1, beyond
 // which the train's surface would fold over. Each train stands for one bin of the spectrum: h = √(2E), where
-// E is the bin's energy (the integral, not a sample). Direction and phase are drawn at random.
+// E is the bin's energy (the integral, not a sample). Phases are drawn at random, directions evenly
+// from the bins' distributions.
 #pragma once
 
 #include <array>

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds the benchmarks and prints their tables, the numbers first. Some half an hour on two cores.
 #   tests/bench/run.sh [PROGRAM…]      default: all, the light last:
-#     frame ocean construction sky daylight choices sampling query stages conservation trains crate bake optics whitecaps foam
-#     living_foam backoff skyline horizon sharpness preview window fig10 light played memory picture
+#     frame ocean construction sky daylight choices sampling query stages conservation trains repeats crate bake optics whitecaps
+#     foam living_foam backoff skyline horizon sharpness preview window fig10 light played memory picture
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh

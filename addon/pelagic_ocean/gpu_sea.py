@@ -211,7 +211,7 @@ class Drawing:
         tables = gpu.types.GPUUniformBuf(tables)
         shader.bind()
         shader.uniform_block("SeaTables", tables)
-        _set(shader, {**self.sea.uniforms, **light, "clip_from_grid": camera.clip_from_grid(grid.origin_m),
+        _set(shader, {**self.sea.uniforms, **light, **self.light.foam(grid.origin_m), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
                       "curvature_per_m": grid.curvature_per_m})
         textures = dict(self._textures)
         if cycles is not None:

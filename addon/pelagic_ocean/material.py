@@ -13,7 +13,7 @@ from .module import pelagic
 from .nodes import Tree
 
 MARK = "pelagic_water"  # on a material of the add-on: the version of its tree
-VERSION = 1
+VERSION = 2
 
 
 def ensure_material(obj, scene):
@@ -31,6 +31,8 @@ def update_material(obj, scene, significant_height_m=None):
     if material is not None:
         _set(material, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
         _set(material, "Wind Angle", math.radians(scene.sea.wind_direction_deg))
+        _set(material, "Foam Structure", scene.effects.foam_structure)
+        _set(material, "Foam Streaks", scene.effects.foam_streaks)
         _drive(material, "Time", ripple_clock(scene.shot))
         for name, values in depths.node_inputs(scene).items():
             _fill(material, name, values)
@@ -97,6 +99,8 @@ def new_material():
     water = labelled("ShaderNodeRGB", "Water Color", (0.0, 0.03, 0.05, 1.0))
     dense = labelled("ShaderNodeRGB", "Foam Color", (0.55, 0.55, 0.55, 1.0))
     wind = labelled("ShaderNodeValue", "Wind Angle", 0.0)
+    structure = labelled("ShaderNodeValue", "Foam Structure", 1.0)
+    streaks = labelled("ShaderNodeValue", "Foam Streaks", 0.5)
     crest_light = labelled("ShaderNodeValue", "Crest Light", 2.0)
     wave_height = labelled("ShaderNodeValue", "Wave Height", 1e6)
     clock = tree.node("ShaderNodeCombineXYZ")
@@ -105,7 +109,7 @@ def new_material():
 
     part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
     coverage = tree.attribute("whitecap_coverage", "Fac")
-    foam = add_foam(tree, coverage, size=1.0,
+    foam = add_foam(tree, coverage, tree.attribute("foam_age", "Fac"), structure, streaks, size=1.0,
                     detail_distance_m=400.0, wind_angle=wind)
 
     mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],

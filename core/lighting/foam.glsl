@@ -10,10 +10,11 @@ vec3 foam_variance(vec3 variance) {
 
 // The reflectance of covered area. Dense foam is white, 0.55. Averaged over its lifetime foam has 0.4 of that
 // (0.22, Koepke 1984, consistent with Monahan's coverage), since most of it is thin: bubbles over water,
-// which show the water's colour brightened. Thick foam is whiter, but the reflectance must not depend on a
-// pixel's coverage: means over larger pixels would differ, and foam would darken with distance.
-vec3 foam_reflectance(vec3 water_reflectance) {
-    float dense = 0.4f;
+// which show the water's colour brightened. `dense`, the part that is dense, must not depend on a pixel's coverage: means over
+// larger pixels would differ, and foam would darken with distance (foam_structure.glsl says what it is).
+const float kDenseFoam = 0.4f;
+
+vec3 foam_reflectance(vec3 water_reflectance, float dense) {
     return vec3(0.55f * dense) + (1.0f - dense) * water_reflectance;
 }
 

@@ -48,6 +48,7 @@ struct Shading {
 #include "core/lighting/sky.glsl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
+#include "core/lighting/foam_structure.glsl"
 #include "core/lighting/sea.glsl"
 #include "core/lighting/air.glsl"
 #include "core/lighting/place.glsl"
@@ -60,16 +61,16 @@ SeaAlbedo albedo(const WaterBody& water) {
     // Of irradiance π the radiance is the albedo.
     return {
         .water = shading.water_radiance({0.0f, 0.0f, 1.0f}, vec3(0.0f), vec3(shading.kPi), water.reflectance),
-        .foam = shading.foam_reflectance(water.reflectance),
+        .foam = shading.foam_reflectance(water.reflectance, shading.kDenseFoam),
         .water_index = shading.kWaterIndex};
 }
 
 using Batch = void (*)(const Sky&, const WaterBody&, std::span<const SeaPoint>, std::span<SeaRadiance>,
-                       const Air*);
+                       const Air*, const FoamPattern&);
 
 template <LightingChoice kChoice>
 void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
-                 std::span<SeaRadiance> radiance, const Air* air) {
+                 std::span<SeaRadiance> radiance, const Air* air, const FoamPattern& foam) {
     using Variant = Shading<kChoice>;
     const bool by_place = air && air->by_place > 0.0f;
     Variant shading(sky.map, air);
@@ -77,12 +78,16 @@ void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoin
                                             by_place ? air->by_place : 0.0f};
     const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
                                            sky.sun_irradiance, sky.sky_irradiance, water.reflectance};
+    const typename Variant::FoamPattern pattern{foam.cell, foam.rest, foam.axes, foam.look};
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
+        typename Variant::SeenFoam seen = shading.plain_foam(0.0f);
+        if (kChoice.whitecaps)
+            seen = shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s);
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
             p.up, to_eye, shading.visible_normal(p.normal, to_eye, p.slope_variance_at_rest, p.mesh_variance),
-            p.slope_variance, p.coverage, light, place);
+            p.slope_variance, seen, light, place);
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }
@@ -126,7 +131,8 @@ SeaAlbedo sea_albedo(const WaterBody& water) {
 }
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
-               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air) {
+               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air,
+               const FoamPattern& foam) {
     if (points.size() != radiance.size()) {
         throw std::invalid_argument("shade_sea: give one SeaRadiance for each SeaPoint");
     }
@@ -134,7 +140,7 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
         throw std::invalid_argument(
             "shade_sea: the sky has no map; make one with daylight_sky() or picture_sky()");
     }
-    shading::kBatches[shading::number_of(choice)](sky, water, points, radiance, air);
+    shading::kBatches[shading::number_of(choice)](sky, water, points, radiance, air, foam);
 }
 
 }  // namespace pelagic

@@ -3,9 +3,11 @@
 // the same text to OpenGL. This header is the batch interface for C++.
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
 
@@ -50,6 +52,13 @@ struct SeaPoint {
     // Of the slopes that the mesh beneath hides, at rest, along the view's horizontal direction; slope_variance_at_rest is
     // what is left of these where the normal is finer than the mesh (visible_normal() in slopes.glsl). 0: the mesh is as fine.
     float mesh_variance = 0.0f;
+    // For the pattern of foam: the place at rest [m], relative to the pattern's origin, and the pixel there, its
+    // width and long axis [m]; the part of the
+    // coverage where waves break now (no more than all of it counts), and since when the rest is there.
+    glm::vec2 rest_m{0.0f};
+    glm::vec3 pixel_m{0.0f};
+    float active = 1.0f;
+    float age_s = 0.0f;
 };
 
 // The sea as a diffuse surface, linear Rec. 709, for hosts that bring their own optics: the share of the
@@ -58,7 +67,7 @@ struct SeaAlbedo {
     // Through the surface, into the water and up to the surface again (water.glsl). The factor (1 − F) of the
     // way out, which depends on the eye, is the host's, and so is what the surface itself reflects.
     glm::vec3 water{0.0f};
-    glm::vec3 foam{0.0f};      // of covered area (foam.glsl)
+    glm::vec3 foam{0.0f};      // of covered area, of all ages (foam.glsl)
     float water_index = 1.0f;  // of refraction, for that surface
 };
 SeaAlbedo sea_albedo(const WaterBody& water);
@@ -66,10 +75,12 @@ SeaAlbedo sea_albedo(const WaterBody& water);
 struct Air;
 
 // Writes radiance[i] for points[i], on the calling thread. air: before the eye below which `sky` is; points whose sun is
-// another one have their own light (place.glsl). Without it all have that of `sky`. Each depends on its point and the arguments alone,
+// another one have their own light (place.glsl). Without it all have that of `sky`. foam: the pattern that their rest_m are
+// relative to; without it foam is smooth. Each depends on its point and the arguments alone,
 // and is finite for finite points. Throws std::invalid_argument if the spans differ in length, or if
 // choice.sky is on and the sky has no map.
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
-               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air = nullptr);
+               std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air = nullptr,
+               const FoamPattern& foam = {});
 
 }  // namespace pelagic

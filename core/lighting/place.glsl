@@ -27,7 +27,7 @@ vec3 place_share(vec3 here, vec3 there, float most) { return min(here / max(ther
 
 // sea_radiance() at a place with that vertical. to_eye and normal: relative to it. light: that below the eye, in the eye's
 // axes. The sky's pattern stays; where the sky is much brighter than below the eye, the rest is uniform.
-SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance, float coverage, SeaLight light, PlaceView place) {
+SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeaLight light, PlaceView place) {
     float rise = light.sun_direction.z - place.to_sun.z;
     light.sun_direction = levelled(light.sun_direction, up);
     bool is_by_place = place.by_place > 0.0f && up.z < 1.0f;
@@ -55,10 +55,10 @@ SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance,
         more = max(sky - most * sky_before, vec3(0.0f));
         light.sky_irradiance = light.sky_irradiance * share + more;
     }
-    SeaTerms terms = sea_radiance(to_eye, normal, slope_variance, coverage, light);
+    SeaTerms terms = sea_radiance(to_eye, normal, slope_variance, seen, light);
     if (kSky && is_by_place) {
         SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
-        float clear = kWhitecaps ? 1.0f - clamp(coverage, 0.0f, 1.0f) : 1.0f;
+        float clear = kWhitecaps ? 1.0f - clamp(seen.share, 0.0f, 1.0f) : 1.0f;
         terms.sky = terms.sky * share +
                     more * (clear * shown_of_uniform_sky(into_frame(frame, to_eye), frame.variance) / kPi);
     }

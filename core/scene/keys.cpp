@@ -409,6 +409,16 @@ void add_effects_and_quality(Built& out) {
              .range = limits::kFoamDrift,
              .soft = SoftRange{0.0, 0.05},
              .feeds = feeds(Feed::Foam)}),
+        row<&Effects::foam_structure>(
+            {.name = "foam_structure",
+             .help =
+                 "in pictures: 0 shows foam as smooth coverage, 1 as holes and lace; its mean is the same",
+             .range = limits::kFoamStructure,
+             .feeds = feeds(Feed::Water)}),
+        row<&Effects::foam_streaks>({.name = "foam_streaks",
+                                     .help = "how far that lace is drawn out along the wind",
+                                     .range = limits::kFoamStreaks,
+                                     .feeds = feeds(Feed::Water)}),
         row<&Effects::spray>({.name = "spray",
                               .help = "droplets over breaking crests",
                               .feeds = feeds(Feed::Volumes),

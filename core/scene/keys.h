@@ -37,7 +37,7 @@ enum class Feed {
     Grid,     // the cells of projected grids, baked and in pictures
     View,     // the camera: pictures, and grids that are projected from it
     Light,    // sun and sky
-    Water,    // the water body's colour
+    Water,    // the water body's colour, and how the foam on it looks
     Quality,  // the accuracy of waves and light
     Mesh,     // what a mesh is of and what it carries, and the format of its files
     Maps,     // what is in a map, besides the sea

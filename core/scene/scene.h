@@ -166,10 +166,11 @@ struct Effects {
     double foam_decay_s = 0.0;  // e-folding time of what breaking leaves; 0: foam is only where waves break
     double foam_drift = 0.02;   // of the wind's speed, along the wind
     WhitecapLaw whitecap_law = WhitecapLaw::Monahan1980;
-    double sea_minus_air_c =
-        0.0;  // temperature of the sea less that of the air, with WhitecapLaw::Monahan1986
+    double sea_minus_air_c = 0.0;  // temperature of the sea less the air's, with Monahan1986
     double whitecap_amount = 1.0;  // ≥ 0, times the law
     double breaking_from_m = 1.0;  // the shortest waves that break; 0: all do
+    double foam_structure = 1.0;   // 0: smooth coverage … 1: lace
+    double foam_streaks = 0.5;     // 0 … 1, along the wind
     bool spray = false;
     double spray_gain = 1.0;
 };

@@ -15,6 +15,7 @@ enum class FalseColour {
 
 struct DrawOptions {
     LightingChoice lighting;
+    FoamLook foam{};
     FalseColour false_colour = FalseColour::None;
     bool sky_from_air = false;  // the sky beside the sea is the air's table's (air.h), otherwise the map's
     bool wireframe = false;     // the grid's edges on black

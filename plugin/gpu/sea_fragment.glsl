@@ -8,7 +8,8 @@ void main() {
         write_terms(vec3(0.0), vec3(0.0), vec3(1.0), vec3(0.0), vec3(0.0), 1.0);
         return;
     }
-    PixelAnswer answer = query_pixel(rest_m, pixel_on_mesh());
+    vec3 pixel = pixel_on_mesh();
+    PixelAnswer answer = query_pixel(rest_m, pixel);
     if (kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), vec3(0.0), 1.0);
         return;
@@ -16,9 +17,13 @@ void main() {
     EarthPoint vertical = earth_up(rest_m.x, rest_m.y, curvature_per_m);
     vec3 up = vec3(vertical.x, vertical.y, vertical.z);
     vec3 to_eye = levelled(-pixel_ray(), up);
+    SeenFoam foam = plain_foam(0.0);
+    if (kWhitecaps)
+        foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look), rest_m,
+                         pixel, answer.coverage, 1.0, 0.0);
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
-                        answer.slope_variance, answer.coverage,
+                        answer.slope_variance, foam,
                         SeaLight(sun_direction, sun_radiance, sun_angular_radius, sun_irradiance, sky_irradiance,
                                  water_reflectance),
                         PlaceView(air_to_sun, air_by_place));

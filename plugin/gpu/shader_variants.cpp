@@ -50,9 +50,11 @@ std::string picture_constants(const DrawOptions& options) {
 
 const std::vector<std::string_view>& lighting_files() {
     static const std::vector<std::string_view> files{
-        "core/lighting/level.glsl", "core/lighting/fresnel.glsl", "core/lighting/slopes.glsl",
-        "core/lighting/sun.glsl",   "core/lighting/sky.glsl",     "core/lighting/water.glsl",
-        "core/lighting/foam.glsl",  "core/lighting/sea.glsl"};
+        "core/lighting/level.glsl",  "core/lighting/fresnel.glsl",
+        "core/lighting/slopes.glsl", "core/lighting/sun.glsl",
+        "core/lighting/sky.glsl",    "core/lighting/water.glsl",
+        "core/lighting/foam.glsl",   "core/lighting/foam_structure.glsl",
+        "core/lighting/sea.glsl"};
     return files;
 }
 
@@ -134,7 +136,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
                     {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "core/lighting/place.glsl",
-                     "plugin/gpu/rays.glsl"},
+                     "plugin/gpu/foam_uniforms.glsl", "plugin/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/gpu/false_colour.glsl", points_file(options), "plugin/gpu/sea_fragment.glsl"}})};
 }

@@ -47,6 +47,13 @@ std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water) {
             vector("water_reflectance", water.reflectance)};
 }
 
+std::vector<Uniform> foam_uniforms(const FoamPattern& pattern) {
+    return {vector("foam_pattern_cell", pattern.cell),
+            vector("foam_pattern_rest", pattern.rest),
+            {"foam_pattern_axes", 4, pattern.axes},
+            {"foam_pattern_look", 4, pattern.look}};
+}
+
 std::vector<Uniform> air_uniforms(const Air& air) {
     return {{"air_azimuth", 2, glm::vec4(air.azimuth, 0.0f, 0.0f)},
             vector("air_to_sun", air.to_sun),

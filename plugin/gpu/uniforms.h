@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/lighting/air.h"
+#include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
 #include "plugin/gpu/sea_layout.h"
@@ -23,6 +24,8 @@ struct Uniform {
 std::vector<Uniform> query_uniforms(const SeaLayout& layout);
 // Of light_uniforms.glsl.
 std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water);
+// Of foam_uniforms.glsl.
+std::vector<Uniform> foam_uniforms(const FoamPattern& pattern);
 // Of air_table.glsl.
 std::vector<Uniform> air_uniforms(const Air& air);
 

@@ -119,4 +119,10 @@ WaterBody make_water(const Scene& scene) {
         {.kind = kind_of(scene.water.type), .chlorophyll_mg_m3 = scene.water.chlorophyll_mg_m3});
 }
 
+FoamLook make_foam(const Scene& scene) {
+    return {.structure = scene.effects.foam_structure,
+            .streaks = scene.effects.foam_streaks,
+            .wind_direction_deg = scene.sea.wind_direction_deg};
+}
+
 }  // namespace pelagic

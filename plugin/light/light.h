@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
 #include "core/lighting/water.h"
 #include "core/scene/problem.h"
@@ -33,5 +34,7 @@ std::string radiance_unit(const Scene& scene);
 std::vector<exr::Attribute> radiance_attributes(const Scene& scene);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
+// How its foam looks.
+FoamLook make_foam(const Scene& scene);
 
 }  // namespace pelagic

@@ -189,7 +189,9 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky) 
         renderer.upload_once(packed);
     }
     renderer.draw(view_at(planned.scene.camera, planned.frame), planned.grid,
-                  {.lighting = render_options(planned.scene).lighting, .layers = true});
+                  {.lighting = render_options(planned.scene).lighting,
+                   .foam = make_foam(planned.scene),
+                   .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (quality_of(planned.scene.quality.level).double_precision)
         drawn.note =

@@ -300,6 +300,7 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid
     set_common(program, view);
     sea.bind(program, grid.origin_m);
     set_uniforms(program, air);
+    set_uniforms(program, foam_uniforms(foam_pattern(options.foam, grid.origin_m)));
     glUniform1f(program.uniform("curvature_per_m"), static_cast<float>(grid.curvature_per_m));
     for (std::size_t i = 0; i < points.size(); ++i) bind_texture(kPictures + static_cast<int>(i), points[i]);
     // Where something is nearer than the far plane.

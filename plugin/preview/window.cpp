@@ -511,6 +511,7 @@ class Preview {
         grid_options.cell_px = controls_.scene.surface.cell_px;
         const ProjectedGrid grid = projected_grid(view, grid_options);
         smooth(readout_.times.grid_ms, milliseconds_since(start));
+        controls_.draw.foam = make_foam(controls_.scene);
         renderer_.draw(view, grid, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);

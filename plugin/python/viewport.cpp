@@ -63,16 +63,20 @@ py::dict dict_of(const std::vector<Uniform>& uniforms) {
 // ---- Light
 
 struct GpuLight {
-    explicit GpuLight(const Scene& scene) : made_from(canonical(scene, kFeeds)) {
+    explicit GpuLight(const Scene& scene) : made_from(what_counts(scene)), foam(make_foam(scene)) {
         sky = make_sky(scene);
         map_size = sky.map.size();
         uniforms = light_uniforms(sky, make_water(scene));
         atlas = sky_atlas(sky.map);
     }
-    bool serves(const Scene& scene) const { return canonical(scene, kFeeds) == made_from; }
+    bool serves(const Scene& scene) const { return what_counts(scene) == made_from; }
+    // Of the sea's keys only where the wind draws foam to.
+    static std::string what_counts(const Scene& scene) {
+        return canonical(scene, feeds(Feed::Light, Feed::Water)) + number_text(scene.sea.wind_direction_deg);
+    }
 
-    static constexpr FeedSet kFeeds = feeds(Feed::Light, Feed::Water);
     std::string made_from;
+    FoamLook foam;
     Sky sky;
     int map_size = 0;
     std::vector<Uniform> uniforms;
@@ -84,6 +88,13 @@ struct GpuLight {
     };
     Metered metered{};
 };
+
+glm::dvec2 checked_origin(std::array<double, 2> origin_m) {
+    const glm::dvec2 origin(origin_m[0], origin_m[1]);
+    if (!std::isfinite(origin.x) || !std::isfinite(origin.y))
+        throw py::value_error("origin_m: accepted: (x, y), finite [m]");
+    return origin;
+}
 
 // The uniforms and the texture of the air before an eye; of none without a height.
 py::tuple air_of(const GpuLight& light, std::optional<double> height_m) {
@@ -229,9 +240,7 @@ class GpuSea {
     }
 
     py::tuple at_origin(std::array<double, 2> origin_m) const {
-        const glm::dvec2 origin(origin_m[0], origin_m[1]);
-        if (!std::isfinite(origin.x) || !std::isfinite(origin.y))
-            throw py::value_error("origin_m: accepted: (x, y), finite [m]");
+        const glm::dvec2 origin = checked_origin(origin_m);
         const auto reading = locked();
         const SeaLayout& layout = *packed_.layout();
         py::object cycles = py::none();
@@ -341,6 +350,13 @@ void add_gpu_light(py::module_& module) {
                 return view;
             },
             "The texture sky_map: float32 (height, width, 4), all its levels in one picture. Read-only.")
+        .def(
+            "foam",
+            [](const GpuLight& self, std::array<double, 2> origin_m) {
+                return dict_of(foam_uniforms(foam_pattern(self.foam, checked_origin(origin_m))));
+            },
+            py::arg("origin_m"),
+            "Uniforms of the sea's shader by name: the pattern of foam for a grid's origin [m].")
         .def(
             "air", &air_of, py::arg("height_m"),
             "(uniforms, air_table) of the air before an eye so high above the sea at rest [m]: uniforms of the sea's "

@@ -56,6 +56,7 @@ class RendererOf final : public Impl {
           options_(options),
           sky_(std::move(sky)),
           water_(make_water(scene_)),
+          foam_(make_foam(scene_)),
           sea_(std::make_shared<const Sea<T>>(plan, watch)),
           frame_(sea_),
           grid_options_(projected_grid_options(*plan.from)) {
@@ -298,6 +299,7 @@ class RendererOf final : public Impl {
         const std::vector<float>& coverage = batch_.answers.numbers(Product::Coverage);
         batch_.points.resize(count);
         batch_.lit.resize(count);
+        const FoamPattern foam = foam_pattern(foam_, grid_.origin_m);
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
             [&](const tbb::blocked_range<std::size_t>& range) {
@@ -308,16 +310,29 @@ class RendererOf final : public Impl {
                                         .slope_variance_at_rest = at_rest[i],
                                         .coverage = coverage.empty() ? 0.0f : coverage[i],
                                         .up = batch_.up[i],
-                                        .mesh_variance = batch_.mesh_variance[i]};
+                                        .mesh_variance = batch_.mesh_variance[i],
+                                        .rest_m = glm::vec2(batch_.rest[i]),
+                                        .pixel_m = glm::vec3(batch_.pixel_m[i], batch_.pixel_axis_m[i])};
+                if (history_)
+                    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        batch_.points[i].active = batch_.foam_active[i];
+                        batch_.points[i].age_s = residual_age_s(i);
+                    }
                 const auto points = std::span(batch_.points).subspan(range.begin(), range.size());
                 const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
-                shade_sea(options_.lighting, sky_, water_, points, lit, &air_);
+                shade_sea(options_.lighting, sky_, water_, points, lit, &air_, foam);
                 if (options_.lighting.air)
                     see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
                                 std::span(batch_.distance_m).subspan(range.begin(), range.size()), lit);
                 for (std::size_t i = range.begin(); i < range.end(); ++i)
                     batch_.radiance[batch_.sea[i]] = batch_.lit[i];
             });
+    }
+
+    // Of the foam that earlier breaking has left, without what breaks now.
+    float residual_age_s(std::size_t i) const {
+        const float total = batch_.points[i].coverage, left = total - batch_.foam_active[i];
+        return left > 0.0f ? batch_.foam_age_s[i] * total / left : 0.0f;
     }
 
     // The place at rest that each sample of the sea shows, its footprint and the way to the eye.
@@ -486,6 +501,7 @@ class RendererOf final : public Impl {
     RenderOptions options_;
     Sky sky_;
     WaterBody water_;
+    FoamLook foam_;
     std::shared_ptr<const Sea<T>> sea_;
     Frame<T> frame_;
     std::optional<FoamHistory<T>> history_;

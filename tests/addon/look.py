@@ -96,13 +96,18 @@ with checking("without attributes it is a level mirror, neither black nor withou
     assert np.allclose(picture, core(scene, to_eye, (0, 0, 0), 0.0), rtol=0.03)
 
 with checking("the foam's mean is the coverage"):
-    scene = flat_sea(whitecap_coverage=0.1)
-    nodes = bpy.data.materials["Pelagic Water"].node_tree
-    glow = nodes.nodes.new("ShaderNodeEmission")
-    nodes.links.new(nodes.nodes["Pelagic Foam"].outputs["Foam"], glow.inputs["Color"])
-    nodes.links.new(glow.outputs[0], nodes.nodes["Material Output"].inputs["Surface"])
-    picture, _ = seen(0, 0)
-    assert 0.085 < picture[0] < 0.115, picture
+    for age_s, structure, streaks in ((0.0, 1.0, 0.5), (0.6, 1.0, 1.0), (3.0, 1.0, 0.0), (20.0, 1.0, 0.5), (1.0, 0.0, 0.5)):
+        scene = flat_sea(whitecap_coverage=0.1, foam_age=age_s)
+        nodes = bpy.data.materials["Pelagic Water"].node_tree
+        for name, value in (("Foam Structure", structure), ("Foam Streaks", streaks)):
+            nodes.nodes[name].outputs[0].default_value = value
+        glow = nodes.nodes.new("ShaderNodeEmission")
+        nodes.links.new(nodes.nodes["Pelagic Foam"].outputs["Foam"], glow.inputs["Color"])
+        nodes.links.new(glow.outputs[0], nodes.nodes["Material Output"].inputs["Surface"])
+        picture, _ = seen(0, 0)
+        print("  ", age_s, structure, streaks, np.round(picture, 4))
+        assert 0.085 < picture[0] < 0.115, (age_s, structure, streaks, picture)
+        assert structure > 0.0 or abs(picture[0] - 0.1) < 1e-3, picture
 
 with checking("settings reach light and material; an artist's own colour, world and lamp stay"):
     fresh_file()

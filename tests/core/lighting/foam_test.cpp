@@ -93,8 +93,8 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
 // Koepke's 0.22 over black water, and bluish over blue water, which shows through thin foam.
 TEST(Foam, IsKoepkesAndShowsTheWater) {
     Optics optics;
-    EXPECT_NEAR(optics.foam_reflectance(vec3(0.0f)).x, 0.22f, 1e-6f);
-    const vec3 foam = optics.foam_reflectance(vec3(0.0f, 0.01f, 0.05f));
+    EXPECT_NEAR(optics.foam_reflectance(vec3(0.0f), 0.4f).x, 0.22f, 1e-6f);
+    const vec3 foam = optics.foam_reflectance(vec3(0.0f, 0.01f, 0.05f), 0.4f);
     EXPECT_NEAR(foam.x, 0.22f, 1e-6f);
     EXPECT_NEAR(foam.z, 0.22f + 0.6f * 0.05f, 1e-6f);
 }

@@ -35,6 +35,7 @@ struct Optics {
 #include "core/lighting/sky.glsl"
 #include "core/lighting/water.glsl"
 #include "core/lighting/foam.glsl"
+#include "core/lighting/foam_structure.glsl"
 #include "core/lighting/sea.glsl"
     // clang-format on
 };

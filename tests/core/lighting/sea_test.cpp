@@ -106,8 +106,8 @@ TEST(Sea, BatchIsTheSharedSource) {
                 shaded({.sky_quality = quality, .fresnel = fresnel}, sky, points);
             for (std::size_t i = 0; i < points.size(); ++i) {
                 const SeaPoint& p = points[i];
-                const auto expected =
-                    optics.sea_radiance(p.to_eye, p.normal, p.slope_variance, p.coverage, light);
+                const auto expected = optics.sea_radiance(p.to_eye, p.normal, p.slope_variance,
+                                                          optics.plain_foam(p.coverage), light);
                 // Other compiler flags and order of summation: a few units in the last place.
                 for (int c = 0; c < 3; ++c) {
                     EXPECT_NEAR(found[i].sun[c], expected.sun[c], 1e-4f * expected.sun[c] + 1e-5f);
@@ -158,7 +158,7 @@ TEST(Sea, ReflectedAndRefractedShareTheLight) {
         for (int i = 0; i < 1000; ++i) {
             const vec3 v = inputs.direction(1e-3), s = inputs.variance(1e-3, 0.4, 0.5);
             const auto terms = optics.sea_radiance(
-                v, vec3(0.0f, 0.0f, 1.0f), s, 0.0f,
+                v, vec3(0.0f, 0.0f, 1.0f), s, optics.plain_foam(0.0f),
                 {vec3(0.0f, 0.0f, -1.0f), vec3(0.0f), 0.00465f, vec3(0.0f), vec3(1.0f), vec3(0.1f)});
             const vec3 from_water =
                 optics.water_radiance(vec3(0.0f, 0.0f, -1.0f), vec3(0.0f), vec3(1.0f), vec3(0.1f));
@@ -178,7 +178,7 @@ TEST(Sea, WavesMirrorTheSunInOtherWaves) {
     const vec3 ahead = normalize(vec3(-0.9f, 0.0f, 0.42f));
     const auto frame = optics.slope_frame(up, s);
     const auto shown = [&](vec3 l) {
-        const auto terms = optics.sea_radiance(v, up, s, 0.0f,
+        const auto terms = optics.sea_radiance(v, up, s, optics.plain_foam(0.0f),
                                                {l, vec3(1.0f), 0.00465f, vec3(0.0f), vec3(0.0f), vec3(0.0f)});
         return terms.sun.x / optics.sun_reflection(v, l, frame, vec3(1.0f), 0.00465f).x;
     };

@@ -1,0 +1,211 @@
+// The pattern of foam: its mean is the coverage wherever, however old and however far away it is; it stays with the water.
+#include "core/lighting/foam_structure.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "core/lighting/lighting.h"
+#include "tests/core/lighting/optics.h"
+
+namespace pelagic {
+namespace {
+
+using optics::Optics;
+
+Optics shading;
+
+Optics::FoamPattern glsl(const FoamPattern& pattern) {
+    return {pattern.cell, pattern.rest, pattern.axes, pattern.look};
+}
+Optics::FoamPattern pattern_of(double structure, double streaks, double wind_deg = 20.0,
+                               glm::dvec2 origin_m = {}) {
+    return glsl(
+        foam_pattern({.structure = structure, .streaks = streaks, .wind_direction_deg = wind_deg}, origin_m));
+}
+
+constexpr std::array kCoverages{0.01f, 0.03f, 0.1f, 0.3f, 0.5f, 0.7f, 0.9f};
+constexpr std::array kFootprints_m{1e-3f, 0.02f, 0.06f, 0.15f, 0.4f, 1.0f, 2.5f, 8.0f, 1e3f};
+constexpr std::array kAges_s{0.0f, 0.7f, 2.0f, 5.0f, 20.0f};
+
+// Over independent places; of all foam, and of the dense part of it.
+TEST(FoamStructure, HasTheCoverageAsItsMean) {
+    constexpr int kPlaces = 6000;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> place(-2000.0f, 2000.0f);
+    for (const float streaks : {0.0f, 0.5f, 1.0f})
+        for (const float age_s : kAges_s) {
+            const auto pattern = pattern_of(1.0, static_cast<double>(streaks));
+            for (const float footprint_m : kFootprints_m) {
+                std::array<double, kCoverages.size()> sum{}, dense{};
+                for (int i = 0; i < kPlaces; ++i) {
+                    const auto noise =
+                        shading.foam_noise(pattern, {place(random), place(random)}, footprint_m, age_s);
+                    for (std::size_t c = 0; c < kCoverages.size(); ++c) {
+                        const auto seen = shading.foam_seen_in(noise, kCoverages[c], 0.4f);
+                        ASSERT_GE(seen.share, 0.0f);
+                        ASSERT_LE(seen.share, 1.0f);
+                        sum[c] += static_cast<double>(seen.share);
+                        dense[c] += static_cast<double>(seen.share * seen.dense);
+                    }
+                }
+                for (std::size_t c = 0; c < kCoverages.size(); ++c) {
+                    const auto expected = static_cast<double>(kCoverages[c]);
+                    const double noise = std::sqrt(expected * (1.0 - expected) / kPlaces);
+                    EXPECT_NEAR(sum[c] / kPlaces, expected, 4.5 * noise + 0.01 * expected)
+                        << "footprint " << footprint_m << " m, " << age_s << " s, streaks " << streaks;
+                    EXPECT_NEAR(dense[c] / kPlaces, 0.4 * expected, 4.5 * 0.6 * noise + 0.01 * expected)
+                        << "footprint " << footprint_m << " m, " << age_s << " s, streaks " << streaks;
+                }
+            }
+        }
+}
+
+// Where nothing of it can be seen any more, it is the coverage itself.
+TEST(FoamStructure, FadesToTheCoverage) {
+    const auto pattern = pattern_of(1.0, 0.5);
+    for (const float coverage : {0.0f, 1e-5f, 0.01f, 0.4f, 0.97f, 1.0f}) {
+        const auto seen =
+            shading.seen_foam(pattern, {3.0f, 4.0f}, glm::vec3(50.0f, 0.0f, 0.0f), coverage, 1.0f, 0.0f);
+        EXPECT_EQ(seen.share, coverage);
+        EXPECT_EQ(seen.dense, 0.4f);
+    }
+}
+
+// Without structure: the bits of smooth coverage.
+TEST(FoamStructure, OffIsSmoothCoverage) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    const auto pattern = pattern_of(0.0, 0.5);
+    for (int i = 0; i < 1000; ++i) {
+        const float coverage = unit(random);
+        const auto seen = shading.seen_foam(pattern, {unit(random), unit(random)},
+                                            glm::vec3(1e-3f, 0.0f, 0.0f), coverage, 1.0f, 3.0f);
+        EXPECT_EQ(seen.share, coverage);
+        EXPECT_EQ(seen.dense, 0.4f);
+    }
+}
+
+// Near, the pattern is there: neighbouring places differ, most are foam or none, and coverage is exceeded by what it should be.
+TEST(FoamStructure, IsThere) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> place(-500.0f, 500.0f);
+    const auto pattern = pattern_of(1.0, 0.5);
+    int decided = 0;
+    constexpr int kPlaces = 2000;
+    for (int i = 0; i < kPlaces; ++i) {
+        const float share = shading
+                                .seen_foam(pattern, {place(random), place(random)},
+                                           glm::vec3(0.01f, 0.0f, 0.0f), 0.4f, 1.0f, 0.0f)
+                                .share;
+        decided += share < 0.1f || share > 0.9f;
+    }
+    EXPECT_GT(decided, kPlaces * 6 / 10);
+}
+
+// The same place of the sea, seen from any origin near it, also a million metres away from the world's; also beyond where
+// integers of single precision end.
+TEST(FoamStructure, StaysWithTheWater) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> near_m(-30.0, 30.0);
+    const FoamLook look{.structure = 1.0, .streaks = 0.5, .wind_direction_deg = 20.0};
+    for (const glm::dvec2 centre : {glm::dvec2(0.0), glm::dvec2(1e6, -1e6), glm::dvec2(-2e7, 3e7)}) {
+        std::vector<float> seen;
+        for (int i = 0; i < 500; ++i) {
+            const glm::dvec2 at = centre + glm::dvec2(near_m(random), near_m(random));
+            std::array<float, 2> shown{};
+            for (float& value : shown) {
+                const glm::dvec2 origin = centre + glm::dvec2(near_m(random), near_m(random));
+                value =
+                    shading.foam_noise(glsl(foam_pattern(look, origin)), glm::vec2(at - origin), 0.01f, 2.0f)
+                        .shown;
+            }
+            EXPECT_NEAR(shown[0], shown[1], 0.01f) << centre.x;
+            seen.push_back(shown[0]);
+        }
+        // It isn't the same everywhere.
+        double sum = 0.0, squares = 0.0;
+        for (const float value : seen) {
+            sum += static_cast<double>(value);
+            squares += static_cast<double>(value * value);
+        }
+        const auto count = static_cast<double>(seen.size());
+        const double mean = sum / count;
+        EXPECT_NEAR(squares / count - mean * mean, 0.9, 0.35);
+    }
+}
+
+// Along any of place, footprint and age the pattern has no jump: steps of a 64th change it by less than a third, an eighth at the
+// edges of a net, where it rises as a root.
+TEST(FoamStructure, NeverJumps) {
+    std::mt19937 random(10);
+    std::uniform_real_distribution<double> place(-1000.0, 1000.0);
+    const auto pattern = pattern_of(1.0, 0.5);
+    struct At {
+        glm::vec2 rest_m;
+        float footprint_m, age_s;
+    };
+    const auto noise = [&](const At& at) {
+        const auto n = shading.foam_noise(pattern, at.rest_m, at.footprint_m, at.age_s);
+        return n.shown + n.variance;
+    };
+    const auto ways = std::to_array<std::array<At, 2>>({
+        {At{{0.0f, 0.0f}, 0.01f, 2.0f}, At{{10.0f, 3.0f}, 0.01f, 2.0f}},
+        {At{{0.3f, 0.2f}, 0.005f, 2.0f}, At{{0.3f, 0.2f}, 6.0f, 2.0f}},
+        {At{{0.3f, 0.2f}, 0.01f, 0.0f}, At{{0.3f, 0.2f}, 0.01f, 30.0f}},
+    });
+    constexpr int kSteps[2] = {4000, 256000};
+    for (const auto& [from, to] : ways)
+        for (int line = 0; line < 3; ++line) {
+            const glm::vec2 start(place(random), place(random));
+            std::array<float, 2> most{};
+            for (int fine = 0; fine < 2; ++fine) {
+                float before = 0.0f;
+                for (int i = 0; i <= kSteps[fine]; ++i) {
+                    const float t = static_cast<float>(i) / static_cast<float>(kSteps[fine]);
+                    const float value = noise({start + glm::mix(from.rest_m, to.rest_m, t),
+                                               glm::mix(from.footprint_m, to.footprint_m, t),
+                                               glm::mix(from.age_s, to.age_s, t)});
+                    if (i > 0) most[fine] = std::max(most[fine], std::abs(value - before));
+                    before = value;
+                }
+            }
+            EXPECT_LT(most[1], 0.3f * most[0]) << "from " << start.x << ", " << start.y;
+        }
+}
+
+// The pattern's settings, through the batch interface: off is the light of plain coverage to the bit.
+TEST(FoamStructure, OffLightsAsBefore) {
+    Sky sky;
+    sky.sun_direction = glm::vec3(0.0f, 0.6f, 0.8f);
+    sky.sun_radiance = glm::vec3(1e6f);
+    sky.sun_angular_radius = 0.00465f;
+    sky.sky_irradiance = glm::vec3(10.0f);
+    const WaterBody water{.reflectance = glm::vec3(0.02f)};
+    std::vector<SeaPoint> points(100);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        points[i] = {.slope_variance = glm::vec3(0.02f, 0.02f, 0.0f),
+                     .coverage = 0.01f * static_cast<float>(i),
+                     .rest_m = glm::vec2(0.37f * static_cast<float>(i), 1.0f),
+                     .pixel_m = glm::vec3(0.01f, 0.0f, 0.0f)};
+    std::vector<SeaRadiance> plain(points.size()), off = plain, on = plain;
+    const LightingChoice choice{.sky = false};
+    shade_sea(choice, sky, water, points, plain);
+    shade_sea(choice, sky, water, points, off, nullptr, foam_pattern({.streaks = 0.7}, {1e5, 3.0}));
+    shade_sea(choice, sky, water, points, on, nullptr,
+              foam_pattern({.structure = 1.0, .streaks = 0.5}, {1e5, 3.0}));
+    int others = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(plain[i].foam, off[i].foam);
+        EXPECT_EQ(plain[i].sea, off[i].sea);
+        others += plain[i].foam != on[i].foam;
+    }
+    EXPECT_GT(others, 50);
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -127,9 +127,10 @@ FoamLook make_foam(const Scene& scene, double active) {
     if (!(active < 1.0)) return look;
     constexpr double kLeft =
         0.4;  // how dense what is left would be beside what breaks, were that not all white
-    const double mean = look.dense_active;
-    look.dense_active = std::min(1.0, mean / (active + (1.0 - active) * kLeft));
-    look.dense_left = (mean - active * look.dense_active) / (1.0 - active);
+    const auto mean = static_cast<double>(look.dense_active);
+    const double breaking = std::min(1.0, mean / (active + (1.0 - active) * kLeft));
+    look.dense_active = static_cast<float>(breaking);
+    look.dense_left = static_cast<float>((mean - active * breaking) / (1.0 - active));
     return look;
 }
 

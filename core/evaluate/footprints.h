@@ -55,6 +55,18 @@ struct ChunkFootprints {
         }
     }
 
+    // The same points' for the waves that break, on a ladder of as many rungs (PlannedQuery::breaking_levels).
+    void take_breaking(const ChunkFootprints& pixels, const Breaking& breaking, std::size_t count) {
+        any_round = any_ellipse = false;
+        const T least = static_cast<T>(breaking.footprint_m);
+        for (std::size_t i = 0; i < count; ++i) {
+            of[i] = pixels.of[i];
+            of[i].width_m = std::max(of[i].width_m, least);
+            of[i].is_ellipse = of[i].is_ellipse && of[i].length_m > of[i].width_m;
+            (of[i].is_ellipse ? any_ellipse : any_round) = true;
+        }
+    }
+
   private:
     static Footprint<T> footprint(const std::vector<double>& ladder_m, const Strided<const T>& width_m,
                                   const Strided<const glm::vec<2, T>>& axis_m, std::size_t point) {

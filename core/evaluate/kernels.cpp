@@ -290,8 +290,9 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
     const auto foam = args.results.numbers(Product::Coverage);
     alignas(64) typename Chunk<T>::Values mean, variance, third;
     for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
-        const auto at = [&](Field field)
-                            HWY_ATTR { return N(hn::LoadU(d, chunk.sums[index(field)].data() + i)); };
+        const auto at = [&](Field field) HWY_ATTR {
+            return N(hn::LoadU(d, args.breaking->sums[index(field)].data() + i));
+        };
         const HiddenStrain<N> strain = hidden.strain_at(i);
         const JacobianMoments<N> j = jacobian_moments(at(Field::Dxx), at(Field::Dyy), at(Field::Dxy), strain,
                                                       hidden.traces_of(strain));

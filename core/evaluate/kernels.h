@@ -29,8 +29,9 @@ struct GridArgs {
 template <class T>
 struct DeriveArgs {
     const Chunk<T>* chunk = nullptr;
-    Results<T> results;         // beginning at the chunk's first point
-    HiddenMoments<T> hidden{};  // of all points' pixels, where there is no array
+    const Chunk<T>* breaking = nullptr;  // whose strain is that of the waves that break
+    Results<T> results;                  // beginning at the chunk's first point
+    HiddenMoments<T> hidden{};           // of all points' pixels, where there is no array
     const HiddenChunk<T>* hidden_of = nullptr;
     T whitecap_threshold = T(0);
     bool third_moment = true;

@@ -51,7 +51,8 @@ struct PreparedQuery<T>::Call {
     const Points<T>& points;
     const Results<T>& results;
     const Place& place;
-    FieldSet needed;
+    FieldSet needed;  // but for breaking
+    bool breaks;      // something of the waves that break is wanted
     bool wants_hidden, on_ladder;
     bool differ_in_hidden;  // where trains see each point's own pixel, or cascades a ladder
 };
@@ -59,9 +60,11 @@ struct PreparedQuery<T>::Call {
 // What is made for a chunk on its way.
 template <class T>
 struct PreparedQuery<T>::Work {
-    Chunk<T> chunk;
+    Chunk<T> chunk, breaking;
     HiddenChunk<T> hidden_of;
-    ChunkFootprints<T> cells, pixels;
+    ChunkFootprints<T> cells, pixels, breaking_pixels;
+    FieldSet needed;
+    bool apart;  // the strain of the waves that break is in `breaking`, not in `chunk`
 };
 
 template <class T>
@@ -80,12 +83,14 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
             throw std::invalid_argument("query \"" + query.name + "\" does not hold \"" + row.name +
                                         "\": ask for it when the plan is made");
     has_trains_ = plan.trains && !query.only_cascade;
+    breaks_ = (wanted & breaking_products()).any();
     if ((wanted & hidden_products()).any())
         hidden_ = hidden_at<T>(*statistics_, {0, T(0)},
                                hidden_moments<double>(has_trains_ ? hidden(frame.sea().trains(), plan.filter,
                                                                            query.pixel_m.front())
                                                                   : statistics_->whole));
-    for (const std::vector<int>* levels : {&planned_->cell_levels, &planned_->pixel_levels})
+    for (const std::vector<int>* levels :
+         {&planned_->cell_levels, &planned_->pixel_levels, &planned_->breaking_levels})
         for (const int level : *levels)
             if (std::none_of(levels_.begin(), levels_.end(),
                              [&](const LevelGrids& there) { return there.level == level; }))
@@ -100,7 +105,8 @@ template <class T>
 void PreparedQuery<T>::refresh() {
     if (!frame_->is_set()) throw std::invalid_argument("the frame has no time yet: call set() first");
     const Plan& plan = frame_->sea().plan();
-    const FieldSet needed = fields_of(wanted_) & ~plan.dropped;
+    FieldSet needed = fields_of(wanted_) & ~plan.dropped;
+    if (breaks_) needed |= strain_fields();
     for (LevelGrids& of : levels_) {
         of.grids.clear();
         of.of_cascade.assign(plan.cascades.size(), -1);
@@ -153,7 +159,8 @@ typename PreparedQuery<T>::Call PreparedQuery<T>::call(const Points<T>& points, 
         .points = points,
         .results = results,
         .place = place,
-        .needed = fields_of(given) & ~frame_->sea().plan().dropped,
+        .needed = fields_of(given & ~breaking_products()) & ~frame_->sea().plan().dropped,
+        .breaks = (given & breaking_products()).any(),
         .wants_hidden = (given & hidden_products()).any(),
         .on_ladder = (points.cell_m && planned_->cell_levels.size() > 1) || (points.pixel_m && many_pixels),
         .differ_in_hidden = points.pixel_m && (has_trains_ || many_pixels)};
@@ -194,7 +201,7 @@ void PreparedQuery<T>::evaluate(const Points<T>& points, const Results<T>& resul
 
 template <class T>
 void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) const {
-    auto& [chunk, hidden_of, cells, pixels] = work;
+    Chunk<T>& chunk = work.chunk;
     const Plan& plan = frame_->sea().plan();
     chunk.count = std::min(Chunk<T>::kPoints, call.points.count - first);
     const std::size_t padded = chunk.padded();
@@ -214,35 +221,70 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
     // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
     for (typename Chunk<T>::Values& sum : chunk.sums) std::fill(sum.begin(), sum.begin() + padded, T(0));
     if (call.on_ladder) {
-        add_ladder(call, first, work);
+        const Query& query = planned_->query;
+        work.cells.take(query.cell_m, call.points.cell_m, call.points.cell_axis_m, first, chunk.count);
+        work.pixels.take(query.pixel_m, call.points.pixel_m, call.points.pixel_axis_m, first, chunk.count);
+    }
+    work.apart = breaks_apart(call, work);
+    work.needed = call.needed;
+    if (call.breaks && !work.apart) work.needed |= strain_fields();
+    if (work.apart) {
+        work.breaking.count = chunk.count;
+        std::copy_n(chunk.rest_x.begin(), padded, work.breaking.rest_x.begin());
+        std::copy_n(chunk.rest_y.begin(), padded, work.breaking.rest_y.begin());
+        for (const Field field : {Field::Dxx, Field::Dyy, Field::Dxy}) {
+            auto& sum = work.breaking.sums[index(field)];
+            std::fill(sum.begin(), sum.begin() + padded, T(0));
+        }
+    }
+    if (call.on_ladder) {
+        add_ladder(call, work);
     } else {
         for (std::size_t l = 0; l < levels_.size(); ++l) {
             FieldSet fields;
             if (levels_[l].level == planned_->cell_levels.front()) fields |= cell_fields();
             if (levels_[l].level == planned_->pixel_levels.front()) fields |= ~cell_fields();
-            add_grids(call, l, {fields, nullptr, nullptr}, chunk);
+            add_grids(call, l, {fields & work.needed, nullptr, nullptr}, chunk);
+            if (work.apart && levels_[l].level == planned_->breaking_levels.front())
+                add_grids(call, l, {strain_fields(), nullptr, nullptr}, work.breaking);
         }
     }
     add_own_footprints(call, first, work);
     kernels_.derive({.chunk = &chunk,
+                     .breaking = work.apart ? &work.breaking : &chunk,
                      .results = call.results.from_point(first),
                      .hidden = hidden_,
-                     .hidden_of = call.wants_hidden && call.differ_in_hidden ? &hidden_of : nullptr,
+                     .hidden_of = call.wants_hidden && call.differ_in_hidden ? &work.hidden_of : nullptr,
                      .whitecap_threshold = static_cast<T>(frame_->sea().whitecap_threshold()),
                      .third_moment = plan.knobs.third_moment});
+}
+
+// Where pixels are finer than the waves that break ask for; where trains differ for the same pixel; and where the
+// surface has no strain at all.
+template <class T>
+bool PreparedQuery<T>::breaks_apart(const Call& call, const Work& work) const {
+    const Plan& plan = frame_->sea().plan();
+    if (!call.breaks) return false;
+    if (!(plan.choppiness > 0.0) || (has_trains_ && plan.breaking.footprint_m > 0.0)) return true;
+    const std::vector<int>&pixel = planned_->pixel_levels, &breaking = planned_->breaking_levels;
+    if (!call.on_ladder) return pixel.front() != breaking.front();
+    for (std::size_t i = 0; i < work.chunk.count; ++i) {
+        const Footprint<T>& of = work.pixels.of[i];
+        if (pixel[of.rung.lower] != breaking[of.rung.lower]) return true;
+    }
+    return false;
 }
 
 template <class T>
 void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Share& share,
                                  Chunk<T>& chunk) const {
-    const FieldSet fields = share.fields & call.needed;
-    if (fields.none()) return;
+    if (share.fields.none()) return;
     const std::vector<GridArgs<T>>& grids = levels_[level].grids;
     for (std::size_t g = 0; g < grids.size(); ++g) {
         GridArgs<T> args = grids[g];
         bool any = false;
         for (std::size_t f = 0; f < kFieldCount; ++f) {
-            if (!fields[f]) args.samples[f] = nullptr;
+            if (!share.fields[f]) args.samples[f] = nullptr;
             any = any || args.samples[f];
         }
         if (!any) continue;
@@ -257,18 +299,23 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
 // Each point between two rungs. Round footprints: the levels one after another, each with the points' shares in
 // it. Ellipses: see add_ellipses().
 template <class T>
-void PreparedQuery<T>::add_ladder(const Call& call, std::size_t first, Work& work) const {
-    auto& [chunk, hidden_of, cells, pixels] = work;
-    const Query& query = planned_->query;
-    const Points<T>& points = call.points;
-    cells.take(query.cell_m, points.cell_m, points.cell_axis_m, first, chunk.count);
-    pixels.take(query.pixel_m, points.pixel_m, points.pixel_axis_m, first, chunk.count);
+void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
+    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, needed, apart] = work;
     FieldSet round;
     if (cells.any_round) round |= cell_fields();
     if (pixels.any_round) round |= ~cell_fields();
-    add_round(call, round, work);
-    if (cells.any_ellipse) add_ellipses(call, planned_->cell_levels, cell_fields(), cells, chunk);
-    if (pixels.any_ellipse) add_ellipses(call, planned_->pixel_levels, ~cell_fields(), pixels, chunk);
+    add_round(call, round & needed, cells, planned_->pixel_levels, pixels, chunk);
+    if (cells.any_ellipse) add_ellipses(call, planned_->cell_levels, cell_fields() & needed, cells, chunk);
+    if (pixels.any_ellipse)
+        add_ellipses(call, planned_->pixel_levels, ~cell_fields() & needed, pixels, chunk);
+    if (apart) {
+        const std::vector<int>& levels = planned_->breaking_levels;
+        breaking_pixels.take_breaking(pixels, frame_->sea().plan().breaking, chunk.count);
+        if (breaking_pixels.any_round)
+            add_round(call, strain_fields(), cells, levels, breaking_pixels, breaking);
+        if (breaking_pixels.any_ellipse)
+            add_ellipses(call, levels, strain_fields(), breaking_pixels, breaking);
+    }
     if (!call.wants_hidden || !call.differ_in_hidden || has_trains_) return;
     const HiddenMoments<double> whole = hidden_moments<double>(statistics_->whole);
     for (auto& moment : hidden_of.moments)
@@ -281,30 +328,32 @@ void PreparedQuery<T>::add_ladder(const Call& call, std::size_t first, Work& wor
 }
 
 template <class T>
-void PreparedQuery<T>::add_round(const Call& call, FieldSet round, Work& work) const {
-    if (round.none()) return;
-    auto& [chunk, hidden_of, cells, pixels] = work;
+void PreparedQuery<T>::add_round(const Call& call, FieldSet fields, const ChunkFootprints<T>& cells,
+                                 const std::vector<int>& levels, const ChunkFootprints<T>& pixels,
+                                 Chunk<T>& chunk) const {
+    if (fields.none()) return;
     const std::size_t count = chunk.count, padded = chunk.padded();
     typename Chunk<T>::Values cell_weight, pixel_weight;
-    const auto shares = [&](const std::vector<int>& levels, int level, const ChunkFootprints<T>& footprints,
+    const auto shares = [&](const std::vector<int>& of, int level, const ChunkFootprints<T>& footprints,
                             typename Chunk<T>::Values& weight) {
         bool any = false;
         std::fill(weight.begin(), weight.begin() + padded, T(0));
         for (std::size_t i = 0; i < count; ++i) {
             if (footprints.of[i].is_ellipse) continue;
             const Rung<T>& rung = footprints.of[i].rung;
-            if (levels[rung.lower] == level) weight[i] += T(1) - rung.t;
-            if (rung.t > T(0) && levels[rung.lower + 1] == level) weight[i] += rung.t;
+            if (of[rung.lower] == level) weight[i] += T(1) - rung.t;
+            if (rung.t > T(0) && of[rung.lower + 1] == level) weight[i] += rung.t;
             any = any || weight[i] > T(0);
         }
         return any;
     };
+    const FieldSet of_cells = fields & cell_fields(), of_pixels = fields & ~cell_fields();
     for (std::size_t l = 0; l < levels_.size(); ++l) {
         const int level = levels_[l].level;
-        FieldSet fields;
-        if (shares(planned_->cell_levels, level, cells, cell_weight)) fields |= cell_fields();
-        if (shares(planned_->pixel_levels, level, pixels, pixel_weight)) fields |= ~cell_fields();
-        add_grids(call, l, {fields & round, cell_weight.data(), pixel_weight.data()}, chunk);
+        FieldSet here;
+        if (of_cells.any() && shares(planned_->cell_levels, level, cells, cell_weight)) here |= of_cells;
+        if (of_pixels.any() && shares(levels, level, pixels, pixel_weight)) here |= of_pixels;
+        add_grids(call, l, {here, cell_weight.data(), pixel_weight.data()}, chunk);
     }
 }
 
@@ -321,7 +370,6 @@ HiddenMoments<double> PreparedQuery<T>::beside_round(const Footprint<T>& pixel) 
 template <class T>
 void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& levels, FieldSet fields,
                                     const ChunkFootprints<T>& footprints, Chunk<T>& chunk) const {
-    fields &= call.needed;
     if (fields.none()) return;
     std::size_t lowest = levels.size(), highest = 0;
     for (std::size_t i = 0; i < chunk.count; ++i) {
@@ -363,7 +411,7 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
 template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
-    auto& [chunk, hidden_of, cells, pixels] = work;
+    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, needed, apart] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     struct Own {
@@ -402,14 +450,15 @@ void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, W
     add_trains<T>({.trains = &frame_->sea().trains(),
                    .start_cycles = call.place.start_cycles.data(),
                    .filter = plan.filter,
-                   .wanted = call.needed,
+                   .wanted = needed,
                    .cell_m = static_cast<T>(query.cell_m.front()),
                    .pixel_m = static_cast<T>(query.pixel_m.front()),
                    .cell_of = points.cell_m ? cell.width.data() : nullptr,
                    .pixel_of = points.pixel_m ? pixel.width.data() : nullptr,
                    .cell_stretch = cell_stretch,
                    .pixel_stretch = pixel_stretch,
-                   .hidden = varied ? &hidden_of : nullptr},
+                   .hidden = varied ? &hidden_of : nullptr,
+                   .breaking = apart ? &breaking : nullptr},
                   chunk);
     if (!varied || plan.cascades.empty()) return;
     for (std::size_t i = 0; i < chunk.count; ++i) {

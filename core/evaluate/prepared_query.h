@@ -57,8 +57,12 @@ class PreparedQuery {
     Call call(const Points<T>& points, const Results<T>& results, const Place& place) const;
     void run(const Call& call, std::size_t first, Work& work) const;
     void add_grids(const Call& call, std::size_t level, const Share& share, Chunk<T>& chunk) const;
-    void add_ladder(const Call& call, std::size_t first, Work& work) const;
-    void add_round(const Call& call, FieldSet round, Work& work) const;
+    // Whether the strain of the waves that break isn't that of the chunk's normals.
+    bool breaks_apart(const Call& call, const Work& work) const;
+    void add_ladder(const Call& call, Work& work) const;
+    // Points whose footprints are round: those of `fields` that cells filter, and the others from `levels`.
+    void add_round(const Call& call, FieldSet fields, const ChunkFootprints<T>& cells,
+                   const std::vector<int>& levels, const ChunkFootprints<T>& pixels, Chunk<T>& chunk) const;
     void add_ellipses(const Call& call, const std::vector<int>& levels, FieldSet fields,
                       const ChunkFootprints<T>& footprints, Chunk<T>& chunk) const;
     void add_own_footprints(const Call& call, std::size_t first, Work& work) const;
@@ -72,7 +76,7 @@ class PreparedQuery {
     std::vector<T> whole_m_;  // by cascade: whole_footprint_m()
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
-    bool has_trains_ = false;
+    bool has_trains_ = false, breaks_ = false;
     HiddenMoments<T> hidden_{};  // of pixels that are all the query's first
     std::vector<LevelGrids> levels_;
     Place place_;

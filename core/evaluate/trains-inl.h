@@ -187,10 +187,16 @@ HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, cons
     }
     for (std::size_t i = zone.full(); i < zone.any(); ++i) {
         const V w = zone.weight(d, i, footprints.along(d, trains, i));
+        // Of strain: of what those that break show at best; the rest is in the sum of those outside.
+        const V most = hn::Set(d, trains.breaking[i]);
+        const V strain_weight = hn::IfThenElse(hn::Gt(most, w), hn::Div(w, most), hn::Set(d, T(1)));
         // Else it is in the looked-up sum.
-        const V part = hn::IfThenElseZero(zone.passes(d, i, footprint_m), hidden_part(Pack<D>(w)).v);
+        const auto blends = zone.passes(d, i, footprint_m);
+        const V part = hn::IfThenElseZero(blends, hidden_part(Pack<D>(w)).v),
+                strain_part = hn::IfThenElseZero(blends, hidden_part(Pack<D>(strain_weight)).v);
         for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
-            sum[m] = hn::MulAdd(part, hn::Set(d, trains.hidden_alone[i][m]), sum[m]);
+            sum[m] = hn::MulAdd(m < kHiddenSlopes ? part : strain_part, hn::Set(d, trains.hidden_alone[i][m]),
+                                sum[m]);
     }
     for (std::size_t m = 0; m < kHiddenMoments.size(); ++m) hn::Store(sum[m], d, &hidden.moments[m][base]);
 }
@@ -212,7 +218,8 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
     const bool rise = wants(Field::VelocityZ), drift = wants(Field::VelocityX, Field::VelocityY);
     const bool slope = wants(Field::SlopeX, Field::SlopeY),
                strain = wants(Field::Dxx, Field::Dyy, Field::Dxy);
-    const bool cell_wanted = height || horizontal || rise || drift, pixel_wanted = slope || strain;
+    const bool cell_wanted = height || horizontal || rise || drift,
+               pixel_wanted = slope || strain || args.breaking;
 
     trains_detail::Zone<T> cell(trains, args.filter), pixel(trains, args.filter);
     std::size_t evaluated = 0;
@@ -242,7 +249,7 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
 
         const trains_detail::Phases<decltype(d)> phases(d, hn::Load(d, &chunk.rest_x[base]),
                                                         hn::Load(d, &chunk.rest_y[base]));
-        V sum[kFieldCount];
+        V sum[kFieldCount], breaking[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
         for (std::size_t f = 0; f < kFieldCount; ++f) sum[f] = hn::Zero(d);
         for (std::size_t i = 0; i < end; ++i) {
             V sine, cosine;
@@ -272,11 +279,18 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
                 if (rise) add(Field::VelocityZ, s);
             }
             if (i < pixel_end) {
-                V s = sine, c = cosine;
+                V s = sine, c = cosine, most = hn::Set(d, trains.breaking[i]);
                 if (i >= pixel.full()) {
                     const V w = pixel.weight(d, i, pixels.along(d, trains, i));
                     s = hn::Mul(w, s);
                     c = hn::Mul(w, c);
+                    most = hn::Min(w, most);
+                }
+                if (args.breaking) {
+                    most = hn::Mul(most, cosine);
+                    for (std::size_t f = 0; f < 3; ++f)
+                        breaking[f] = hn::MulAdd(hn::Set(d, trains.amplitude[index(Field::Dxx) + f][i]), most,
+                                                 breaking[f]);
                 }
                 if (slope) {
                     add(Field::SlopeX, s);
@@ -293,6 +307,10 @@ std::size_t AddTrains(const TrainArgs<T>& args, Chunk<T>& chunk) {
             if (!args.wanted[f]) continue;
             T* const out = &chunk.sums[f][base];
             hn::Store(hn::Add(hn::Load(d, out), sum[f]), d, out);
+        }
+        for (std::size_t f = 0; args.breaking && f < 3; ++f) {
+            T* const out = &args.breaking->sums[index(Field::Dxx) + f][base];
+            hn::Store(hn::Add(hn::Load(d, out), breaking[f]), d, out);
         }
     }
     return evaluated;

@@ -34,6 +34,8 @@ struct TrainArgs {
     Stretch cell_stretch{}, pixel_stretch{};
     // Where given: what pixel_of (or pixel_m) hides.
     HiddenChunk<T>* hidden = nullptr;
+    // Where given, its strain gets that of the waves that break. Its points at rest are the chunk's.
+    Chunk<T>* breaking = nullptr;
 };
 
 // Adds the wanted fields to chunk.sums, and says how many times a train was evaluated at a point: those of

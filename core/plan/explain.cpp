@@ -128,8 +128,8 @@ std::string explain(const Plan& plan) {
     for (const PlannedQuery& planned : plan.queries)
         has_coverage |= planned.query.products[index(Product::Coverage)];
     if (has_coverage)
-        page += format("  whitecaps: coverage from %d moments of the Jacobian\n",
-                       plan.knobs.third_moment ? 3 : 2);
+        page += format("  whitecaps: coverage from %d moments of the Jacobian, of waves above %g m\n",
+                       plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m);
     else if (!products_gone(scene)[index(Product::Coverage)])
         page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
     for (const PlannedEffect& effect : plan.effects) {
@@ -160,10 +160,9 @@ std::string explain(const Plan& plan) {
             continue;
         }
         const std::size_t modes = lattice_modes(cascade.grid_radius());
-        page +=
-            format("     %zu modes, %s\n", modes,
-                   bytes_text(modes * sea_bytes_per_mode(plan.knobs.double_precision, plan.choppiness > 0.0))
-                       .c_str());
+        page += format(
+            "     %zu modes, %s\n", modes,
+            bytes_text(modes * sea_bytes_per_mode(plan.knobs.double_precision, plan.has_strain())).c_str());
         for (const Grid& grid : cascade.grids) {
             const std::size_t bytes =
                 grid.fields.count() * grid_bytes(grid.resolution, plan.knobs.double_precision);

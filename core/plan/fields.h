@@ -30,6 +30,11 @@ constexpr FieldSet velocity_fields() {
     return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
 }
 
+// The strain of the horizontal displacement. The waves that break have their own (Plan::breaking).
+constexpr FieldSet strain_fields() {
+    return fields(Field::Dxx, Field::Dyy, Field::Dxy);
+}
+
 // The fields of the horizontal displacement: identically zero where the choppiness is.
 constexpr FieldSet horizontal_fields() {
     return fields(Field::Dx, Field::Dy, Field::Dxx, Field::Dyy, Field::Dxy, Field::VelocityX,

@@ -75,32 +75,33 @@ FieldSet fields_at(const Plan& plan, int level) {
         const auto uses = [&](const std::vector<int>& levels) {
             return std::find(levels.begin(), levels.end(), level) != levels.end();
         };
-        const FieldSet needed = fields_of(planned.query.products) & ~plan.dropped;
+        const FieldSet needed = fields_of(planned.query.products & ~breaking_products()) & ~plan.dropped;
         if (uses(planned.cell_levels)) wanted |= needed & cell_fields();
         if (uses(planned.pixel_levels)) wanted |= needed & ~cell_fields();
+        if (uses(planned.breaking_levels)) wanted |= strain_fields();
     }
     return wanted;
 }
 
 // Whether some query wants to know what this level's pixels hide.
 bool hides(const Plan& plan, int level) {
-    for (const PlannedQuery& planned : plan.queries)
-        if ((planned.query.products & hidden_products()).any() &&
-            std::find(planned.pixel_levels.begin(), planned.pixel_levels.end(), level) !=
-                planned.pixel_levels.end())
-            return true;
-    return false;
+    const auto has = [level](const std::vector<int>& levels) {
+        return std::find(levels.begin(), levels.end(), level) != levels.end();
+    };
+    return std::any_of(plan.queries.begin(), plan.queries.end(), [&](const PlannedQuery& planned) {
+        return has(planned.breaking_levels) ||
+               ((planned.query.products & hidden_products()).any() && has(planned.pixel_levels));
+    });
 }
 
-// A grid that this level may read as it is: both let every mode through whole, and neither has points of its
-// own to meet.
+// A grid that this level may read as it is: both let every mode through whole, and their points meet the same nodes.
 std::optional<int> same_grid(const Plan& plan, const CascadePlan& cascade, const Level& at, int radius) {
     const double shortest_m = cascade.size_m / radius;
     const auto whole = [&](double footprint_m) { return plan.filter.n_max * footprint_m <= shortest_m; };
-    if (at.lattice || !whole(at.footprint_m)) return {};
+    if (!whole(at.footprint_m)) return {};
     for (std::size_t g = 0; g < cascade.grids.size(); ++g) {
         const Level& other = plan.levels[cascade.grids[g].level];
-        if (!other.lattice && whole(other.footprint_m) && other.only_cascade == at.only_cascade)
+        if (other.lattice == at.lattice && whole(other.footprint_m) && other.only_cascade == at.only_cascade)
             return static_cast<int>(g);
     }
     return {};
@@ -256,11 +257,15 @@ void check_footprints(const Query& query) {
 // The query with its levels, at the end of the plan's.
 int add_query(Plan& plan, const Query& query) {
     check_footprints(query);
-    PlannedQuery planned{query, {}, {}};
+    PlannedQuery planned{query, {}, {}, {}};
     for (double footprint_m : query.cell_m)
         planned.cell_levels.push_back(level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
     for (double footprint_m : query.pixel_m)
         planned.pixel_levels.push_back(level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
+    if ((query.products & breaking_products()).any())
+        for (double footprint_m : query.pixel_m)
+            planned.breaking_levels.push_back(level_index(
+                plan, {plan.breaking.footprint_of(footprint_m), query.lattice, query.only_cascade}));
     plan.queries.push_back(std::move(planned));
     return static_cast<int>(plan.queries.size()) - 1;
 }
@@ -291,6 +296,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.knobs = knobs_of(scene.quality.level);
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
     plan.choppiness = scene.waves.choppiness;
+    plan.breaking = breaking_of(scene, plan.filter);
     for (const Query& query : queries) add_query(plan, query);
     add_effects(plan, options.effects);
 
@@ -371,13 +377,14 @@ Plan plan_bake(const Scene& scene) {
 }
 
 std::vector<int> summed_levels(const Plan& plan, const PlannedQuery& planned) {
-    const FieldSet needed = fields_of(planned.query.products) & ~plan.dropped;
+    const FieldSet needed = fields_of(planned.query.products & ~breaking_products()) & ~plan.dropped;
     std::vector<int> levels;
     const auto add = [&](const std::vector<int>& more, const FieldSet& of) {
         if ((needed & of).any()) levels.insert(levels.end(), more.begin(), more.end());
     };
     add(planned.cell_levels, cell_fields());
     add(planned.pixel_levels, ~cell_fields());
+    levels.insert(levels.end(), planned.breaking_levels.begin(), planned.breaking_levels.end());
     return levels;
 }
 
@@ -390,6 +397,12 @@ int CascadePlan::grid_radius() const {
     int radius = 0;
     for (const Grid& grid : grids) radius = std::max(radius, grid.radius);
     return radius;
+}
+
+bool Plan::has_strain() const {
+    return choppiness > 0.0 || std::any_of(queries.begin(), queries.end(), [](const PlannedQuery& planned) {
+               return !planned.breaking_levels.empty();
+           });
 }
 
 int Plan::transforms_per_frame() const {
@@ -410,8 +423,8 @@ long Plan::lines_per_frame() const {
 std::size_t Plan::sea_bytes() const {
     std::size_t bytes = trains ? trains->sea_bytes(knobs.double_precision) : 0;
     for (const CascadePlan& cascade : cascades)
-        bytes += lattice_modes(cascade.grid_radius()) *
-                 sea_bytes_per_mode(knobs.double_precision, choppiness > 0.0);
+        bytes +=
+            lattice_modes(cascade.grid_radius()) * sea_bytes_per_mode(knobs.double_precision, has_strain());
     for (const PlannedQuery& planned : queries)
         if (has_ellipse_table(*this, planned.query))
             bytes += EllipseTable::nodes(planned.query.pixel_m.size()) * EllipseTable::kBytesANode;

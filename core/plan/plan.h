@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "core/plan/breaking.h"
 #include "core/plan/effects.h"
 #include "core/plan/filter.h"
 #include "core/plan/outputs.h"
@@ -81,6 +82,9 @@ struct Knobs {
 struct PlannedQuery {
     Query query;
     std::vector<int> cell_levels, pixel_levels;  // into Plan::levels, parallel to the footprints
+    // Parallel to pixel_levels: where the strain of the waves that break is. The same levels but for pixels finer than
+    // Breaking::footprint_m. Empty where nobody asks.
+    std::vector<int> breaking_levels;
 };
 
 // An effect that asks for something, and where its queries stand.
@@ -100,6 +104,7 @@ struct Plan {
     Knobs knobs;
     FootprintFilter filter;
     double choppiness = 1.0;
+    Breaking breaking;
     std::vector<PlannedQuery> queries;
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
@@ -110,6 +115,8 @@ struct Plan {
     std::vector<PlannedOutput> outputs;          // of a bake; each has a query
     std::shared_ptr<const RestSurface> surface;  // of a bake: where the mesh's points are
 
+    // Whether modes have horizontal displacements, or strains that break.
+    bool has_strain() const;
     int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid
     long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
     std::size_t sea_bytes() const;     // held once, shared

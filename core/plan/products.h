@@ -24,38 +24,39 @@ enum class Product {
 
 struct ProductRow {
     Product product;
-    const char* identifier;   // in Python and in messages to programs: "slope_variance"
-    const char* name;         // for people: "slope variance"
-    std::size_t components;   // of a point's value: 3, or 1
-    FieldSet needs;           // the sums that it is derived from
-    bool counts_what_hides;   // whether it needs to know what a footprint hides
-    const char* why;          // what the sums are needed for, or why there are none
+    const char* identifier;  // in Python and in messages to programs: "slope_variance"
+    const char* name;        // for people: "slope variance"
+    std::size_t components;  // of a point's value: 3, or 1
+    FieldSet needs;          // the sums that it is derived from
+    bool counts_what_hides;  // whether it needs to know what a footprint hides
+    bool
+        is_of_breaking;  // whether its strain is that of the waves that break, of which a normal knows nothing
+    const char* why;     // what the sums are needed for, or why there are none
     const char* description;  // of the values, with their unit
 };
 
 inline constexpr auto kProductTable = std::to_array<ProductRow>({
-    {Product::Position, "position", "position", 3, fields(Field::Height, Field::Dx, Field::Dy), false,
+    {Product::Position, "position", "position", 3, fields(Field::Height, Field::Dx, Field::Dy), false, false,
      "the displaced point", "relative to the points' origin, z up [m]"},
     {Product::Displacement, "displacement", "displacement", 3, fields(Field::Height, Field::Dx, Field::Dy),
-     false, "the displaced point less the point at rest", "position less rest [m]"},
+     false, false, "the displaced point less the point at rest", "position less rest [m]"},
     {Product::Normal, "normal", "normal", 3,
-     fields(Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy, Field::Dxy), false,
+     fields(Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy, Field::Dxy), false, false,
      "the cross product of the displaced tangents",
      "unit; its z is negative where the surface has folded over"},
     {Product::Velocity, "velocity", "velocity", 3,
-     fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ), false, "the sums' time derivative",
+     fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ), false, false, "the sums' time derivative",
      "of the water that rests at the point [m/s]"},
-    {Product::SlopeVariance, "slope_variance", "slope variance", 3,
-     fields(Field::Dxx, Field::Dyy, Field::Dxy), true,
+    {Product::SlopeVariance, "slope_variance", "slope variance", 3, strain_fields(), true, false,
      "a remainder of the spectrum, carried by the waves that are shown",
      "xx, yy, xy of the slopes that the pixel footprint hides: larger on crests, smaller in troughs"},
     {Product::SlopeVarianceAtRest, "slope_variance_at_rest", "slope variance at rest", 3, FieldSet(), true,
-     "a remainder of the spectrum: no transform",
+     false, "a remainder of the spectrum: no transform",
      "the same before the waves that are shown compress and stretch it: shown and hidden add up to the spectrum's"},
-    {Product::JacobianMoments, "jacobian", "Jacobian moments", 3, fields(Field::Dxx, Field::Dyy, Field::Dxy),
-     true, "J and the variance that the footprint hides",
-     "mean, variance (not negative) and third cumulant of J in the pixel footprint"},
-    {Product::Coverage, "coverage", "whitecap coverage", 1, fields(Field::Dxx, Field::Dyy, Field::Dxy), true,
+    {Product::JacobianMoments, "jacobian", "Jacobian moments", 3, strain_fields(), true, true,
+     "J of the waves that break, and the variance that the footprint hides",
+     "mean, variance (not negative) and third cumulant of J in the pixel footprint, of the waves that break"},
+    {Product::Coverage, "coverage", "whitecap coverage", 1, strain_fields(), true, true,
      "where J falls below the threshold of breaking", "whitecaps, 0 … 1"},
 });
 
@@ -88,6 +89,13 @@ inline FieldSet fields_of(ProductSet wanted) {
     for (const ProductRow& row : kProductTable)
         if (wanted[index(row.product)]) needed |= row.needs;
     return needed;
+}
+
+// The products that are of the waves that break.
+inline ProductSet breaking_products() {
+    ProductSet breaking;
+    for (const ProductRow& row : kProductTable) breaking[index(row.product)] = row.is_of_breaking;
+    return breaking;
 }
 
 // The products that count what a footprint hides.

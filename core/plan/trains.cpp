@@ -70,12 +70,12 @@ double TrainsPlan::edge_m(int i) const {
 
 std::size_t TrainsPlan::sea_bytes(bool double_precision) const {
     const std::size_t scalar = double_precision ? sizeof(double) : sizeof(float);
-    // Of each: wavevector, frequency, phase, two amplitudes, wavelength; a factor a field, and the
-    // wavelength; its moments alone and in both running sums, and the eight that a pixel hides, alone and in
+    // Of each: wavevector, frequency, phase, two amplitudes, wavelength; a factor a field, the wavelength
+    // and the weight in breaking; its moments alone and in both running sums, and the eight that a pixel hides, alone and in
     // one sum. A sum has one entry more than there are trains.
     constexpr std::size_t kHidden = 8;
     const auto trains = static_cast<std::size_t>(count);
-    return trains * (7 * sizeof(double) + (kFieldCount + 1) * scalar) +
+    return trains * (7 * sizeof(double) + (kFieldCount + 2) * scalar) +
            (3 * trains + 2) * sizeof(SpectralMoments) + (2 * trains + 1) * kHidden * scalar;
 }
 

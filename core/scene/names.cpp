@@ -22,6 +22,11 @@ constexpr std::array kShortWaves = std::to_array<Word<ShortWaves>>({
     {ShortWaves::Elfouhaily, "elfouhaily"},
     {ShortWaves::None, "none"},
 });
+constexpr std::array kWhitecapLaws = std::to_array<Word<WhitecapLaw>>({
+    {WhitecapLaw::Monahan1980, "monahan-1980"},
+    {WhitecapLaw::Monahan1986, "monahan-1986"},
+    {WhitecapLaw::Callaghan2008, "callaghan-2008"},
+});
 constexpr std::array kSpreadings = std::to_array<Word<SpreadingKind>>({
     {SpreadingKind::Hasselmann, "hasselmann"},
     {SpreadingKind::DonelanBanner, "donelan-banner"},
@@ -117,6 +122,9 @@ std::span<const Word<SpectrumKind>> words_of(SpectrumKind) {
 }
 std::span<const Word<ShortWaves>> words_of(ShortWaves) {
     return kShortWaves;
+}
+std::span<const Word<WhitecapLaw>> words_of(WhitecapLaw) {
+    return kWhitecapLaws;
 }
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind) {
     return kSpreadings;

@@ -19,6 +19,7 @@ namespace pelagic {
 
 enum class SpectrumKind { PiersonMoskowitz, Jonswap, Jonswap1973, Tma, Elfouhaily, Omega2, Phillips, File };
 enum class ShortWaves { Elfouhaily, None };
+enum class WhitecapLaw { Monahan1980, Monahan1986, Callaghan2008 };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
@@ -93,9 +94,16 @@ struct SeaState {
     // The tail and the spreading that take the spectrum's place beyond a few peak wavenumbers.
     ShortWaves short_waves = ShortWaves::Elfouhaily;
     std::optional<double> significant_height_m;  // of the wind sea or the measured one, instead of its own
+    double directionality = 1.0;                 // > 0: more than 1 is narrower than the spreadings' own
     SpreadingKind spreading = SpreadingKind::Hasselmann;
     std::vector<Swell> swell;
     std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File
+};
+
+// Waves of these lengths, times this.
+struct BandGain {
+    double from_m = 1.0, to_m = 10.0;  // wavelengths at its edges, in either order
+    double gain = 1.0;                 // of amplitudes, ≥ 0
 };
 
 struct CascadeSize {
@@ -110,6 +118,7 @@ struct Waves {
     // Largest first; empty: "auto", which is none with WaveModel::Trochoid. With both, the cascades hold the
     // waves that are shorter than the trains.
     std::vector<CascadeSize> cascades;
+    std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
     // With WaveModel::Trochoid. Wavelengths in geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).
     int trains = 60;  // 1 … 10000
@@ -162,8 +171,12 @@ struct Water {
 // [effects]
 struct Effects {
     bool whitecaps = true;
-    double foam_structure = 1.0;  // 0: smooth coverage … 1: lace
-    double foam_streaks = 0.5;    // 0 … 1, along the wind
+    WhitecapLaw whitecap_law = WhitecapLaw::Monahan1980;
+    double sea_minus_air_c = 0.0;  // temperature of the sea less the air's, with Monahan1986
+    double whitecap_amount = 1.0;  // ≥ 0, times the law
+    double breaking_from_m = 1.0;  // the shortest waves that break; 0: all do
+    double foam_structure = 1.0;   // 0: smooth coverage … 1: lace
+    double foam_streaks = 0.5;     // 0 … 1, along the wind
     bool spray = false;
     double spray_gain = 1.0;
 };

@@ -36,6 +36,8 @@ struct SpectralMoments {
     SpectralMoments& operator*=(double factor);
     // The moments of the horizontal displacement alone: choppiness λ is a factor of λ².
     SpectralMoments& scale_strain(double factor);
+    // Those of other waves instead.
+    SpectralMoments& take_strain(const SpectralMoments& other);
 };
 
 // Every moment, for loops that treat all alike.
@@ -54,6 +56,13 @@ inline SpectralMoments& SpectralMoments::operator*=(double factor) {
 }
 inline SpectralMoments& SpectralMoments::scale_strain(double factor) {
     for (double* m : {&xxxx, &xxxy, &xxyy, &xyyy, &yyyy}) *m *= factor;
+    return *this;
+}
+
+inline SpectralMoments& SpectralMoments::take_strain(const SpectralMoments& other) {
+    for (const auto m : {&SpectralMoments::xxxx, &SpectralMoments::xxxy, &SpectralMoments::xxyy,
+                         &SpectralMoments::xyyy, &SpectralMoments::yyyy})
+        this->*m = other.*m;
     return *this;
 }
 

@@ -26,7 +26,7 @@ struct Band {
 
 std::vector<Band> bands_of(const Plan& plan, const Query& query) {
     const DirectionalSpectrum& spectrum = plan.from->spectrum;
-    const double choppiness2 = plan.choppiness * plan.choppiness;
+    const double choppiness2 = plan.breaking.choppiness * plan.breaking.choppiness;
     const auto panels = spectrum.panels();
     const auto& rule = GaussLegendre<4>::rule();
     std::vector<Band> bands;
@@ -45,7 +45,8 @@ std::vector<Band> bands_of(const Plan& plan, const Query& query) {
             for (std::size_t i = 0; i < rule.node.size(); ++i) {
                 const double at = 0.5 * (from + to) + 0.5 * (to - from) * rule.node[i];
                 const double e = 0.5 * (to - from) * rule.weight[i] * spectrum.omnidirectional(at);
-                const double ratio = spectrum.dispersion().horizontal_ratio(at);
+                const double ratio =
+                    at < plan.breaking.k_end() ? spectrum.dispersion().horizontal_ratio(at) : 0.0;
                 energy += e;
                 k += at * at * at * e;
                 slopes += at * at * e;
@@ -92,19 +93,36 @@ EllipseMoments::EllipseMoments(const Plan& plan, const Query& query)
         const double length_m = width_m * std::exp2(static_cast<double>(ratio) / kNodesAnOctave);
         // By the angle between wave and axis, and the wave's own: what is hidden of slopes and strains.
         std::array<std::array<double, kSectors>, kSectors> slopes{}, strains{};
-        for (const Band& band : bands) {
-            const double shown = (1.0 - t) * plan.filter.weight(band.k, ladder_m[lower]) +
-                                 t * plan.filter.weight(band.k, ladder_m[lower + 1]);
-            const Taps<double> taps = taps_of(std::max(width_m, whole_m[band.cascade]), length_m);
-            if (!(shown > 0.0) || last_tap(taps.reach) == 0) continue;
+        // By angle: what an ellipse as wide as `wide_m` hides of the waves that rungs of these footprints show.
+        using ByAngle = std::array<double, kSectors>;
+        const auto hidden_of = [&](const Band& band, double low_m, double high_m, double wide_m,
+                                   ByAngle& hidden) {
+            const double shown =
+                (1.0 - t) * plan.filter.weight(band.k, low_m) + t * plan.filter.weight(band.k, high_m);
+            const Taps<double> taps = taps_of(std::max(wide_m, whole_m[band.cascade]), length_m);
+            if (!(shown > 0.0) || last_tap(taps.reach) == 0) return false;
             for (int angle = 0; angle < kSectors; ++angle) {
                 const double response = tap_response(taps, band.k * std::cos(kPi * angle / kSectors));
-                const double hidden = shown * shown * (1.0 - response) * (1.0 + response);
-                for (int s = 0; s < kSectors; ++s) {
-                    slopes[angle][s] += hidden * band.slopes[s];
-                    strains[angle][s] += hidden * band.strains[s];
-                }
+                hidden[angle] = shown * shown * (1.0 - response) * (1.0 + response);
             }
+            return true;
+        };
+        const Breaking& breaking = plan.breaking;
+        const double low_m = ladder_m[lower], high_m = ladder_m[lower + 1];
+        const bool is_apart = low_m < breaking.footprint_m;
+        ByAngle hidden;
+        const auto add = [&](const ByAngle& by_wave, std::array<ByAngle, kSectors>& to) {
+            for (int angle = 0; angle < kSectors; ++angle)
+                for (int s = 0; s < kSectors; ++s) to[angle][s] += hidden[angle] * by_wave[s];
+        };
+        for (const Band& band : bands) {
+            const bool hides = hidden_of(band, low_m, high_m, width_m, hidden);
+            if (hides) add(band.slopes, slopes);
+            const bool hides_breaking =
+                is_apart ? hidden_of(band, breaking.footprint_of(low_m), breaking.footprint_of(high_m),
+                                     breaking.footprint_of(width_m), hidden)
+                         : hides;
+            if (hides_breaking) add(band.strains, strains);
         }
         for (int d = 0; d < kDirections; ++d) {
             HiddenMoments<double> sum{};

@@ -3,7 +3,7 @@
 //
 // An integral over the spectrum: what a round footprint of weight w resolves is ∬ Ψ m w² over the cascades' bands, and an
 // ellipse of response wR leaves ∬ Ψ m w² (1 − R²) of that to be counted as hidden, m being kp kq for slopes and
-// (choppiness · coth kd)² kp kq kr ks/k² for the Jacobian's.
+// (choppiness · coth kd)² kp kq kr ks/k² for the Jacobian's, of the waves that break, through no footprint finer than theirs.
 #pragma once
 
 #include <array>

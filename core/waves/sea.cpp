@@ -80,23 +80,22 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
     : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
     const Scene& scene = plan_.from->scene;
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
-    const double choppiness = scene.waves.choppiness;
     if (plan_.trains) {
         trains_ = make_trains<T>(*plan_.from, *plan_.trains);
         total_ = pelagic::total(trains_);
     } else {
-        total_ = moments(spectrum, 0.0, std::numeric_limits<double>::infinity());
-        total_.scale_strain(choppiness * choppiness);
+        total_ =
+            moments_with_breaking(spectrum, 0.0, std::numeric_limits<double>::infinity(), plan_.breaking);
     }
-    whitecap_threshold_ = calibrated_threshold(total_, scene.sea.wind_speed_mps, plan_.knobs.third_moment);
+    whitecap_threshold_ = calibrated_threshold(total_, law_coverage(scene), plan_.breaking.choppiness,
+                                               plan_.knobs.third_moment);
 
     for (const PlannedQuery& planned : plan_.queries) {
         const std::size_t levels = planned.pixel_levels.size();
         SpectralMoments whole = total_;
         if (planned.query.only_cascade) {
             const CascadePlan& band = plan_.cascades[*planned.query.only_cascade];
-            whole = moments(spectrum, band.k_lower, band.k_upper);
-            whole.scale_strain(choppiness * choppiness);
+            whole = moments_with_breaking(spectrum, band.k_lower, band.k_upper, plan_.breaking);
         }
         statistics_.push_back(
             {whole, std::vector<SpectralMoments>(levels), std::vector<SpectralMoments>(levels - 1)});
@@ -106,15 +105,25 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
 
     const SpectrumTable table(spectrum);
     Progress progress(watch, plan_);
+    std::vector<QueryStatistics> breaking = statistics_;  // through the breaking levels
     for (int c = 0; c < static_cast<int>(plan_.cascades.size()); ++c)
-        cascades_.push_back(build(c, table, progress));
+        cascades_.push_back(build(c, table, breaking, progress));
+    for (std::size_t q = 0; q < statistics_.size(); ++q) {
+        if (plan_.queries[q].breaking_levels.empty()) continue;
+        QueryStatistics& to = statistics_[q];
+        for (std::size_t i = 0; i < to.resolved.size(); ++i)
+            to.resolved[i].take_strain(breaking[q].resolved[i]);
+        for (std::size_t i = 0; i < to.resolved_next.size(); ++i)
+            to.resolved_next[i].take_strain(breaking[q].resolved_next[i]);
+    }
 }
 
 template <class T>
-Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, Progress& progress) {
+Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, std::vector<QueryStatistics>& breaking,
+                         Progress& progress) {
     const Scene& scene = plan_.from->scene;
     const Dispersion& dispersion = plan_.from->spectrum.dispersion();
-    const double choppiness = scene.waves.choppiness;
+    const double choppiness = plan_.breaking.choppiness;
     const CascadePlan& planned = plan_.cascades[c];
     Cascade<T> cascade;
     cascade.size_m = planned.size_m;
@@ -128,21 +137,26 @@ Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, Progress& progress) 
          {&cascade.forward_re, &cascade.forward_im, &cascade.backward_re, &cascade.backward_im})
         *values = Buffer<T>::uncleared(count);
     cascade.cycles_per_s = Buffer<double>::uncleared(count);
-    if (choppiness > 0.0) cascade.chop = Buffer<T>::uncleared(count);
+    if (plan_.has_strain()) cascade.chop = Buffer<T>::uncleared(count);
 
     std::vector<FootprintPair> pairs;
     for (std::size_t q = 0; q < plan_.queries.size(); ++q) {
         const Query& query = plan_.queries[q].query;
         if (query.only_cascade && *query.only_cascade != c) continue;
-        for (std::size_t i = 0; i < query.pixel_m.size(); ++i) {
-            const auto radius = [&](std::size_t rung) {
-                return planned.radius_of_level[plan_.queries[q].pixel_levels[rung]];
+        const auto add = [&](const std::vector<int>& through, QueryStatistics& sums) {
+            const auto footprint_m = [&](std::size_t rung) {
+                return plan_.levels[through[rung]].footprint_m;
             };
-            pairs.push_back({query.pixel_m[i], query.pixel_m[i], radius(i), &statistics_[q].resolved[i]});
-            if (i + 1 < query.pixel_m.size())
-                pairs.push_back({query.pixel_m[i], query.pixel_m[i + 1], std::min(radius(i), radius(i + 1)),
-                                 &statistics_[q].resolved_next[i]});
-        }
+            const auto radius = [&](std::size_t rung) { return planned.radius_of_level[through[rung]]; };
+            for (std::size_t i = 0; i < through.size(); ++i) {
+                pairs.push_back({footprint_m(i), footprint_m(i), radius(i), &sums.resolved[i]});
+                if (i + 1 < through.size())
+                    pairs.push_back({footprint_m(i), footprint_m(i + 1), std::min(radius(i), radius(i + 1)),
+                                     &sums.resolved_next[i]});
+            }
+        };
+        add(plan_.queries[q].pixel_levels, statistics_[q]);
+        add(plan_.queries[q].breaking_levels, breaking[q]);
     }
     const LevelSums levels(planned.size_m, planned.mode_radius, plan_.filter, std::move(pairs));
     const CellEnergies energies(table, planned.size_m, planned.k_lower, planned.k_upper);

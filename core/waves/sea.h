@@ -27,7 +27,7 @@ struct Cascade {
     int radius = 0;                    // 0: no modes
     std::vector<std::size_t> columns;  // where each mx begins, and the end of the last
     Buffer<T> forward_re, forward_im, backward_re, backward_im;  // [m]
-    Buffer<T> chop;               // choppiness · coth(kd) / k [m]; empty without choppiness
+    Buffer<T> chop;               // choppiness · coth(kd) / k [m] (Breaking's); empty where nobody asks
     Buffer<double> cycles_per_s;  // ω/2π, already rounded to the loop where there is one
 
     std::size_t modes() const { return cycles_per_s.size(); }
@@ -44,9 +44,10 @@ struct Cascade {
 // What the spectrum holds, in expectation: sums and integrals of Ψ, not of one realisation.
 struct QueryStatistics {
     // Everything that the query could show: the whole spectrum, or its band alone for a cascade's own tile,
-    // so that what tiles hide adds up to what the sea hides.
+    // so that what tiles hide adds up to what the sea hides. Strains: of the waves that break.
     SpectralMoments whole;
-    // Resolved by pixel level i alone, weights squared, and by levels i and i + 1 together (for blends).
+    // Resolved by pixel level i alone, weights squared, and by levels i and i + 1 together (for blends). Strains: by the
+    // breaking level i.
     std::vector<SpectralMoments> resolved, resolved_next;
 };
 
@@ -75,7 +76,7 @@ class Sea {
     std::span<const Cascade<T>> cascades() const { return cascades_; }
     const Trains<T>& trains() const { return trains_; }  // none unless plan().trains
     double loop_s() const { return loop_s_; }
-    // The whole sea, capillary tail included; Jacobian moments times choppiness².
+    // The whole sea, capillary tail included; Jacobian moments of the waves that break, times choppiness².
     const SpectralMoments& total() const { return total_; }
     const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
     // What ellipses hide of the cascades' waves beyond their round part, for queries that may ask (has_ellipse_table).
@@ -92,7 +93,7 @@ class Sea {
 
   private:
     class Progress;
-    Cascade<T> build(int cascade, const SpectrumTable&, Progress&);
+    Cascade<T> build(int cascade, const SpectrumTable&, std::vector<QueryStatistics>& breaking, Progress&);
 
     Plan plan_;
     double loop_s_;

@@ -10,6 +10,7 @@
 #include "core/base/constants.h"
 #include "core/base/number.h"
 #include "core/base/random.h"
+#include "core/plan/breaking.h"
 #include "core/spectrum/gauss.h"
 #include "core/waves/loop.h"
 
@@ -87,11 +88,19 @@ double direction_share(int i, std::uint64_t seed) {
     return share - std::floor(share);
 }
 
+// The part of a train's shown strain that a weight leaves.
+template <class T>
+double strain_weight(const Trains<T>& trains, std::size_t i, double weight) {
+    const double most = static_cast<double>(trains.breaking[i]);
+    return most > weight ? weight / most : 1.0;
+}
+
 // A train's moments, times this.
 template <class T>
-SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part) {
-    SpectralMoments moments = trains.alone[i];
+SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part, double strain_part) {
+    SpectralMoments moments = trains.alone[i], strains = moments;
     moments *= part;
+    moments.take_strain(strains.scale_strain(strain_part));
     return moments;
 }
 
@@ -142,6 +151,8 @@ template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
     const auto& [scene, spectrum, extent] = prepared;
     const double choppiness = scene.waves.choppiness, loop_s = scene.shot.sea_loop_s();
+    const FootprintFilter filter;
+    const Breaking breaking = breaking_of(scene, filter);
     const Dispersion& dispersion = spectrum.dispersion();
     Trains<T> trains;
     for (int i = 0; i < plan.count; ++i) {
@@ -152,7 +163,10 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
                                                             direction_share(i, scene.shot.seed))
                                                 : 0.0;
         const double height_m = std::sqrt(2.0 * bin.energy());
-        const double horizontal_m = std::min(choppiness * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
+        const auto horizontal = [&](double by) {
+            return std::min(by * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
+        };
+        const double horizontal_m = horizontal(choppiness), strained_m = horizontal(breaking.choppiness);
         const double x = std::cos(theta), y = std::sin(theta);
         const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
 
@@ -167,35 +181,43 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         const auto factor = [&](Field field, double value) {
             trains.amplitude[index(field)].push_back(static_cast<T>(value));
         };
-        const double omega = kTwoPi * cycles_per_s, q = k * horizontal_m;
+        const double omega = kTwoPi * cycles_per_s;
         factor(Field::Height, height_m);
         factor(Field::Dx, x * horizontal_m);
         factor(Field::Dy, y * horizontal_m);
         factor(Field::SlopeX, k * x * height_m);
         factor(Field::SlopeY, k * y * height_m);
-        factor(Field::Dxx, -q * x * x);
-        factor(Field::Dyy, -q * y * y);
-        factor(Field::Dxy, -q * x * y);
+        factor(Field::Dxx, -k * strained_m * x * x);
+        factor(Field::Dyy, -k * strained_m * y * y);
+        factor(Field::Dxy, -k * strained_m * x * y);
         factor(Field::VelocityX, omega * x * horizontal_m);
         factor(Field::VelocityY, omega * y * horizontal_m);
         factor(Field::VelocityZ, -omega * height_m);
 
-        const SpectralMoments alone =
-            moments_of({.k = {k * x, k * y},
-                        .energy = bin.energy(),
-                        .omega = dispersion.omega(k),
-                        .chop = height_m > 0.0 ? horizontal_m / (k * height_m) : 0.0});
+        SpectralMoments alone = moments_of({.k = {k * x, k * y},
+                                            .energy = bin.energy(),
+                                            .omega = dispersion.omega(k),
+                                            .chop = height_m > 0.0 ? strained_m / (k * height_m) : 0.0});
+        // Of the strain, what the waves that break are shown with at best; the rest is hidden with those outside.
+        const bool breaks = wavelength_m > breaking.from_m;
+        trains.breaking.push_back(breaks ? static_cast<T>(filter.weight(k, breaking.footprint_m)) : T(0));
+        const double most = static_cast<double>(trains.breaking.back());
+        SpectralMoments unseen, seen = alone;
+        unseen.take_strain(alone);
+        trains.outside += unseen.scale_strain(breaks ? hidden_part(most) : 0.0);
+        alone.take_strain(seen.scale_strain(most * most));
         trains.alone.push_back(alone);
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));
-        trains.outside +=
+        SpectralMoments beyond =
             beyond_train(moments(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1)), k,
                          dispersion.horizontal_ratio(k));
+        trains.outside += beyond.scale_strain(breaks ? breaking.choppiness * breaking.choppiness : 0.0);
     }
 
-    trains.outside += moments(spectrum, 0.0, kTwoPi / plan.longest_m);
-    trains.outside += moments(spectrum, kTwoPi / plan.shortest_m, std::numeric_limits<double>::infinity());
-    trains.outside.scale_strain(choppiness * choppiness);
+    trains.outside += moments_with_breaking(spectrum, 0.0, kTwoPi / plan.longest_m, breaking);
+    trains.outside += moments_with_breaking(spectrum, kTwoPi / plan.shortest_m,
+                                            std::numeric_limits<double>::infinity(), breaking);
     trains.before.resize(trains.count() + 1);
     for (std::size_t i = 0; i < trains.count(); ++i)
         (trains.before[i + 1] = trains.before[i]) += trains.alone[i];
@@ -218,7 +240,8 @@ SpectralMoments resolved(const Trains<T>& trains, const FootprintFilter& filter,
     SpectralMoments sum = trains.before[pass.full];
     for (std::size_t i = pass.full; i < pass.any; ++i) {
         const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
-        sum += part_of(trains, i, w * w);
+        const double strain = strain_weight(trains, i, w);
+        sum += part_of(trains, i, w * w, strain * strain);
     }
     return sum;
 }
@@ -229,7 +252,7 @@ SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, d
     SpectralMoments sum = trains.from[pass.any];
     for (std::size_t i = pass.full; i < pass.any; ++i) {
         const double w = filter.weight(kTwoPi / trains.wavelength_m[i], footprint_m);
-        sum += part_of(trains, i, hidden_part(w));
+        sum += part_of(trains, i, hidden_part(w), hidden_part(strain_weight(trains, i, w)));
     }
     return sum;
 }

@@ -56,6 +56,10 @@ struct Trains {
     SpectralMoments
         outside;  // moments beyond the range, and of bins beyond their trains: hidden, never shown
 
+    // The most that the strain of those that break counts with (Breaking::footprint_m), of those that don't 0. The moments'
+    // strains are what that lets show; what it hides is outside.
+    std::vector<T> breaking;
+
     // `alone` and `from` again, as the vectorised query reads them.
     std::vector<HiddenMoments<T>> hidden_alone, hidden_from;
     std::vector<T> wavelength;  // λ [m]
@@ -68,9 +72,10 @@ struct Trains {
 template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan);
 
-// The moments of all trains and of what lies outside their range. Jacobian moments include choppiness². A train's slope
-// variance along k̂ is (kh)²/2, by position at rest, as a cascade's: what a trochoid's own crest compresses (appendix A:
-// (kh)²/(1 + √(1 − k²H²)) by area of sea) is counted with the waves that carry it (core/evaluate/surface.inl).
+// The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and include
+// choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's: what a trochoid's own crest
+// compresses (appendix A: (kh)²/(1 + √(1 − k²H²)) by area of sea) is counted with the waves that carry it
+// (core/evaluate/surface.inl).
 template <class T>
 SpectralMoments total(const Trains<T>& trains);
 

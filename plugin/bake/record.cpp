@@ -275,11 +275,11 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
     }
 
     const auto observed = CoxMunk::at_wind(scene.sea.wind_speed_mps);
-    shot["observed"] = {
-        {"cox_munk_1954_mss", observed.total},
-        {"cox_munk_1954_mss_upwind", observed.up},
-        {"cox_munk_1954_mss_crosswind", observed.cross},
-        {"monahan_omuircheartaigh_1980_coverage", observed_coverage(scene.sea.wind_speed_mps)}};
+    shot["observed"] = {{"cox_munk_1954_mss", observed.total},
+                        {"cox_munk_1954_mss_upwind", observed.up},
+                        {"cox_munk_1954_mss_crosswind", observed.cross},
+                        {"whitecap_law", word_of(scene.effects.whitecap_law)},
+                        {"whitecap_law_coverage", law_coverage(scene)}};
     shot["whitecap_threshold"] = number(whitecap_threshold);
 
     Json& planned = shot["plan"];

@@ -1,14 +1,14 @@
 // The cascades' fields at a point: the sums of evaluate() (core/evaluate), read from textures that SeaLayout
-// describes. Needs the constants kCascades, kCellRungs, kPixelRungs, kChoppy, kCoverage and P, the spline's
-// number of taps.
+// describes. Needs the constants kCascades, kCellRungs, kPixelRungs, kBreakingRungs, kChoppy, kCoverage and P, the
+// spline's number of taps.
 
 layout(std140) uniform SeaTables {
-    // Indexed by rung · kCascades + cascade, cells before pixels. first.xy: the tile's first texel; .z: its
+    // Indexed by rung · kCascades + cascade, cells before pixels, and these before the waves that break. first.xy: the tile's first texel; .z: its
     // number of nodes N, 0 where the filter lets nothing through; .w: a multiple of N that makes node numbers
     // positive.
-    ivec4 tile_first[(kCellRungs + kPixelRungs) * kTileCascades];
-    ivec4 tile_origin[(kCellRungs + kPixelRungs) * kTileCascades];  // .xy: node at or below the origin
-    vec4 tile_scale[(kCellRungs + kPixelRungs) * kTileCascades];    // .xy: fraction; .zw: nodes/m, split
+    ivec4 tile_first[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];
+    ivec4 tile_origin[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];  // .xy: node at or below the origin
+    vec4 tile_scale[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];    // .xy: fraction; .zw: nodes/m, split
     vec4 rungs[kCellRungs + kPixelRungs];  // .x: footprint [m]
     // Four vectors per rung of pixels: its hidden moments (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy), and
     // the same eight mixed with the next rung.
@@ -148,6 +148,23 @@ PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
     vec4 sum = sums.first;
     if (!kChoppy) return PixelFields(sum.x, sum.y, 0.0, 0.0, 0.0);
     return PixelFields(sum.x, sum.y, sum.z, sum.w, sums.second);
+}
+
+uniform float breaking_footprint_m;
+
+// Whether the strain of the waves that break isn't that of the pixel's normals.
+bool breaks_apart(Footprint footprint) {
+    return kBreakingRungs > 0 &&
+           (!kChoppy || kTrains || rungs[kCellRungs + footprint.rung.lower].x < breaking_footprint_m);
+}
+
+// Their Dxx, Dyy, Dxy.
+vec3 breaking_cascades(vec2 rest_m, Footprint pixel) {
+    Footprint footprint = pixel;
+    footprint.width = max(pixel.width, breaking_footprint_m);
+    if (!(footprint.along > footprint.width)) footprint.along = 0.0;
+    FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, true, kCellRungs + kPixelRungs, rest_m, footprint);
+    return vec3(sums.first.zw, sums.second);
 }
 
 // What an ellipse hides beyond a round footprint of its width: (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy).

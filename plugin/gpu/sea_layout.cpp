@@ -22,7 +22,8 @@ SplitNumber split_number(double value) {
     return {static_cast<float>(high), static_cast<float>(value - high)};
 }
 
-std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, Ladder& cells, Ladder& pixels) {
+std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, Ladder& cells, Ladder& pixels,
+                                                 Ladder& breaking) {
     const PlannedQuery& planned = plan.queries.at(query);
     if (planned.query.lattice || planned.query.only_cascade)
         throw std::invalid_argument("query \"" + planned.query.name +
@@ -35,23 +36,30 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, La
             "\" must ask for position, normal and slope variance: a picture needs them");
     cells = ladder_of(plan, planned.query.cell_m, planned.cell_levels);
     pixels = ladder_of(plan, planned.query.pixel_m, planned.pixel_levels);
-    const glm::ivec2 cell_size = place(plan, cells), pixel_size = place(plan, pixels);
-    if (plan.dropped[index(Field::Dx)])
+    const bool breaks = !planned.breaking_levels.empty(), is_choppy = !plan.dropped[index(Field::Dx)];
+    if (breaks && (!is_choppy || plan.trains || planned.breaking_levels != planned.pixel_levels))
+        breaking = ladder_of(plan, planned.query.pixel_m, planned.breaking_levels);
+    const glm::ivec2 cell_size = place(plan, {&cells}), pixel_size = place(plan, {&pixels, &breaking});
+    if (!is_choppy && !breaks)
         return {{true, 1, {Field::Height}, cell_size},
                 {false, 2, {Field::SlopeX, Field::SlopeY}, pixel_size}};
+    if (!is_choppy)
+        return {{true, 1, {Field::Height}, cell_size},
+                {false, 4, {Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy}, pixel_size},
+                {false, 1, {Field::Dxy}, pixel_size}};
     return {{true, 4, {Field::Height, Field::Dx, Field::Dy}, cell_size},
             {false, 4, {Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy}, pixel_size},
             {false, 1, {Field::Dxy}, pixel_size}};
 }
 
 std::vector<SeaLayout::Plane> SeaLayout::planes_of(const Plan& plan, int query) {
-    Ladder cells, pixels;
-    return lay_out(plan, query, cells, pixels);
+    Ladder cells, pixels, breaking;
+    return lay_out(plan, query, cells, pixels, breaking);
 }
 
 SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(std::move(sea)), query_(query) {
     const Plan& plan = sea_->plan();
-    planes_ = lay_out(plan, query, cells_, pixels_);
+    planes_ = lay_out(plan, query, cells_, pixels_, breaking_);
     has_coverage_ = plan.queries[query].query.products[index(Product::Coverage)];
     is_choppy_ = !plan.dropped[index(Field::Dx)];
 
@@ -85,11 +93,12 @@ SeaLayout::Ladder SeaLayout::ladder_of(const Plan& plan, const std::vector<doubl
 
 // Packs tiles in shelves, the largest first, into the texture of the fewest texels that most drivers have: as wide
 // as one of the tiles, as two side by side, and so on.
-glm::ivec2 SeaLayout::place(const Plan& plan, Ladder& ladder) {
+glm::ivec2 SeaLayout::place(const Plan& plan, std::initializer_list<Ladder*> ladders) {
     const int skirt = plan.knobs.spline_taps - 1;
     std::map<std::pair<int, int>, std::vector<Tile*>> by_grid;  // several rungs may share a grid
-    for (Tile& tile : ladder.tiles)
-        if (tile.n > 0) by_grid[{tile.cascade, tile.grid}].push_back(&tile);
+    for (Ladder* ladder : ladders)
+        for (Tile& tile : ladder->tiles)
+            if (tile.n > 0) by_grid[{tile.cascade, tile.grid}].push_back(&tile);
     if (by_grid.empty()) return glm::ivec2(1);
     std::vector<std::vector<Tile*>> grids;
     for (auto& [key, tiles] : by_grid) grids.push_back(tiles);
@@ -141,7 +150,9 @@ void SeaLayout::fill(const Frame<float>& frame, std::vector<std::vector<float>>&
         const auto width = static_cast<std::size_t>(plane.size.x);
         planes[p].resize(width * static_cast<std::size_t>(plane.size.y) * channels);
         std::vector<std::pair<int, int>> done;
-        for (const Tile& tile : (plane.of_cells ? cells_ : pixels_).tiles) {
+        std::vector<Tile> tiles = (plane.of_cells ? cells_ : pixels_).tiles;
+        if (!plane.of_cells) tiles.insert(tiles.end(), breaking_.tiles.begin(), breaking_.tiles.end());
+        for (const Tile& tile : tiles) {
             if (tile.n == 0) continue;
             if (std::find(done.begin(), done.end(), std::pair(tile.cascade, tile.grid)) != done.end())
                 continue;
@@ -201,7 +212,7 @@ std::vector<glm::vec4> SeaLayout::train_texels() const {
                     amplitude(Field::Dyy)};
         at(2, i) = {amplitude(Field::Dxy), amplitude(Field::Height), amplitude(Field::Dx),
                     amplitude(Field::Dy)};
-        at(3, i) = {trains.wavelength[i], 0.0f, 0.0f, 0.0f};
+        at(3, i) = {trains.wavelength[i], trains.breaking[i], 0.0f, 0.0f};
         for (std::size_t m = 0; m < from.size(); ++m)
             at(4 + m / 4, i)[static_cast<int>(m % 4)] = trains.hidden_alone[i][m];
     }

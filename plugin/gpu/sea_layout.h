@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -56,6 +57,8 @@ class SeaLayout {
     };
     const Ladder& cells() const { return cells_; }
     const Ladder& pixels() const { return pixels_; }
+    // The strain of the waves that break, rung by rung of the pixels; without rungs where that is the pixels' own.
+    const Ladder& breaking() const { return breaking_; }
 
     // The hidden moments of a rung of pixels without the trains' part: alone, and mixed with the next rung.
     struct HiddenRung {
@@ -80,14 +83,15 @@ class SeaLayout {
   private:
     static Ladder ladder_of(const Plan& plan, const std::vector<double>& footprints_m,
                             const std::vector<int>& levels);
-    static glm::ivec2 place(const Plan& plan, Ladder& ladder);
-    static std::vector<Plane> lay_out(const Plan& plan, int query, Ladder& cells, Ladder& pixels);
+    static glm::ivec2 place(const Plan& plan, std::initializer_list<Ladder*> ladders);
+    static std::vector<Plane> lay_out(const Plan& plan, int query, Ladder& cells, Ladder& pixels,
+                                      Ladder& breaking);
 
     std::shared_ptr<const Sea<float>> sea_;
     int query_ = 0;
     bool is_choppy_ = false, has_coverage_ = false;
     std::vector<Plane> planes_;
-    Ladder cells_, pixels_;
+    Ladder cells_, pixels_, breaking_;
     std::vector<HiddenRung> hidden_;
 };
 

@@ -41,11 +41,12 @@ TileRow tile_row(const SeaLayout& layout, const SeaLayout::Tile& tile, glm::dvec
 }  // namespace
 
 std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m) const {
-    const std::size_t rungs = cells_.footprints_m.size() + pixels_.footprints_m.size();
+    const std::size_t rungs =
+        cells_.footprints_m.size() + pixels_.footprints_m.size() + breaking_.footprints_m.size();
     const std::size_t tiles = rungs * static_cast<std::size_t>(std::max(cascades(), 1));
     std::vector<std::array<std::int32_t, 4>> first, origin;
     std::vector<std::array<float, 4>> scale, rung, hidden;
-    for (const Ladder* ladder : {&cells_, &pixels_}) {
+    for (const Ladder* ladder : {&cells_, &pixels_, &breaking_}) {
         for (const Tile& tile : ladder->tiles) {
             const TileRow row = tile_row(*this, tile, origin_m);
             first.push_back(row.first);
@@ -53,7 +54,7 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m) const {
             scale.push_back(row.scale);
         }
         for (const double footprint_m : ladder->footprints_m)
-            rung.push_back({static_cast<float>(footprint_m), 0.0f, 0.0f, 0.0f});
+            if (ladder != &breaking_) rung.push_back({static_cast<float>(footprint_m), 0.0f, 0.0f, 0.0f});
     }
     first.resize(tiles);
     origin.resize(tiles);

@@ -82,6 +82,7 @@ std::string query_constants(const SeaLayout& layout, bool coverage) {
            constant("kTileCascades", std::max(layout.cascades(), 1)) +
            constant("kCellRungs", static_cast<int>(layout.cells().footprints_m.size())) +
            constant("kPixelRungs", static_cast<int>(layout.pixels().footprints_m.size())) +
+           constant("kBreakingRungs", static_cast<int>(layout.breaking().footprints_m.size())) +
            constant("P", layout.sea().plan().knobs.spline_taps) + constant("kChoppy", layout.is_choppy()) +
            constant("kCoverage", coverage) +
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +

@@ -2,7 +2,8 @@
 // makes. Only the trains that pass the footprint's filter are read.
 //
 // Texels of train i, in column i: 0: kx, ky [cycles/m], each as (high, low); 1: amplitudes of ηx, ηy, Dxx,
-// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m]; 4, 5: its moments; 6, 7: the summed
+// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m], and the most that its strain counts with in breaking; 4, 5: its
+// moments; 6, 7: the summed
 // moments of trains i … last.
 uniform sampler2D train_table;
 uniform sampler2D train_cycles;  // phases at the origin, at the frame's time
@@ -57,6 +58,7 @@ vec3 cell_trains(SplitMetres x, vec3 footprint) {
 // Adds the trains' part to the shown and hidden sums of the cascades.
 struct TrainSums {
     PixelFields fields;
+    vec3 breaking;  // strain of the waves that break
     PixelMoments hidden;
 };
 
@@ -67,23 +69,35 @@ TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
     vec4 high = texelFetch(train_table, ivec2(end, 7), 0);
     vec4 first = vec4(0.0);
     float dxy = 0.0;
+    vec3 breaking = vec3(0.0);
     for (int i = 0; i < end; ++i) {
         vec2 wave = train_sine_cosine(i, x);
+        vec4 train = texelFetch(train_table, ivec2(i, 3), 0);
+        float most = train.y * wave.y;
         if (i >= full) {
-            float w = train_weight(texelFetch(train_table, ivec2(i, 3), 0).x, footprint_along(i, footprint));
+            float w = train_weight(train.x, footprint_along(i, footprint));
+            most = min(w, train.y) * wave.y;
             wave *= w;
             float part = hidden_part(w);
-            low += part * texelFetch(train_table, ivec2(i, 4), 0);
-            high += part * texelFetch(train_table, ivec2(i, 5), 0);
+            float strain_part = hidden_part(train.y > w ? w / train.y : 1.0);
+            low += vec4(part, part, part, strain_part) * texelFetch(train_table, ivec2(i, 4), 0);
+            high += strain_part * texelFetch(train_table, ivec2(i, 5), 0);
         }
         vec4 amplitude = texelFetch(train_table, ivec2(i, 1), 0);
+        float across = texelFetch(train_table, ivec2(i, 2), 0).x;
         first += amplitude * vec4(wave.x, wave.x, wave.y, wave.y);
-        if (kChoppy) dxy += texelFetch(train_table, ivec2(i, 2), 0).x * wave.y;
+        dxy += across * wave.y;
+        breaking += vec3(amplitude.zw, across) * most;
+    }
+    if (!kChoppy) {  // the strain is there for breaking alone
+        first.zw = vec2(0.0);
+        dxy = 0.0;
     }
     PixelFields f = sums.fields;
     PixelMoments m = sums.hidden;
     return TrainSums(PixelFields(f.slope_x + first.x, f.slope_y + first.y, f.dxx + first.z, f.dyy + first.w,
                                  f.dxy + dxy),
+                     sums.breaking + breaking,
                      PixelMoments(m.xx + low.x, m.xy + low.y, m.yy + low.z, m.xxxx + low.w, m.xxxy + high.x,
                                   m.xxyy + high.y, m.xyyy + high.z, m.yyyy + high.w));
 }

@@ -17,6 +17,7 @@ Uniform vector(const char* name, const glm::vec3& value) {
 std::vector<Uniform> query_uniforms(const SeaLayout& layout) {
     std::vector<Uniform> uniforms{
         number("whitecap_threshold", layout.sea().whitecap_threshold()),
+        number("breaking_footprint_m", layout.sea().plan().breaking.footprint_m),
         {"finest_m", 2,
          glm::vec4(static_cast<float>(layout.cells().footprints_m.front()),
                    static_cast<float>(layout.pixels().footprints_m.front()), 0.0f, 0.0f)}};

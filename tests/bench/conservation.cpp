@@ -72,7 +72,7 @@ void whitecap_table() {
         Scene scene;
         scene.sea.wind_speed_mps = wind;
         scene.surface.size_m = 1000.0;
-        std::printf("  %-10g %12.5f", wind, observed_coverage(wind));
+        std::printf("  %-10g %12.5f", wind, law_coverage(scene));
         double least = 1.0, most = 0.0;
         for (const int quads : kQuads) {
             scene.surface.resolution = quads;

@@ -149,7 +149,8 @@ TEST(Calm, IsExactlyFlat) {
     }
 }
 
-TEST(NoChoppiness, HasAJacobianOfOneAndNoHorizontalMotion) {
+// Its foam is where the slightest choppiness would press the surface together.
+TEST(NoChoppiness, HasFoamButNoHorizontalMotion) {
     Scene scene;
     scene.waves.choppiness = 0.0;
     ProductSet all;
@@ -161,8 +162,8 @@ TEST(NoChoppiness, HasAJacobianOfOneAndNoHorizontalMotion) {
         EXPECT_EQ(samples.vectors(Displacement)[i].y, 0.0f);
         EXPECT_NE(samples.vectors(Displacement)[i].z, 0.0f);
         EXPECT_EQ(samples.vectors(Velocity)[i].x, 0.0f);
-        EXPECT_EQ(samples.vectors(JacobianMoments)[i], glm::vec3(1.0f, 0.0f, 0.0f));
-        EXPECT_EQ(samples.numbers(Coverage)[i], 0.0f);
+        EXPECT_NEAR(samples.vectors(JacobianMoments)[i].x, 1.0f, 0.02f);
+        EXPECT_NE(samples.vectors(JacobianMoments)[i].x, 1.0f);
     }
 }
 

@@ -10,7 +10,7 @@ using namespace test;
 
 // Rounding of 6e-8 in amplitudes, transforms and weights, over some 1e4 modes. Largest differences of 4000
 // points, measured: positions 1.9e-7 of Hs, velocities 1.8e-7 of Hs/s, normals 1.5e-7, J 2.5e-7,
-// coverage 7.7e-7. Five times that.
+// coverage 4.1e-6 (with ripples that break, whose variance makes its edges soft: 7.7e-7). Five times that.
 TEST(SinglePrecision, IsWithinARoundingOfDouble) {
     Scene scene;
     scene.sea.wind_speed_mps = 14.0;
@@ -45,7 +45,7 @@ TEST(SinglePrecision, IsWithinARoundingOfDouble) {
         EXPECT_LT(velocity, 1e-6 * hs);
         EXPECT_LT(normal, 1e-6);
         EXPECT_LT(jacobian, 1.5e-6);
-        EXPECT_LT(coverage, 4e-6);
+        EXPECT_LT(coverage, 2e-5);
         EXPECT_GT(displacement, 0.0);
     }
 }

@@ -131,17 +131,14 @@ std::vector<Case> cases() {
              s.effects.whitecaps = false;
          },
          one(kPosition | kStrain), kMesh * (8 + 24)},
-        // Heights, their slopes and their velocity; J is 1 everywhere.
+        // Heights, their slopes and their velocity; the strain that foam is told from.
         {"ChoppinessZero",
          [](Scene& s) {
              s.output.attributes = kAll;
              s.waves.choppiness = 0.0;
          },
-         one(fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ)),
-         kMesh * (8 + 52),
-         {},
-         4,
-         false},
+         one(fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ) | kStrain),
+         kMesh * (8 + 52)},
         {"DisplacementMap", maps({MapKind::Displacement}), one(kPosition), kMap * (8 + 12)},
         {"NormalMap", maps({MapKind::Normal}), one(kSlopes | kStrain), kMap * (8 + 12)},
         // What carries them, at each mip level.
@@ -155,11 +152,7 @@ std::vector<Case> cases() {
              maps({MapKind::Whitecaps})(s);
              s.waves.choppiness = 0.0;
          },
-         {{}},
-         kMap * (8 + 16),
-         {},
-         4,
-         false},
+         one(kStrain), kMap * (8 + 16)},
         // The same cells at the same nodes: the mesh's own grid, and the maps share their points.
         {"MapsAsFineAsTheMesh",
          [](Scene& s) {
@@ -286,17 +279,17 @@ std::size_t held_by(const Trains<T>& trains) {
     std::size_t bytes =
         of(trains.kx_cycles_per_m, trains.ky_cycles_per_m, trains.cycles_per_s, trains.start_cycles,
            trains.height_m, trains.horizontal_m, trains.wavelength_m, trains.alone, trains.before,
-           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength);
+           trains.from, trains.hidden_alone, trains.hidden_from, trains.wavelength, trains.breaking);
     for (const auto& amplitude : trains.amplitude) bytes += of(amplitude);
     return bytes;
 }
 
-// Of each train 7 doubles, 11 fields' factors, wavelength and steepness in single precision; moments alone
+// Of each train 7 doubles, 11 fields' factors, wavelength and weight in breaking in single precision; moments alone
 // and in two running sums of one entry more, 8 hidden ones alone and in one running sum.
 std::size_t trains_bytes(int trains) {
     if (trains == 0) return 0;
     const auto n = static_cast<std::size_t>(trains);
-    return n * (7 * 8 + 12 * 4) + (n + 2 * (n + 1)) * sizeof(SpectralMoments) + (n + (n + 1)) * 8 * 4;
+    return n * (7 * 8 + 13 * 4) + (n + 2 * (n + 1)) * sizeof(SpectralMoments) + (n + (n + 1)) * 8 * 4;
 }
 
 template <class T>

@@ -52,10 +52,13 @@ TEST(Plan, HasNoJacobianWithoutWhitecapsNormalsAndSlopeVariance) {
     }
 }
 
+// But the strain that waves would have, where somebody asks for foam.
 TEST(Plan, HasNoHorizontalFieldsWithoutChoppiness) {
-    Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity, MeshAttribute::Whitecaps});
+    Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity});
     scene.waves.choppiness = 0.0;
     EXPECT_EQ(fields_of_plan(plan_bake(scene)), fields(Field::Height, Field::VelocityZ) | kSlopes);
+    scene.output.attributes.push_back(MeshAttribute::Whitecaps);
+    EXPECT_EQ(fields_of_plan(plan_bake(scene)), fields(Field::Height, Field::VelocityZ) | kSlopes | kStrain);
 }
 
 TEST(Plan, HasNothingToRunWithoutWindAndSwell) {

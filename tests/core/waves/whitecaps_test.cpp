@@ -1,6 +1,8 @@
 // Coverage from moments of the Jacobian: tests the functions of whitecaps.h alone.
 #include "core/waves/whitecaps.h"
 
+#include "core/scene/names.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -102,7 +104,8 @@ TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
             const SpectralMoments m = moments(spectrum, from, to);
             return HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy};
         };
-        const double threshold = calibrated_threshold(moments(spectrum, 0.0, 1e9), wind, true);
+        const double threshold =
+            calibrated_threshold(moments(spectrum, 0.0, 1e9), law_coverage(scene), 1.0, true);
         const double all = coverage(jacobian_moments(0.0, 0.0, 0.0, strain(0.0, 1e9)), threshold, true);
         for (const double edge : {0.3, 3.0, 30.0}) {  // rad/m: longer waves are shown
             const HiddenStrain<double> shown = strain(0.0, edge), hidden = strain(edge, 1e9);
@@ -245,12 +248,57 @@ TEST(CalibratedThreshold, GivesTheObservedCoverageOfTheWholeSea) {
         const auto j =
             jacobian_moments(0.0, 0.0, 0.0, HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
         for (const bool third_moment : {false, true}) {
-            const double w = coverage(j, calibrated_threshold(m, wind, third_moment), third_moment);
+            const double w =
+                coverage(j, calibrated_threshold(m, law_coverage(scene), 1.0, third_moment), third_moment);
             EXPECT_NEAR(w / (2.95e-6 * std::pow(wind, 3.52)), 1.0, 1e-6);
         }
     }
-    EXPECT_EQ(calibrated_threshold({}, 0.0, true), -std::numeric_limits<double>::infinity());
-    EXPECT_EQ(calibrated_threshold({}, 10.0, true), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(calibrated_threshold({}, 0.0, 1.0, true), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(calibrated_threshold({}, 0.01, 1.0, true), -std::numeric_limits<double>::infinity());
+}
+
+// Each in percent at a few winds, from its paper's formula.
+TEST(WhitecapLaws, AreThePapers) {
+    struct Seen {
+        WhitecapLaw law;
+        double wind_mps, sea_minus_air_c, percent;
+    };
+    for (const Seen& seen :
+         {Seen{WhitecapLaw::Monahan1980, 10.0, 0.0, 0.9768},
+          Seen{WhitecapLaw::Monahan1980, 20.0, 5.0, 11.206},
+          Seen{WhitecapLaw::Monahan1986, 10.0, 0.0, 0.6919},
+          Seen{WhitecapLaw::Monahan1986, 10.0, 8.0, 1.3777}, Seen{WhitecapLaw::Callaghan2008, 3.7, 0.0, 0.0},
+          Seen{WhitecapLaw::Callaghan2008, 8.0, 0.0, 0.2528},
+          Seen{WhitecapLaw::Callaghan2008, 14.0, 0.0, 1.9669},
+          Seen{WhitecapLaw::Callaghan2008, 23.09, 0.0, 7.5947},
+          Seen{WhitecapLaw::Callaghan2008, 60.0, 0.0, 7.5947}}) {
+        Scene scene;
+        scene.sea.wind_speed_mps = seen.wind_mps;
+        scene.effects.whitecap_law = seen.law;
+        scene.effects.sea_minus_air_c = seen.sea_minus_air_c;
+        EXPECT_NEAR(100.0 * law_coverage(scene), seen.percent, 2e-3) << seen.wind_mps;
+        scene.effects.whitecap_amount = 2.0;
+        EXPECT_NEAR(100.0 * law_coverage(scene), 2.0 * seen.percent, 4e-3) << seen.wind_mps;
+        scene.effects.whitecap_amount = 0.0;
+        EXPECT_EQ(law_coverage(scene), 0.0);
+    }
+}
+
+// A sea is never white all over, and what is stretched doesn't break: whatever the wind, the law, the amount and the waves.
+TEST(WhitecapLaws, AreCapped) {
+    for (const auto& word : words_of(WhitecapLaw()))
+        for (const double wind_mps : {0.1, 5.0, 24.0, 40.0, 80.0})
+            for (const double amount : {1.0, 100.0})
+                for (const double choppiness : {0.01, 0.3, 1.0, 3.0}) {
+                    Scene scene;
+                    scene.sea.wind_speed_mps = wind_mps;
+                    scene.effects.whitecap_law = word.value;
+                    scene.effects.whitecap_amount = amount;
+                    EXPECT_LE(law_coverage(scene), 0.6);
+                    SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.0, 6.0);
+                    m.scale_strain(choppiness * choppiness);
+                    EXPECT_LT(calibrated_threshold(m, law_coverage(scene), choppiness, true), 1.0);
+                }
 }
 
 }  // namespace

@@ -191,6 +191,8 @@ TEST(LiveSea, EveryKeyOfTheWavesIsAnotherSea) {
         [](Scene& s) { s.waves.choppiness = 0.5; },
         [](Scene& s) { s.sea.swell = {Swell{}}; },
         [](Scene& s) { s.effects.whitecaps = false; },
+        [](Scene& s) { s.effects.breaking_from_m = 2.0; },
+        [](Scene& s) { s.effects.whitecap_amount = 2.0; },
         [](Scene& s) { s.shot.seed = 2; },
         [](Scene& s) { s.quality.level = QualityLevel::Draft; },
         [](Scene& s) { s.shot.loop_s = 1.0; },

@@ -1,0 +1,36 @@
+// Which waves break: those longer than effects.breaking_from_m. Ripples are steep, hold most of the Jacobian's variance,
+// and don't break; with them foam would be a veil.
+//
+// The strain that breaking is told from is summed through no footprint finer than footprint_m, which lets none of the
+// shorter waves pass. What that hides of the waves that break counts as hidden, as what coarser footprints hide does: so
+// the foam is the same at every resolution, and its edges are soft.
+#pragma once
+
+#include "core/plan/filter.h"
+#include "core/scene/scene.h"
+#include "core/spectrum/spectral_moments.h"
+
+namespace pelagic {
+
+struct Breaking {
+    double from_m = 0.0;       // the shortest waves that break; 0: all do
+    double footprint_m = 0.0;  // the finest footprint of their strain
+    // Of their strain. A sea without horizontal displacement breaks where the slightest would press it together: this
+    // small, its foam is that of a sea whose surface isn't compressed.
+    double choppiness = 1.0;
+
+    static constexpr double kLeastChoppiness = 0.01;
+
+    // The larger of a pixel's footprint and the finest of the waves that break [m].
+    double footprint_of(double pixel_m) const { return pixel_m > footprint_m ? pixel_m : footprint_m; }
+    // Wavenumbers from here on don't break [rad/m].
+    double k_end() const;
+};
+
+Breaking breaking_of(const Scene& scene, const FootprintFilter& filter);
+
+// moments() of k_lo ≤ k < k_hi, the strains of those that break alone, with their choppiness.
+SpectralMoments moments_with_breaking(const DirectionalSpectrum& spectrum, double k_lo, double k_hi,
+                                      const Breaking& breaking);
+
+}  // namespace pelagic

@@ -1,0 +1,44 @@
+#include "core/waves/whitecaps.h"
+
+#include <limits>
+
+namespace pelagic {
+
+double law_coverage(const Scene& scene) {
+    constexpr double kMost = 0.6, kFastestSeen_mps = 23.09;
+    const Effects& effects = scene.effects;
+    const double wind_mps = std::max(scene.sea.wind_speed_mps, 0.0);
+    const auto cube = [](double x) { return std::max(x * x * x, 0.0); };
+    const double law = [&] {
+        switch (effects.whitecap_law) {
+            case WhitecapLaw::Monahan1980:
+                return 2.95e-6 * std::pow(wind_mps, 3.52);
+            case WhitecapLaw::Monahan1986:
+                return 1.95e-5 * std::pow(wind_mps, 2.55) * std::exp(0.0861 * effects.sea_minus_air_c);
+            case WhitecapLaw::Callaghan2008: {
+                const double seen_mps = std::min(wind_mps, kFastestSeen_mps);
+                // The two cross at 10.2 m/s; the smaller one holds.
+                return std::min(3.18e-5 * cube(seen_mps - 3.70), 4.82e-6 * cube(seen_mps + 1.98));
+            }
+        }
+        return 0.0;
+    }();
+    return std::min(effects.whitecap_amount * law, kMost);
+}
+
+double calibrated_threshold(const SpectralMoments& breaking, double law_coverage, double choppiness,
+                            bool third_moment) {
+    const auto j = jacobian_moments<double>(
+        0.0, 0.0, 0.0, {breaking.xxxx, breaking.xxxy, breaking.xxyy, breaking.xyyy, breaking.yyyy});
+    constexpr double kNoFoam = 1e-9;  // a square millimetre in a thousand square metres
+    if (law_coverage < kNoFoam || !(j.variance > 0.0)) return -std::numeric_limits<double>::infinity();
+    constexpr double kLeastPressed = 0.1;
+    double low = 0.0, high = std::max(1.0 - kLeastPressed * choppiness, 0.0);
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (coverage(j, middle, third_moment) < law_coverage ? low : high) = middle;
+    }
+    return high;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,184 @@
+// Waves break, ripples don't: effects.breaking_from_m in everything that has coverage.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/waves/whitecaps.h"
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+struct Kind {
+    const char* name;
+    void (*set)(Scene&);
+};
+constexpr Kind kSeas[] = {
+    {"cascades", [](Scene&) {}},
+    {"trains", [](Scene& s) { s.waves.model = WaveModel::Trochoid; }},
+    {"trains and cascades",
+     [](Scene& s) {
+         s.waves.model = WaveModel::Trochoid;
+         s.waves.cascades = {{40.0, 256}, {7.0, 128}};
+         s.waves.shortest_m = 5.0;
+     }},
+    {"no choppiness", [](Scene& s) { s.waves.choppiness = 0.0; }},
+    {"trains without choppiness",
+     [](Scene& s) {
+         s.waves.model = WaveModel::Trochoid;
+         s.waves.choppiness = 0.0;
+     }},
+    {"a few metres", [](Scene& s) { s.effects.breaking_from_m = 3.3; }},
+};
+
+Scene scene_of(const Kind& sea, double wind_mps = 14.0) {
+    Scene scene;
+    scene.sea.wind_speed_mps = wind_mps;
+    sea.set(scene);
+    return scene;
+}
+
+const ProductSet kFoam = products(Product::Coverage, Product::JacobianMoments);
+
+// A pixel finer than what breaks sees what the finest of those sees, however the points are asked for. With ripples that
+// break none of these holds.
+TEST(Breaking, FinerPixelsSeeTheSameFoam) {
+    const auto points = random_points<double>(200.0, 300);
+    for (const Kind& sea : kSeas) {
+        SCOPED_TRACE(sea.name);
+        const Scene scene = scene_of(sea);
+        const double finest_m = 0.5 * scene.effects.breaking_from_m;
+        const ProductSet all = kFoam | products(Position, Normal);
+        std::vector<Query> queries;
+        for (const double footprint_m : {finest_m, 0.5 * finest_m, 0.1 * finest_m, 0.01})
+            queries.push_back(filtered(footprint_m < 0.1 ? all : kFoam, footprint_m));
+        const int ladder = static_cast<int>(queries.size());
+        queries.push_back(filtered(all, 0.0));
+        queries.back().pixel_m = {0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+        const auto frame = frame_of<double>(scene, queries, 4.0);
+        const auto wanted = sample(frame, 0, points);
+        double most = 0.0;
+        const auto expect_same = [&](const ProductArrays<double>& found) {
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const glm::dvec3 a = wanted.vectors(Product::JacobianMoments)[i],
+                                 b = found.vectors(Product::JacobianMoments)[i];
+                ASSERT_NEAR(a.x, b.x, 2e-5) << i;  // each level's grid has a spline of its own
+                ASSERT_NEAR(a.y, b.y, 1e-7) << i;
+                ASSERT_NEAR(wanted.numbers(Coverage)[i], found.numbers(Coverage)[i], 2e-3) << i;
+                most = std::max(most, wanted.numbers(Coverage)[i]);
+            }
+        };
+        for (int q = 1; q < ladder; ++q) expect_same(sample(frame, q, points));
+        Where<double> where;
+        where.pixel_m.assign(points.size(), 0.04);
+        expect_same(sample(frame, ladder, points, where));
+        EXPECT_GT(most, 0.5);
+    }
+}
+
+// Coarser ones as well, and none of a point's answers depends on its neighbours in a chunk.
+TEST(Breaking, APointDependsOnNothingButThePoint) {
+    for (const Kind& sea : kSeas) {
+        SCOPED_TRACE(sea.name);
+        Query query = filtered(kFoam | products(Position, Normal, SlopeVariance), 0.0);
+        query.pixel_m = {0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+        const auto frame = frame_of<float>(scene_of(sea), {query}, 4.0);
+        const auto points = random_points<float>(200.0, 200);
+        Where<float> where;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            where.pixel_m.push_back(0.1f * std::exp2(static_cast<float>(i % 7)));
+        const auto together = sample(frame, 0, points, where);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const auto alone = sample<float>(frame, 0, {points[i]},
+                                             {.origin_m = {}, .cell_m = {}, .pixel_m = {where.pixel_m[i]}});
+            ASSERT_EQ(alone.vectors(Product::JacobianMoments)[0],
+                      together.vectors(Product::JacobianMoments)[i])
+                << i;
+            ASSERT_EQ(alone.numbers(Coverage)[0], together.numbers(Coverage)[i]) << i;
+            ASSERT_EQ(alone.vectors(Normal)[0], together.vectors(Normal)[i]) << i;
+        }
+    }
+}
+
+// An ellipse that is longer than what breaks, and finer across.
+TEST(Breaking, LongPixelsHideAlongTheirAxisAlone) {
+    const auto points = random_points<double>(400.0, 4000);
+    Query query = filtered(kFoam, 0.0);
+    query.pixel_m = {0.03125, 0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+    const auto frame = frame_of<double>(scene_of(kSeas[0]), {query}, 4.0);
+    const auto mean_of_foam = [&](double width_m, glm::dvec2 axis_m) {
+        const std::vector<double> widths(points.size(), width_m);
+        const std::vector<glm::dvec2> axes(points.size(), axis_m);
+        ProductArrays<double> values;
+        values.resize(kFoam, points.size());
+        Points<double> asked{.count = points.size(), .rest_m = {points.data()}};
+        asked.pixel_m = {widths.data()};
+        asked.pixel_axis_m = {axes.data()};
+        evaluate(frame, 0, asked, values.results());
+        double variance = 0.0, j2 = 0.0;
+        for (const glm::dvec3& j : values.vectors(Product::JacobianMoments)) {
+            variance += j.y / static_cast<double>(points.size());
+            j2 += (j.x - 1.0) * (j.x - 1.0) / static_cast<double>(points.size());
+        }
+        return std::pair(variance, j2);
+    };
+    const auto [round_hidden, round_shown] = mean_of_foam(0.05, {0.05, 0.0});
+    for (const glm::dvec2 axis : {glm::dvec2(0.4, 0.0), glm::dvec2(3.0, 0.0), glm::dvec2(0.0, 3.0)}) {
+        const auto [hidden, shown] = mean_of_foam(0.5, axis);
+        EXPECT_NEAR((hidden + shown) / (round_hidden + round_shown), 1.0, 0.03);
+        if (glm::length(axis) < 0.5)
+            EXPECT_NEAR(hidden / round_hidden, 1.0, 1e-9);
+        else
+            EXPECT_GT(hidden, 1.1 * round_hidden);
+    }
+}
+
+// Over area, the law's at every footprint.
+TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
+    for (const Kind& sea : kSeas) {
+        SCOPED_TRACE(sea.name);
+        const Scene scene = scene_of(sea);
+        const auto points = random_points<float>(3000.0, 40000);
+        std::vector<Query> queries;
+        for (const double footprint_m : {0.02, 0.5, 4.0, 100.0})
+            queries.push_back(filtered(kFoam, footprint_m));
+        const auto frame = frame_of<float>(scene, queries, 3.0);
+        for (int q = 0; q < static_cast<int>(queries.size()); ++q) {
+            const auto values = sample(frame, q, points);
+            double foam = 0.0, area = 0.0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const glm::dvec3 j(values.vectors(Product::JacobianMoments)[i]);
+                const double own = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
+                area += own;
+                foam += own * static_cast<double>(values.numbers(Coverage)[i]);
+            }
+            EXPECT_NEAR(foam / area / law_coverage(scene), 1.0, 0.15) << q;  // one tile's peak waves
+        }
+    }
+}
+
+// Where no wave is that long, or none that is has any steepness.
+TEST(Breaking, RipplesMakeNoFoam) {
+    for (const double fetch_m : {1.0, 30.0}) {
+        Scene scene;
+        scene.sea.fetch_m = fetch_m;
+        for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
+            scene.waves.model = model;
+            const auto frame = frame_of<float>(scene, {filtered(kFoam, 0.01), filtered(kFoam, 10.0)});
+            for (int q = 0; q < 2; ++q)
+                for (const float w : sample(frame, q, random_points<float>(5.0, 300)).numbers(Coverage))
+                    EXPECT_LT(w, 1e-4f) << fetch_m;  // a hundredth of the law's
+        }
+        scene.waves.model = WaveModel::Fft;
+        scene.effects.breaking_from_m = 0.0;  // as they would, if they broke
+        const auto frame = frame_of<float>(scene, {filtered(kFoam, 10.0)});
+        EXPECT_NEAR(sample(frame, 0, random_points<float>(5.0, 3)).numbers(Coverage)[0], law_coverage(scene),
+                    0.1 * law_coverage(scene));
+    }
+}
+
+}  // namespace
+}  // namespace pelagic

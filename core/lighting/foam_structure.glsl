@@ -220,14 +220,14 @@ SeenFoam foam_seen_in(FoamNoise noise, float coverage, float dense) {
 }
 
 // pixel_m: width and long axis on the water at rest. coverage: of the pixel, of all foam; breaking: of that where waves break now;
-// age_s: since all of it broke, on average.
+// age_s: since the rest broke, on average.
 SeenFoam seen_foam(FoamPattern pattern, vec2 rest_m, vec3 pixel_m, float coverage, float breaking, float age_s) {
     float c = clamp(coverage, 0.0f, 1.0f);
     float fresh = clamp(breaking / max(c, 1.0e-12f), 0.0f, 1.0f);
     float dense = pattern.look.w + fresh * (pattern.look.z - pattern.look.w);
     float strength = pattern.look.x * smoothstep(0.1f * kFaintFoam, kFaintFoam, c);
     if (!(strength > 0.0f)) return SeenFoam(c, dense);
-    FoamNoise noise = foam_noise(pattern, rest_m, foam_footprint(pixel_m), age_s);
+    FoamNoise noise = foam_noise(pattern, rest_m, foam_footprint(pixel_m), (1.0f - fresh) * age_s);
     if (!(noise.variance > 0.0f)) return SeenFoam(c, dense);
     return foam_seen_in(FoamNoise(strength * noise.shown, strength * strength * noise.variance), c, dense);
 }

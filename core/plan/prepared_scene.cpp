@@ -5,7 +5,7 @@
 namespace pelagic {
 
 std::shared_ptr<const PreparedScene> prepare(Scene scene) {
-    DirectionalSpectrum spectrum(scene.sea);
+    DirectionalSpectrum spectrum(scene.sea, scene.waves.band_gains);
     const Extent extent = expected_extent(spectrum, scene.waves.choppiness);
     return std::make_shared<const PreparedScene>(
         PreparedScene{std::move(scene), std::move(spectrum), extent});

@@ -12,7 +12,7 @@ namespace pelagic {
 
 struct PreparedScene {
     Scene scene;
-    DirectionalSpectrum spectrum;  // of scene.sea
+    DirectionalSpectrum spectrum;  // of scene.sea, with the gains of scene.waves
     Extent extent;                 // of the spectrum's waves at the scene's choppiness
 };
 

@@ -141,6 +141,14 @@ void add_sea(Built& out) {
              .feeds = kWaves}),
         row<&SeaState::spreading>(
             {.name = "spreading", .help = "how it is shared among the directions", .feeds = kWaves}),
+        row<&SeaState::directionality>(
+            {.name = "directionality",
+             .help =
+                 "of long and short waves, swell too: 1, the spreadings' own; 2, about half as wide; below 1, so much of "
+                 "each, and the rest from all directions alike",
+             .range = limits::kDirectionality,
+             .soft = SoftRange{0.1, 10.0, true},
+             .feeds = kWaves}),
         entries<&SeaState::swell>(
             {.name = "swell",
              .help = "waves of far storms, each a narrow spectrum of its own",
@@ -196,6 +204,28 @@ void add_waves(Built& out) {
                                                 .help = "samples a side, even",
                                                 .range = limits::kCascadeResolution,
                                                 .soft = SoftRange{16.0, 2048.0, true}})),
+        entries<&Waves::band_gains>(
+            {.name = "band_gains",
+             .help =
+                 "amplitudes by wavelength, on top of all else: heights, slopes and foam follow. Edges are smooth, a third "
+                 "of an octave wide; where bands overlap, their gains multiply",
+             .feeds = kWaves,
+             .most_entries = limits::kBandGains,
+             .entry_name = "BandGain"},
+            required<&BandGain::from_m>({.name = "from_m",
+                                         .help = "the wavelength at one edge",
+                                         .unit = "m",
+                                         .range = limits::kBandEdge_m,
+                                         .soft = SoftRange{0.01, 1000.0, true}}),
+            required<&BandGain::to_m>({.name = "to_m",
+                                       .help = "at the other",
+                                       .unit = "m",
+                                       .range = limits::kBandEdge_m,
+                                       .soft = SoftRange{0.01, 1000.0, true}}),
+            required<&BandGain::gain>({.name = "gain",
+                                       .help = "of their amplitudes: 0 leaves them out, 2 doubles them",
+                                       .range = limits::kBandGain,
+                                       .soft = SoftRange{0.0, 3.0}})),
         row<&Waves::trains>({.name = "trains",
                              .help = "with trochoid: how many, their wavelengths in geometric progression",
                              .range = limits::kTrains,

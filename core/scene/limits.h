@@ -41,8 +41,9 @@ inline constexpr Range kWindSpeed_mps{0.0, 80.0};
 inline constexpr Range kAngle_deg{-1e6, 1e6};  // any number of turns that leaves ten digits of the angle
 inline constexpr Range kFetch_m{1.0, 1e8};
 inline constexpr Range kSignificantHeight_m{0.0, 50.0};
-inline constexpr Range kDepth_m{0.01, 1e6};  // or infinite
-inline constexpr int kSwells = 64;           // each is a spectrum of its own in every integral
+inline constexpr Range kDirectionality{0.01, 20.0};  // from all directions alike to needles
+inline constexpr Range kDepth_m{0.01, 1e6};          // or infinite
+inline constexpr int kSwells = 64;                   // each is a spectrum of its own in every integral
 inline constexpr Range kSwellHeight_m{0.0, 50.0};
 inline constexpr Range kSwellPeriod_s{0.1, 100.0};  // 1.6 cm … 16 km long in deep water
 inline constexpr Range kMeasuredFrequency_hz{1e-4, 100.0};
@@ -51,6 +52,9 @@ inline constexpr Range kChoppiness{0.0, 10.0};  // waves fold over near 1 … 2
 inline constexpr int kCascades = 16;
 inline constexpr Range kCascadeSize_m{0.01, 1e6};
 inline constexpr Range kCascadeResolution{kMinCascadeResolution, kMaxCascadeResolution};
+inline constexpr int kBandGains = 32;
+inline constexpr Range kBandEdge_m{1e-3, 1e5};
+inline constexpr Range kBandGain{0.0, 10.0};
 inline constexpr Range kTrains{1, 10000};
 inline constexpr Range kTrain_m{1e-3,
                                 1e6};  // the spectra end at a millimetre (core/spectrum/viscous_cutoff.h)

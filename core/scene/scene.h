@@ -94,9 +94,16 @@ struct SeaState {
     // The tail and the spreading that take the spectrum's place beyond a few peak wavenumbers.
     ShortWaves short_waves = ShortWaves::Elfouhaily;
     std::optional<double> significant_height_m;  // of the wind sea or the measured one, instead of its own
+    double directionality = 1.0;                 // > 0: more than 1 is narrower than the spreadings' own
     SpreadingKind spreading = SpreadingKind::Hasselmann;
     std::vector<Swell> swell;
     std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File
+};
+
+// Waves of these lengths, times this.
+struct BandGain {
+    double from_m = 1.0, to_m = 10.0;  // wavelengths at its edges, in either order
+    double gain = 1.0;                 // of amplitudes, ≥ 0
 };
 
 struct CascadeSize {
@@ -111,6 +118,7 @@ struct Waves {
     // Largest first; empty: "auto", which is none with WaveModel::Trochoid. With both, the cascades hold the
     // waves that are shorter than the trains.
     std::vector<CascadeSize> cascades;
+    std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
     // With WaveModel::Trochoid. Wavelengths in geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).
     int trains = 60;  // 1 … 10000

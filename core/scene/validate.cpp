@@ -338,6 +338,13 @@ void check_waves(Checker& check, const Waves& waves) {
     } else {
         check_no_trains(check, waves);
     }
+    for (std::size_t i = 0; i < waves.band_gains.size(); ++i) {
+        const BandGain& band = waves.band_gains[i];
+        const std::string key = indexed("waves.band_gains", i);
+        if (check.is_good(key + ".from_m") && check.is_good(key + ".to_m") && band.from_m == band.to_m)
+            check.refuse({key + ".to_m", number_text(band.to_m), "is from_m as well: the band has no width",
+                          "another wavelength"});
+    }
     if (!check.is_good("waves.cascades")) return;
     bool all_good = true;
     for (std::size_t i = 0; i < waves.cascades.size(); ++i) {

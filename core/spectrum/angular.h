@@ -95,6 +95,7 @@ class MaximumEntropy {
     double cumulative(double theta) const;
     std::complex<double> harmonic(int n) const;
     double scale() const;  // the distance of the nearest pole of D from the real axis
+    double centre() const { return std::arg(c1_); }
 
     // D = numerator / (d0 + d1 cos θ + d2 sin θ + d3 cos 2θ + d4 sin 2θ).
     double numerator() const;

@@ -109,6 +109,23 @@ struct MaximumEntropyShape {
     }
 };
 
+// Any of them drawn towards its direction: core/spectrum/directed.h, by half angles.
+template <class Shape>
+struct DirectedShape {
+    Shape shape;
+    V kappa;
+    HWY_INLINE DirectedShape(const TableTerm& term, V parameter)
+        : shape(term, parameter), kappa(Set(term.directionality)) {}
+    HWY_INLINE Both operator()(V c, V s) const { return {drawn(c, s), drawn(hn::Neg(c), hn::Neg(s))}; }
+
+  private:
+    HWY_INLINE V drawn(V c, V s) const {
+        const V one = Set(1.0), near = hn::Add(one, c), far = hn::Mul(hn::Mul(kappa, kappa), hn::Sub(one, c));
+        const V by = hn::Div(one, hn::Add(near, far)), twice = hn::Mul(hn::Add(kappa, kappa), by);
+        return hn::Mul(twice, shape(hn::Mul(hn::Sub(near, far), by), hn::Mul(twice, s)).same);
+    }
+};
+
 template <class Shape>
 HWY_INLINE void AddTerm(const TablePanel& panel, const TableTerm& term, double weight, std::size_t count,
                         const double* k, const double* cosine, const double* sine, const FourWays& sum) {
@@ -134,19 +151,28 @@ HWY_INLINE void AddTerm(const TablePanel& panel, const TableTerm& term, double w
     }
 }
 
+template <class Shape>
+void AddShape(const TablePanel& panel, const TableTerm& term, double weight, std::size_t count,
+              const double* k, const double* cosine, const double* sine, const FourWays& sum) {
+    if (term.directionality > 1.0)
+        AddTerm<DirectedShape<Shape>>(panel, term, weight, count, k, cosine, sine, sum);
+    else
+        AddTerm<Shape>(panel, term, weight, count, k, cosine, sine, sum);
+}
+
 void AddDensity(const TablePanel& panel, const TableTerm& term, double weight, std::size_t count,
                 const double* k, const double* cosine, const double* sine, const FourWays& sum) {
     switch (term.shape) {  // in AngularShape's order
         case 0:
-            return AddTerm<CosinePowerShape>(panel, term, weight, count, k, cosine, sine, sum);
+            return AddShape<CosinePowerShape>(panel, term, weight, count, k, cosine, sine, sum);
         case 1:
-            return AddTerm<SechSquaredShape>(panel, term, weight, count, k, cosine, sine, sum);
+            return AddShape<SechSquaredShape>(panel, term, weight, count, k, cosine, sine, sum);
         case 2:
-            return AddTerm<CosineSquaredShape>(panel, term, weight, count, k, cosine, sine, sum);
+            return AddShape<CosineSquaredShape>(panel, term, weight, count, k, cosine, sine, sum);
         case 3:
-            return AddTerm<SecondHarmonicShape>(panel, term, weight, count, k, cosine, sine, sum);
+            return AddShape<SecondHarmonicShape>(panel, term, weight, count, k, cosine, sine, sum);
         case 4:
-            return AddTerm<MaximumEntropyShape>(panel, term, weight, count, k, cosine, sine, sum);
+            return AddShape<MaximumEntropyShape>(panel, term, weight, count, k, cosine, sine, sum);
     }
 }
 

@@ -22,7 +22,7 @@ class DirectionalSpectrum {
   public:
     // Throws std::invalid_argument when the spectrum is "file" and there are no usable bins; every other
     // SeaState that validate() accepts gives a finite spectrum. No wind and no swell: empty().
-    explicit DirectionalSpectrum(const SeaState& sea);
+    explicit DirectionalSpectrum(const SeaState& sea, std::span<const BandGain> gains = {});
 
     bool empty() const { return systems_.empty(); }
     double m0() const { return m0_; }  // [m²], over all wavenumbers, to 1e-6

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/spectrum/directed.h"
 
 namespace pelagic {
 namespace {
@@ -63,6 +64,17 @@ struct Sample {
     Sampled operator()(const MaximumEntropy& shape) const { return {shape.numerator(), 0.0}; }
 };
 
+// A buoy's directions are absolute; what is drawn towards its mean is told from there.
+void turn_to_centre(TableTerm& term, double centre) {
+    const std::array<double, 5> d = term.denominator;
+    const double c = std::cos(centre), s = std::sin(centre), c2 = std::cos(2.0 * centre),
+                 s2 = std::sin(2.0 * centre);
+    term.denominator = {d[0], d[1] * c + d[2] * s, d[2] * c - d[1] * s, d[3] * c2 + d[4] * s2,
+                        d[4] * c2 - d[3] * s2};
+    term.cos_direction = c;
+    term.sin_direction = s;
+}
+
 // How much the parameters of the spreadings change from k0 to k1, as logarithms: young seas in strong wind
 // lose theirs within a few per cent of k. A parameter near 0 says the same as 0.
 double parameter_change(const DirectionalSpectrum& spectrum, double k0, double k1) {
@@ -108,8 +120,9 @@ SpectrumTable::SpectrumTable(const DirectionalSpectrum& spectrum) {
                 points[n] = wave_point(spectrum.dispersion(), middle + half * node(n));
             panel.width = hump_width(points[kNodes / 2]);
             for (const WaveSystem& system : spectrum.systems()) {
-                Values amplitude{}, parameter{};
+                Values amplitude{}, parameter{}, alike{};
                 double largest = 0.0;
+                const double directionality = system.directionality(), own = std::min(directionality, 1.0);
                 AngularShape shape = CosineSquared();
                 for (int n = 0; n < kNodes; ++n) {
                     amplitude[n] = system.energy(points[n]) / points[n].k;
@@ -119,19 +132,29 @@ SpectrumTable::SpectrumTable(const DirectionalSpectrum& spectrum) {
                 for (int n = 0; n < kNodes; ++n) {
                     shape = system.shape(points[n]);
                     const auto [norm, value] = std::visit(Sample(), shape);
-                    amplitude[n] *= norm;
+                    alike[n] = (1.0 - own) / kTwoPi * amplitude[n];
+                    amplitude[n] *= own * norm;
                     parameter[n] = value;
                 }
                 TableTerm term{.shape = shape.index(),
                                .cos_direction = std::cos(system.direction()),
                                .sin_direction = std::sin(system.direction()),
                                .amplitude = interpolate(amplitude),
-                               .parameter = interpolate(parameter)};
-                if (const auto* measured = std::get_if<MaximumEntropy>(&shape))
+                               .parameter = interpolate(parameter),
+                               .directionality = std::max(directionality, 1.0)};
+                if (const auto* measured = std::get_if<MaximumEntropy>(&shape)) {
                     term.denominator = measured->denominator();
+                    if (directionality > 1.0) turn_to_centre(term, measured->centre());
+                }
                 const double scale = std::visit([](const auto& s) { return s.scale(); }, shape);
-                panel.width = std::min(panel.width, scale / kUsualWidth);
+                panel.width = std::min(panel.width, scale / term.directionality / kUsualWidth);
                 terms_.push_back(term);
+                if (!(own < 1.0)) continue;
+                TableTerm isotropic = term;  // cos⁰
+                isotropic.shape = AngularShape(CosinePower(0.0)).index();
+                isotropic.parameter = {};
+                isotropic.amplitude = interpolate(alike);
+                terms_.push_back(isotropic);
             }
             panel.terms = terms_.size() - panel.first_term;
             panels_.push_back(panel);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/base/constants.h"
+#include "core/spectrum/directed.h"
 #include "core/spectrum/gauss.h"
 #include "core/spectrum/viscous_cutoff.h"
 
@@ -45,6 +46,14 @@ auto with_shape(const SpreadingLaw& law, const WavePoint& point, Use&& use) {
             }
         },
         law);
+}
+
+// The same, of this directionality.
+template <class Use>
+auto with_directed(const SpreadingLaw& law, const WavePoint& point, double directionality, Use&& use) {
+    return with_shape(law, point, [&](const auto& shape) {
+        return directionality == 1.0 ? use(shape) : use(Directed(shape, directionality));
+    });
 }
 
 EnergyLaw energy_law(const SeaState& sea) {
@@ -171,6 +180,19 @@ WaveSystem WaveSystem::scaled(double energy_factor) const {
     return out;
 }
 
+WaveSystem WaveSystem::gained(const BandGains& gains, const Dispersion& dispersion) const {
+    WaveSystem out = *this;
+    out.gains_ = gains;
+    out.find_energy(dispersion);
+    return out;
+}
+
+WaveSystem WaveSystem::directed(double directionality) const {
+    WaveSystem out = *this;
+    out.directionality_ = directionality;
+    return out;
+}
+
 double Join::share(double k) const {
     if (side == Side::None) return 1.0;
     const double x = std::clamp(std::log(k / from) / std::log(to / from), 0.0, 1.0);
@@ -182,6 +204,13 @@ WaveSystem::WaveSystem(EnergyLaw energy, SpreadingLaw spreading, double directio
                        const Dispersion& dispersion, Join join)
     : energy_(std::move(energy)), spreading_(std::move(spreading)), direction_(direction), join_(join) {
     peak_wavenumber_ = pelagic::peak_wavenumber(energy_, dispersion);
+    find_energy(dispersion);
+}
+
+void WaveSystem::find_energy(const Dispersion& dispersion) {
+    panels_.clear();
+    kinks_.clear();
+    m0_ = 0.0;
     find_panels(dispersion);
     const auto& rule = GaussLegendre<8>::rule();
     for (std::size_t i = 1; i < panels_.size(); ++i) {
@@ -196,7 +225,8 @@ double WaveSystem::energy(const WavePoint& point) const {
 }
 
 double WaveSystem::law_energy(const WavePoint& point) const {
-    const double counted = scale_ * join_.share(point.k);
+    double counted = scale_ * join_.share(point.k);
+    if (!gains_.empty()) counted *= gains_.of_energy(point.k);
     if (!(counted > 0.0)) return 0.0;
     const double undamped = std::visit(
         [&]<class Law>(const Law& law) {
@@ -211,18 +241,19 @@ double WaveSystem::law_energy(const WavePoint& point) const {
 }
 
 double WaveSystem::density(const WavePoint& point, double theta) const {
-    return with_shape(spreading_, point,
-                      [&](const auto& shape) { return shape.density(theta - direction_); });
+    return with_directed(spreading_, point, directionality_,
+                         [&](const auto& shape) { return shape.density(theta - direction_); });
 }
 
 double WaveSystem::share(const WavePoint& point, double theta0, double theta1) const {
-    return with_shape(spreading_, point, [&](const auto& shape) {
+    return with_directed(spreading_, point, directionality_, [&](const auto& shape) {
         return shape.cumulative(theta1 - direction_) - shape.cumulative(theta0 - direction_);
     });
 }
 
 std::complex<double> WaveSystem::harmonic(const WavePoint& point, int n) const {
-    const auto own = with_shape(spreading_, point, [&](const auto& shape) { return shape.harmonic(n); });
+    const auto own = with_directed(spreading_, point, directionality_,
+                                   [&](const auto& shape) { return shape.harmonic(n); });
     return own * std::polar(1.0, n * direction_);
 }
 
@@ -267,6 +298,7 @@ void WaveSystem::find_panels(const Dispersion& dispersion) {
         for (double omega : buoy->edge_omegas()) kink_at(omega);
     }
     if (join_.side != Join::Side::None) kinks.insert(kinks.end(), {join_.from, join_.to});
+    for (const double k : gains_.kinks()) kinks.push_back(k);
     if (const auto* hasselmann = std::get_if<HasselmannSpreading>(&spreading_)) {
         kink_at(hasselmann->meeting_omega());
     } else if (const auto* donelan = std::get_if<DonelanBannerSpreading>(&spreading_)) {

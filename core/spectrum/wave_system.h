@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "core/spectrum/band_gains.h"
 #include "core/spectrum/cosine.h"
 #include "core/spectrum/donelan_banner.h"
 #include "core/spectrum/elfouhaily.h"
@@ -56,6 +57,9 @@ class WaveSystem {
     static constexpr double kMostHeightOverDepth = 0.6;
 
     WaveSystem scaled(double energy_factor) const;
+    // With these gains on top of all else, and of this directionality.
+    WaveSystem gained(const BandGains& gains, const Dispersion& dispersion) const;
+    WaveSystem directed(double directionality) const;
 
     // S_k [m³], viscous cutoff included; 0 outside panels(), where the laws' quotients of vanishing numbers
     // end.
@@ -68,9 +72,10 @@ class WaveSystem {
     // ∫ D e^{inθ} dθ, n ≥ 0.
     std::complex<double> harmonic(const WavePoint& point, int n) const;
 
-    // D's shape at this wavenumber, about direction() [rad].
+    // D's shape at this wavenumber, about direction() [rad], before directionality() counts (directed.h).
     AngularShape shape(const WavePoint& point) const;
     double direction() const { return direction_; }
+    double directionality() const { return directionality_; }
 
     double peak_wavenumber() const { return peak_wavenumber_; }  // of the frequency spectrum's peak [rad/m]
     double m0() const { return m0_; }                            // [m²]
@@ -85,12 +90,14 @@ class WaveSystem {
                Join join = {});
     double law_energy(const WavePoint& point) const;
     void find_panels(const Dispersion& dispersion);
+    void find_energy(const Dispersion& dispersion);  // panels and m0
 
     EnergyLaw energy_;
     SpreadingLaw spreading_;
     double direction_;
     Join join_;
-    double scale_ = 1.0;
+    double scale_ = 1.0, directionality_ = 1.0;
+    BandGains gains_;
     double peak_wavenumber_ = 0.0;
     double m0_ = 0.0;
     std::vector<double> panels_;

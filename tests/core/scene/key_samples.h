@@ -32,6 +32,7 @@ inline KeyEntry good_entry(const Key& list) {
         entry.values[0].second = 1e-3;
         entry.values[1].second = 100.0;
     }
+    if (list.path == "waves.band_gains") entry.values[2].second = 1.5;  // 1 changes nothing
     if (list.path == "camera.keys") entry.values[1].second = std::vector<double>{0.0, -60.0, 4.0};
     return entry;
 }

@@ -98,6 +98,25 @@ TEST(SpectrumTable, IsSwellsAndMeasuredSeas) {
     expect_same_density(state);
 }
 
+TEST(SpectrumTable, IsNarrowerAndWiderSeas) {
+    for (const double directionality : {0.3, 2.0, 5.0}) {
+        for (const SpreadingKind spreading : oracle::kSpreadings) {
+            SeaState state;
+            state.spreading = spreading;
+            state.wind_direction_deg = 37.0;
+            state.directionality = directionality;
+            SCOPED_TRACE(testing::Message() << static_cast<int>(spreading) << ", " << directionality);
+            expect_same_density(state);
+        }
+        SeaState measured;
+        measured.spectrum = SpectrumKind::File;
+        measured.measured = oracle::made_up_buoy();
+        measured.swell = {{1.5, 11.0, 80.0}};
+        measured.directionality = directionality;
+        expect_same_density(measured);
+    }
+}
+
 TEST(SpectrumTable, OfACalmIsEmpty) {
     SeaState state;
     state.wind_speed_mps = 0.0;

@@ -102,6 +102,8 @@ class RandomValues {
                     return static_cast<double>(index(100));  // whole at whole rates
                 if (key.path == "sea.significant_height_m" || key.path == "sea.swell[].height_m")
                     return below(0.0, 1e-3);  // higher ones may break
+                if (key.path == "waves.band_gains[].from_m") return below(low, 1.0);
+                if (key.path == "waves.band_gains[].to_m") return below(1.0, high);
                 if (key.path == "shot.fps") return static_cast<double>(1 + index(60));
                 return below(low, high);
             case KeyType::Word:

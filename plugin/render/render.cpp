@@ -22,6 +22,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/motion.h"
@@ -60,7 +61,10 @@ class RendererOf final : public Impl {
           sea_(std::make_shared<const Sea<T>>(plan, watch)),
           frame_(sea_),
           grid_options_(projected_grid_options(*plan.from)) {
-        if (plan.foam) history_.emplace(sea_);
+        if (!plan.foam) return;
+        history_.emplace(sea_);
+        if (const double law = law_coverage(scene_); law > 0.0)
+            foam_ = make_foam(scene_, std::clamp(1.0 - sea_->residual_coverage() / law, 0.0, 1.0));
     }
 
     const Plan& plan() const override { return sea_->plan(); }

@@ -21,6 +21,11 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      },
      [] { return FieldSet(); }, [] { return products(Product::JacobianMoments, Product::Coverage); },
      kNothing},
+    {"living foam",
+     [](const Scene& scene) { return scene.effects.whitecaps && scene.effects.foam_decay_s > 0.0; },
+     "effects.foam_decay_s is 0, or there are no whitecaps",
+     [](Scene& scene) { scene.effects.foam_decay_s = 0.0; }, [] { return FieldSet(); },
+     [] { return ProductSet(); }, kNothing},
 });
 
 }  // namespace

@@ -132,6 +132,12 @@ std::string explain(const Plan& plan) {
                        plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m);
     else if (!products_gone(scene)[index(Product::Coverage)])
         page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
+    if (plan.foam)
+        page += format(
+            "  living foam: what broke in %d steps of %.4g s, over cells from %.4g m; drifts by %.3g m/s; at most %s\n",
+            plan.foam->intervals(), plan.foam->step_s, plan.foam->cell_m,
+            std::hypot(plan.foam->drift_mps.x, plan.foam->drift_mps.y),
+            bytes_text(plan.foam_history_bytes()).c_str());
     for (const PlannedEffect& effect : plan.effects) {
         page += std::string("  ") + effect.row->name + ": " + std::to_string(effect.queries.size()) +
                 " queries of its own, " + bytes_text(effect.needs.bytes) + " a frame";

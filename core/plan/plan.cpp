@@ -299,6 +299,10 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.breaking = breaking_of(scene, plan.filter);
     for (const Query& query : queries) add_query(plan, query);
     add_effects(plan, options.effects);
+    const bool has_coverage = std::any_of(queries.begin(), queries.end(), [](const Query& query) {
+        return query.products[index(Product::Coverage)];
+    });
+    if (options.living_foam && has_coverage) plan.foam = plan_foam(scene, plan.breaking.footprint_m);
 
     double finest_m = std::numeric_limits<double>::infinity(), trains_finest_m = finest_m;
     for (const PlannedQuery& planned : plan.queries) {
@@ -365,7 +369,7 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
         outputs.push_back(std::move(output));
         queries.push_back(request.query);
     }
-    Plan plan = make_plan(std::move(prepared), queries);
+    Plan plan = make_plan(std::move(prepared), queries, {.living_foam = true});
     plan.outputs = std::move(outputs);
     plan.surface = surface;
     return plan;
@@ -438,6 +442,13 @@ std::size_t Plan::frame_bytes() const {
             bytes += grid.fields.count() * grid_bytes(grid.resolution, knobs.double_precision);
     for (const PlannedEffect& effect : effects) bytes += effect.needs.bytes;
     return bytes;
+}
+
+std::size_t Plan::foam_history_bytes() const {
+    if (!foam) return 0;
+    std::vector<Query> asked;
+    for (const PlannedQuery& planned : queries) asked.push_back(planned.query);
+    return foam_bytes(*foam, from->scene, asked);
 }
 
 std::size_t Plan::output_bytes() const {

@@ -15,6 +15,7 @@
 #include "core/plan/breaking.h"
 #include "core/plan/effects.h"
 #include "core/plan/filter.h"
+#include "core/plan/foam.h"
 #include "core/plan/outputs.h"
 #include "core/plan/prepared_scene.h"
 #include "core/plan/products.h"
@@ -109,6 +110,7 @@ struct Plan {
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
     std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
+    std::optional<FoamPlan> foam;      // where foam lives, and a query asks for coverage
     FieldSet dropped;                  // fields that are zero in this scene, whoever asks: never computed
     std::vector<Reason> closure;
     std::vector<PlannedEffect> effects;          // those that are on and ask for something
@@ -125,6 +127,8 @@ struct Plan {
     // Points at rest, shared by queries over the same square, and one frame's results: each query's own, in
     // single precision as files hold them; in double, besides, an array a product as long as its longest.
     std::size_t output_bytes() const;
+    // What the history of living foam holds at most (core/effects/foam_history.h).
+    std::size_t foam_history_bytes() const;
 };
 
 struct ViewQueryOptions {
@@ -151,6 +155,8 @@ ProjectedGridOptions projected_grid_options(const PreparedScene&);
 // quality level has it. Throws std::invalid_argument when a query is malformed.
 struct PlanOptions {
     std::optional<bool> double_precision{};
+    // Whoever asks keeps the foam's history (core/effects/foam_history.h). Without, all foam is where waves break now.
+    bool living_foam = false;
     std::span<const EffectRow> effects = effect_table();
 };
 Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&, const PlanOptions& = {});

@@ -425,6 +425,20 @@ void add_effects_and_quality(Built& out) {
              .range = limits::kBreakingFrom_m,
              .soft = SoftRange{0.1, 20.0, true},
              .feeds = feeds(Feed::Foam)}),
+        row<&Effects::foam_decay_s>(
+            {.name = "foam_decay_s",
+             .help =
+                 "how long the foam that breaking leaves lives, to 1/e of it; 0: foam only where waves break now. In bakes and rendered pictures, not in the window",
+             .unit = "s",
+             .range = limits::kFoamDecay_s,
+             .soft = SoftRange{0.0, 10.0},
+             .feeds = feeds(Feed::Foam)}),
+        row<&Effects::foam_drift>(
+            {.name = "foam_drift",
+             .help = "how fast the wind carries that foam along, as a share of its speed",
+             .range = limits::kFoamDrift,
+             .soft = SoftRange{0.0, 0.05},
+             .feeds = feeds(Feed::Foam)}),
         row<&Effects::foam_structure>(
             {.name = "foam_structure",
              .help =

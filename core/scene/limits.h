@@ -59,6 +59,8 @@ inline constexpr Range kTrains{1, 10000};
 inline constexpr Range kTrain_m{1e-3,
                                 1e6};  // the spectra end at a millimetre (core/spectrum/viscous_cutoff.h)
 
+inline constexpr Range kFoamDecay_s{0.0, 30.0};  // a history of a thousand steps; 0.5 … 8 s are observed
+inline constexpr Range kFoamDrift{0.0, 1.0};
 inline constexpr Range kSeaMinusAir_c{-40.0, 40.0};
 inline constexpr Range kWhitecapAmount{0.0, 100.0};
 inline constexpr Range kBreakingFrom_m{0.0, 1e3};

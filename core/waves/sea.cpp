@@ -11,6 +11,7 @@
 #include "core/base/constants.h"
 #include "core/plan/mode_lattice.h"
 #include "core/spectrum/cell_energies.h"
+#include "core/waves/breaking_rate.h"
 #include "core/waves/level_sums.h"
 #include "core/waves/mode_kernels.h"
 #include "core/waves/whitecaps.h"
@@ -78,7 +79,6 @@ class Sea<T>::Progress {
 template <class T>
 Sea<T>::Sea(Plan plan, const BuildWatch& watch)
     : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
-    const Scene& scene = plan_.from->scene;
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
     if (plan_.trains) {
         trains_ = make_trains<T>(*plan_.from, *plan_.trains);
@@ -87,8 +87,7 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
         total_ =
             moments_with_breaking(spectrum, 0.0, std::numeric_limits<double>::infinity(), plan_.breaking);
     }
-    whitecap_threshold_ = calibrated_threshold(total_, law_coverage(scene), plan_.breaking.choppiness,
-                                               plan_.knobs.third_moment);
+    calibrate_whitecaps();
 
     for (const PlannedQuery& planned : plan_.queries) {
         const std::size_t levels = planned.pixel_levels.size();
@@ -116,6 +115,23 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
         for (std::size_t i = 0; i < to.resolved_next.size(); ++i)
             to.resolved_next[i].take_strain(breaking[q].resolved_next[i]);
     }
+}
+
+template <class T>
+void Sea<T>::calibrate_whitecaps() {
+    const bool third = plan_.knobs.third_moment;
+    FoamLife life;
+    if (plan_.foam)
+        life = {.rate_per_s = plan_.trains ? breaking_rate(trains_, plan_.breaking.k_end())
+                                           : breaking_rate(plan_.from->spectrum, plan_.breaking.k_end()),
+                .lasting_s = plan_.foam->weight(0.0, plan_.foam->window_s).foam_s};
+    whitecap_threshold_ =
+        calibrated_threshold(total_, law_coverage(plan_.from->scene), plan_.breaking.choppiness, third, life);
+    if (!plan_.foam || !std::isfinite(whitecap_threshold_)) return;
+    const auto j = jacobian_moments<double>(
+        0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
+    foam_left_per_s_ = life.left_per_s(breaking_deviate(j, whitecap_threshold_, third));
+    residual_coverage_ = pelagic::residual_coverage(j, whitecap_threshold_, third, life);
 }
 
 template <class T>

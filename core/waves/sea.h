@@ -87,18 +87,23 @@ class Sea {
     SpectralMoments shown(int query) const;
     // J below this is foam (core/waves/whitecaps.h).
     double whitecap_threshold() const { return whitecap_threshold_; }
+    // What breaking leaves in a second where it goes on; 0 unless plan().foam.
+    double foam_left_per_s() const { return foam_left_per_s_; }
+    // The mean coverage of what is left of what broke.
+    double residual_coverage() const { return residual_coverage_; }
     // Σ over this cascade's modes within the plan's mode_radius of E|h|² [m²]: its band's m0 where that
     // reaches the band's end.
     double expected_m0(int cascade) const { return expected_m0_.at(cascade); }
 
   private:
     class Progress;
+    void calibrate_whitecaps();
     Cascade<T> build(int cascade, const SpectrumTable&, std::vector<QueryStatistics>& breaking, Progress&);
 
     Plan plan_;
     double loop_s_;
     SpectralMoments total_;
-    double whitecap_threshold_;
+    double whitecap_threshold_, foam_left_per_s_ = 0.0, residual_coverage_ = 0.0;
     std::vector<Cascade<T>> cascades_;
     Trains<T> trains_;
     std::vector<QueryStatistics> statistics_;

@@ -57,11 +57,44 @@ class MomentSum {
 //                   23.09 m/s. From there on it stays: Holthuijsen et al. 2012 found no more foam on crests beyond 24 m/s.
 double law_coverage(const Scene& scene);
 
+// How foam lives, for its statistics.
+struct FoamLife {
+    double rate_per_s = 0.0;  // √(Var(dJ/dt)/Var(J)), of the waves that break
+    double lasting_s = 0.0;   // ∫ of the share that is left over the foam's age
+
+    // What one breaking leaves, on average: half of what broke is residual foam just after.
+    static constexpr double kLeft = 0.5;
+
+    // What breaking leaves in a second where it goes on: kLeft/d, d being the mean time that J stays below the threshold
+    // at a point of the water. By Rice 1944: the share of time over the rate of crossings, both of the Gaussian whose
+    // deviate at the threshold is y.
+    double left_per_s(double y) const {
+        const double share = 0.5 * std::erfc(-y / std::sqrt(2.0));
+        const double crossings_per_s = rate_per_s / kTwoPi * std::exp(-0.5 * y * y);
+        return share > 0.0 ? kLeft * crossings_per_s / share : 0.0;
+    }
+};
+
+// The standard normal deviate at which J < threshold has the share of points at rest that it has.
+inline double breaking_deviate(const JacobianMoments<double>& j, double threshold, bool third_moment) {
+    const double sigma = std::sqrt(j.variance);
+    const double z = std::clamp((threshold - j.mean) / sigma, -kFarthestDeviate, kFarthestDeviate);
+    return third_moment ? whitecaps_detail::to_normal(z, j.third / (j.variance * sigma)).y : z;
+}
+
+// What is left of what broke, over the whole sea and before it is limited to 1.
+inline double residual_coverage(const JacobianMoments<double>& j, double threshold, bool third_moment,
+                                const FoamLife& life) {
+    const double y = breaking_deviate(j, threshold, third_moment);
+    return life.left_per_s(y) * life.lasting_s * 0.5 * std::erfc(-y / std::sqrt(2.0));
+}
+
 // The threshold ε, below 1, at which the waves that break have that coverage, where the law is within reach: a trochoid
 // pressed together to J = 0.9 has a steepness of 0.1, and none breaks below that. So a sea without long enough waves has no
 // foam, and water that is stretched never has. −∞ (no foam) without coverage or without such waves. choppiness: theirs
-// (Breaking). `third_moment`: as coverage() will be called.
+// (Breaking). `third_moment`: as coverage() will be called. Where foam lives, what breaks now and what is left of what broke
+// have that coverage together.
 double calibrated_threshold(const SpectralMoments& breaking, double law_coverage, double choppiness,
-                            bool third_moment);
+                            bool third_moment, const FoamLife& life = {});
 
 }  // namespace pelagic

@@ -43,11 +43,11 @@ class MapPart final : public OutputPart {
     }
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MapSlot>(); }
 
-    void compute(const Frame<float>& sea, int, OutputSlot& slot) override {
-        compute_as(single_, sea, static_cast<MapSlot&>(slot));
+    void compute(const Frame<float>& sea, FoamHistory<float>* foam, int, OutputSlot& slot) override {
+        compute_as(single_, sea, foam, static_cast<MapSlot&>(slot));
     }
-    void compute(const Frame<double>& sea, int, OutputSlot& slot) override {
-        compute_as(wide_, sea, static_cast<MapSlot&>(slot));
+    void compute(const Frame<double>& sea, FoamHistory<double>* foam, int, OutputSlot& slot) override {
+        compute_as(wide_, sea, foam, static_cast<MapSlot&>(slot));
     }
 
     OutputMemory memory() const override {
@@ -67,12 +67,13 @@ class MapPart final : public OutputPart {
                     if (output_.cascade) return {0, 12 * 4 / 3};
                     return {12 * 4 / 3, 0, 12 / 3};
                 case MapKind::Whitecaps:
-                    return {16 * 4 / 3, 12 + 24 * 4 / 3};
+                    return has_foam_history() ? Encoded{22 * 4 / 3, 12 + 48 * 4 / 3}
+                                              : Encoded{16 * 4 / 3, 12 + 24 * 4 / 3};
             }
             throw std::logic_error("a map of no kind");
         }();
         return {.once = texels * 2 * scalar,
-                .slot = texels * (file + levels),
+                .slot = texels * (file + levels + (has_foam_history() ? 2 * sizeof(float) : 0)),
                 .encoding = texels * (file + work),  // the file once more, in blocks
                 .remedy = output_.cascade
                               ? "lower the resolutions in waves.cascades, or leave cascade_tiles out"
@@ -114,13 +115,15 @@ class MapPart final : public OutputPart {
     };
 
     template <class T>
-    void compute_as(State<T>& state, const Frame<T>& sea, MapSlot& slot) {
+    void compute_as(State<T>& state, const Frame<T>& sea, FoamHistory<T>* foam, MapSlot& slot) {
         if (!state.rest)
             state.rest = squares_->points<T>({.per_side = n_,
                                               .spacing_m = query().lattice->spacing_m,
                                               .first_m = query().lattice->first_m});
-        state.runner.run(sea, output_.query,
-                         Points<T>{.count = state.rest->size(), .rest_m = {state.rest->data()}}, slot.values);
+        const Points<T> points{.count = state.rest->size(), .rest_m = {state.rest->data()}};
+        state.runner.run(sea, output_.query, points, slot.values);
+        // A cascade's own tile is a part of the sea, and has no history of all of it.
+        if (!output_.cascade) add_foam(foam, points, slot);
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
         if (kind_ == MapKind::SlopeVariance) find_hidden(state, sea, slot);
     }
@@ -175,12 +178,13 @@ class MapPart final : public OutputPart {
     struct Level {
         int n;
         std::span<const glm::vec3> texels;
+        std::span<const glm::vec3> more{};  // three further ones
     };
 
     // A channel of the file: one of the three values, or the same everywhere.
     struct ChannelOf {
         const char* name;
-        std::optional<int> component;  // none: 1 in every texel
+        std::optional<int> component;  // 0 … 5; none: 1 in every texel
         exr::PixelType type;
     };
     static std::vector<ChannelOf> red_green_blue(exr::PixelType type) {
@@ -248,22 +252,58 @@ class MapPart final : public OutputPart {
         add_level(full);
         for (const MipLevel<Moments>& level : moment_mips({.n = n_, .texels = full, .periodic = periodic_}))
             add_level(level.texels);
+        const std::vector<std::vector<glm::vec3>> foam = foam_levels(slot, texels);
         std::vector<Level> levels;
         for (std::size_t i = 0; i < texels.size(); ++i)
-            levels.push_back({exr::mip_level_size(n_, n_, static_cast<int>(i)).first, texels[i]});
+            levels.push_back({exr::mip_level_size(n_, n_, static_cast<int>(i)).first, texels[i],
+                              foam.empty() ? std::span<const glm::vec3>() : foam[i]});
         const exr::Header header = header_of(
             made_of, frame, {"whitecap coverage; mean and variance of the Jacobian", "1", texels[0]});
         // Grey, so that every program shows coverage. No layers and an alpha of 1: tried in Blender 3.4, a channel
         // whose name has a dot makes the file a multi-layer image without pixels of its own, and Cycles takes
         // whatever comes fourth for alpha.
         using enum exr::PixelType;
-        return encode_levels(header, levels,
-                             {{"R", 0, Half},
-                              {"G", 0, Half},
-                              {"B", 0, Half},
-                              {"A", {}, Half},
-                              {"jacobianMean", 1, Float},
-                              {"jacobianVariance", 2, Float}});
+        std::vector<ChannelOf> channels{{"R", 0, Half},
+                                        {"G", 0, Half},
+                                        {"B", 0, Half},
+                                        {"A", {}, Half},
+                                        {"jacobianMean", 1, Float},
+                                        {"jacobianVariance", 2, Float}};
+        if (!foam.empty())
+            channels.insert(channels.end(),
+                            {{"foamActive", 3, Half}, {"foamResidual", 4, Half}, {"foamAge", 5, Half}});
+        return encode_levels(header, levels, channels);
+    }
+
+    // Of foam that lives: what breaks now, what is left of what broke, and its age, by level; the first of `texels` becomes
+    // all of it. What is left is a mean already: its levels are means of it, and ages count by it.
+    std::vector<std::vector<glm::vec3>> foam_levels(const MapSlot& slot,
+                                                    std::vector<std::vector<glm::vec3>>& texels) const {
+        if (slot.foam_age_s.empty()) return {};
+        const std::vector<float>& total = slot.values.numbers(Product::Coverage);
+        std::vector<glm::vec3> left(total.size());  // the residual's share of the rest, its times total age
+        for (std::size_t i = 0; i < total.size(); ++i) {
+            const float active = slot.foam_active[i], rest = 1.0f - active;
+            const float residual = rest > 0.0f ? (total[i] - active) / rest : 0.0f;
+            const float age_s =
+                total[i] > active ? slot.foam_age_s[i] * total[i] / (total[i] - active) : 0.0f;
+            left[i] = {residual, residual * age_s, 0.0f};
+        }
+        std::vector<std::vector<glm::vec3>> levels;
+        const auto add_level = [&](std::span<const glm::vec3> of) {
+            std::vector<glm::vec3>& whole = texels[levels.size()];
+            std::vector<glm::vec3>& level = levels.emplace_back(of.size());
+            for (std::size_t i = 0; i < of.size(); ++i) {
+                const float active = whole[i].x, residual = of[i].x * (1.0f - active);
+                whole[i].x = active + residual;
+                level[i] = {active, residual,
+                            residual > 0.0f ? residual / whole[i].x * of[i].y / of[i].x : 0.0f};
+            }
+        };
+        add_level(left);
+        for (const MipLevel<glm::vec3>& level : mean_mips({.n = n_, .texels = left, .periodic = periodic_}))
+            add_level(level.texels);
+        return levels;
     }
 
     static exr::Image image(const Level& level, const std::vector<ChannelOf>& channels) {
@@ -272,7 +312,9 @@ class MapPart final : public OutputPart {
         for (const ChannelOf& channel : channels)
             if (channel.component)
                 image.channels.push_back({.name = channel.name,
-                                          .data = &level.texels.data()->x + *channel.component,
+                                          .data = *channel.component < 3
+                                                      ? &level.texels.data()->x + *channel.component
+                                                      : &level.more.data()->x + (*channel.component - 3),
                                           .pixel_stride_bytes = sizeof(glm::vec3),
                                           .type = channel.type});
             else

@@ -66,15 +66,29 @@ std::vector<MipLevel<JacobianMoments<float>>> moment_mips(const FullMap<Jacobian
     });
 }
 
+namespace {
+
+glm::dvec3 mean_of(const FullMap<glm::vec3>& fine, const std::vector<TentWeights::Tap>& columns,
+                   const std::vector<TentWeights::Tap>& rows) {
+    glm::dvec3 sum(0.0);
+    for (const auto& row : rows)
+        for (const auto& column : columns)
+            sum += row.weight * column.weight *
+                   glm::dvec3(fine.texels[static_cast<std::size_t>(row.texel) * fine.n + column.texel]);
+    return sum;
+}
+
+}  // namespace
+
+std::vector<MipLevel<glm::vec3>> mean_mips(const FullMap<glm::vec3>& full) {
+    return mips(full, [](const auto& fine, const auto& columns, const auto& rows) {
+        return glm::vec3(mean_of(fine, columns, rows));
+    });
+}
+
 std::vector<MipLevel<glm::vec3>> normal_mips(const FullMap<glm::vec3>& full) {
-    using Level = FullMap<glm::vec3>;
-    using Taps = std::vector<TentWeights::Tap>;
-    return mips(full, [](const Level& fine, const Taps& columns, const Taps& rows) {
-        glm::dvec3 sum(0.0);
-        for (const auto& row : rows)
-            for (const auto& column : columns)
-                sum += row.weight * column.weight *
-                       glm::dvec3(fine.texels[static_cast<std::size_t>(row.texel) * fine.n + column.texel]);
+    return mips(full, [](const auto& fine, const auto& columns, const auto& rows) {
+        const glm::dvec3 sum = mean_of(fine, columns, rows);
         const double length = std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
         // Normals that cancel have no direction; up is as good as any.
         return length > 0.0 ? glm::vec3(sum / length) : glm::vec3(0.0f, 0.0f, 1.0f);

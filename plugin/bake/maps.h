@@ -42,6 +42,9 @@ struct FullMap {
 // cumulant under the tent by the law of total cumulance, never from coverage.
 std::vector<MipLevel<JacobianMoments<float>>> moment_mips(const FullMap<JacobianMoments<float>>& full);
 
+// The levels below a map of three quantities that are means already.
+std::vector<MipLevel<glm::vec3>> mean_mips(const FullMap<glm::vec3>& full);
+
 // The levels below a map of unit normals, the largest first: the mean normal, unit again. What its shortening
 // hides is in the slope-variance map's levels.
 std::vector<MipLevel<glm::vec3>> normal_mips(const FullMap<glm::vec3>& full);

@@ -52,6 +52,7 @@ class MeshPart final : public OutputPart {
                       .velocities = asks(Product::Velocity),
                       .slope_variance = asks(Product::SlopeVariance),
                       .whitecap_coverage = asks(Product::Coverage),
+                      .foam_history = has_foam_history(),
                       .faces = !plan.surface->is_constant(),
                       .origin = !plan.surface->is_constant()} {}
 
@@ -60,11 +61,11 @@ class MeshPart final : public OutputPart {
     }
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MeshSlot>(); }
 
-    void compute(const Frame<float>& sea, int frame, OutputSlot& slot) override {
-        compute_as(single_, sea, frame, static_cast<MeshSlot&>(slot));
+    void compute(const Frame<float>& sea, FoamHistory<float>* foam, int frame, OutputSlot& slot) override {
+        compute_as(single_, sea, foam, frame, static_cast<MeshSlot&>(slot));
     }
-    void compute(const Frame<double>& sea, int frame, OutputSlot& slot) override {
-        compute_as(wide_, sea, frame, static_cast<MeshSlot&>(slot));
+    void compute(const Frame<double>& sea, FoamHistory<double>* foam, int frame, OutputSlot& slot) override {
+        compute_as(wide_, sea, foam, frame, static_cast<MeshSlot&>(slot));
     }
 
     OutputMemory memory() const override {
@@ -82,6 +83,7 @@ class MeshPart final : public OutputPart {
             memory.slot = points * kFace;
             memory.remedy = "raise surface.cell_px, or lower camera.resolution";
         }
+        if (has_foam_history()) memory.slot += points * 2 * sizeof(float);
         if (is_text()) {
             memory.slot += points * kText * numbers();
             memory.encoding =
@@ -155,6 +157,7 @@ class MeshPart final : public OutputPart {
         std::size_t count = 0;
         for (const ProductRow& row : kProductTable)
             if (asks(row.product)) count += row.components;
+        if (has_foam_history()) count += 2;
         return count;
     }
 
@@ -162,7 +165,7 @@ class MeshPart final : public OutputPart {
     bool is_text() const { return scene().output.mesh == MeshFormat::Usda; }
 
     template <class T>
-    void compute_as(State<T>& state, const Frame<T>& sea, int frame, MeshSlot& slot) {
+    void compute_as(State<T>& state, const Frame<T>& sea, FoamHistory<T>* foam, int frame, MeshSlot& slot) {
         const RestSurface& surface = *plan_.surface;
         if (!state.is_laid_out || !surface.is_constant()) surface.points_at(frame, state.points);
         state.is_laid_out = true;
@@ -174,6 +177,7 @@ class MeshPart final : public OutputPart {
         if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
         if (!at.pixel_axis_m.empty()) points.pixel_axis_m = {at.pixel_axis_m.data()};
         state.runner.run(sea, output_.query, points, slot.values);
+        add_foam(foam, points, slot);
         if (attributes_.origin) slot.origin_m = local_origin(place_of_origin(at), finest_of(at.cell_m));
         if (at.curvature_per_m != 0.0)
             lay_on_earth(at, slot.origin_m, slot.values);
@@ -250,7 +254,9 @@ class MeshPart final : public OutputPart {
                                .normals = slot.values.vectors(Product::Normal),
                                .velocities = slot.values.vectors(Product::Velocity),
                                .slope_variance = slot.values.vectors(Product::SlopeVariance),
-                               .whitecap_coverage = slot.values.numbers(Product::Coverage)};
+                               .whitecap_coverage = slot.values.numbers(Product::Coverage),
+                               .foam_active = slot.foam_active,
+                               .foam_age_s = slot.foam_age_s};
         if (attributes_.origin) sample.origin_m = slot.origin_m;
         if (attributes_.faces)
             sample.faces =

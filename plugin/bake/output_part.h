@@ -14,6 +14,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/effects/foam_history.h"
 #include "core/evaluate/values.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/plan.h"
@@ -43,6 +44,8 @@ struct FilePattern {
 struct OutputSlot {
     virtual ~OutputSlot() = default;
     Values values;
+    // Of foam that lives, beside its coverage among the values (core/effects/foam_history.h); otherwise empty.
+    std::vector<float> foam_active, foam_age_s;
     // Of the frame's record; absent where the output says nothing about it.
     std::optional<double> coverage, significant_height_m;
 };
@@ -70,9 +73,10 @@ class OutputPart {
     const std::string& fingerprint() const { return base_; }
 
     virtual std::unique_ptr<OutputSlot> make_slot() const { return std::make_unique<OutputSlot>(); }
-    // The frame's values. One frame at a time.
-    virtual void compute(const Frame<float>& sea, int frame, OutputSlot& slot) = 0;
-    virtual void compute(const Frame<double>& sea, int frame, OutputSlot& slot) = 0;
+    // The frame's values. One frame at a time. `foam`: at the frame's time; null where foam doesn't live.
+    virtual void compute(const Frame<float>& sea, FoamHistory<float>* foam, int frame, OutputSlot& slot) = 0;
+    virtual void compute(const Frame<double>& sea, FoamHistory<double>* foam, int frame,
+                         OutputSlot& slot) = 0;
     // What it will hold, beside the values of its query.
     virtual OutputMemory memory() const = 0;
     // The bytes that aren't the values as they are. Different slots side by side, also while another frame is
@@ -85,6 +89,18 @@ class OutputPart {
 
   protected:
     const Scene& scene() const { return plan_.from->scene; }
+    bool has_foam_history() const { return plan_.foam && query().products[index(Product::Coverage)]; }
+    // Adds to the slot's coverage what earlier breaking has left.
+    template <class T>
+    void add_foam(FoamHistory<T>* foam, const Points<T>& points, OutputSlot& slot) const {
+        if (!foam || !has_foam_history()) return;
+        slot.foam_active.resize(points.count);
+        slot.foam_age_s.resize(points.count);
+        foam->add(points, output_.query,
+                  {.coverage = {slot.values.numbers(Product::Coverage).data()},
+                   .active = {slot.foam_active.data()},
+                   .age_s = {slot.foam_age_s.data()}});
+    }
 
     const Plan& plan_;
     PlannedOutput output_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "core/base/constants.h"
 #include "core/base/precision.h"
@@ -29,7 +30,9 @@ template <class T>
 class SequenceOf final : public Sequence {
   public:
     SequenceOf(const Plan& plan, const BuildWatch& watch)
-        : sea_(std::make_shared<const Sea<T>>(plan, watch)), frame_(sea_), parts_(make_parts(sea_->plan())) {}
+        : sea_(std::make_shared<const Sea<T>>(plan, watch)), frame_(sea_), parts_(make_parts(sea_->plan())) {
+        if (sea_->plan().foam) foam_.emplace(sea_);
+    }
 
     void compute(int frame, FrameSlot& slot) override {
         slot.frame = frame;
@@ -37,11 +40,13 @@ class SequenceOf final : public Sequence {
         slot.record.fingerprint = statistics_fingerprint(parts_, frame);
         slot.record.time_s = sea_->plan().from->scene.shot.time_s(frame);
         frame_.set(slot.record.time_s);
+        if (foam_) foam_->set(slot.record.time_s);
         describe_waves(frame, slot.record);
         while (slot.outputs.size() < parts_.size())
             slot.outputs.push_back(parts_[slot.outputs.size()]->make_slot());
         for (std::size_t p = 0; p < parts_.size(); ++p)
-            if (wants(slot, p)) parts_[p]->compute(frame_, frame, *slot.outputs[p]);
+            if (wants(slot, p))
+                parts_[p]->compute(frame_, foam_ ? &*foam_ : nullptr, frame, *slot.outputs[p]);
     }
 
     void encode(FrameSlot& slot) const override {
@@ -105,6 +110,7 @@ class SequenceOf final : public Sequence {
 
     std::shared_ptr<const Sea<T>> sea_;
     Frame<T> frame_;
+    std::optional<FoamHistory<T>> foam_;
     std::vector<std::unique_ptr<OutputPart>> parts_;
 };
 

@@ -172,6 +172,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
                         .velocities = products[index(Product::Velocity)],
                         .slope_variance = products[index(Product::SlopeVariance)],
                         .whitecap_coverage = products[index(Product::Coverage)],
+                        .foam_history = plan.foam && products[index(Product::Coverage)],
                         .faces = !plan.surface->is_constant(),
                         .origin = !plan.surface->is_constant()};
     stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));

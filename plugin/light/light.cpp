@@ -1,5 +1,6 @@
 #include "plugin/light/light.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <span>
@@ -119,10 +120,18 @@ WaterBody make_water(const Scene& scene) {
         {.kind = kind_of(scene.water.type), .chlorophyll_mg_m3 = scene.water.chlorophyll_mg_m3});
 }
 
-FoamLook make_foam(const Scene& scene) {
-    return {.structure = scene.effects.foam_structure,
-            .streaks = scene.effects.foam_streaks,
-            .wind_direction_deg = scene.sea.wind_direction_deg};
+FoamLook make_foam(const Scene& scene, double active) {
+    FoamLook look{.structure = scene.effects.foam_structure,
+                  .streaks = scene.effects.foam_streaks,
+                  .wind_direction_deg = scene.sea.wind_direction_deg};
+    if (!(active < 1.0)) return look;
+    constexpr double kLeft =
+        0.4;  // how dense what is left would be beside what breaks, were that not all white
+    const auto mean = static_cast<double>(look.dense_active);
+    const double breaking = std::min(1.0, mean / (active + (1.0 - active) * kLeft));
+    look.dense_active = static_cast<float>(breaking);
+    look.dense_left = static_cast<float>((mean - active * breaking) / (1.0 - active));
+    return look;
 }
 
 }  // namespace pelagic

@@ -203,8 +203,11 @@ template <class T>
 class MapsOf final : public Maps {
   public:
     MapsOf(Plan plan, const BuildWatch& watch)
-        : frame_(std::make_shared<const Sea<T>>(std::move(plan), watch)),
-          parts_(make_parts(frame_.sea().plan())) {}
+        : sea_(std::make_shared<const Sea<T>>(std::move(plan), watch)),
+          frame_(sea_),
+          parts_(make_parts(sea_->plan())) {
+        if (sea_->plan().foam) foam_.emplace(sea_);
+    }
 
     std::vector<Values> at(double t_s) override {
         const std::lock_guard alone(mutex_);
@@ -215,17 +218,21 @@ class MapsOf final : public Maps {
   private:
     std::vector<Values> made_at(double t_s) {
         frame_.set(t_s);
+        if (foam_) foam_->set(t_s);
         std::vector<Values> values;
         for (const auto& part : parts_) {
             const auto slot = part->make_slot();
-            part->compute(frame_, 0, *slot);  // the number is for surfaces that a camera shapes
+            // The number is for surfaces that a camera shapes.
+            part->compute(frame_, foam_ ? &*foam_ : nullptr, 0, *slot);
             values.push_back(std::move(slot->values));
         }
         return values;
     }
 
     std::mutex mutex_;
+    std::shared_ptr<const Sea<T>> sea_;
     Frame<T> frame_;
+    std::optional<FoamHistory<T>> foam_;
     std::vector<std::unique_ptr<OutputPart>> parts_;
 };
 

@@ -46,6 +46,7 @@ struct Batch {
     std::vector<float> distance_m;     // of the eye
     std::vector<float> mesh_variance;  // of the slopes that the mesh hides at rest, along the view
     Values answers;
+    std::vector<float> foam_active, foam_age_s;  // where foam lives
     std::vector<SeaPoint> points;
     std::vector<SeaRadiance> lit;
 };

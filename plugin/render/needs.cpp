@@ -71,7 +71,7 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
                                          .points = points_of(needs->size)});
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
-    return make_plan(std::move(prepared), {query});
+    return make_plan(std::move(prepared), {query}, {.living_foam = true});
 }
 
 void check_render(const Scene& scene, const RenderOptions& options) {
@@ -115,7 +115,7 @@ constexpr std::size_t kPointBytes = 2 * (3 * sizeof(glm::vec2) + 2 * sizeof(floa
 template <class T>
 constexpr std::size_t kSampleBytes = sizeof(std::uint32_t) + 2 * sizeof(SeaRadiance) + sizeof(std::size_t) +
                                      5 * sizeof(T) + 2 * sizeof(glm::vec3) + 2 * sizeof(float) +
-                                     sizeof(SeaPoint) + 10 * sizeof(float) +
+                                     sizeof(SeaPoint) + 12 * sizeof(float) +
                                      (sizeof(T) > sizeof(float) ? 10 * sizeof(T) : 0);
 
 }  // namespace

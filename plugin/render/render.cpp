@@ -8,10 +8,12 @@
 #include <glm/ext/vector_double1.hpp>
 #include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "core/base/precision.h"
+#include "core/effects/foam_history.h"
 #include "core/lighting/air.h"
 #include "core/lighting/background.h"
 #include "core/lighting/water.h"
@@ -20,6 +22,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/motion.h"
@@ -57,7 +60,12 @@ class RendererOf final : public Impl {
           foam_(make_foam(scene_)),
           sea_(std::make_shared<const Sea<T>>(plan, watch)),
           frame_(sea_),
-          grid_options_(projected_grid_options(*plan.from)) {}
+          grid_options_(projected_grid_options(*plan.from)) {
+        if (!plan.foam) return;
+        history_.emplace(sea_);
+        if (const double law = law_coverage(scene_); law > 0.0)
+            foam_ = make_foam(scene_, std::clamp(1.0 - sea_->residual_coverage() / law, 0.0, 1.0));
+    }
 
     const Plan& plan() const override { return sea_->plan(); }
     const Sky& sky() const override { return sky_; }
@@ -130,6 +138,21 @@ class RendererOf final : public Impl {
         if (sky_.air && (air_.empty() || view_.position_m.z != height_m))
             air_ = sky_.air->seen_from(view_.position_m.z);
         lay_out_grid();
+        prepare_foam(scene_.shot.time_s(moment));
+    }
+
+    // Of all that the picture shows, so that its parts don't each go through the earlier times.
+    void prepare_foam(double time_s) {
+        if (!history_) return;
+        history_->set(time_s);
+        const std::vector<T> pixel_m(grid_.pixel_m.begin(), grid_.pixel_m.end());
+        const std::vector<glm::vec<2, T>> axis_m(grid_.pixel_axis_m.begin(), grid_.pixel_axis_m.end());
+        history_->prepare(Points<T>{.origin_m = grid_.origin_m,
+                                    .count = rest_.size(),
+                                    .rest_m = {rest_.data()},
+                                    .pixel_m = {pixel_m.data()},
+                                    .pixel_axis_m = {axis_m.data()}},
+                          kQuery);
     }
 
     void lay_out_grid() {
@@ -256,13 +279,19 @@ class RendererOf final : public Impl {
         find_places(first_row);
         ProductSet wanted = plan().queries[kQuery].query.products;
         wanted &= ~products(Product::Position, Product::Velocity);  // the triangles have them
-        runner_.run(frame_, kQuery,
-                    Points<T>{.origin_m = grid_.origin_m,
-                              .count = count,
-                              .rest_m = {batch_.rest.data()},
-                              .pixel_m = {batch_.pixel_m.data()},
-                              .pixel_axis_m = {batch_.pixel_axis_m.data()}},
-                    wanted, batch_.answers);
+        const Points<T> points{.origin_m = grid_.origin_m,
+                               .count = count,
+                               .rest_m = {batch_.rest.data()},
+                               .pixel_m = {batch_.pixel_m.data()},
+                               .pixel_axis_m = {batch_.pixel_axis_m.data()}};
+        runner_.run(frame_, kQuery, points, wanted, batch_.answers);
+        if (!history_) return;
+        batch_.foam_active.resize(count);
+        batch_.foam_age_s.resize(count);
+        history_->add(points, kQuery,
+                      {.coverage = {batch_.answers.numbers(Product::Coverage).data()},
+                       .active = {batch_.foam_active.data()},
+                       .age_s = {batch_.foam_age_s.data()}});
     }
 
     void light_sea() {
@@ -288,6 +317,11 @@ class RendererOf final : public Impl {
                                         .mesh_variance = batch_.mesh_variance[i],
                                         .rest_m = glm::vec2(batch_.rest[i]),
                                         .pixel_m = glm::vec3(batch_.pixel_m[i], batch_.pixel_axis_m[i])};
+                if (history_)
+                    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        batch_.points[i].active = batch_.foam_active[i];
+                        batch_.points[i].age_s = residual_age_s(i);
+                    }
                 const auto points = std::span(batch_.points).subspan(range.begin(), range.size());
                 const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
                 shade_sea(options_.lighting, sky_, water_, points, lit, &air_, foam);
@@ -297,6 +331,12 @@ class RendererOf final : public Impl {
                 for (std::size_t i = range.begin(); i < range.end(); ++i)
                     batch_.radiance[batch_.sea[i]] = batch_.lit[i];
             });
+    }
+
+    // Of the foam that earlier breaking has left, without what breaks now.
+    float residual_age_s(std::size_t i) const {
+        const float total = batch_.points[i].coverage, left = total - batch_.foam_active[i];
+        return left > 0.0f ? batch_.foam_age_s[i] * total / left : 0.0f;
     }
 
     // The place at rest that each sample of the sea shows, its footprint and the way to the eye.
@@ -426,7 +466,9 @@ class RendererOf final : public Impl {
             for (const PictureLayer layer :
                  {PictureLayer::Position, PictureLayer::Normal, PictureLayer::SlopeVariance})
                 set(layer, glm::vec3(0.0f));
-            set(PictureLayer::Coverage, glm::vec1(0.0f));
+            for (const PictureLayer layer :
+                 {PictureLayer::Coverage, PictureLayer::FoamActive, PictureLayer::FoamAge})
+                set(layer, glm::vec1(0.0f));
             if (needs_motion(options_.layers))
                 set_motion(motion.of({view_.direction(seen_at(first_row, sample)), 0.0}, glm::dvec3(0.0)));
             return;
@@ -450,6 +492,11 @@ class RendererOf final : public Impl {
             from_level(glm::dvec3(batch_.answers.vectors(Product::Normal)[i]), glm::dvec3(batch_.up[i])));
         set(PictureLayer::SlopeVariance, batch_.answers.vectors(Product::SlopeVariance)[i]);
         set(PictureLayer::Coverage, glm::vec1(coverage.empty() ? 0.0f : coverage[i]));
+        // Foam that doesn't live is all of waves that break now.
+        set(PictureLayer::FoamActive, glm::vec1(history_           ? batch_.foam_active[i]
+                                                : coverage.empty() ? 0.0f
+                                                                   : coverage[i]));
+        set(PictureLayer::FoamAge, glm::vec1(history_ ? batch_.foam_age_s[i] : 0.0f));
     }
 
     static constexpr int kQuery = 0;  // the plan's only one
@@ -461,6 +508,7 @@ class RendererOf final : public Impl {
     FoamLook foam_;
     std::shared_ptr<const Sea<T>> sea_;
     Frame<T> frame_;
+    std::optional<FoamHistory<T>> history_;
     ProjectedGridOptions grid_options_;
     View view_;
     Air air_;  // before that view's eye

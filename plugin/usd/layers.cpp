@@ -23,6 +23,8 @@ constexpr VaryingAttribute kNormals{"normals", "normal3f", 3, true};
 constexpr VaryingAttribute kVelocities{"velocities", "vector3f", 3, false};
 constexpr VaryingAttribute kSlopeVariance{"primvars:slopeVariance", "float3", 3, true};
 constexpr VaryingAttribute kWhitecapCoverage{"primvars:whitecapCoverage", "float", 1, true};
+constexpr VaryingAttribute kFoamActive{"primvars:foamActive", "float", 1, true};
+constexpr VaryingAttribute kFoamAge{"primvars:foamAge", "float", 1, true};
 
 std::span<const float> floats(std::span<const glm::vec3> vectors) {
     return {vectors.empty() ? nullptr : &vectors[0].x, 3 * vectors.size()};
@@ -138,6 +140,7 @@ std::vector<VaryingAttribute> varying_attributes(const AttributeSet& attributes)
     if (attributes.velocities) result.push_back(kVelocities);
     if (attributes.slope_variance) result.push_back(kSlopeVariance);
     if (attributes.whitecap_coverage) result.push_back(kWhitecapCoverage);
+    if (attributes.foam_history) result.insert(result.end(), {kFoamActive, kFoamAge});
     return result;
 }
 
@@ -158,6 +161,8 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
         if (attribute.name == kVelocities.name) values = floats(sample.velocities);
         if (attribute.name == kSlopeVariance.name) values = floats(sample.slope_variance);
         if (attribute.name == kWhitecapCoverage.name) values = sample.whitecap_coverage;
+        if (attribute.name == kFoamActive.name) values = sample.foam_active;
+        if (attribute.name == kFoamAge.name) values = sample.foam_age_s;
         const VaryingValues& varying = result.emplace_back(VaryingValues{attribute, values});
         if (attribute.name != kExtent.name && varying.count() != sample.points.size()) {
             throw std::invalid_argument(

@@ -33,7 +33,9 @@ void check(const MeshLayer& layer) {
                       .normals = vectors_of<glm::vec3>(layer, "normals"),
                       .velocities = vectors_of<glm::vec3>(layer, "velocities"),
                       .slope_variance = vectors_of<glm::vec3>(layer, "primvars:slopeVariance"),
-                      .whitecap_coverage = values_of<float>(layer, "primvars:whitecapCoverage")};
+                      .whitecap_coverage = values_of<float>(layer, "primvars:whitecapCoverage"),
+                      .foam_active = values_of<float>(layer, "primvars:foamActive"),
+                      .foam_age_s = values_of<float>(layer, "primvars:foamAge")};
     if (!faces.counts.empty() || !faces.indices.empty() || !faces.st.empty()) sample.faces = faces;
     varying_values(sample, {});
 }
@@ -45,6 +47,7 @@ std::optional<VaryingAttribute> mesh_attribute(std::string_view name, std::strin
                                                                            .velocities = true,
                                                                            .slope_variance = true,
                                                                            .whitecap_coverage = true,
+                                                                           .foam_history = true,
                                                                            .faces = true});
     for (const VaryingAttribute& attribute : known)
         if (attribute.name == name && name != "extent" && array_type == std::string(attribute.type) + "[]")

@@ -255,7 +255,8 @@ class Pictures(unittest.TestCase):
 
     def test_layers_alpha_and_shutter(self):
         shapes = {"depth": (8, 12), "position": (8, 12, 3), "normal": (8, 12, 3), "motion": (8, 12, 4),
-                  "vector": (8, 12, 4), "coverage": (8, 12), "slope_variance": (8, 12, 3)}
+                  "vector": (8, 12, 4), "coverage": (8, 12), "foam_active": (8, 12), "foam_age": (8, 12),
+                  "slope_variance": (8, 12, 3)}
         light = ["air", "foam", "is_sea", "sea", "sky", "sun"]
         full = pelagic.render(shot(), 1, (12, 8), 1, sky_quality="one", layers=list(shapes), alpha=True, shutter=0.5)
         self.assertEqual(sorted(full), sorted([*light, "alpha", *shapes]))

@@ -1,0 +1,409 @@
+#include "core/effects/foam_history.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "core/base/buffer.h"
+#include "core/waves/loop.h"
+#include "core/waves/whitecaps.h"
+
+namespace pelagic {
+namespace {
+
+constexpr std::size_t kNodes = FoamPlan::kTileNodes, kStride = FoamPlan::kTileStride;
+constexpr int kSide = FoamPlan::kTileCells + 1;
+constexpr std::size_t kPart = 256;  // points
+constexpr int kSamples = 6;         // that an interval is known by: from two before it to two after it
+
+// Of a division whose divisor is positive.
+std::size_t modulo(std::int64_t n, std::size_t by) {
+    const auto rest = n % static_cast<std::int64_t>(by);
+    return static_cast<std::size_t>(rest < 0 ? rest + static_cast<std::int64_t>(by) : rest);
+}
+
+// The sea seen through the cells of one level.
+template <class T>
+Plan plan_of_level(const Plan& plan, double cell_m) {
+    Query query;
+    query.name = "foam";
+    query.products = products(Product::JacobianMoments);
+    query.cell_m = query.pixel_m = {cell_m};
+    query.is_view = true;
+    Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});
+    own.knobs.spline_taps = 4;  // a hundredth of a breaking is enough
+    own.trains = plan.trains;   // which there are depends on all that is asked of the sea
+    return own;
+}
+
+}  // namespace
+
+template <class T>
+struct FoamHistory<T>::Level {
+    Level(const Plan& plan, double cell)
+        : cell_m(cell), frame(std::make_shared<const Sea<T>>(plan_of_level<T>(plan, cell))) {
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x)
+                rest_m.emplace_back(static_cast<T>(x * cell), static_cast<T>(y * cell));
+    }
+
+    double cell_m;
+    Frame<T> frame;
+    std::vector<glm::vec<2, T>> rest_m;  // a tile's nodes, from its first
+};
+
+template <class T>
+struct FoamHistory<T>::Tile {
+    Tile(const Place& at, std::size_t kept)
+        : place(at), shares(kept * kStride), deviates(kSamples * kStride), foam(2 * kStride) {}
+
+    std::span<float> residual() { return {foam.data(), kNodes}; }
+    std::span<float> age() { return {foam.data() + kStride, kNodes}; }
+    std::size_t bytes() const {
+        return shares.size() * sizeof(std::uint16_t) + (deviates.size() + foam.size()) * sizeof(float);
+    }
+
+    Place place;
+    Buffer<std::uint16_t> shares;  // of interval n at n modulo their number
+    Buffer<float> deviates;        // of sample n at n modulo kSamples
+    Buffer<float> foam;            // what add() reads, at made_at
+    // Shares of intervals begin … end − 1 are there; samples up to end + 2 were taken.
+    std::int64_t begin = 0, end = 0, next = 0;
+    double made_at = 0.0;
+    bool is_made = false;
+    mutable std::atomic<long> used = 0;  // the last round that read it
+
+    bool is_of(double time_s) const { return is_made && made_at == time_s; }
+};
+
+// Finds the nodes round points: in two levels where a footprint lies between them.
+template <class T>
+class FoamHistory<T>::Locator {
+  public:
+    struct Node {
+        Place place{};
+        int corner = 0;  // the node at or below, in its tile
+        float to_x = 0.0f, to_y = 0.0f;
+    };
+    struct Point {
+        std::array<Node, 2> nodes{};  // the first `count`; without cells, foam is the sea's mean
+        std::size_t count = 0;
+        float t = 0.0f;  // of the second
+    };
+
+    Locator(const FoamHistory& history, const Points<T>& points, int query)
+        : points_(points),
+          foam_(history.foam_),
+          offset_m_(points.origin_m - foam_.drift_mps * history.time_s_) {
+        const auto& asked = history.sea_->plan().queries.at(static_cast<std::size_t>(query)).query;
+        whole_ = foam_rung(foam_, static_cast<float>(asked.pixel_m.front()));
+        for (int level = 0; level < FoamPlan::kLevels; ++level)
+            cells_per_m_[static_cast<std::size_t>(level)] = 1.0 / std::ldexp(foam_.cell_m, level);
+    }
+
+    Point operator()(std::size_t i) const {
+        const FoamRung rung = rung_of(i);
+        const double x_m = offset_m_.x + static_cast<double>(points_.rest_m[i].x);
+        const double y_m = offset_m_.y + static_cast<double>(points_.rest_m[i].y);
+        Point point{.nodes = {}, .count = 0, .t = rung.t};
+        const int last = std::min(rung.level + (rung.t > 0.0f ? 1 : 0), FoamPlan::kLevels - 1);
+        for (int level = rung.level; level <= last; ++level) {
+            const double cells_per_m = cells_per_m_[static_cast<std::size_t>(level)];
+            Node& node = point.nodes[point.count++];
+            node.place.level = level;
+            const int x = inside(x_m * cells_per_m, node.place.x, node.to_x);
+            node.corner = inside(y_m * cells_per_m, node.place.y, node.to_y) * kSide + x;
+        }
+        return point;
+    }
+
+  private:
+    FoamRung rung_of(std::size_t i) const {
+        if (!points_.pixel_m) return whole_;
+        auto footprint_m = static_cast<float>(points_.pixel_m[i]);
+        if (points_.pixel_axis_m) {
+            // An ellipse counts as the circle of its area.
+            const glm::vec<2, T> axis = points_.pixel_axis_m[i];
+            const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
+            if (length_m > footprint_m) footprint_m = std::sqrt(footprint_m * length_m);
+        }
+        return foam_rung(foam_, footprint_m);
+    }
+
+    // Of a place that is counted in cells: its node in the tile, the tile, and the way to the next node.
+    static int inside(double cells, std::int64_t& tile, float& rest) {
+        if (!(std::abs(cells) < 1e15)) cells = 0.0;  // no number, or no place
+        const double node = std::floor(cells);
+        const auto whole = static_cast<std::int64_t>(node);
+        rest = static_cast<float>(cells - node);
+        static_assert((FoamPlan::kTileCells & (FoamPlan::kTileCells - 1)) == 0);
+        tile = (whole - (whole & (FoamPlan::kTileCells - 1))) / FoamPlan::kTileCells;
+        return static_cast<int>(whole & (FoamPlan::kTileCells - 1));
+    }
+
+    const Points<T>& points_;
+    const FoamPlan& foam_;
+    glm::dvec2 offset_m_;
+    FoamRung whole_;
+    std::array<double, FoamPlan::kLevels> cells_per_m_{};
+};
+
+template <class T>
+std::size_t FoamHistory<T>::HashOf::operator()(const Place& place) const {
+    std::uint64_t hash = static_cast<std::uint64_t>(place.level);
+    for (const std::int64_t v : {place.x, place.y})
+        hash = (hash ^ static_cast<std::uint64_t>(v)) * 0x9e3779b97f4a7c15u;
+    return static_cast<std::size_t>(hash ^ (hash >> 32));
+}
+
+template <class T>
+FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
+    : sea_(std::move(sea)), kernels_(foam_kernels()) {
+    if (!sea_->plan().foam) throw std::invalid_argument("foam that doesn't live has no history");
+    foam_ = *sea_->plan().foam;
+    const FoamPlan::Weight all = foam_.weight(0.0, foam_.window_s);
+    mean_ = static_cast<float>(std::min(sea_->residual_coverage(), 1.0));
+    mean_age_s_ = static_cast<float>(all.age_s2 / all.foam_s);
+}
+
+template <class T>
+FoamHistory<T>::~FoamHistory() = default;
+
+template <class T>
+void FoamHistory<T>::set(double t_s) {
+    if (!(std::abs(t_s) <= Frame<T>::kLatest_s))
+        throw std::invalid_argument("the foam's time must be a number of at most 1e12 s to either side of 0");
+    ++round_;
+    is_renewed_ = false;
+    std::erase_if(tiles_, [&](const auto& entry) { return entry.second->used.load() + 1 < round_; });
+    time_s_ = time_within_loop_s(t_s, sea_->loop_s());
+    last_ = static_cast<std::int64_t>(std::floor(time_s_ / foam_.step_s));
+    first_ = last_ + 1 - foam_.intervals();
+    weights_.clear();
+    for (std::int64_t n = first_; n <= last_; ++n) {
+        const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
+        const FoamPlan::Weight weight = foam_.weight(since_s - foam_.step_s, since_s);
+        weights_.push_back({static_cast<float>(sea_->foam_left_per_s() * weight.foam_s),
+                            static_cast<float>(sea_->foam_left_per_s() * weight.age_s2)});
+    }
+}
+
+template <class T>
+typename FoamHistory<T>::Level& FoamHistory<T>::level(int index) {
+    std::unique_ptr<Level>& level = levels_[static_cast<std::size_t>(index)];
+    if (!level) level = std::make_unique<Level>(sea_->plan(), std::ldexp(foam_.cell_m, index));
+    return *level;
+}
+
+// The residual foam at points from `first` on, and foam times its age; false where a tile is missing, which is noted.
+template <class T>
+bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<float> foam,
+                          std::span<float> foam_age, std::vector<Place>& missing) const {
+    std::array<Place, 2> before{Place{-1, 0, 0}, Place{-1, 0, 0}};
+    std::array<const Tile*, 2> tile{};
+    bool is_there = true;
+    for (std::size_t i = 0; i < foam.size(); ++i) {
+        const typename Locator::Point point = locate(first + i);
+        std::array<float, 2> left{mean_, mean_}, age{mean_ * mean_age_s_, mean_ * mean_age_s_};
+        for (std::size_t k = 0; k < point.count; ++k) {
+            const typename Locator::Node& node = point.nodes[k];
+            if (!(node.place == before[k])) {
+                before[k] = node.place;
+                const auto found = tiles_.find(node.place);
+                tile[k] =
+                    found == tiles_.end() || !found->second->is_of(time_s_) ? nullptr : found->second.get();
+                if (tile[k])
+                    tile[k]->used.store(round_, std::memory_order_relaxed);
+                else
+                    missing.push_back(node.place);
+            }
+            if (!tile[k]) {
+                is_there = false;
+                continue;
+            }
+            const auto between = [&](const float* v) {
+                const float low = v[0] + node.to_x * (v[1] - v[0]);
+                const float high = v[kSide] + node.to_x * (v[kSide + 1] - v[kSide]);
+                return low + node.to_y * (high - low);
+            };
+            left[k] = between(tile[k]->foam.data() + node.corner);
+            age[k] = between(tile[k]->foam.data() + kStride + node.corner);
+        }
+        foam[i] = left[0] + point.t * (left[1] - left[0]);
+        foam_age[i] = age[0] + point.t * (age[1] - age[0]);
+    }
+    return is_there;
+}
+
+// Calls use(first, foam, foam_age) for parts of the points. Most tiles are there from the time before; parts that lack
+// some are read again when those are made.
+template <class T>
+template <class Use>
+void FoamHistory<T>::for_parts(const Points<T>& points, int query, const Use& use) {
+    renew();
+    const Locator locate(*this, points, query);
+    std::vector<std::size_t> parts, later;
+    for (std::size_t first = 0; first < points.count; first += kPart) parts.push_back(first);
+    tbb::enumerable_thread_specific<std::vector<Place>> missing;
+    tbb::enumerable_thread_specific<std::vector<std::size_t>> undone;
+    while (!parts.empty()) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, parts.size(), 8), [&](const auto& range) {
+            alignas(64) std::array<float, kPart> foam, foam_age;
+            for (std::size_t p = range.begin(); p < range.end(); ++p) {
+                const std::size_t first = parts[p], count = std::min(kPart, points.count - first);
+                if (read(locate, first, {foam.data(), count}, {foam_age.data(), count}, missing.local()))
+                    use(first, std::span<const float>(foam.data(), count),
+                        std::span<const float>(foam_age.data(), count));
+                else
+                    undone.local().push_back(first);
+            }
+        });
+        std::vector<Place> places;
+        parts.clear();
+        for (std::vector<Place>& own : missing)
+            places.insert(places.end(), own.begin(), own.end()), own.clear();
+        for (std::vector<std::size_t>& own : undone)
+            parts.insert(parts.end(), own.begin(), own.end()), own.clear();
+        make(places);
+    }
+}
+
+template <class T>
+void FoamHistory<T>::prepare(const Points<T>& points, int query) {
+    for_parts(points, query, [](std::size_t, std::span<const float>, std::span<const float>) {});
+}
+
+// Brings the tiles of the time before to this one.
+template <class T>
+void FoamHistory<T>::renew() {
+    if (is_renewed_) return;
+    is_renewed_ = true;
+    std::vector<Place> places;
+    for (const auto& [place, tile] : tiles_) places.push_back(place);
+    make(places);
+}
+
+template <class T>
+void FoamHistory<T>::make(std::vector<Place>& places) {
+    const auto key = [](const Place& p) { return std::tuple(p.level, p.y, p.x); };
+    std::sort(places.begin(), places.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    std::vector<Tile*> old;
+    const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
+    for (const Place& place : places) {
+        std::unique_ptr<Tile>& tile = tiles_[place];
+        if (!tile) tile = std::make_unique<Tile>(place, kept);
+        if (!tile->is_of(time_s_)) old.push_back(tile.get());
+    }
+    if (old.empty()) return;
+    advance(old);
+    tbb::parallel_for(std::size_t(0), old.size(), [&](std::size_t i) {
+        Tile& tile = *old[i];
+        std::vector<FoamShares> shares;
+        for (std::int64_t n = first_; n <= last_; ++n) {
+            const IntervalWeight& weight = weights_[static_cast<std::size_t>(n - first_)];
+            if (weight.foam > 0.0f)
+                shares.push_back({tile.shares.data() + modulo(n, kept) * kStride, weight.foam, weight.age});
+        }
+        kernels_.sum(shares, tile.residual(), tile.age());
+        tile.made_at = time_s_;
+        tile.is_made = true;
+    });
+}
+
+// Takes the samples that the tiles lack. The interval after sample n is known by samples n − 2 … n + 3.
+template <class T>
+void FoamHistory<T>::advance(const std::vector<Tile*>& tiles) {
+    const auto kept = static_cast<std::int64_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
+    std::int64_t from = last_ + 4;
+    for (Tile* tile : tiles) {
+        const bool holds_first = tile->begin <= first_ && first_ >= tile->end - kept && first_ <= tile->end;
+        if (!holds_first) {
+            tile->begin = tile->end = first_;
+            tile->next = first_ - 2;
+        }
+        from = std::min(from, tile->next);
+    }
+    std::vector<Tile*> due;
+    for (std::int64_t n = from; n <= last_ + 3; ++n)
+        for (int l = 0; l < FoamPlan::kLevels; ++l) {
+            due.clear();
+            for (Tile* tile : tiles)
+                if (tile->place.level == l && tile->next == n) due.push_back(tile);
+            if (due.empty()) continue;
+            level(l).frame.set(static_cast<double>(n) * foam_.step_s);
+            tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) { sample(*due[i], n); });
+        }
+}
+
+template <class T>
+void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
+    const Level& level = *levels_[static_cast<std::size_t>(tile.place.level)];
+    const double tile_m = level.cell_m * FoamPlan::kTileCells;
+    const double t_s = static_cast<double>(n) * foam_.step_s;
+    const glm::dvec2 origin_m = tile_m * glm::dvec2(tile.place.x, tile.place.y) + foam_.drift_mps * t_s;
+    static thread_local std::vector<glm::vec<3, T>> moments(kStride);
+    static thread_local std::vector<float> mean(kStride + 16), variance(kStride + 16), third(kStride + 16);
+    Results<T> results;
+    results.set(Product::JacobianMoments, {moments.data()});
+    // Where it waits for its parts, this thread takes up no other tile: the arrays are its own.
+    tbb::this_task_arena::isolate([&] {
+        evaluate(level.frame, 0,
+                 Points<T>{.origin_m = origin_m, .count = kNodes, .rest_m = {level.rest_m.data()}}, results);
+    });
+    for (std::size_t i = 0; i < kNodes; ++i) {
+        mean[i] = static_cast<float>(moments[i].x);
+        variance[i] = static_cast<float>(moments[i].y);
+        third[i] = static_cast<float>(moments[i].z);
+    }
+    const auto deviates = [&](std::int64_t sample) {
+        return tile.deviates.data() + modulo(sample, kSamples) * kStride;
+    };
+    kernels_.deviates(mean.data(), variance.data(), third.data(),
+                      static_cast<float>(sea_->whitecap_threshold()), sea_->plan().knobs.third_moment,
+                      {deviates(n), kNodes});
+    tile.next = n + 1;
+    const std::int64_t interval = n - 3;
+    if (interval < tile.end) return;
+    const float* const six[kSamples] = {deviates(n - 5), deviates(n - 4), deviates(n - 3),
+                                        deviates(n - 2), deviates(n - 1), deviates(n)};
+    const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
+    kernels_.share(six, {tile.shares.data() + modulo(interval, kept) * kStride, kNodes});
+    tile.end = interval + 1;
+}
+
+template <class T>
+void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& results) {
+    for_parts(points, query,
+              [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
+                  for (std::size_t i = 0; i < foam.size(); ++i) {
+                      const float active = results.coverage[first + i];
+                      const float residual = std::min(foam[i], 1.0f) * (1.0f - active);
+                      const float total = active + residual;
+                      results.coverage[first + i] = total;
+                      if (results.active) results.active[first + i] = active;
+                      if (results.age_s)
+                          results.age_s[first + i] =
+                              residual > 0.0f ? residual / total * (foam_age[i] / foam[i]) : 0.0f;
+                  }
+              });
+}
+
+template <class T>
+std::size_t FoamHistory<T>::held_bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& [place, tile] : tiles_) bytes += tile->bytes();
+    return bytes;
+}
+
+template class FoamHistory<float>;
+template class FoamHistory<double>;
+
+}  // namespace pelagic

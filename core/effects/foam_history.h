@@ -1,0 +1,98 @@
+// Foam that lives: beside what breaks now, what earlier breaking has left, drifting with the wind and decaying.
+//
+// At a place x at rest and a time t the residual foam is
+//   R = (r/d) ∫ P(x − u a, t − a) e^{−a/τ} da  over ages a from 0 to the window,
+// with P the share of the surroundings of x that breaks (J < ε: Dupuy and Bruneton 2012, Eq. 3), τ the decay, u the drift,
+// and r/d what breaking leaves in a second (FoamLife in core/waves/whitecaps.h). It is linear in P, so that the mean over a
+// footprint is that of a finer one, until R is limited to 1. Total coverage is what breaks now and the residual on the rest.
+//
+// P is kept on levels of cells, each twice as large as those before, at nodes that drift with the foam: at each of them the
+// integral is then a sum over its own past. Cells lie in tiles, which are made where somebody asks. What a tile holds
+// depends on the sea, the tile and the time alone: a frame alone has the bits that it has in a run, whoever asked for
+// what before, on any number of threads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/base/strided.h"
+#include "core/effects/foam_kernels.h"
+#include "core/evaluate/evaluate.h"
+#include "core/waves/frame.h"
+#include "core/waves/sea.h"
+
+namespace pelagic {
+
+// Where add() writes, a value a point.
+struct FoamResults {
+    // In: what breaks now, evaluate()'s coverage. Out: all foam, 0 … 1.
+    Strided<float> coverage{};
+    Strided<float> active{};  // what breaks now, or no view
+    Strided<float>
+        age_s{};  // the mean age of the foam that is there, what breaks counting as 0 [s], or no view
+};
+
+template <class T>
+class FoamHistory {
+  public:
+    // Of a sea whose plan has living foam (std::invalid_argument otherwise).
+    explicit FoamHistory(std::shared_ptr<const Sea<T>> sea);
+    ~FoamHistory();
+
+    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what the times before have in common with it.
+    void set(double t_s);
+
+    // Makes what add() will read at these points: where add() is called for a few at a time, it needn't take the earlier
+    // times again for each. `query`: of the sea's plan, whose footprint points without their own have.
+    void prepare(const Points<T>& points, int query);
+
+    // Adds to answers of evaluate() what earlier breaking has left. On all threads of the calling arena, one call at a time.
+    void add(const Points<T>& points, int query, const FoamResults& results);
+
+    // Bytes of all tiles: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
+    std::size_t held_bytes() const;
+
+  private:
+    struct Level;
+    struct Tile;
+    struct Place {
+        int level;
+        std::int64_t x, y;
+        bool operator==(const Place&) const = default;
+    };
+    struct HashOf {
+        std::size_t operator()(const Place& place) const;
+    };
+    class Locator;  // of points among the nodes
+
+    template <class Use>
+    void for_parts(const Points<T>& points, int query, const Use& use);
+    bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
+              std::vector<Place>& missing) const;
+    void make(std::vector<Place>& places);
+    void renew();
+    void advance(const std::vector<Tile*>& tiles);
+    void sample(Tile& tile, std::int64_t n) const;
+    Level& level(int index);
+
+    std::shared_ptr<const Sea<T>> sea_;
+    FoamPlan foam_;
+    FoamKernels kernels_;
+    std::array<std::unique_ptr<Level>, FoamPlan::kLevels> levels_;  // made where tiles are
+    std::unordered_map<Place, std::unique_ptr<Tile>, HashOf> tiles_;
+    float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea
+    double time_s_ = 0.0;
+    std::int64_t first_ = 0, last_ = -1;  // the intervals that count now
+    struct IntervalWeight {
+        float foam, age;
+    };
+    std::vector<IntervalWeight> weights_;
+    long round_ = 0;  // calls of set()
+    bool is_renewed_ = true;
+};
+
+}  // namespace pelagic

@@ -1,0 +1,122 @@
+#include "core/effects/foam_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/effects/foam_kernels.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target first: it includes this file once for each instruction set.
+#include <hwy/highway.h>
+
+#include "core/base/pack-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelagic {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {  // names are this file's own
+
+#include "core/waves/whitecaps.inl"
+
+using D = hn::ScalableTag<float>;
+using N = Pack<D>;
+using Half = hn::Rebind<std::uint16_t, D>;
+using Whole = hn::RebindToUnsigned<D>;
+
+void Deviates(const float* mean, const float* variance, const float* third, float threshold,
+              bool third_moment, std::span<float> y) {
+    const D d;
+    constexpr float kLeastVariance = 1e-10f;  // where no breaking wave is hidden, Φ is a step
+    for (std::size_t i = 0; i < y.size(); i += hn::Lanes(d)) {
+        const N v = maximum(N(hn::LoadU(d, variance + i)), N(kLeastVariance)), sigma = square_root(v);
+        N z = (N(threshold) - N(hn::LoadU(d, mean + i))) / sigma;
+        z = minimum(maximum(z, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
+        if (third_moment) z = whitecaps_detail::to_normal(z, N(hn::LoadU(d, third + i)) / v / sigma).y;
+        z = minimum(maximum(z, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
+        hn::StoreU(z.v, d, y.data() + i);
+    }
+}
+
+// Φ(y) and its integral, y Φ(y) + φ(y).
+struct Normal {
+    N below, integral;
+};
+HWY_INLINE Normal NormalOf(N y) {
+    const N below = N(0.5) * complementary_error(y * N(-0.70710678118654752440));
+    return {below, y * below + N(0.39894228040143267794) * exponential(N(-0.5) * y * y)};
+}
+
+// The mean of Φ where y goes from a to b evenly.
+HWY_INLINE N MeanBetween(N a, const Normal& at_a, N b, const Normal& at_b) {
+    constexpr float kLevel = 0.02f;  // nearer, the difference of the integrals has too few digits
+    const N way = b - a;
+    const auto is_level = magnitude(way) < N(kLevel);
+    const N mean = (at_b.integral - at_a.integral) / select<D>(is_level, N(1), way);
+    return select<D>(is_level, N(0.5) * (at_a.below + at_b.below), mean);
+}
+
+// y at quarters of the interval by the polynomial through all six: breaking is shorter than a step.
+constexpr float kQuarter[6] = {0.0093994140625f, -0.0845947265625f, 0.845947265625f,
+                               0.281982421875f,  -0.0604248046875f, 0.0076904296875f};
+void Share(const float* const y[6], std::span<std::uint16_t> share) {
+    const D d;
+    const Half half;
+    const Whole whole;
+    for (std::size_t i = 0; i < share.size(); i += hn::Lanes(d)) {
+        const auto at = [&](int sample) HWY_ATTR { return N(hn::LoadU(d, y[sample] + i)); };
+        const auto near_quarter = [&](int from, int way) HWY_ATTR {
+            N y_there(0);
+            for (int j = 0; j < 6; ++j) y_there += N(kQuarter[j]) * at(from + way * j);
+            return y_there;
+        };
+        const N middle = N(150.0 / 256.0) * (at(2) + at(3)) - N(25.0 / 256.0) * (at(1) + at(4)) +
+                         N(3.0 / 256.0) * (at(0) + at(5));
+        const N way[5] = {at(2), near_quarter(0, 1), middle, near_quarter(5, -1), at(3)};
+        Normal before = NormalOf(way[0]);
+        N mean(0);
+        for (int part = 0; part < 4; ++part) {
+            const Normal after = NormalOf(way[part + 1]);
+            mean += N(0.25) * MeanBetween(way[part], before, way[part + 1], after);
+            before = after;
+        }
+        mean = minimum(maximum(mean, N(0)), N(1));
+        const auto bits = hn::Add(hn::BitCast(whole, mean.v), hn::Set(whole, 0x8000u));
+        const auto upper = hn::BitCast(hn::RebindToSigned<Whole>(), hn::ShiftRight<16>(bits));
+        hn::StoreU(hn::DemoteTo(half, upper), half, share.data() + i);
+    }
+}
+
+void Sum(std::span<const FoamShares> shares, std::span<float> foam, std::span<float> age) {
+    const D d;
+    const Half half;
+    const Whole whole;
+    for (std::size_t i = 0; i < foam.size(); i += hn::Lanes(d)) {
+        auto foam_sum = hn::Zero(d), age_sum = hn::Zero(d);
+        for (const FoamShares& of : shares) {
+            const auto bits = hn::ShiftLeft<16>(hn::PromoteTo(whole, hn::LoadU(half, of.share + i)));
+            const auto share = hn::BitCast(d, bits);
+            foam_sum = hn::MulAdd(share, hn::Set(d, of.foam), foam_sum);
+            age_sum = hn::MulAdd(share, hn::Set(d, of.age), age_sum);
+        }
+        hn::StoreU(foam_sum, d, foam.data() + i);
+        hn::StoreU(age_sum, d, age.data() + i);
+    }
+}
+
+FoamKernels Table() {
+    return {&Deviates, &Share, &Sum};
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace pelagic
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pelagic {
+HWY_EXPORT(Table);
+
+FoamKernels foam_kernels() {
+    return HWY_DYNAMIC_DISPATCH(Table)();
+}
+
+}  // namespace pelagic
+#endif

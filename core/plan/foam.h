@@ -1,0 +1,59 @@
+// Foam that lives: what the waves that broke have left, as core/effects keeps it.
+//
+// A point's residual foam is a sum over intervals of absolute time, [n, n + 1] · step_s, of the share of its surroundings
+// that broke then, each with the mean of e^{−age/decay} over the interval. Which intervals and where their sources lie
+// depends on the scene alone: a frame alone has the foam that it has in a run.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <optional>
+#include <vector>
+
+#include "core/plan/query.h"
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+struct FoamPlan {
+    double decay_s = 0.0;       // e-folding time
+    glm::dvec2 drift_mps{0.0};  // of the foam over the water at rest
+    double step_s = 0.0;        // of the lattice of times; a whole number of steps makes a loop
+    double window_s = 0.0;      // nothing older counts
+    double cell_m = 0.0;        // of the finest level; each further one has cells twice as large
+
+    // Levels with cells; beyond the last, foam is the sea's mean.
+    static constexpr int kLevels = 8;
+    static constexpr int kTileCells = 16;  // a side
+    static constexpr std::size_t kTileNodes = (kTileCells + 1) * (kTileCells + 1);
+    static constexpr std::size_t kTileStride = (kTileNodes + 15) / 16 * 16;  // whole vectors
+
+    // Intervals that a frame reads.
+    int intervals() const;
+    // Bytes of a tile's history: half a float for each interval and a few that a camera's moments go back, six deviates, and
+    // what a frame adds up.
+    static constexpr int kSpareIntervals = 3;
+    std::size_t tile_bytes() const;
+
+    // ∫ e^{−a/decay} da [s] and ∫ a e^{−a/decay} da [s²] over ages a within [from_s, to_s] and the window.
+    struct Weight {
+        double foam_s = 0.0, age_s2 = 0.0;
+    };
+    Weight weight(double from_s, double to_s) const;
+};
+
+// Nothing where the foam doesn't live. `finest_m`: no breaking is resolved below it.
+std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m);
+
+// Which level's cells show what a footprint shows, two of them a footprint: (1 − t) of `level` and t of the next.
+struct FoamRung {
+    int level = 0;
+    float t = 0.0f;
+};
+FoamRung foam_rung(const FoamPlan& foam, float footprint_m);
+
+// What the history for these queries holds at most [bytes], whichever of a camera's places they look from.
+std::size_t foam_bytes(const FoamPlan& foam, const Scene& scene, const std::vector<Query>& queries);
+
+}  // namespace pelagic

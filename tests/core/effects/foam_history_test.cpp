@@ -1,0 +1,299 @@
+// Foam that lives, against its definition: a sum over earlier times in double, at points of the water.
+#include "core/effects/foam_history.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/waves/whitecaps.h"
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+Scene scene_of(double decay_s, double wind_mps = 14.0) {
+    Scene scene;
+    scene.sea.wind_speed_mps = wind_mps;
+    scene.effects.foam_decay_s = decay_s;
+    return scene;
+}
+
+template <class T = float>
+std::shared_ptr<const Sea<T>> sea_of(const Scene& scene, double footprint_m) {
+    for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
+    const Query query = filtered(products(Product::Coverage, Product::JacobianMoments), footprint_m);
+    return std::make_shared<const Sea<T>>(
+        make_plan(scene, {query}, {.double_precision = sizeof(T) == sizeof(double), .living_foam = true}));
+}
+
+struct Foam {
+    std::vector<float> total, active, age_s;
+    std::vector<glm::vec3> jacobian;
+
+    std::vector<float> residual() const {
+        std::vector<float> left;
+        for (std::size_t i = 0; i < total.size(); ++i)
+            left.push_back((total[i] - active[i]) / std::max(1.0f - active[i], 1e-6f));
+        return left;
+    }
+};
+
+// A sea, at times in any order.
+template <class T = float>
+class Shown {
+  public:
+    explicit Shown(std::shared_ptr<const Sea<T>> sea) : frame_(sea), history_(sea) {}
+
+    Foam at(double t_s, const std::vector<glm::vec<2, T>>& rest_m, glm::dvec2 origin_m = glm::dvec2(0.0)) {
+        frame_.set(t_s);
+        history_.set(t_s);
+        const Points<T> points{.origin_m = origin_m, .count = rest_m.size(), .rest_m = {rest_m.data()}};
+        runner_.run(frame_, 0, points, values_);
+        Foam foam{.total = values_.numbers(Coverage),
+                  .active = std::vector<float>(rest_m.size()),
+                  .age_s = std::vector<float>(rest_m.size()),
+                  .jacobian = values_.vectors(Product::JacobianMoments)};
+        history_.add(points, 0, {{foam.total.data()}, {foam.active.data()}, {foam.age_s.data()}});
+        return foam;
+    }
+    const FoamHistory<T>& history() const { return history_; }
+
+  private:
+    Frame<T> frame_;
+    FoamHistory<T> history_;
+    QueryRunner<T> runner_;
+    Values values_;
+};
+
+template <class T = float>
+std::vector<glm::vec<2, T>> square(int per_side, double spacing_m) {
+    return rest_points<T>({.per_side = per_side, .spacing_m = spacing_m, .first_m = 0.25 * spacing_m});
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    const auto n = static_cast<double>(a.size());
+    double ma = 0.0, mb = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) ma += a[i] / n, mb += b[i] / n;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        aa += (a[i] - ma) * (a[i] - ma);
+        bb += (b[i] - mb) * (b[i] - mb);
+        ab += (a[i] - ma) * (b[i] - mb);
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+// The definition, at the finest level's own nodes: (r/d) ∫ Φ(y(t − a)) e^{−a/τ} da, in steps eight times as fine.
+TEST(LivingFoam, IsTheSumOfWhatBrokeBefore) {
+    const Scene scene = scene_of(1.0);
+    const auto sea = sea_of<double>(scene, 0.2);
+    const FoamPlan& foam = *sea->plan().foam;
+    constexpr double kTime_s = 40.3;
+    constexpr int kSide = 40;
+    // Nodes lie at multiples of the cell, and drift.
+    std::vector<glm::dvec2> points;
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) points.push_back(foam.cell_m * glm::dvec2(x, y));
+    const glm::dvec2 first = foam.cell_m * glm::floor(foam.drift_mps * kTime_s / foam.cell_m);
+    const glm::dvec2 origin = foam.drift_mps * kTime_s - first;
+    Shown<double> shown(sea);
+    const Foam seen = shown.at(kTime_s, points, origin);
+
+    const auto source = frame_of<double>(scene, {filtered(products(Product::JacobianMoments), foam.cell_m)});
+    Frame<double> frame(std::make_shared<const Sea<double>>(source.sea().plan()));
+    std::vector<double> sum(points.size()), of_age(points.size());
+    const double step_s = foam.step_s / 8.0;
+    const auto steps = static_cast<int>(std::ceil(foam.window_s / step_s));
+    ProductArrays<double> at;
+    at.resize(products(Product::JacobianMoments), points.size());
+    for (int i = 0; i < steps; ++i) {
+        const double age_s = (i + 0.5) * step_s;
+        const FoamPlan::Weight weight = foam.weight(i * step_s, (i + 1) * step_s);
+        frame.set(kTime_s - age_s);
+        evaluate(frame, 0,
+                 Points<double>{.origin_m = origin - foam.drift_mps * age_s,
+                                .count = points.size(),
+                                .rest_m = {points.data()}},
+                 at.results());
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            const glm::dvec3 j = at.vectors(Product::JacobianMoments)[p];
+            const double y = breaking_deviate({j.x, j.y, j.z}, sea->whitecap_threshold(), true);
+            const double share = 0.5 * std::erfc(-y / std::sqrt(2.0));
+            sum[p] += sea->foam_left_per_s() * weight.foam_s * share;
+            of_age[p] += sea->foam_left_per_s() * weight.age_s2 * share;
+        }
+    }
+    std::vector<double> got, wanted;
+    double mean_got = 0.0, mean_wanted = 0.0, age_got = 0.0, age_wanted = 0.0;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        got.push_back(seen.residual()[p]);
+        wanted.push_back(std::min(sum[p], 1.0));
+        mean_got += got.back();
+        mean_wanted += wanted.back();
+        age_got += double(seen.age_s[p]) * seen.total[p];
+        age_wanted += of_age[p] * (1.0 - seen.active[p]);
+    }
+    EXPECT_GT(correlation(got, wanted), 0.98);
+    std::printf("correlation %.4f, mean %.3f\n", correlation(got, wanted), mean_got / mean_wanted);
+    EXPECT_NEAR(mean_got / mean_wanted, 1.0, 0.05);
+    EXPECT_NEAR(age_got / age_wanted, 1.0, 0.05);
+}
+
+// Points of the water where nothing breaks after a time lose their foam as e^{−t/τ}.
+TEST(LivingFoam, DecaysOverItsTime) {
+    for (const double decay_s : {1.0, 4.0, 8.0}) {
+        Scene scene = scene_of(decay_s);
+        scene.effects.foam_drift = 0.0;  // a point of the water keeps its foam
+        Shown<> shown(sea_of(scene, 0.2));
+        const auto points = square(100, 0.7);
+        const double from_s = 30.0, until_s = from_s + decay_s;
+        const Foam first = shown.at(from_s, points);
+        std::vector<float> broke(points.size());  // later, to first order
+        const double step_s = decay_s / 20.0;
+        for (double t_s = from_s; t_s < until_s; t_s += step_s) {
+            const Foam now = shown.at(t_s, points);
+            for (std::size_t i = 0; i < points.size(); ++i)
+                broke[i] += static_cast<float>(step_s) * now.active[i];
+        }
+        const Foam last = shown.at(until_s, points);
+        const std::vector<float> left = first.residual(), kept = last.residual();
+        // Those where the least broke later.
+        std::vector<std::size_t> quiet;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (left[i] > 0.05f) quiet.push_back(i);
+        ASSERT_GT(quiet.size(), 40u) << "nothing broke";
+        std::sort(quiet.begin(), quiet.end(),
+                  [&](std::size_t a, std::size_t b) { return broke[a] * left[b] < broke[b] * left[a]; });
+        double before = 0.0, after = 0.0;
+        for (std::size_t i = 0; i < 20; ++i) {
+            before += left[quiet[i]];
+            after += kept[quiet[i]];
+        }
+        std::printf("decay of %g s: 1/e after %.3f s\n", decay_s, -decay_s / std::log(after / before));
+        EXPECT_NEAR(-decay_s / std::log(after / before), decay_s, 0.1 * decay_s) << decay_s;
+    }
+}
+
+TEST(LivingFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
+    const auto sea = sea_of(scene_of(2.0), 0.7);
+    const auto points = square(50, 0.9);
+    const auto expect_same = [](const Foam& a, const Foam& b) {
+        EXPECT_EQ(a.total, b.total);
+        EXPECT_EQ(a.active, b.active);
+        EXPECT_EQ(a.age_s, b.age_s);
+    };
+    Shown<> alone(sea), run(sea), back(sea);
+    const Foam cold = alone.at(5.2, points);
+    for (const double t_s : {3.0, 4.7, 4.75, 5.0}) run.at(t_s, square(30, 1.3));  // other points too
+    expect_same(run.at(5.2, points), cold);
+    for (const double t_s : {90.0, 5.3, 5.21}) back.at(t_s, points);
+    expect_same(back.at(5.2, points), cold);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    Shown<> single(sea);
+    expect_same(single.at(5.2, points), cold);
+}
+
+TEST(LivingFoam, OfALoopCloses) {
+    Scene scene = scene_of(2.0);
+    scene.shot.loop_s = 4.0;
+    Shown<> shown(sea_of(scene, 0.5));
+    const auto points = square(50, 0.7);
+    const Foam first = shown.at(0.0, points), later = shown.at(4.0, points);
+    EXPECT_EQ(first.total, later.total);
+    // No jump: from the last frame to the first foam changes as from any to the next.
+    const auto change = [&](double from_s, double to_s) {
+        const std::vector<float> a = shown.at(from_s, points).residual(),
+                                 b = shown.at(to_s, points).residual();
+        double sum = 0.0;
+        for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+        return sum;
+    };
+    double any = 0.0;
+    for (double t_s = 0.5; t_s < 4.0; t_s += 0.5) any = std::max(any, change(t_s, t_s + 1.0 / 48.0));
+    EXPECT_LT(change(4.0 - 1.0 / 48.0, 0.0), 1.5 * any);
+}
+
+// Foam goes with the wind: what is seen τ later is where it was, displaced by the drift.
+TEST(LivingFoam, Drifts) {
+    Scene scene = scene_of(8.0);
+    scene.effects.foam_drift = 0.1;
+    scene.sea.wind_direction_deg = 30.0;
+    const auto sea = sea_of(scene, 0.5);
+    Shown<> shown(sea);
+    const auto points = square(60, 0.7);
+    const auto residual_at = [&](double t_s, glm::dvec2 moved_m) {
+        const std::vector<float> left = shown.at(t_s, points, moved_m).residual();
+        return std::vector<double>(left.begin(), left.end());
+    };
+    const glm::dvec2 way_m = 2.0 * sea->plan().foam->drift_mps;
+    EXPECT_NEAR(glm::dot(way_m, way_m), 2.8 * 2.8, 1e-6);
+    const std::vector<double> before = residual_at(20.0, {});
+    EXPECT_GT(correlation(before, residual_at(22.0, way_m)), 0.8);
+    EXPECT_LT(correlation(before, residual_at(22.0, {})), 0.6);
+}
+
+// Total coverage over area, of the law's.
+double share_of_law(double footprint_m, int per_side, double spacing_m) {
+    Shown<> shown(sea_of(scene_of(4.0), footprint_m));
+    double foam = 0.0, sea = 0.0;
+    const Foam now = shown.at(11.0, square(per_side, spacing_m));
+    for (std::size_t i = 0; i < now.total.size(); ++i) {
+        const glm::vec3 j = now.jacobian[i];
+        const double area = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
+        foam += area * now.total[i];
+        sea += area;
+    }
+    return foam / sea / law_coverage(scene_of(4.0));
+}
+
+// All foam together has the law's coverage, at any footprint.
+TEST(LivingFoam, HasTheLawsCoverage) {
+    double of_8m = 1.0;
+    for (const double footprint_m : {8.0, 60.0, 200.0}) {
+        const double share = share_of_law(footprint_m, 200, 8.0);
+        std::printf("footprint %5.2f m: %.3f of the law\n", footprint_m, share);
+        EXPECT_NEAR(share, 1.0, 0.06) << footprint_m;
+        if (footprint_m == 8.0) of_8m = share;
+    }
+    // A smaller piece of the sea, whose own mean isn't the whole sea's.
+    const double far = share_of_law(8.0, 40, 6.0);
+    for (const double footprint_m : {0.02, 0.5, 2.0}) {
+        const double share = share_of_law(footprint_m, 400, 0.6) / far;
+        std::printf("footprint %5.2f m: %.3f of that at 8 m\n", footprint_m, share);
+        // Breaking lies on what it leaves where it is resolved: the calibration is between both (core/waves/whitecaps.cpp).
+        EXPECT_NEAR(share * of_8m, 1.0, 0.06) << footprint_m;
+    }
+}
+
+TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {
+    const Scene scene = scene_of(4.0);
+    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.5);
+    query.points = 120 * 120;
+    query.lattice = Lattice{0.0, 0.5};
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}, {.living_foam = true}));
+    Shown<> shown(sea);
+    for (double t_s = 2.0; t_s < 4.0; t_s += 0.25) {
+        shown.at(t_s, rest_points<float>({.per_side = 120, .spacing_m = 0.5, .first_m = 0.0}));
+        EXPECT_LE(shown.history().held_bytes(), sea->plan().foam_history_bytes());
+        EXPECT_GT(shown.history().held_bytes(), sea->plan().foam_history_bytes() / 3);
+    }
+}
+
+// Off, there is nothing of it.
+TEST(LivingFoam, IsNotPlannedUnlessAskedFor) {
+    const Query query = filtered(products(Product::Coverage), 0.5);
+    EXPECT_FALSE(make_plan(scene_of(0.0), {query}, {.living_foam = true}).foam);
+    EXPECT_FALSE(make_plan(scene_of(4.0), {query}).foam);
+    EXPECT_FALSE(
+        make_plan(scene_of(4.0), {filtered(products(Product::Normal), 0.5)}, {.living_foam = true}).foam);
+    EXPECT_TRUE(make_plan(scene_of(4.0), {query}, {.living_foam = true}).foam);
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene_of(0.0), {query}));
+    EXPECT_THROW(FoamHistory<float>{sea}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -1,0 +1,80 @@
+// Foam that lives, in pictures.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <array>
+#include <vector>
+
+#include "plugin/render/render.h"
+#include "tests/plugin/render/uniform_sky.h"
+
+namespace pelagic {
+namespace {
+
+Scene scene_of(double decay_s) {
+    Scene scene;
+    scene.quality.level = QualityLevel::Draft;
+    scene.sea.wind_speed_mps = 16.0;
+    scene.effects.foam_decay_s = decay_s;
+    scene.camera.resolution = {96, 60};
+    scene.camera.position_m = {0.0, -60.0, 15.0};
+    return scene;
+}
+
+RenderOptions options_of(const Scene& scene) {
+    RenderOptions options = render_options(scene);
+    for (const PictureLayer layer : {PictureLayer::Coverage, PictureLayer::FoamActive, PictureLayer::FoamAge})
+        options.layers.set(index(layer));
+    return options;
+}
+
+const std::vector<float>& layer(const Picture& picture, PictureLayer of) {
+    return picture.data[index(of)];
+}
+
+TEST(FoamInPictures, OfAFrameAloneIsThatOfARunOnAnyNumberOfThreads) {
+    const Scene scene = scene_of(2.0);
+    const std::array frames{1, 2, 3, 9};
+    Renderer run(scene, options_of(scene), uniform_sky(), frames);
+    Picture picture, alone;
+    for (const int frame : frames) ASSERT_TRUE(run.render(frame, picture));
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    Renderer single(scene, options_of(scene), uniform_sky(), frames);
+    ASSERT_TRUE(single.render(9, alone));
+    for (const PictureLayer of : {PictureLayer::Coverage, PictureLayer::FoamActive, PictureLayer::FoamAge})
+        EXPECT_EQ(layer(picture, of), layer(alone, of));
+    for (std::size_t i = 0; i < picture.layers.size(); ++i)
+        EXPECT_EQ(radiance_of(picture.layers[i]), radiance_of(alone.layers[i]));
+}
+
+TEST(FoamInPictures, IsAllOfTheLawsThatBreaksOrIsLeft) {
+    double total = 0.0, active = 0.0, age_s = 0.0, plain = 0.0;
+    for (const double decay_s : {0.0, 2.0}) {
+        const Scene scene = scene_of(decay_s);
+        Renderer renderer(scene, options_of(scene), uniform_sky(), std::array{4});
+        Picture picture;
+        ASSERT_TRUE(renderer.render(4, picture));
+        const std::vector<float>&now = layer(picture, PictureLayer::FoamActive),
+              &all = layer(picture, PictureLayer::Coverage), &age = layer(picture, PictureLayer::FoamAge);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            if (decay_s == 0.0) {
+                EXPECT_EQ(now[i], all[i]);
+                EXPECT_EQ(age[i], 0.0f);
+                plain += all[i];
+            } else {
+                EXPECT_LE(now[i], all[i]);
+                total += all[i];
+                active += now[i];
+                age_s += double(age[i]) * all[i];
+            }
+        }
+    }
+    EXPECT_GT(active, 0.0);
+    EXPECT_LT(active, 0.5 * total);
+    EXPECT_GT(age_s / total, 0.5);
+    EXPECT_LT(age_s / total, 2.0);
+    EXPECT_NEAR(total / plain, 1.0, 0.35);  // one frame of a small piece of the sea
+}
+
+}  // namespace
+}  // namespace pelagic

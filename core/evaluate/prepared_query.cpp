@@ -18,6 +18,8 @@ namespace {
 
 #include "core/evaluate/hidden.inl"
 
+constexpr std::array kStrain{Field::Dxx, Field::Dyy, Field::Dxy};
+
 // What a rung of pixels hides of `whole`: less what passes through the cascades, and more by what is hidden beside.
 template <class T>
 HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& rung,
@@ -94,7 +96,7 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
         for (const int level : *levels)
             if (std::none_of(levels_.begin(), levels_.end(),
                              [&](const LevelGrids& there) { return there.level == level; }))
-                levels_.push_back({level, {}, {}});
+                levels_.push_back({level, {}, {}, {}});
     for (const CascadePlan& cascade : plan.cascades)
         whole_m_.push_back(static_cast<T>(whole_footprint_m(cascade, plan.filter)));
     place_.origin_m = origin_m;
@@ -109,6 +111,7 @@ void PreparedQuery<T>::refresh() {
     if (breaks_) needed |= strain_fields();
     for (LevelGrids& of : levels_) {
         of.grids.clear();
+        of.breaks_alike.clear();
         of.of_cascade.assign(plan.cascades.size(), -1);
         for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
             const CascadePlan& cascade = plan.cascades[c];
@@ -116,6 +119,9 @@ void PreparedQuery<T>::refresh() {
             if (g < 0) continue;
             const Grid& grid = cascade.grids[g];
             of.of_cascade[c] = static_cast<int>(of.grids.size());
+            of.breaks_alike.push_back(breaks_ &&
+                                      cascade.grid_of_level[planned_->pixel_levels.front()] ==
+                                          cascade.grid_of_level[planned_->breaking_levels.front()]);
             GridArgs<T>& args = of.grids.emplace_back();
             args.sampling = grid.sampling;
             args.taps = plan.knobs.spline_taps;
@@ -232,7 +238,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
         work.breaking.count = chunk.count;
         std::copy_n(chunk.rest_x.begin(), padded, work.breaking.rest_x.begin());
         std::copy_n(chunk.rest_y.begin(), padded, work.breaking.rest_y.begin());
-        for (const Field field : {Field::Dxx, Field::Dyy, Field::Dxy}) {
+        for (const Field field : kStrain) {
             auto& sum = work.breaking.sums[index(field)];
             std::fill(sum.begin(), sum.begin() + padded, T(0));
         }
@@ -240,14 +246,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
     if (call.on_ladder) {
         add_ladder(call, work);
     } else {
-        for (std::size_t l = 0; l < levels_.size(); ++l) {
-            FieldSet fields;
-            if (levels_[l].level == planned_->cell_levels.front()) fields |= cell_fields();
-            if (levels_[l].level == planned_->pixel_levels.front()) fields |= ~cell_fields();
-            add_grids(call, l, {fields & work.needed, nullptr, nullptr}, chunk);
-            if (work.apart && levels_[l].level == planned_->breaking_levels.front())
-                add_grids(call, l, {strain_fields(), nullptr, nullptr}, work.breaking);
-        }
+        add_only_footprint(call, work);
     }
     add_own_footprints(call, first, work);
     kernels_.derive({.chunk = &chunk,
@@ -275,12 +274,40 @@ bool PreparedQuery<T>::breaks_apart(const Call& call, const Work& work) const {
     return false;
 }
 
+// All points have the query's only footprints. A grid that the waves that break share with the normals is read once.
+template <class T>
+void PreparedQuery<T>::add_only_footprint(const Call& call, Work& work) const {
+    const auto add = [&](Part part) {
+        for (std::size_t l = 0; l < levels_.size(); ++l) {
+            FieldSet fields;
+            if (levels_[l].level == planned_->cell_levels.front()) fields |= cell_fields();
+            if (levels_[l].level == planned_->pixel_levels.front()) fields |= ~cell_fields();
+            add_grids(call, l, {.fields = fields & work.needed, .part = part}, work.chunk);
+        }
+    };
+    if (!work.apart) return add(Part::All);
+    const bool has_strain = (work.needed & strain_fields()) == strain_fields();
+    if (has_strain) {
+        add(Part::Alike);
+        for (const Field field : kStrain)
+            std::copy_n(work.chunk.sums[index(field)].begin(), work.chunk.padded(),
+                        work.breaking.sums[index(field)].begin());
+    }
+    add(has_strain ? Part::Other : Part::All);
+    for (std::size_t l = 0; l < levels_.size(); ++l)
+        if (levels_[l].level == planned_->breaking_levels.front())
+            add_grids(call, l, {.fields = strain_fields(), .part = has_strain ? Part::Other : Part::All},
+                      work.breaking);
+}
+
 template <class T>
 void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Share& share,
                                  Chunk<T>& chunk) const {
     if (share.fields.none()) return;
     const std::vector<GridArgs<T>>& grids = levels_[level].grids;
     for (std::size_t g = 0; g < grids.size(); ++g) {
+        if (share.part != Part::All && levels_[level].breaks_alike[g] != (share.part == Part::Alike))
+            continue;
         GridArgs<T> args = grids[g];
         bool any = false;
         for (std::size_t f = 0; f < kFieldCount; ++f) {

@@ -37,6 +37,8 @@ class PreparedQuery {
         int level;
         std::vector<GridArgs<T>> grids;  // where the origin lies stands in Place
         std::vector<int> of_cascade;     // index into grids; −1: nothing passes
+        std::vector<bool>
+            breaks_alike;  // by grid: whether the query's first pixel and breaking levels share theirs
     };
     // Where the points' origin lies.
     struct Place {
@@ -47,10 +49,13 @@ class PreparedQuery {
     // What one call has in common for all its points.
     struct Call;
     struct Work;
+    // Which of a level's grids, by breaks_alike.
+    enum class Part { All, Alike, Other };
     // How a level's grids count at a chunk's points.
     struct Share {
         FieldSet fields;
-        const T *cell_weight, *pixel_weight;
+        const T *cell_weight = nullptr, *pixel_weight = nullptr;
+        Part part = Part::All;
     };
 
     Place place_of(glm::dvec2 origin_m) const;
@@ -59,6 +64,7 @@ class PreparedQuery {
     void add_grids(const Call& call, std::size_t level, const Share& share, Chunk<T>& chunk) const;
     // Whether the strain of the waves that break isn't that of the chunk's normals.
     bool breaks_apart(const Call& call, const Work& work) const;
+    void add_only_footprint(const Call& call, Work& work) const;
     void add_ladder(const Call& call, Work& work) const;
     // Points whose footprints are round: those of `fields` that cells filter, and the others from `levels`.
     void add_round(const Call& call, FieldSet fields, const ChunkFootprints<T>& cells,

@@ -65,14 +65,32 @@ double tiles_over(double side_m, double cell_m) {
     return side * side;
 }
 
+// Those whose cells a camera's pixels need, whichever way it turns. A pixel is α s wide and α s²/h long at the slant distance
+// s from an eye at the height h: its area is that of the square of a cell at s = (cell/α)^⅔ h^⅓, and further away coarser levels
+// have it. The farthest of these places is that of the highest eye.
+double tiles_in_view(const Camera& camera, double cell_m) {
+    const auto reach_m = [&](double height_m, double fov_deg) {
+        const double pixel = 2.0 * std::tan(0.5 * fov_deg * kPi / 180.0) / camera.resolution.x;
+        const double slant_m = std::pow(cell_m / pixel, 2.0 / 3.0) * std::cbrt(height_m);
+        return std::sqrt(std::max(slant_m * slant_m - height_m * height_m, 0.0));
+    };
+    double farthest_m = reach_m(std::max(camera.position_m.z, 1.0), camera.fov_deg);
+    for (const CameraKey& key : camera.keys)
+        farthest_m = std::max(farthest_m,
+                              reach_m(std::max(key.position_m.z, 1.0), key.fov_deg.value_or(camera.fov_deg)));
+    if (!(farthest_m > 0.0)) return 0.0;
+    const double radius = farthest_m / (FoamPlan::kTileCells * cell_m) + 1.0;
+    return kPi * radius * radius;
+}
+
 }  // namespace
 
 std::size_t foam_bytes(const FoamPlan& foam, const Scene& scene, const std::vector<Query>& queries) {
     double tiles = 0.0;
     for (const Query& query : queries) {
         if (!query.products[index(Product::Coverage)]) continue;
-        const double points = static_cast<double>(query.points);
         if (query.lattice || !query.is_view) {
+            const double points = static_cast<double>(query.points);
             const double spacing_m = query.lattice ? query.lattice->spacing_m : query.pixel_m.front();
             const FoamRung rung = foam_rung(foam, static_cast<float>(query.pixel_m.front()));
             for (int level = rung.level; level <= rung.level + (rung.t > 0.0f); ++level)
@@ -80,11 +98,8 @@ std::size_t foam_bytes(const FoamPlan& foam, const Scene& scene, const std::vect
                     tiles += tiles_over(std::sqrt(points) * spacing_m, std::ldexp(foam.cell_m, level));
             continue;
         }
-        // A cell for each pixel and a quarter for the next level, tiles that reach beyond the picture, and a ring of them
-        // for each level.
-        constexpr double kCells = 2.5, kRing = 40.0;
-        const double pixels = points * scene.surface.cell_px * scene.surface.cell_px;
-        tiles += kCells * pixels / FoamPlan::kTileNodes + kRing * FoamPlan::kLevels;
+        for (int level = 0; level < FoamPlan::kLevels; ++level)
+            tiles += tiles_in_view(scene.camera, std::ldexp(foam.cell_m, level));
     }
     return static_cast<std::size_t>(tiles) * foam.tile_bytes();
 }

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
 #include "core/waves/whitecaps.h"
 #include "tests/core/waves/samples.h"
 
@@ -280,6 +282,34 @@ TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {
         shown.at(t_s, rest_points<float>({.per_side = 120, .spacing_m = 0.5, .first_m = 0.0}));
         EXPECT_LE(shown.history().held_bytes(), sea->plan().foam_history_bytes());
         EXPECT_GT(shown.history().held_bytes(), sea->plan().foam_history_bytes() / 3);
+    }
+}
+
+// Of a camera low and high, and never so much that a picture wouldn't be rendered for it.
+TEST(LivingFoam, OfACameraHoldsNoMoreThanItsPlanSays) {
+    for (const double height_m : {3.0, 40.0, 1000.0}) {
+        Scene scene = scene_of(1.0);
+        scene.camera.position_m = {0.0, 0.0, height_m};
+        scene.camera.look_at_m = {0.0, 20.0 * height_m, 0.0};
+        scene.camera.resolution = {320, 180};
+        const auto prepared = prepare(scene);
+        const View view = view_at(scene.camera, 1);
+        const ProjectedGrid grid = projected_grid(view, projected_grid_options(*prepared));
+        const Query query =
+            view_query(*prepared, {.products = products(Product::Coverage), .points = grid.rest_m.size()});
+        const auto sea =
+            std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.living_foam = true}));
+        FoamHistory<float> history(sea);
+        history.set(3.0);
+        history.prepare({.origin_m = grid.origin_m,
+                         .count = grid.rest_m.size(),
+                         .rest_m = {grid.rest_m.data()},
+                         .pixel_m = {grid.pixel_m.data()},
+                         .pixel_axis_m = {grid.pixel_axis_m.data()}},
+                        0);
+        EXPECT_GT(history.held_bytes(), 0u) << height_m;
+        EXPECT_LE(history.held_bytes(), sea->plan().foam_history_bytes()) << height_m;
+        EXPECT_LT(sea->plan().foam_history_bytes(), std::size_t(1) << 30) << height_m;
     }
 }
 

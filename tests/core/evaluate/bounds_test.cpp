@@ -222,8 +222,9 @@ TEST(FrameBounds, AreNotMuchWiderThanWhatIsReached) {
             }
             std::printf("%-34s %8.0f %8.2f %8.2f %22.2f\n", c.name.c_str(), waves * peak_m, height, reach,
                         of_expected);
-            // Many trains over many waves need more blocks than are given here.
-            EXPECT_LT(height, c.scene.waves.model == WaveModel::Fft ? 1.5 : 3.0) << c.name;
+            // Many trains over many waves need more blocks than are given here. Directions that are spread evenly meet in
+            // fewer places than the bounds must allow for.
+            EXPECT_LT(height, c.scene.waves.model == WaveModel::Fft ? 1.5 : 4.0) << c.name;
         }
     }
 }

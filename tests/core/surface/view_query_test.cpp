@@ -179,9 +179,10 @@ TEST(ViewQuery, AtTheHorizonAllIsVariance) {
         EXPECT_EQ(answers.vectors(Product::Position)[i].z, 0.0f);
         // A pixel there is an ellipse of finite length. What of the slopes across it is left, of 0.2 in all, no eye sees.
         EXPECT_LT(glm::length(glm::vec2(answers.vectors(Product::Normal)[i])), 4e-3);
-        // What ellipses hide is an integral over the spectrum, and the whole a sum of modes.
-        EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].x, whole.xx, 1e-3 * whole.xx);
-        EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].y, whole.yy, 1e-3 * whole.yy);
+        // What ellipses hide is an integral over the spectrum, and the whole a sum of modes. It rides on what is left of
+        // the strain across.
+        EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].x, whole.xx, 1e-2 * whole.xx);
+        EXPECT_NEAR(answers.vectors(Product::SlopeVariance)[i].y, whole.yy, 1e-2 * whole.yy);
     }
 }
 

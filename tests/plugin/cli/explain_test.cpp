@@ -91,7 +91,8 @@ TEST_F(Explain, GivesEachOutputAndEffectAPrice) {
 }
 
 // One mesh on one grid. Position's three fields are always needed; normals need two slopes for themselves,
-// and J's three fields, which they share with whitecaps and slope variances; velocities need three.
+// and J's three fields, which they share with whitecaps and slope variances; velocities need three. Whitecaps keep J's
+// without horizontal displacement.
 TEST_F(Explain, CountsWhatNothingElseNeeds) {
     std::map<std::string, long> transforms, lines;
     for (const Price& price : prices(kOneCascade)) {
@@ -104,7 +105,7 @@ TEST_F(Explain, CountsWhatNothingElseNeeds) {
     EXPECT_EQ(transforms["mesh velocity"], 3);
     EXPECT_EQ(transforms["mesh slope-variance"], 0);
     EXPECT_EQ(transforms["mesh whitecaps"], 0);
-    EXPECT_EQ(transforms["horizontal displacement"], 7);
+    EXPECT_EQ(transforms["horizontal displacement"], 4);
     EXPECT_EQ(transforms["whitecaps"], 0);
     // The largest mode of 32 samples is 15: 16 columns and 16 pairs of rows per field.
     EXPECT_EQ(lines["mesh velocity"], 3 * 32);

@@ -14,7 +14,8 @@ UV_MAP = "UVMap"
 # The mesh's attributes: name, type, the property for foreach_set, the module's product.
 ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
               ("slope_variance", "FLOAT_VECTOR", "vector", "slope_variance"),
-              ("whitecap_coverage", "FLOAT", "value", "coverage"))
+              ("whitecap_coverage", "FLOAT", "value", "coverage"),
+              ("foam_age", "FLOAT", "value", "foam_age"))
 
 
 def _sign(mesh, signature):

@@ -80,7 +80,7 @@ def scene_from(modifier, height_m, times, frame_rate):
     scene.shot.seed = modifier.random_seed
     scene.effects.whitecaps = modifier.use_foam
     if modifier.use_foam and modifier.foam_coverage:
-        missing.append("an amount of foam: the wind decides")
+        missing.append("a foam coverage: the wind and Effects’ amount decide")
     if modifier.use_spray:
         missing.append("spray")
     if modifier.is_cached:

@@ -247,6 +247,7 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
 template <class T>
 template <class Use>
 void FoamHistory<T>::for_parts(const Points<T>& points, int query, const Use& use) {
+    if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
     renew();
     const Locator locate(*this, points, query);
     std::vector<std::size_t> parts, later;
@@ -277,6 +278,7 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const Use& us
 
 template <class T>
 void FoamHistory<T>::prepare(const Points<T>& points, int query) {
+    if (leaves_nothing()) return;
     for_parts(points, query, [](std::size_t, std::span<const float>, std::span<const float>) {});
 }
 
@@ -381,6 +383,13 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
 
 template <class T>
 void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& results) {
+    if (leaves_nothing()) {
+        for (std::size_t i = 0; i < points.count; ++i) {
+            if (results.active) results.active[i] = results.coverage[i];
+            if (results.age_s) results.age_s[i] = 0.0f;
+        }
+        return;
+    }
     for_parts(points, query,
               [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
                   for (std::size_t i = 0; i < foam.size(); ++i) {

@@ -69,6 +69,7 @@ class FoamHistory {
     };
     class Locator;  // of points among the nodes
 
+    bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
     template <class Use>
     void for_parts(const Points<T>& points, int query, const Use& use);
     bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,

@@ -67,17 +67,26 @@ double tiles_over(double side_m, double cell_m) {
 
 // Those whose cells a camera's pixels need, whichever way it turns. A pixel is α s wide and α s²/h long at the slant distance
 // s from an eye at the height h: its area is that of the square of a cell at s = (cell/α)^⅔ h^⅓, and further away coarser levels
-// have it. The farthest of these places is that of the highest eye.
+// have it.
 double tiles_in_view(const Camera& camera, double cell_m) {
+    const auto pixel_of = [&](double fov_deg) {
+        return 2.0 * std::tan(0.5 * fov_deg * kPi / 180.0) / camera.resolution.x;
+    };
     const auto reach_m = [&](double height_m, double fov_deg) {
-        const double pixel = 2.0 * std::tan(0.5 * fov_deg * kPi / 180.0) / camera.resolution.x;
-        const double slant_m = std::pow(cell_m / pixel, 2.0 / 3.0) * std::cbrt(height_m);
+        const double slant_m = std::pow(cell_m / pixel_of(fov_deg), 2.0 / 3.0) * std::cbrt(height_m);
         return std::sqrt(std::max(slant_m * slant_m - height_m * height_m, 0.0));
     };
-    double farthest_m = reach_m(std::max(camera.position_m.z, 1.0), camera.fov_deg);
-    for (const CameraKey& key : camera.keys)
-        farthest_m = std::max(farthest_m,
-                              reach_m(std::max(key.position_m.z, 1.0), key.fov_deg.value_or(camera.fov_deg)));
+    double lowest_m = std::max(camera.position_m.z, 1.0), highest_m = lowest_m,
+           narrowest_deg = camera.fov_deg;
+    for (const CameraKey& key : camera.keys) {
+        const double height_m = std::max(key.position_m.z, 1.0);
+        lowest_m = std::min(lowest_m, height_m);
+        highest_m = std::max(highest_m, height_m);
+        narrowest_deg = std::min(narrowest_deg, key.fov_deg.value_or(camera.fov_deg));
+    }
+    // Between the keys a camera passes all heights. The reach grows with the height up to this one.
+    const double farthest_height_m = cell_m / pixel_of(narrowest_deg) * std::pow(3.0, -0.75);
+    const double farthest_m = reach_m(std::clamp(farthest_height_m, lowest_m, highest_m), narrowest_deg);
     if (!(farthest_m > 0.0)) return 0.0;
     const double radius = farthest_m / (FoamPlan::kTileCells * cell_m) + 1.0;
     return kPi * radius * radius;
@@ -88,7 +97,8 @@ double tiles_in_view(const Camera& camera, double cell_m) {
 std::size_t foam_bytes(const FoamPlan& foam, const Scene& scene, const std::vector<Query>& queries) {
     double tiles = 0.0;
     for (const Query& query : queries) {
-        if (!query.products[index(Product::Coverage)]) continue;
+        if (!query.products[index(Product::Coverage)] || query.only_cascade)
+            continue;  // tiles have no history
         if (query.lattice || !query.is_view) {
             const double points = static_cast<double>(query.points);
             const double spacing_m = query.lattice ? query.lattice->spacing_m : query.pixel_m.front();

@@ -42,6 +42,7 @@ Preset beaufort(int number) {
             .group = PresetGroup::Beaufort,
             .values = {{"sea.wind_speed_mps", force.wind_speed_mps},
                        {"sea.fetch_m", force.fetch_km * 1e3},
+                       {"sea.significant_height_m", KeyValue()},
                        {"sea.spectrum", std::string(word_of(SpectrumKind::Jonswap))}}};
 }
 

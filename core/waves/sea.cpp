@@ -122,8 +122,7 @@ void Sea<T>::calibrate_whitecaps() {
     const bool third = plan_.knobs.third_moment;
     FoamLife life;
     if (plan_.foam)
-        life = {.rate_per_s = plan_.trains ? breaking_rate(trains_, plan_.breaking.k_end())
-                                           : breaking_rate(plan_.from->spectrum, plan_.breaking.k_end()),
+        life = {.rate_per_s = breaking_rate(plan_.from->spectrum, plan_.breaking.k_end()),
                 .lasting_s = plan_.foam->weight(0.0, plan_.foam->window_s).foam_s};
     whitecap_threshold_ =
         calibrated_threshold(total_, law_coverage(plan_.from->scene), plan_.breaking.choppiness, third, life);

@@ -105,16 +105,17 @@ SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part, dou
 }
 
 // What a bin's waves have and one train of wavenumber k with their energy lacks: slopes and strains, in the bin's own
-// directions. The mean of k² is no less than the square of the mean.
-SpectralMoments beyond_train(const SpectralMoments& bin, double k, double horizontal_ratio) {
+// directions. The mean of k² is no less than the square of the mean. A train that doesn't break has none of the strain.
+SpectralMoments beyond_train(const SpectralMoments& bin, double k, double horizontal_ratio, bool breaks) {
     SpectralMoments rest;
     const auto lacking = [](double of, double train) { return of > train ? 1.0 - train / of : 0.0; };
     const double slopes = lacking(bin.xx + bin.yy, k * k * bin.m0);
     rest.xx = slopes * bin.xx;
     rest.xy = slopes * bin.xy;
     rest.yy = slopes * bin.yy;
-    const double strains =
-        lacking(bin.xxxx + 2.0 * bin.xxyy + bin.yyyy, horizontal_ratio * horizontal_ratio * k * k * bin.m0);
+    const double strains = breaks ? lacking(bin.xxxx + 2.0 * bin.xxyy + bin.yyyy,
+                                            horizontal_ratio * horizontal_ratio * k * k * bin.m0)
+                                  : 1.0;
     rest.xxxx = strains * bin.xxxx;
     rest.xxxy = strains * bin.xxxy;
     rest.xxyy = strains * bin.xxyy;
@@ -209,10 +210,12 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         trains.alone.push_back(alone);
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));
-        SpectralMoments beyond =
-            beyond_train(moments(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1)), k,
-                         dispersion.horizontal_ratio(k));
-        trains.outside += beyond.scale_strain(breaks ? breaking.choppiness * breaking.choppiness : 0.0);
+        const Breaking unscaled{
+            .from_m = breaking.from_m, .footprint_m = breaking.footprint_m, .choppiness = 1.0};
+        SpectralMoments beyond = beyond_train(
+            moments_with_breaking(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1), unscaled),
+            k, dispersion.horizontal_ratio(k), breaks);
+        trains.outside += beyond.scale_strain(breaking.choppiness * breaking.choppiness);
     }
 
     trains.outside += moments_with_breaking(spectrum, 0.0, kTwoPi / plan.longest_m, breaking);

@@ -74,7 +74,7 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads);
 
 // Throws NotEnoughMemory before anything is written, files::FileError where a file can't be written (what was
 // finished is kept and recorded),
-// std::invalid_argument for frames outside the shot's range or a scene that validate() refuses or that asks
+// std::invalid_argument for frames outside the shot's range or a scene that problems_of() refuses or that asks
 // for nothing.
 BakeReport bake(const Scene& scene, const BakeOptions& options);
 

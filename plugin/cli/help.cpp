@@ -16,6 +16,7 @@ const char* const kProgramFooter =
     "  pelagic verify storm                    check the files that were written\n"
     "  pelagic validate shots/*.toml           check shot files without baking\n"
     "  pelagic keys                            every key of a shot file\n"
+    "  pelagic presets                         seas that a shot file can begin with\n"
     "\n"
     "\"pelagic VERB --help\" has more on each verb.\n"
     "\n"
@@ -92,6 +93,8 @@ const char* const kRenderFooter =
     "  vector          Vector.X … .W  the same for Blender's Vector Blur, as Speed\n"
     "  coverage        coverage.X     the share of the sea that whitecaps cover\n"
     "  slope_variance  slope_variance.X .Y .Z        xx, yy, xy of the slopes that the pixel hides\n"
+    "  foam_active     foam_active.X  the share that breaks now\n"
+    "  foam_age        foam_age.X     how old the foam is, in seconds; what breaks counts as 0\n"
     "Light is a mean over the pixel and the shutter's time. The others are those of the sample in\n"
     "the pixel's middle at the frame's own time: a mean of depths is a depth that isn't there.";
 const char* const kSize =

@@ -1,8 +1,9 @@
 // pelagic presets
 #include "core/scene/presets.h"
 
-#include <cstdio>
+#include <algorithm>
 #include <iostream>
+#include <memory>
 
 #include "core/scene/shot_text.h"
 #include "plugin/cli/exit_status.h"

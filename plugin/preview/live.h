@@ -42,7 +42,7 @@ struct LiveLimits {
 
 // Plans and builds the sea for pictures of the scene. Where that doesn't fit the limits, the shortest waves are left
 // to the slope variance until it does, and the note says so. Throws std::invalid_argument with every problem that
-// validate() finds, and NotEnoughMemory where nothing is left to leave out.
+// problems_of() finds, and NotEnoughMemory where nothing is left to leave out.
 std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits,
                                             const BuildWatch& watch = {});
 

@@ -251,7 +251,8 @@ class Preview {
             if (frame_ != nullptr) play_on(controls_, std::min(whole_ms * 1e-3, kLongestStep_s), shot_.shot);
             move(std::min(whole_ms * 1e-3, kLongestStep_s));
             take_what_is_ready();
-            if (options_.screenshot && !readout_.message.empty()) throw PreviewError(readout_.message);
+            if (options_.screenshot && !readout_.message.empty() && readout_.message != note_)
+                throw PreviewError(readout_.message);
             draw_sea(size);
             if (std::exchange(save_picture_, false)) save_without_panel(size);
             ImGui::Render();

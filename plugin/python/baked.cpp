@@ -45,6 +45,8 @@ constexpr std::pair<std::string_view, std::string_view> kNames[] = {
     {"velocities", "velocity"},
     {"primvars:slopeVariance", "slope_variance"},
     {"primvars:whitecapCoverage", "coverage"},
+    {"primvars:foamActive", "foam_active"},
+    {"primvars:foamAge", "foam_age"},
     {"primvars:st", "st"},
     {"faceVertexCounts", "face_counts"},
     {"faceVertexIndices", "face_corners"}};
@@ -87,7 +89,8 @@ void add_baked(py::module_& module) {
         "origin_m: float64 (3,), of each frame: where in the world the positions' origin is [m]. origin_m + position "
         "are the places. (0, 0, 0) but for a camera's grid far from the world's origin.\n"
         "position: (n, 3) [m]. normal: (n, 3). velocity: (n, 3) [m/s of the screen]. slope_variance: (n, 3), xx, yy, "
-        "xy. coverage: (n,). st: (n, 2), 0 to 1.\n"
+        "xy. coverage: (n,); of foam that lives foam_active: (n,), what of it breaks now, and foam_age: (n,) [s]. st: (n, 2), "
+        "0 to 1.\n"
         "face_counts: int32 (f,), corners of each face. face_corners: int32, their points.\n\n"
         "A frame of a camera's grid has its own faces; of other surfaces they and st are in the "
         "topology's file alone. FileError for a file that is missing, cut short, damaged or another "

@@ -22,7 +22,7 @@ void add_bake(pybind11::module_& module);
 void add_baked(pybind11::module_& module);
 void add_viewport(pybind11::module_& module);
 
-// ShotError with a line for each of validate()'s problems.
+// ShotError with a line for each of problems_of()'s.
 void require_valid(const Scene& scene);
 
 }  // namespace pelagic::python

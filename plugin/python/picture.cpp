@@ -107,7 +107,7 @@ void add_picture(py::module_& module) {
         "\"is_sea\", bool (height, width).\n\n"
         "size: (width, height), by default the camera's. samples: N of N × N a pixel; sky_quality: \"one\", "
         "\"nine\" or \"integral\"; by default the quality level's. layers: further ones, of \"depth\", \"position\", "
-        "\"normal\", \"motion\", \"vector\", \"coverage\" and \"slope_variance\", as `pelagic render --help` describes "
+        "\"normal\", \"motion\", \"vector\", \"coverage\", \"slope_variance\", \"foam_active\" and \"foam_age\", as `pelagic render --help` describes "
         "them: float32 (height, width) or (height, width, components). shutter: how long it is open, in frames, 0 to 4. "
         "alpha: no sky beside the sea, and \"alpha\", float32 (height, width), by which the light is multiplied. "
         "progress: called with the share that is "

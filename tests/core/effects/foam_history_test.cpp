@@ -285,15 +285,23 @@ TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {
     }
 }
 
-// Of a camera low and high, and never so much that a picture wouldn't be rendered for it.
+// Of a camera low and high, of one that climbs through the height from which it needs most, and never so much that a
+// picture wouldn't be rendered for it.
 TEST(LivingFoam, OfACameraHoldsNoMoreThanItsPlanSays) {
-    for (const double height_m : {3.0, 40.0, 1000.0}) {
+    for (const double height_m : {3.0, 40.0, 1000.0, 420.0}) {
         Scene scene = scene_of(1.0);
         scene.camera.position_m = {0.0, 0.0, height_m};
         scene.camera.look_at_m = {0.0, 20.0 * height_m, 0.0};
         scene.camera.resolution = {320, 180};
+        if (height_m == 420.0) {
+            scene.camera.resolution = {1280, 720};
+            for (const int frame : {1, 3})
+                scene.camera.keys.push_back({.frame = frame,
+                                             .position_m = {0.0, 0.0, frame == 1 ? 2.0 : 838.0},
+                                             .look_at_m = {0.0, 1200.0, 0.0}});
+        }
         const auto prepared = prepare(scene);
-        const View view = view_at(scene.camera, 1);
+        const View view = view_at(scene.camera, height_m == 420.0 ? 2 : 1);
         const ProjectedGrid grid = projected_grid(view, projected_grid_options(*prepared));
         const Query query =
             view_query(*prepared, {.products = products(Product::Coverage), .points = grid.rest_m.size()});
@@ -311,6 +319,25 @@ TEST(LivingFoam, OfACameraHoldsNoMoreThanItsPlanSays) {
         EXPECT_LE(history.held_bytes(), sea->plan().foam_history_bytes()) << height_m;
         EXPECT_LT(sea->plan().foam_history_bytes(), std::size_t(1) << 30) << height_m;
     }
+}
+
+// Where no wave breaks nothing is kept, and no earlier time is looked at.
+TEST(LivingFoam, OfASeaWithoutFoamCostsNothing) {
+    Scene scene = scene_of(4.0);
+    scene.effects.whitecap_amount = 0.0;
+    const auto sea = std::make_shared<const Sea<float>>(
+        make_plan(scene, {filtered(products(Product::Coverage), 0.5)}, {.living_foam = true}));
+    Shown<> shown(sea);
+    shown.at(2.0, rest_points<float>({.per_side = 20, .spacing_m = 0.5, .first_m = 0.0}));
+    EXPECT_EQ(shown.history().held_bytes(), 0u);
+}
+
+TEST(LivingFoam, NeedsATime) {
+    const auto sea = std::make_shared<const Sea<float>>(
+        make_plan(scene_of(4.0), {filtered(products(Product::Coverage), 0.5)}, {.living_foam = true}));
+    FoamHistory<float> history(sea);
+    const glm::vec2 rest(0.0f);
+    EXPECT_THROW(history.prepare({.count = 1, .rest_m = {&rest}}, 0), std::invalid_argument);
 }
 
 // Off, there is nothing of it.

@@ -32,6 +32,10 @@ TEST(Presets, EveryOneIsAValidSceneOfItsOwn) {
         Scene after = scene;
         apply(presets().back(), after);
         apply(preset, after);
+        Scene tall;
+        tall.sea.significant_height_m = 1.0;
+        apply(preset, tall);
+        EXPECT_FALSE(tall.sea.significant_height_m) << preset.name;
         if (preset.group == PresetGroup::Sea) {
             EXPECT_EQ(shot_text(after, Scene{}), shot_text(scene, Scene{})) << preset.name;
         }

@@ -64,7 +64,7 @@ TEST(Jonswap, HeightsAreTheGrowthLaws) {
                 state.fetch_m = fetch;
                 state.short_waves = short_waves;
                 const double hs = 4.0 * std::sqrt(DirectionalSpectrum(state).m0());
-                // The issue allows 10 %; what the joined tail changes is below 2 %.
+                // Target: 10 %; what the joined tail changes is below 2 %.
                 EXPECT_NEAR(hs / grown_height_m(wind, fetch), 1.0, 0.02) << wind << " m/s, " << fetch << " m";
             }
 }

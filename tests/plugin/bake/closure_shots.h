@@ -54,6 +54,16 @@ inline BaseShot patch_shot() {
     return base;
 }
 
+// Foam that lives, by the law that knows the air's temperature.
+inline BaseShot foam_shot() {
+    BaseShot base{.name = "living foam", .scene = small_shot()};
+    base.scene.effects.foam_decay_s = 0.5;
+    base.scene.effects.whitecap_law = WhitecapLaw::Monahan1986;
+    base.scene.output.maps = {MapKind::Whitecaps};
+    base.tables = {"shot", "sea", "effects"};
+    return base;
+}
+
 inline BaseShot trains_shot() {
     BaseShot base{.name = "trains over cascades, as text", .scene = small_shot()};
     base.scene.waves.model = WaveModel::Trochoid;

@@ -337,6 +337,9 @@ class Closure : public ::testing::Test {
 TEST_F(Closure, OfAPatch) {
     expect_closed(patch_shot());
 }
+TEST_F(Closure, OfFoamThatLives) {
+    expect_closed(foam_shot());
+}
 TEST_F(Closure, OfTrainsOverCascades) {
     expect_closed(trains_shot());
 }
@@ -380,8 +383,8 @@ TEST_F(Closure, APictureOfTheSkyCountsByItsContent) {
 // A key of which no base shot has another value would be left out in silence.
 TEST(ClosureEdits, ChangeEveryKeyThatHasAnotherValue) {
     std::set<std::string> changed;
-    for (const BaseShot& base : {patch_shot(), trains_shot(), grid_shot(), automatic_shot(), buoy_shot(),
-                                 daylight_shot(), sky_shot({"one.exr", "two.exr"})})
+    for (const BaseShot& base : {patch_shot(), foam_shot(), trains_shot(), grid_shot(), automatic_shot(),
+                                 buoy_shot(), daylight_shot(), sky_shot({"one.exr", "two.exr"})})
         for (const Edit& edit : edits_of(base)) changed.insert(edit.key);
     for (const Key& key : keys()) {
         const auto built = std::count_if(key.choices.begin(), key.choices.end(),

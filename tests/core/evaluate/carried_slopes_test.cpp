@@ -116,7 +116,7 @@ std::array<Bin, 20> by_compression(WaveModel model) {
     return bins;
 }
 
-// Issue 14's table: within 10 % in each twentieth of the facets, by compression. At rest × 0.7 … 1.4.
+// Target: within 10 % in each twentieth of the facets, by compression. At rest × 0.7 … 1.4.
 TEST(CarriedSlopes, AreThoseOfAFineMeshByCompression) {
     for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
         double low = 1e9, high = 0.0, low_rest = 1e9, high_rest = 0.0;

@@ -38,7 +38,7 @@ class PreparedQuery {
         std::vector<GridArgs<T>> grids;  // where the origin lies stands in Place
         std::vector<int> of_cascade;     // index into grids; −1: nothing passes
         std::vector<bool>
-            breaks_alike;  // by grid: whether the query's first pixel and breaking levels share theirs
+            breaks_alike;  // by grid: whether normals and breaking at the first footprint share theirs
     };
     // Where the points' origin lies.
     struct Place {

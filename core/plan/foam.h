@@ -1,7 +1,7 @@
 // Foam that lives: what the waves that broke have left, as core/effects keeps it.
 //
 // A point's residual foam is a sum over intervals of absolute time, [n, n + 1] · step_s, of the share of its surroundings
-// that broke then, each with the mean of e^{−age/decay} over the interval. Which intervals and where their sources lie
+// that broke then, each with the integral of e^{−age/decay} over the interval. Which intervals and where their sources lie
 // depends on the scene alone: a frame alone has the foam that it has in a run.
 #pragma once
 

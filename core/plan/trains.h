@@ -1,6 +1,6 @@
 // Which wave trains a scene has: how many, and between which wavelengths.
 //
-// The trains' wavelengths are a geometric progression (Bruneton, Neyret, Holzschuch 2010, §7.1): the range
+// The bins' edges are a geometric progression (as the trains of Bruneton, Neyret, Holzschuch 2010, §7.1): the range
 // from longest_m down to shortest_m is cut into `count` bins of equal ratio. A train has the energy of its bin and the
 // mean wavenumber there, weighted by energy: in the middle of a wide bin, where few trains have much to stand for, it
 // would be steeper than the waves that it stands for. What the spectrum holds outside the range is not sampled: it is

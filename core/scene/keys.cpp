@@ -227,7 +227,7 @@ void add_waves(Built& out) {
                                        .range = limits::kBandGain,
                                        .soft = SoftRange{0.0, 3.0}})),
         row<&Waves::trains>({.name = "trains",
-                             .help = "with trochoid: how many, their wavelengths in geometric progression",
+                             .help = "with trochoid: how many, one from each bin of a geometric progression of wavelengths",
                              .range = limits::kTrains,
                              .soft = SoftRange{1.0, 1000.0, true},
                              .feeds = kWaves}),

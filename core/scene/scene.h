@@ -119,7 +119,7 @@ struct Waves {
     // waves that are shorter than the trains.
     std::vector<CascadeSize> cascades;
     std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
-    // With WaveModel::Trochoid. Wavelengths in geometric progression; without a value, the range is the
+    // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).
     int trains = 60;  // 1 … 10000
     std::optional<double> shortest_m, longest_m;

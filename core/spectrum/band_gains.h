@@ -8,8 +8,9 @@
 
 namespace pelagic {
 
-// Each band's gain counts whole between its edges and not at all outside them. At an edge it goes from one to the other
-// by a quintic in ln λ, a third of an octave wide: twice differentiable. Where bands overlap, gains multiply.
+// Each band's gain counts whole between its edges and not at all outside them. About an edge, where half of it counts, it goes
+// from one to the other by a quintic in ln λ, a third of an octave wide (a narrower band never has its whole gain): twice
+// differentiable. Where bands overlap, gains multiply.
 class BandGains {
   public:
     BandGains() = default;

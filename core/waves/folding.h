@@ -1,4 +1,4 @@
-// How much of a sea folds over itself: choppiness moves crests together until they cross.
+// What is wrong with a sea as a whole: choppiness moves crests together until they cross, troughs may lie under the bed.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace pelagic {
 double folded_share(const DirectionalSpectrum& spectrum, double choppiness);
 
 // What an artist should know of a sea before it is built, a sentence each: a surface that folds over itself on more than 5 %
-// of its area, and the choppiness that leaves that much.
+// of its area, and the choppiness that leaves that much; troughs deeper than the water.
 std::vector<std::string> sea_warnings(const PreparedScene& prepared);
 
 }  // namespace pelagic

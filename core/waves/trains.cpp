@@ -154,6 +154,8 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
     const double choppiness = scene.waves.choppiness, loop_s = scene.shot.sea_loop_s();
     const FootprintFilter filter;
     const Breaking breaking = breaking_of(scene, filter);
+    Breaking unscaled = breaking;
+    unscaled.choppiness = 1.0;
     const Dispersion& dispersion = spectrum.dispersion();
     Trains<T> trains;
     for (int i = 0; i < plan.count; ++i) {
@@ -210,8 +212,6 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
         trains.alone.push_back(alone);
         trains.wavelength.push_back(static_cast<T>(wavelength_m));
         trains.hidden_alone.push_back(hidden_moments<T>(alone));
-        const Breaking unscaled{
-            .from_m = breaking.from_m, .footprint_m = breaking.footprint_m, .choppiness = 1.0};
         SpectralMoments beyond = beyond_train(
             moments_with_breaking(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1), unscaled),
             k, dispersion.horizontal_ratio(k), breaks);

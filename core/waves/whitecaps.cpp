@@ -33,7 +33,7 @@ double calibrated_threshold(const SpectralMoments& breaking, double law_coverage
     constexpr double kNoFoam = 1e-9;  // a square millimetre in a thousand square metres
     if (law_coverage < kNoFoam || !(j.variance > 0.0)) return -std::numeric_limits<double>::infinity();
     constexpr double kLeastPressed = 0.1;
-    double low = 0.0, high = std::max(1.0 - kLeastPressed * choppiness, 0.0);
+    double low = 0.0, high = 1.0 - kLeastPressed * std::min(choppiness, 1.0);
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
         const double active = coverage(j, middle, third_moment);

@@ -90,7 +90,8 @@ inline double residual_coverage(const JacobianMoments<double>& j, double thresho
 }
 
 // The threshold ε, below 1, at which the waves that break have that coverage, where the law is within reach: a trochoid
-// pressed together to J = 0.9 has a steepness of 0.1, and none breaks below that. So a sea without long enough waves has no
+// pressed together to J = 0.9 has a steepness of 0.1, and none breaks below that (more choppiness than the trochoid's own
+// presses gentler waves as much, and they may break as well). So a sea without long enough waves has no
 // foam, and water that is stretched never has. −∞ (no foam) without coverage or without such waves. choppiness: theirs
 // (Breaking). `third_moment`: as coverage() will be called. Where foam lives, what breaks now and what is left of what broke
 // have that coverage together.

@@ -257,6 +257,21 @@ TEST(CalibratedThreshold, GivesTheObservedCoverageOfTheWholeSea) {
     EXPECT_EQ(calibrated_threshold({}, 0.01, 1.0, true), -std::numeric_limits<double>::infinity());
 }
 
+// However far crests are moved together, a sea that breaks has foam.
+TEST(Whitecaps, OfEveryChoppinessHaveFoam) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 14.0;
+    const double law = law_coverage(scene);
+    for (const double choppiness : {0.5, 1.0, 2.0, 4.0, 8.0, 9.0, 10.0}) {
+        SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.0, 6.0);
+        m.scale_strain(choppiness * choppiness);
+        const auto j =
+            jacobian_moments(0.0, 0.0, 0.0, HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
+        const double foam = coverage(j, calibrated_threshold(m, law, choppiness, true), true);
+        EXPECT_NEAR(foam, law, 1e-6 * law) << choppiness;
+    }
+}
+
 // Each in percent at a few winds, from its paper's formula.
 TEST(WhitecapLaws, AreThePapers) {
     struct Seen {

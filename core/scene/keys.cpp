@@ -226,11 +226,12 @@ void add_waves(Built& out) {
                                        .help = "of their amplitudes: 0 leaves them out, 2 doubles them",
                                        .range = limits::kBandGain,
                                        .soft = SoftRange{0.0, 3.0}})),
-        row<&Waves::trains>({.name = "trains",
-                             .help = "with trochoid: how many, one from each bin of a geometric progression of wavelengths",
-                             .range = limits::kTrains,
-                             .soft = SoftRange{1.0, 1000.0, true},
-                             .feeds = kWaves}),
+        row<&Waves::trains>(
+            {.name = "trains",
+             .help = "with trochoid: how many, one from each bin of a geometric progression of wavelengths",
+             .range = limits::kTrains,
+             .soft = SoftRange{1.0, 1000.0, true},
+             .feeds = kWaves}),
         row<&Waves::shortest_m>(
             {.name = "shortest_m",
              .help =

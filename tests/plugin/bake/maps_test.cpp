@@ -33,6 +33,7 @@ class BakedMaps : public ::testing::Test {
         scene_.shot.last_frame = 1;
         scene_.sea.wind_speed_mps = 12.0;
         scene_.waves.cascades = {{.size_m = 600.0, .resolution = 128}};
+        scene_.waves.tiling = Tiling::Periodic;  // the patch is a period
         scene_.surface = {.size_m = 600.0, .resolution = 4};
         scene_.output.mesh = MeshFormat::None;
         scene_.output.map_resolution = 128;
@@ -215,8 +216,7 @@ double between_texels(const test::Plane& tile, double x, double y) {
         std::vector<double> w;
         for (int i = 0; i < tile.n; ++i) {
             const double u = kPi * (at - i), tangent = std::tan(u / tile.n);
-            w.push_back(std::abs(tangent) < 1e-12 ? std::cos(u) * std::cos(u / tile.n)
-                                                  : std::sin(u) / tangent / tile.n);
+            w.push_back(std::abs(tangent) < 1e-12 ? std::cos(u) : std::sin(u) / tangent / tile.n);
         }
         return w;
     };

@@ -170,7 +170,7 @@ FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
     if (!sea_->plan().foam) throw std::invalid_argument("foam that doesn't live has no history");
     foam_ = *sea_->plan().foam;
     const FoamPlan::Weight all = foam_.weight(0.0, foam_.window_s);
-    mean_ = static_cast<float>(std::min(sea_->residual_coverage(), 1.0));
+    mean_ = static_cast<float>(std::min(sea_->left_coverage(), 1.0));
     mean_age_s_ = static_cast<float>(all.age_s2 / all.foam_s);
 }
 
@@ -408,7 +408,7 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& 
               [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
                   for (std::size_t i = 0; i < foam.size(); ++i) {
                       const float active = results.coverage[first + i];
-                      const float residual = std::min(foam[i], 1.0f) * (1.0f - active);
+                      const float residual = residual_foam(foam[i], active);
                       const float total = active + residual;
                       results.coverage[first + i] = total;
                       if (results.active) results.active[first + i] = active;

@@ -47,8 +47,8 @@ class FoamHistory {
     // back from here the next times go, as a shutter's moments do: what is begun anew begins so much earlier.
     void set(double t_s, double back_s = 0.0);
 
-    // Makes what add() will read at these points: where add() is called for a few at a time, it needn't take the earlier
-    // times again for each. `query`: of the sea's plan, whose footprint points without their own have. Where it has to go
+    // Makes what add() will read at these points, which are all that is asked for at this time: where add() is called for a few
+    // at a time, it needn't take the earlier times again for each. What only other times' points read is let go. `query`: of the sea's plan, whose footprint points without their own have. Where it has to go
     // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may
     // be asked again.
     void prepare(const Points<T>& points, int query, const BuildWatch& watch = {});
@@ -57,7 +57,7 @@ class FoamHistory {
     // `watch`: as prepare()'s.
     void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
 
-    // Bytes of all tiles: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
+    // Bytes of all tiles, and of the seas that they are sampled from: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
     std::size_t held_bytes() const;
 
   private:
@@ -75,7 +75,7 @@ class FoamHistory {
 
     bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
     template <class Use>
-    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use);
+    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, bool is_all, const Use& use);
     bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
               std::vector<Place>& missing) const;
     void make(std::vector<Place>& places, const BuildWatch& watch);

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "core/base/buffer.h"
@@ -27,6 +28,10 @@ constexpr int kSamples = 6;         // that an interval is known by: from two be
 std::size_t modulo(std::int64_t n, std::size_t by) {
     const auto rest = n % static_cast<std::int64_t>(by);
     return static_cast<std::size_t>(rest < 0 ? rest + static_cast<std::int64_t>(by) : rest);
+}
+
+auto order_of(const FoamPlace& place) {
+    return std::tuple(place.level, place.y, place.x);
 }
 
 // The sea seen through the cells of one level.
@@ -127,14 +132,11 @@ class FoamHistory<T>::Locator {
   private:
     FoamRung rung_of(std::size_t i) const {
         if (!points_.pixel_m) return whole_;
-        auto footprint_m = static_cast<float>(points_.pixel_m[i]);
-        if (points_.pixel_axis_m) {
-            // An ellipse counts as the circle of its area.
-            const glm::vec<2, T> axis = points_.pixel_axis_m[i];
-            const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
-            if (length_m > footprint_m) footprint_m = std::sqrt(footprint_m * length_m);
-        }
-        return foam_rung(foam_, footprint_m);
+        const auto width_m = static_cast<float>(points_.pixel_m[i]);
+        if (!points_.pixel_axis_m) return foam_rung(foam_, width_m);
+        const glm::vec<2, T> axis = points_.pixel_axis_m[i];
+        const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
+        return foam_rung(foam_, foam_footprint_m(width_m, length_m));
     }
 
     // Of a place that is counted in cells: its node in the tile, the tile, and the way to the next node.
@@ -282,20 +284,41 @@ void FoamHistory<T>::prepare(const Points<T>& points, int query) {
     for_parts(points, query, [](std::size_t, std::span<const float>, std::span<const float>) {});
 }
 
-// Brings the tiles of the time before to this one.
 template <class T>
-void FoamHistory<T>::renew() {
-    if (is_renewed_) return;
-    is_renewed_ = true;
-    std::vector<Place> places;
-    for (const auto& [place, tile] : tiles_) places.push_back(place);
-    make(places);
+bool FoamHistory<T>::prepare(std::vector<FoamPlace> places, const std::atomic<bool>* cancel) {
+    if (leaves_nothing()) return true;
+    if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
+    if (!renew(cancel) || !make(places, cancel)) return false;
+    for (const FoamPlace& place : places) tiles_.at(place)->used.store(round_, std::memory_order_relaxed);
+    return true;
 }
 
 template <class T>
-void FoamHistory<T>::make(std::vector<Place>& places) {
-    const auto key = [](const Place& p) { return std::tuple(p.level, p.y, p.x); };
-    std::sort(places.begin(), places.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
+std::vector<FoamNodes> FoamHistory<T>::nodes() const {
+    std::vector<FoamNodes> nodes;
+    for (const auto& [place, tile] : tiles_)
+        if (tile->used.load() == round_ && tile->is_of(time_s_))
+            nodes.push_back({place, tile->foam.data(), tile->foam.data() + kStride});
+    std::sort(nodes.begin(), nodes.end(),
+              [](const FoamNodes& a, const FoamNodes& b) { return order_of(a.place) < order_of(b.place); });
+    return nodes;
+}
+
+// Brings the tiles of the time before to this one.
+template <class T>
+bool FoamHistory<T>::renew(const std::atomic<bool>* cancel) {
+    if (is_renewed_) return true;
+    is_renewed_ = true;
+    std::vector<Place> places;
+    for (const auto& [place, tile] : tiles_) places.push_back(place);
+    return make(places, cancel);
+}
+
+// False where it was cancelled.
+template <class T>
+bool FoamHistory<T>::make(std::vector<Place>& places, const std::atomic<bool>* cancel) {
+    std::sort(places.begin(), places.end(),
+              [](const Place& a, const Place& b) { return order_of(a) < order_of(b); });
     places.erase(std::unique(places.begin(), places.end()), places.end());
     std::vector<Tile*> old;
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
@@ -304,8 +327,8 @@ void FoamHistory<T>::make(std::vector<Place>& places) {
         if (!tile) tile = std::make_unique<Tile>(place, kept);
         if (!tile->is_of(time_s_)) old.push_back(tile.get());
     }
-    if (old.empty()) return;
-    advance(old);
+    if (old.empty()) return true;
+    if (!advance(old, cancel)) return false;
     tbb::parallel_for(std::size_t(0), old.size(), [&](std::size_t i) {
         Tile& tile = *old[i];
         std::vector<FoamShares> shares;
@@ -318,11 +341,13 @@ void FoamHistory<T>::make(std::vector<Place>& places) {
         tile.made_at = time_s_;
         tile.is_made = true;
     });
+    return true;
 }
 
 // Takes the samples that the tiles lack. The interval after sample n is known by samples n − 2 … n + 3.
 template <class T>
-void FoamHistory<T>::advance(const std::vector<Tile*>& tiles) {
+bool FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const std::atomic<bool>* cancel) {
+    const auto is_cancelled = [&] { return cancel && cancel->load(std::memory_order_relaxed); };
     const auto kept = static_cast<std::int64_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
     std::int64_t from = last_ + 4;
     for (Tile* tile : tiles) {
@@ -341,8 +366,12 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles) {
                 if (tile->place.level == l && tile->next == n) due.push_back(tile);
             if (due.empty()) continue;
             level(l).frame.set(static_cast<double>(n) * foam_.step_s);
-            tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) { sample(*due[i], n); });
+            tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) {
+                if (!is_cancelled()) sample(*due[i], n);
+            });
+            if (is_cancelled()) return false;
         }
+    return true;
 }
 
 template <class T>

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -36,6 +37,19 @@ struct FoamResults {
         age_s{};  // the mean age of the foam that is there, what breaks counting as 0 [s], or no view
 };
 
+// A tile of a level's cells: its first node is kTileCells · (x, y) cells from the drifting water's origin.
+struct FoamPlace {
+    int level = 0;
+    std::int64_t x = 0, y = 0;
+    bool operator==(const FoamPlace&) const = default;
+};
+
+// What a tile has at its nodes, rows of kTileCells + 1: what add() reads, for who reads it elsewhere.
+struct FoamNodes {
+    FoamPlace place;
+    const float *foam, *foam_age;  // residual foam, not limited to 1, and that times its age [s]
+};
+
 template <class T>
 class FoamHistory {
   public:
@@ -49,6 +63,16 @@ class FoamHistory {
     // Makes what add() will read at these points: where add() is called for a few at a time, it needn't take the earlier
     // times again for each. `query`: of the sea's plan, whose footprint points without their own have.
     void prepare(const Points<T>& points, int query);
+    // The same for whole tiles. False where `cancel`, set from elsewhere, has ended it: what is done is kept.
+    bool prepare(std::vector<FoamPlace> places, const std::atomic<bool>* cancel = nullptr);
+    // The tiles that were asked for since set(), in order. They last until the next call of anything else.
+    std::vector<FoamNodes> nodes() const;
+    const FoamPlan& plan() const { return foam_; }
+    // How far the foam has drifted from where it was at time 0 [m].
+    glm::dvec2 drifted_m() const { return foam_.drift_mps * time_s_; }
+    // Beyond the last level: residual foam, and that times its age [s].
+    float mean() const { return mean_; }
+    float mean_times_age_s() const { return mean_ * mean_age_s_; }
 
     // Adds to answers of evaluate() what earlier breaking has left. On all threads of the calling arena, one call at a time.
     void add(const Points<T>& points, int query, const FoamResults& results);
@@ -59,11 +83,7 @@ class FoamHistory {
   private:
     struct Level;
     struct Tile;
-    struct Place {
-        int level;
-        std::int64_t x, y;
-        bool operator==(const Place&) const = default;
-    };
+    using Place = FoamPlace;
     struct HashOf {
         std::size_t operator()(const Place& place) const;
     };
@@ -74,9 +94,9 @@ class FoamHistory {
     void for_parts(const Points<T>& points, int query, const Use& use);
     bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
               std::vector<Place>& missing) const;
-    void make(std::vector<Place>& places);
-    void renew();
-    void advance(const std::vector<Tile*>& tiles);
+    bool make(std::vector<Place>& places, const std::atomic<bool>* cancel = nullptr);
+    bool renew(const std::atomic<bool>* cancel = nullptr);
+    bool advance(const std::vector<Tile*>& tiles, const std::atomic<bool>* cancel);
     void sample(Tile& tile, std::int64_t n) const;
     Level& level(int index);
 

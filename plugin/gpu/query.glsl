@@ -28,6 +28,12 @@ vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
     return vec3(hidden.xx, hidden.yy, hidden.xy);
 }
 
+struct AllFoam {
+    float coverage;  // of all foam
+    float breaking;  // of what breaks now
+    float age_s;     // of what earlier breaking has left, on average
+};
+
 struct PixelAnswer {
     vec3 normal;
     vec3 slope_variance, slope_variance_at_rest;  // of what is hidden: xx, yy, xy

@@ -5,6 +5,7 @@
 
 #include "core/lighting/air.h"
 #include "core/plan/taps.h"
+#include "plugin/gpu/packed_foam.h"
 
 namespace pelagic {
 namespace {
@@ -44,6 +45,12 @@ std::string picture_constants(const DrawOptions& options) {
     return constant("kLayers", options.layers) + constant("kWireframe", options.wireframe) +
            constant("kFalseColour", static_cast<int>(options.false_colour)) +
            constant("kAirSky", options.sky_from_air);
+}
+
+std::string foam_constants() {
+    return constant("kFoamLevels", FoamPlan::kLevels) +
+           constant("kFoamTileCells", FoamPlan::kTileCells) +
+           constant("kFoamTilesAcross", PackedFoam::kTilesAcross);
 }
 
 }  // namespace
@@ -128,11 +135,13 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     lighting.sky = lighting.sky && sky_map_size > 0;
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
+    const bool lives = coverage && layout.has_living_foam();
     return {query_constants(layout, coverage) + lighting_constants(lighting, sky_map_size) +
-                picture_constants(options),
+                picture_constants(options) + (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options) ? std::vector<std::string_view>{"plugin/gpu/full_vertex.glsl"}
                                        : joined({query_files(), {vertex_file(options)}}),
             joined({query_files(),
+                    {lives ? "plugin/gpu/foam_history.glsl" : "plugin/gpu/foam_active.glsl"},
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
                     {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "core/lighting/place.glsl",

@@ -206,8 +206,7 @@ std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
 }
 
 bool same_light(const Scene& a, const Scene& b) {
-    const FeedSet light = feeds(Feed::Light, Feed::Water);
-    return canonical(a, light) == canonical(b, light);
+    return light_content(a) == light_content(b);
 }
 
 class Preview {

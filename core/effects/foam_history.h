@@ -57,14 +57,17 @@ class FoamHistory {
     explicit FoamHistory(std::shared_ptr<const Sea<T>> sea);
     ~FoamHistory();
 
-    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what the times before have in common with it.
-    void set(double t_s);
+    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what the times before have in common with it. `back_s`: how far
+    // back from here the next times go, as a shutter's moments do: what is begun anew begins so much earlier.
+    void set(double t_s, double back_s = 0.0);
 
     // Makes what add() will read at these points: where add() is called for a few at a time, it needn't take the earlier
-    // times again for each. `query`: of the sea's plan, whose footprint points without their own have.
-    void prepare(const Points<T>& points, int query);
-    // The same for whole tiles. False where `cancel`, set from elsewhere, has ended it: what is done is kept.
-    bool prepare(std::vector<FoamPlace> places, const std::atomic<bool>* cancel = nullptr);
+    // times again for each. `query`: of the sea's plan, whose footprint points without their own have. Where it has to go
+    // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may
+    // be asked again.
+    void prepare(const Points<T>& points, int query, const BuildWatch& watch = {});
+    // The same for whole tiles.
+    void prepare(std::vector<FoamPlace> places, const BuildWatch& watch = {});
     // The tiles that were asked for since set(), in order. They last until the next call of anything else.
     std::vector<FoamNodes> nodes() const;
     const FoamPlan& plan() const { return foam_; }
@@ -75,7 +78,8 @@ class FoamHistory {
     float mean_times_age_s() const { return mean_ * mean_age_s_; }
 
     // Adds to answers of evaluate() what earlier breaking has left. On all threads of the calling arena, one call at a time.
-    void add(const Points<T>& points, int query, const FoamResults& results);
+    // `watch`: as prepare()'s.
+    void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
 
     // Bytes of all tiles: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
     std::size_t held_bytes() const;
@@ -91,12 +95,12 @@ class FoamHistory {
 
     bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
     template <class Use>
-    void for_parts(const Points<T>& points, int query, const Use& use);
+    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use);
     bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
               std::vector<Place>& missing) const;
-    bool make(std::vector<Place>& places, const std::atomic<bool>* cancel = nullptr);
-    bool renew(const std::atomic<bool>* cancel = nullptr);
-    bool advance(const std::vector<Tile*>& tiles, const std::atomic<bool>* cancel);
+    void make(std::vector<Place>& places, const BuildWatch& watch);
+    void renew(const BuildWatch& watch);
+    void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n) const;
     Level& level(int index);
 
@@ -108,6 +112,7 @@ class FoamHistory {
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea
     double time_s_ = 0.0;
     std::int64_t first_ = 0, last_ = -1;  // the intervals that count now
+    std::int64_t begin_ = 0;              // the first of a tile that is begun now
     struct IntervalWeight {
         float foam, age;
     };

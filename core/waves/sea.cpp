@@ -128,7 +128,7 @@ void Sea<T>::calibrate_whitecaps() {
         calibrated_threshold(total_, law_coverage(plan_.from->scene), plan_.breaking.choppiness, third, life);
     if (!plan_.foam || !std::isfinite(whitecap_threshold_)) return;
     const auto j = jacobian_moments<double>(
-        0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
+        0.0, 0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
     foam_left_per_s_ = life.left_per_s(breaking_deviate(j, whitecap_threshold_, third));
     residual_coverage_ = pelagic::residual_coverage(j, whitecap_threshold_, third, life);
 }

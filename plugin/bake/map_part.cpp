@@ -43,11 +43,13 @@ class MapPart final : public OutputPart {
     }
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MapSlot>(); }
 
-    void compute(const Frame<float>& sea, FoamHistory<float>* foam, int, OutputSlot& slot) override {
-        compute_as(single_, sea, foam, static_cast<MapSlot&>(slot));
+    void compute(const Frame<float>& sea, FoamHistory<float>* foam, int, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(single_, sea, foam, static_cast<MapSlot&>(slot), watch);
     }
-    void compute(const Frame<double>& sea, FoamHistory<double>* foam, int, OutputSlot& slot) override {
-        compute_as(wide_, sea, foam, static_cast<MapSlot&>(slot));
+    void compute(const Frame<double>& sea, FoamHistory<double>* foam, int, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(wide_, sea, foam, static_cast<MapSlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
@@ -115,7 +117,8 @@ class MapPart final : public OutputPart {
     };
 
     template <class T>
-    void compute_as(State<T>& state, const Frame<T>& sea, FoamHistory<T>* foam, MapSlot& slot) {
+    void compute_as(State<T>& state, const Frame<T>& sea, FoamHistory<T>* foam, MapSlot& slot,
+                    const BuildWatch& watch) {
         if (!state.rest)
             state.rest = squares_->points<T>({.per_side = n_,
                                               .spacing_m = query().lattice->spacing_m,
@@ -123,7 +126,7 @@ class MapPart final : public OutputPart {
         const Points<T> points{.count = state.rest->size(), .rest_m = {state.rest->data()}};
         state.runner.run(sea, output_.query, points, slot.values);
         // A cascade's own tile is a part of the sea, and has no history of all of it.
-        if (!output_.cascade) add_foam(foam, points, slot);
+        if (!output_.cascade) add_foam(foam, points, slot, watch);
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
         if (kind_ == MapKind::SlopeVariance) find_hidden(state, sea, slot);
     }

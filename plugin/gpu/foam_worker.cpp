@@ -30,7 +30,7 @@ std::shared_ptr<const PackedFoam> FoamWorker::make(const Asked& asked) {
         const std::vector<FoamPlace> own = foam_places(history_.plan(), history_.drifted_m(), *grid);
         places.insert(places.end(), own.begin(), own.end());
     }
-    if (!history_.prepare(std::move(places), &cancel_)) return nullptr;
+    history_.prepare(std::move(places), {.cancel = &cancel_});
     return std::make_shared<const PackedFoam>(history_);
 }
 

@@ -20,6 +20,7 @@ PackedFoam::PackedFoam(const FoamHistory<float>& history)
       mean_times_age_s_(history.mean_times_age_s()),
       cells_per_m_(static_cast<float>(1.0 / history.plan().cell_m)) {
     const std::vector<FoamNodes> tiles = history.nodes();
+    tiles_ = tiles.size();
     pages_size_ = {1, 0};
     for (int level = 0; level < FoamPlan::kLevels; ++level) {
         Box& box = boxes_[static_cast<std::size_t>(level)];

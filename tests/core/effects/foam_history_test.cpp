@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -197,6 +198,48 @@ TEST(LivingFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     Shown<> single(sea);
     expect_same(single.at(5.2, points), cold);
+}
+
+// A time far from those before says how far it is; a step, and a shutter's moments, have no past to go through.
+TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
+    const auto sea = sea_of(scene_of(2.0), 0.7);
+    const auto rest_m = square(50, 0.9);
+    const Points<float> points{.count = rest_m.size(), .rest_m = {rest_m.data()}};
+    FoamHistory<float> history(sea);
+    std::vector<double> told;
+    std::atomic<bool> enough = false;
+    const BuildWatch watch{.progress = [&](double done) { told.push_back(done); }, .cancel = &enough};
+    const double shutter_s = 2.5 * sea->plan().foam->step_s;
+    history.set(9.0, shutter_s);
+    history.prepare(points, 0, watch);
+    EXPECT_GT(told.size(), 10u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_EQ(told.back(), 1.0);
+    told.clear();
+    for (const double back_s : {shutter_s, 0.3 * shutter_s, -0.02}) {
+        history.set(9.0 - back_s);
+        history.prepare(points, 0, watch);
+    }
+    EXPECT_TRUE(told.empty());
+    // What was gone through is kept: as far as it was, it needn't begin again.
+    const BuildWatch half{.progress =
+                              [&](double done) {
+                                  told.push_back(done);
+                                  enough = done > 0.5;
+                              },
+                          .cancel = &enough};
+    history.set(50.0);
+    EXPECT_THROW(history.prepare(points, 0, half), BuildCancelled);
+    const std::size_t first = told.size();
+    enough = false;
+    history.set(50.01);
+    history.prepare(points, 0, watch);
+    EXPECT_LT(told.size() - first, first + 3);
+    Shown<> other(sea);
+    const Foam whole = other.at(50.01, rest_m);
+    std::vector<float> total(whole.active);
+    history.add(points, 0, {.coverage = {total.data()}});
+    EXPECT_EQ(total, whole.total);
 }
 
 TEST(LivingFoam, OfALoopCloses) {

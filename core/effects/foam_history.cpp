@@ -344,7 +344,6 @@ void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
         tile.made_at = time_s_;
         tile.is_made = true;
     });
-    return true;
 }
 
 // Takes the samples that the tiles lack. The interval after sample n is known by samples n − 2 … n + 3.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <glm/ext/vector_int2_sized.hpp>
 #include <glm/geometric.hpp>
-#include <glm/common.hpp>
 
 namespace pelagic {
 namespace {

@@ -48,8 +48,7 @@ std::string picture_constants(const DrawOptions& options) {
 }
 
 std::string foam_constants() {
-    return constant("kFoamLevels", FoamPlan::kLevels) +
-           constant("kFoamTileCells", FoamPlan::kTileCells) +
+    return constant("kFoamLevels", FoamPlan::kLevels) + constant("kFoamTileCells", FoamPlan::kTileCells) +
            constant("kFoamTilesAcross", PackedFoam::kTilesAcross);
 }
 

@@ -181,8 +181,8 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
 namespace {
 
 // What the waves that broke before have left where the picture's pixels are.
-void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s, const View& view,
-                 const ProjectedGrid& grid) {
+void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s,
+                 const View& view, const ProjectedGrid& grid) {
     const SeaRenderer::ShownPoints shown = renderer.shown_points(view, grid);
     FoamHistory<float> history(sea);
     history.set(time_s);
@@ -216,10 +216,11 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky) 
     const LightingChoice lighting = render_options(planned.scene).lighting;
     const bool lives = planned.plan.foam && lighting.whitecaps;
     if (lives) upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.grid);
-    renderer.draw(view, planned.grid,
-                  {.lighting = lighting,
-                   .foam = make_foam(planned.scene, lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
-                   .layers = true});
+    renderer.draw(
+        view, planned.grid,
+        {.lighting = lighting,
+         .foam = make_foam(planned.scene, lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
+         .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (quality_of(planned.scene.quality.level).double_precision)
         drawn.note =

@@ -415,7 +415,8 @@ SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const Proje
     of.draw_points(view, grid);
     of.end_picture();
     glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
-    const auto count = static_cast<std::size_t>(view.resolution.x) * static_cast<std::size_t>(view.resolution.y);
+    const auto count =
+        static_cast<std::size_t>(view.resolution.x) * static_cast<std::size_t>(view.resolution.y);
     std::array<std::vector<glm::vec4>, 2> texels;
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     for (std::size_t i = 0; i < texels.size(); ++i) {

@@ -14,7 +14,17 @@
 namespace pelagic {
 namespace {
 
-enum Unit : int { kCellFields, kPixelFields, kPixelFields2, kEllipseTable, kTrainTable, kTrainCycles, kFoamNodes, kFoamPages, kFoamLevels };
+enum Unit : int {
+    kCellFields,
+    kPixelFields,
+    kPixelFields2,
+    kEllipseTable,
+    kTrainTable,
+    kTrainCycles,
+    kFoamNodes,
+    kFoamPages,
+    kFoamLevels
+};
 
 }  // namespace
 

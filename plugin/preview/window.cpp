@@ -514,8 +514,9 @@ class Preview {
         smooth(readout_.times.grid_ms, milliseconds_since(start));
         follow_foam(view, grid);
         const Sea<float>& sea = *frame_->build->sea;
-        controls_.draw.foam = make_foam(
-            controls_.scene, sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
+        controls_.draw.foam =
+            make_foam(controls_.scene,
+                      sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
         renderer_.draw(view, *grid, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);

@@ -159,9 +159,9 @@ class GpuSea {
           made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(scene)),
-          sea_(std::make_shared<const Sea<float>>(
-              make_plan(prepared_, {query_of(*prepared_, finest_m)},
-                        {.double_precision = false, .living_foam = true}), watch)),
+          sea_(std::make_shared<const Sea<float>>(make_plan(prepared_, {query_of(*prepared_, finest_m)},
+                                                            {.double_precision = false, .living_foam = true}),
+                                                  watch)),
           frame_(sea_),
           packed_(sea_, 0) {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
@@ -277,8 +277,7 @@ class GpuSea {
     }
 
     py::dict foam(const Scene& scene, std::array<double, 2> origin_m) const {
-        const double active =
-            foam_worker_ ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
+        const double active = foam_worker_ ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
         return dict_of(foam_uniforms(foam_pattern(make_foam(scene, active), checked_origin(origin_m))));
     }
 
@@ -410,7 +409,8 @@ void add_gpu_grid(py::module_& module) {
             "size", [](const GpuGrid& self) { return py::make_tuple(self.grid->columns, self.grid->rows); },
             "(columns, rows) of cells.")
         .def_property_readonly(
-            "origin_m", [](const GpuGrid& self) { return py::make_tuple(self.grid->origin_m.x, self.grid->origin_m.y); },
+            "origin_m",
+            [](const GpuGrid& self) { return py::make_tuple(self.grid->origin_m.x, self.grid->origin_m.y); },
             "(x, y) [m], in double precision: vertices are relative to it.")
         .def_property_readonly(
             "curvature_per_m", [](const GpuGrid& self) { return self.grid->curvature_per_m; },
@@ -485,18 +485,23 @@ void add_viewport(py::module_& module) {
             "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"),
             "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea serves has it, for a grid's "
             "origin [m].")
-        .def_property_readonly("has_living_foam", &GpuSea::has_living_foam,
-                               "Whether earlier breaking leaves foam: then the shader has the textures of take_foam() and "
-                               "foam_levels().")
-        .def("ask_foam", &GpuSea::ask_foam, py::arg("t"), py::arg("grids"),
-             "Wants what earlier breaking has left at a time t [s] where these GpuGrids are. It is made by a thread of its own, "
-             "the latest request first; nothing waits. ValueError for a time beyond 1e12 s.")
-        .def_property_readonly("is_foam_busy", &GpuSea::is_foam_busy, "Whether that thread has something to do.")
-        .def("take_foam", &GpuSea::take_foam,
-             "The textures foam_nodes and foam_pages, float32 (height, width, 2 or 1), of the latest request that is done: "
-             "once, {} otherwise. The first call has textures of a sea without such foam.")
-        .def("foam_levels", &GpuSea::foam_levels, py::arg("origin_m"),
-             "The texture foam_levels for what was taken last and a grid's origin [m], float32 (height, 2, 4).")
+        .def_property_readonly(
+            "has_living_foam", &GpuSea::has_living_foam,
+            "Whether earlier breaking leaves foam: then the shader has the textures of take_foam() and "
+            "foam_levels().")
+        .def(
+            "ask_foam", &GpuSea::ask_foam, py::arg("t"), py::arg("grids"),
+            "Wants what earlier breaking has left at a time t [s] where these GpuGrids are. It is made by a thread of its own, "
+            "the latest request first; nothing waits. ValueError for a time beyond 1e12 s.")
+        .def_property_readonly("is_foam_busy", &GpuSea::is_foam_busy,
+                               "Whether that thread has something to do.")
+        .def(
+            "take_foam", &GpuSea::take_foam,
+            "The textures foam_nodes and foam_pages, float32 (height, width, 2 or 1), of the latest request that is done: "
+            "once, {} otherwise. The first call has textures of a sea without such foam.")
+        .def(
+            "foam_levels", &GpuSea::foam_levels, py::arg("origin_m"),
+            "The texture foam_levels for what was taken last and a grid's origin [m], float32 (height, 2, 4).")
         .def(
             "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
             py::arg("on_earth") = true,

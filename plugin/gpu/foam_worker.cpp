@@ -31,7 +31,8 @@ std::shared_ptr<const PackedFoam> FoamWorker::make(const Asked& asked) {
         places.insert(places.end(), own.begin(), own.end());
     }
     history_.prepare(std::move(places), {.cancel = &cancel_});
-    return std::make_shared<const PackedFoam>(history_);
+    return std::make_shared<const PackedFoam>(
+        history_, asked.grids.empty() ? glm::dvec2(0.0) : asked.grids.back()->origin_m);
 }
 
 }  // namespace pelagic

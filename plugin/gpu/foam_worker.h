@@ -23,7 +23,7 @@ class FoamWorker {
     // Doesn't wait for a history that isn't done.
     ~FoamWorker();
 
-    // Wants the foam at a time that these grids show. The latest request wins, but what is being made is finished: it is most
+    // Wants the foam at a time that these grids show, above all the last of them. The latest request wins, but what is being made is finished: it is most
     // of the next one.
     void ask(double time_s, Grids grids);
     // The latest that is done, once; otherwise null.

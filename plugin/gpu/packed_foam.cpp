@@ -14,12 +14,18 @@ constexpr int kSide = FoamPlan::kTileCells + 1;
 
 }  // namespace
 
-PackedFoam::PackedFoam(const FoamHistory<float>& history)
+PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
     : drifted_m_(history.drifted_m()),
       mean_(history.mean()),
       mean_times_age_s_(history.mean_times_age_s()),
       cells_per_m_(static_cast<float>(1.0 / history.plan().cell_m)) {
-    const std::vector<FoamNodes> tiles = history.nodes();
+    std::vector<FoamNodes> tiles = history.nodes();
+    std::erase_if(tiles, [&](const FoamNodes& tile) {
+        const glm::dvec2 at = glm::dvec2(tile.place.x, tile.place.y) -
+                              (centre_m - drifted_m_) /
+                                  std::ldexp(history.plan().cell_m * FoamPlan::kTileCells, tile.place.level);
+        return !(std::max(std::abs(at.x), std::abs(at.y)) < kFarthestTile);
+    });
     tiles_ = tiles.size();
     pages_size_ = {1, 0};
     for (int level = 0; level < FoamPlan::kLevels; ++level) {

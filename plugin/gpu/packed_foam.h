@@ -15,11 +15,13 @@ namespace pelagic {
 class PackedFoam {
   public:
     PackedFoam() = default;  // nothing is left anywhere
-    // What was asked of the history since its time was set.
-    explicit PackedFoam(const FoamHistory<float>& history);
+    // What was asked of the history since its time was set, around a place [m]: of views that are far from each other it has
+    // one's.
+    PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m);
 
-    static constexpr int kTilesAcross = 64;  // the texture of nodes
-    static constexpr int kLevelTexels = 2;   // a level's columns in level_texels()
+    static constexpr int kTilesAcross = 64;     // the texture of nodes
+    static constexpr int kFarthestTile = 1024;  // of a level, from the centre's: so far out coarser ones do
+    static constexpr int kLevelTexels = 2;      // a level's columns in level_texels()
 
     // Nodes of tiles, kTilesAcross of them side by side: foam, and foam times its age. One texel without tiles.
     const std::vector<glm::vec2>& nodes() const { return nodes_; }

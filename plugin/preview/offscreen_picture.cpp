@@ -192,7 +192,7 @@ void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>&
                                   .pixel_m = {shown.pixel_m.data()},
                                   .pixel_axis_m = {shown.pixel_axis_m.data()}},
                     0);
-    renderer.upload_foam(std::make_shared<const PackedFoam>(history));
+    renderer.upload_foam(std::make_shared<const PackedFoam>(history, grid.origin_m));
 }
 
 }  // namespace

@@ -80,6 +80,11 @@ TEST(PreviewsPicture, IsTheCpusOfTrains) {
     compare_frame("of trains", scene);
 }
 
+TEST(PreviewsPicture, IsTheCpusOfCopiesAtRandomOffsets) {
+    Scene scene = scene_of({3e4, -60.0, 12.0}, {3e4, 0.0, 0.0});
+    scene.waves.tiling = Tiling::Random;
+    compare_frame("of copies", scene);
+}
 // What waves that broke before have left, near and far, in both hosts alike.
 Scene living_scene(glm::dvec3 position_m, glm::dvec3 look_at_m) {
     Scene scene = scene_of(position_m, look_at_m);

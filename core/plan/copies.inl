@@ -2,7 +2,7 @@
 // core/base/number.h. The rule is in core/plan/copies.h.
 
 // Of the blend from a cell to the next, in cells: half of it lies on either side of the border.
-inline constexpr double kCopyRamp = 0.25;
+inline constexpr double kCopyRamp = 0.15;
 inline constexpr double kCopySteps = 1024.0;  // offsets are whole multiples of the tile's size by this
 inline constexpr double kEighthTurnTangent = 0.41421356237309504880;  // tan(π/8)
 

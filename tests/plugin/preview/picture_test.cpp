@@ -20,9 +20,9 @@
 namespace pelagic {
 namespace {
 
-void compare_frame(const char* name, Scene scene) {
+void compare_frame(const char* name, Scene scene, glm::ivec2 size = {640, 360}) {
     gpu::need_context();
-    scene.camera.resolution = {640, 360};
+    scene.camera.resolution = size;
     RenderOptions options = render_options(scene);
     options.samples = 1;
     const Sky sky = make_sky(scene);
@@ -35,7 +35,7 @@ void compare_frame(const char* name, Scene scene) {
                 difference.median, difference.last_percent, 100.0 * difference.silhouettes);
     // The picture contains sea and sky, and each of the terms.
     const auto sea_pixels = std::count(cpu.sea.begin(), cpu.sea.end(), 1);
-    EXPECT_GT(sea_pixels, 640 * 360 / 4);
+    EXPECT_GT(sea_pixels, size.x * size.y / 4);
     EXPECT_LT(difference.silhouettes, 0.25);
     EXPECT_GT(difference.median, 0.0);  // two different implementations
     EXPECT_LE(difference.median, 1e-3);
@@ -83,7 +83,7 @@ TEST(PreviewsPicture, IsTheCpusOfTrains) {
 TEST(PreviewsPicture, IsTheCpusOfCopiesAtRandomOffsets) {
     Scene scene = scene_of({3e4, -60.0, 12.0}, {3e4, 0.0, 0.0});
     scene.waves.tiling = Tiling::Random;
-    compare_frame("of copies", scene);
+    compare_frame("of copies", scene, {320, 180});
 }
 // What waves that broke before have left, near and far, in both hosts alike.
 Scene living_scene(glm::dvec3 position_m, glm::dvec3 look_at_m) {
@@ -94,10 +94,11 @@ Scene living_scene(glm::dvec3 position_m, glm::dvec3 look_at_m) {
     return scene;
 }
 TEST(PreviewsPicture, IsTheCpusOfLivingFoam) {
-    compare_frame("of living foam", living_scene({3e4, -60.0, 6.0}, {3e4, 0.0, 0.0}));
+    compare_frame("of living foam", living_scene({3e4, -60.0, 6.0}, {3e4, 0.0, 0.0}), {320, 180});
 }
 TEST(PreviewsPicture, IsTheCpusOfLivingFoamFromAPlane) {
-    compare_frame("of living foam from a plane", living_scene({1e6, -1e6, 400.0}, {1e6, -1e6 + 1500.0, 0.0}));
+    compare_frame("of living foam from a plane", living_scene({1e6, -1e6, 400.0}, {1e6, -1e6 + 1500.0, 0.0}),
+                  {320, 180});
 }
 
 double mean_foam(const Picture& picture) {
@@ -113,7 +114,7 @@ double mean_foam(const Picture& picture) {
 TEST(PreviewsPicture, OfLivingFoamByItsGridIsThatByItsPixels) {
     gpu::need_context();
     Scene scene = living_scene({0.0, -60.0, 6.0}, {0.0, 0.0, 0.0});
-    scene.camera.resolution = {320, 180};
+    scene.camera.resolution = {160, 90};
     const OffscreenPlan planned = plan_offscreen(scene, 5);
     const Sky sky = make_sky(scene);
     const Picture exact = render_offscreen(planned, sky).picture;

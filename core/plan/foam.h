@@ -58,6 +58,8 @@ struct FoamRung {
     float t = 0.0f;
 };
 FoamRung foam_rung(const FoamPlan& foam, float footprint_m);
+// An ellipse counts as the circle of its area.
+float foam_footprint_m(float width_m, float length_m);
 
 // How many tiles the history for these queries holds at most, by level, whichever of a camera's places they look from: those
 // of two times, of which one goes on from the other; of pictures, which ask for all at once, those of one.

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -36,6 +37,19 @@ struct FoamResults {
         age_s{};  // the mean age of the foam that is there, what breaks counting as 0 [s], or no view
 };
 
+// A tile of a level's cells: its first node is kTileCells · (x, y) cells from the drifting water's origin.
+struct FoamPlace {
+    int level = 0;
+    std::int64_t x = 0, y = 0;
+    bool operator==(const FoamPlace&) const = default;
+};
+
+// What a tile has at its nodes, rows of kTileCells + 1: what add() reads, for who reads it elsewhere.
+struct FoamNodes {
+    FoamPlace place;
+    const float *foam, *foam_age;  // residual foam, not limited to 1, and that times its age [s]
+};
+
 template <class T>
 class FoamHistory {
   public:
@@ -47,27 +61,34 @@ class FoamHistory {
     // back from here the next times go, as a shutter's moments do: what is begun anew begins so much earlier.
     void set(double t_s, double back_s = 0.0);
 
-    // Makes what add() will read at these points: where add() is called for a few at a time, it needn't take the earlier
-    // times again for each. `query`: of the sea's plan, whose footprint points without their own have. Where it has to go
-    // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may
-    // be asked again.
+    // Makes what add() will read at these points, which are all that is asked for at this time: where add() is called for a
+    // few at a time, it needn't take the earlier times again for each. What only other times' points read is let go.
+    // `query`: of the sea's plan, whose footprint points without their own have. Where it has to go through many earlier
+    // times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may be asked again.
     void prepare(const Points<T>& points, int query, const BuildWatch& watch = {});
+    // The same for whole tiles.
+    void prepare(std::vector<FoamPlace> places, const BuildWatch& watch = {});
+    // The tiles that were asked for since set(), in order. They last until the next call of anything else.
+    std::vector<FoamNodes> nodes() const;
+    const FoamPlan& plan() const { return foam_; }
+    // How far a level's nodes have drifted from where they were at time 0 [m].
+    glm::dvec2 drifted_m(int level) const { return foam_.drift_of(level) * time_s_; }
+    double time_s() const { return time_s_; }
+    // Beyond the last level: residual foam, and that times its age [s].
+    float mean() const { return mean_; }
+    float mean_times_age_s() const { return mean_ * mean_age_s_; }
 
     // Adds to answers of evaluate() what earlier breaking has left. On all threads of the calling arena, one call at a time.
     // `watch`: as prepare()'s.
     void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
 
-    // Bytes of all tiles: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
+    // Bytes of all tiles, and of the seas that they are sampled from: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
     std::size_t held_bytes() const;
 
   private:
     struct Level;
     struct Tile;
-    struct Place {
-        int level;
-        std::int64_t x, y;
-        bool operator==(const Place&) const = default;
-    };
+    using Place = FoamPlace;
     struct HashOf {
         std::size_t operator()(const Place& place) const;
     };
@@ -75,11 +96,12 @@ class FoamHistory {
 
     bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
     template <class Use>
-    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use);
+    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, bool is_all, const Use& use);
     bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
               std::vector<Place>& missing) const;
     void make(std::vector<Place>& places, const BuildWatch& watch);
     void renew(const BuildWatch& watch);
+    void forget_unused();
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n) const;
     Level& level(int index);

@@ -56,5 +56,7 @@ inline CopyWeights<T> copy_weights(T middle) {
     const T cosine = (T(1) - q * q) * by * T(0.70710678118654752440);
     const T sine = T(2) * q * by * T(0.70710678118654752440);
     const T rate = T(24.0 * kEighthTurnTangent / kCopyRamp) * t * (T(1) - t) * by;
-    return CopyWeights<T>(select(t > T(0), cosine - sine, T(1)), select(t > T(0), cosine + sine, T(0)), rate);
+    // Where the ramp begins the next weight is lost in rounding, and its rate, which is larger, must not be left out.
+    const T next = maximum(cosine + sine, T(1e-20));
+    return CopyWeights<T>(select(t > T(0), cosine - sine, T(1)), select(t > T(0), next, T(0)), rate);
 }

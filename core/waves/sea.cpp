@@ -130,7 +130,8 @@ void Sea<T>::calibrate_whitecaps() {
     const auto j = jacobian_moments<double>(
         0.0, 0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
     foam_left_per_s_ = life.left_per_s(breaking_deviate(j, whitecap_threshold_, third));
-    residual_coverage_ = pelagic::residual_coverage(j, whitecap_threshold_, third, life);
+    left_coverage_ = pelagic::left_coverage(j, whitecap_threshold_, third, life);
+    residual_coverage_ = residual_foam(left_coverage_, coverage(j, whitecap_threshold_, third));
 }
 
 template <class T>

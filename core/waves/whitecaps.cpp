@@ -37,11 +37,10 @@ double calibrated_threshold(const SpectralMoments& breaking, double law_coverage
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
         const double active = coverage(j, middle, third_moment);
-        const double residual = life.lasting_s > 0.0 ? residual_coverage(j, middle, third_moment, life) : 0.0;
-        // Where a footprint resolves the breaking, it lies on half of what it leaves, and foam that is laid twice counts
-        // once; where it doesn't, neither is seen. Half of that: 7 % of the residual at 14 m/s and 4 s, as measured.
-        constexpr double kSeen = 0.967;
-        (active + std::min(kSeen * residual, 1.0) * (1.0 - active) < law_coverage ? low : high) = middle;
+        const double residual = life.lasting_s > 0.0 ? left_coverage(j, middle, third_moment, life) : 0.0;
+        // Cells that resolve the breaking see 1.7 % less of it than J's three moments say: the law lies between.
+        constexpr double kSeen = 0.99;
+        (active + residual_foam(kSeen * residual, active) < law_coverage ? low : high) = middle;
     }
     return high;
 }

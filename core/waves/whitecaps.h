@@ -83,8 +83,8 @@ inline double breaking_deviate(const JacobianMoments<double>& j, double threshol
 }
 
 // What is left of what broke, over the whole sea and before it is limited to 1.
-inline double residual_coverage(const JacobianMoments<double>& j, double threshold, bool third_moment,
-                                const FoamLife& life) {
+inline double left_coverage(const JacobianMoments<double>& j, double threshold, bool third_moment,
+                            const FoamLife& life) {
     const double y = breaking_deviate(j, threshold, third_moment);
     return life.left_per_s(y) * life.lasting_s * 0.5 * std::erfc(-y / std::sqrt(2.0));
 }

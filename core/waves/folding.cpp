@@ -61,7 +61,7 @@ std::vector<std::string> folding_warning(const PreparedScene& prepared) {
             " leaves 5 %"};
 }
 
-// Explicit tiles that repeat, where a patch shows that or a tile has few waves of the peak.
+// Explicit tiles that repeat: where a patch shows that or, on surfaces as large as the view, a tile has few waves of the peak.
 std::vector<std::string> repeats_warning(const PreparedScene& prepared) {
     constexpr double kFewWaves = 10.0;
     const Scene& scene = prepared.scene;
@@ -70,13 +70,12 @@ std::vector<std::string> repeats_warning(const PreparedScene& prepared) {
         return {};
     const double size_m = scene.waves.cascades.front().size_m;
     const double peak_m = kTwoPi / prepared.spectrum.longest_peak_wavenumber();
-    const bool has_few = size_m < kFewWaves * peak_m;
-    const bool is_seen = scene.surface.kind == SurfaceKind::Patch && scene.surface.size_m > size_m;
-    if (!has_few && !is_seen) return {};
+    const bool is_patch = scene.surface.kind == SurfaceKind::Patch;
+    if (is_patch ? !(scene.surface.size_m > size_m) : !(size_m < kFewWaves * peak_m)) return {};
     const std::string why =
-        is_seen ? "the patch of " + number_text(scene.surface.size_m) + " m shows it more than once"
-                : "that is fewer than " + number_text(kFewWaves) + " of its " +
-                      number_text(std::round(10.0 * peak_m) / 10.0) + " m waves";
+        is_patch ? "the patch of " + number_text(scene.surface.size_m) + " m shows it more than once"
+                 : "that is fewer than " + number_text(kFewWaves) + " of its " +
+                       number_text(std::round(10.0 * peak_m) / 10.0) + " m waves";
     return {"the largest cascade repeats after " + number_text(size_m) + " m, which is seen from the air: " +
             why + "; waves.tiling = \"random\" shows copies at random offsets"};
 }

@@ -64,7 +64,7 @@ TEST(Folding, GrowsWithChoppinessFromNothing) {
     EXPECT_EQ(folded_share(prepare(calm)->spectrum, 10.0), 0.0);
 }
 
-// Of explicit periodic tiles alone: where the patch is larger, or the tile holds few waves of the peak.
+// Of explicit periodic tiles alone: where the patch is larger or, as far as one sees, a tile holds few waves of the peak.
 TEST(Repeats, OfExplicitTilesAreToldOf) {
     Scene scene;
     scene.waves.tiling = Tiling::Periodic;
@@ -83,6 +83,8 @@ TEST(Repeats, OfExplicitTilesAreToldOf) {
     scene.waves.tiling = Tiling::Periodic;
     scene.surface.size_m = 100.0;
     scene.waves.cascades = {{200.0, 128}};
+    EXPECT_FALSE(tells());
+    scene.surface.kind = SurfaceKind::ProjectedGrid;
     EXPECT_TRUE(tells());
 }
 

@@ -299,6 +299,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.breaking = breaking_of(scene, plan.filter);
     for (const Query& query : queries) add_query(plan, query);
     add_effects(plan, options.effects);
+    plan.gusts = plan_gusts(scene);
     const bool has_coverage = std::any_of(queries.begin(), queries.end(), [](const Query& query) {
         return query.products[index(Product::Coverage)];
     });

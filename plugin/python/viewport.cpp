@@ -250,7 +250,7 @@ class GpuSea {
             const auto count = static_cast<py::ssize_t>(values.size());
             cycles = array_of<float>(std::move(values), {1, count, 1});
         }
-        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin)), cycles);
+        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, packed_.time_within_loop_s())), cycles);
     }
 
     GpuGrid grid(const View& view, std::optional<double> cell_px, bool on_earth) const {
@@ -451,8 +451,8 @@ void add_viewport(py::module_& module) {
             "Read-only views of memory that the next set() overwrites; only train_table stays.")
         .def(
             "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
-            "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which don't "
-            "depend on time, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
+            "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which depend "
+            "on time where there are gusts, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
             "None.")
         .def(
             "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),

@@ -15,6 +15,7 @@ UV_MAP = "UVMap"
 ATTRIBUTES = (("velocity", "FLOAT_VECTOR", "vector", "velocity"),
               ("slope_variance", "FLOAT_VECTOR", "vector", "slope_variance"),
               ("whitecap_coverage", "FLOAT", "value", "coverage"),
+              ("foam_active", "FLOAT", "value", "foam_active"),
               ("foam_age", "FLOAT", "value", "foam_age"))
 
 

@@ -29,6 +29,7 @@ CLOCK_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "clock" in f
 PLACE = {field.path: place for place, field in enumerate(FIELDS)}
 
 POLL_S = 0.02  # how often a window looks whether a sea is ready
+PATIENCE_S = 0.3  # how long a window waits for the past of foam that lives, where it jumped to another time
 
 
 _built = weakref.WeakValueDictionary()  # what a sea is made of → the sea, as long as an ocean plays it
@@ -46,6 +47,7 @@ class Simulation:
         self._asked = None  # what scene was made from
         self._job = None
         self._last = None  # the frame that was last asked for, the step to it, the view
+        self.is_behind = False  # whether the mesh waits for the past of its foam
 
     @property
     def sea(self):
@@ -74,14 +76,19 @@ class Simulation:
         shot = self.scene.shot
         return Moment(shot.time_s(frame), shot.time_scale, view, share)
 
-    def buffers(self, moment):
-        """The surface and the products' arrays at a moment, until look_ahead()."""
-        return self._built.buffers(moment)
+    def buffers(self, moment, patience_s):
+        """The surface and the products' arrays at a moment, until look_ahead(). None: BuiltSea.buffers()."""
+        return self._built.buffers(moment, patience_s)
+
+    @property
+    def progress(self):
+        """Of what is_behind waits for, 0 to 1."""
+        return self._built.progress if self._built else 1.0
 
     def look_ahead(self, frame):
         """While it plays in even steps before a camera that stands still, the frame after this one is computed beside what
         Blender does."""
-        if self.shown is None or self._built is None:
+        if self.shown is None or self._built is None or self.is_behind:
             return
         moment, last = self.shown[2], self._last
         step = frame - last[0] if last else 0
@@ -117,8 +124,8 @@ class Simulation:
                 self._job = BuiltSea.job(key, self.scene, make_surface(), view)
             if wait:
                 self._take()
-            elif not bpy.app.timers.is_registered(_poll):
-                bpy.app.timers.register(_poll, first_interval=POLL_S)
+            else:
+                _look_later()
 
     def poll(self):
         """Whether there is news of the sea that is being built."""
@@ -147,6 +154,7 @@ class Simulation:
 
 _simulations = {}  # by the names of their objects
 _rendering = set()  # names of scenes
+_is_told = False  # whether the pointer shows a progress
 _turn = threading.RLock()  # a render has a thread of its own
 
 
@@ -223,10 +231,11 @@ def brought_up(obj, bpy_scene, depsgraph, wait=False):
     return simulation
 
 
-def _show(obj, bpy_scene, depsgraph, again):
-    """Brings the mesh of an ocean to the present. again: though it is there already."""
+def _show(obj, bpy_scene, depsgraph, again, wait=False):
+    """Brings the mesh of an ocean to the present, or, in a window, begins to. again: though it is there already."""
     simulation = _simulation(obj)
-    view = simulation.follow(obj, bpy_scene, depsgraph, bpy.app.background or bool(_rendering))
+    wait = wait or bpy.app.background or bool(_rendering)
+    view = simulation.follow(obj, bpy_scene, depsgraph, wait)
     if simulation.sea is None or (view is None and simulation.needs_view):
         return
     frame = bpy_scene.frame_current_final
@@ -234,7 +243,12 @@ def _show(obj, bpy_scene, depsgraph, again):
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again:
         return
-    surface, arrays = simulation.buffers(moment)
+    buffers = simulation.buffers(moment, None if wait else PATIENCE_S)
+    simulation.is_behind = buffers is None
+    if simulation.is_behind:
+        _look_later()
+        return
+    surface, arrays = buffers
     if not meshes.holds(obj.data, surface):
         if surface.faces is None:
             return
@@ -257,7 +271,7 @@ def show(obj, bpy_scene, depsgraph):
     """Brings an ocean to the present, and waits for it."""
     simulation = _simulation(obj)
     simulation.follow(obj, bpy_scene, depsgraph, True)
-    _show(obj, bpy_scene, depsgraph, True)
+    _show(obj, bpy_scene, depsgraph, True, True)
 
 
 def _forget_deleted():
@@ -322,16 +336,39 @@ def _on_render_end(bpy_scene, _depsgraph=None):
     _on_other_data()
 
 
+def _look_later():
+    if not bpy.app.timers.is_registered(_poll):
+        bpy.app.timers.register(_poll, first_interval=POLL_S)
+
+
 def _poll():
-    """The timer while seas are being built: their objects are evaluated again once they are ready."""
-    busy = False
+    """The timer while seas are being built, or the past of their foam is: their objects are evaluated again once they are
+    ready."""
+    busy, progress = False, []
     for name, simulation in list(_simulations.items()):  # a render's thread may add to them
-        if simulation.poll():
+        news = simulation.poll()
+        if simulation.is_behind:
+            progress.append(simulation.progress)
+            if progress[-1] == 1.0:
+                news, simulation.is_behind = True, False
+        if news:
             obj = next((obj for obj in oceans() if obj.name_full == name), None)
             if obj is not None:
                 obj.update_tag()
-        busy = busy or simulation.is_building
+        busy = busy or simulation.is_building or simulation.is_behind
+    _tell(min(progress, default=1.0))
     return POLL_S if busy else None
+
+
+def _tell(progress):
+    """Shows it at the pointer, below 1."""
+    global _is_told
+    manager = bpy.context.window_manager
+    if manager is not None and (progress < 1.0 or _is_told):
+        if not _is_told:
+            manager.progress_begin(0.0, 1.0)
+        _is_told = progress < 1.0
+        manager.progress_update(progress) if _is_told else manager.progress_end()
 
 
 HANDLERS = (("frame_change_post", _on_frame), ("depsgraph_update_post", _on_update), ("undo_post", _on_other_data),

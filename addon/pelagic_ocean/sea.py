@@ -7,6 +7,7 @@ Blender is a pelagic.Task, in a native thread of the module that never enters Py
 """
 
 import threading
+import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -14,6 +15,9 @@ import numpy as np
 
 from . import surfaces
 from .module import pelagic
+
+
+NUMBERS = {"coverage", "foam_active", "foam_age"}  # products of one number a point; others have three
 
 
 @dataclass(frozen=True)
@@ -63,6 +67,8 @@ class BuiltSea:
     def job(key, scene, surface, view):
         """A Job that builds one. surface: None for the projected grid, whose points are those of a pelagic.View."""
         products = ["position", "velocity", "slope_variance"] + ["coverage"] * scene.effects.whitecaps
+        if scene.effects.whitecaps and scene.effects.foam_decay_s > 0.0:
+            products += ["foam_active", "foam_age"]
 
         def begin():
             if surface is None:
@@ -89,12 +95,32 @@ class BuiltSea:
     def serves(self, view):
         return self._fixed is not None or (view is not None and self.sea.serves(view))
 
-    def buffers(self, moment):
-        """The surface, and each product's array, at a Moment, until the next call of this or of prepare()."""
+    def buffers(self, moment, patience_s=None):
+        """The surface, and each product's array, at a Moment, until the next call of this or of prepare(). With a patience
+        None where the foam's past isn't gone through after so long [s]: what is done of it is kept, also for other moments."""
         with self._lock:
             self._begin(moment)
+            if patience_s is not None and not self._is_there_in(patience_s):
+                return None
             self._finish()
             return self._surface, self._arrays
+
+    @property
+    def progress(self):
+        """The share of the foam's past that is gone through; 1 where nothing is waited for."""
+        task = self._task
+        if task is None or task.is_done:
+            return 1.0
+        return task.progress[0] if task.progress else 0.0
+
+    def _is_there_in(self, patience_s):
+        """False for what looks back over many earlier times alone: a step that is slow for its size is waited for."""
+        until_s = time.monotonic() + patience_s
+        while self._task is not None and not self._task.is_done:
+            if time.monotonic() > until_s and self._task.progress is not None:
+                return False
+            time.sleep(0.001)
+        return True
 
     def prepare(self, moment):
         """Begins to compute a moment that is likely to be asked for next."""
@@ -114,17 +140,28 @@ class BuiltSea:
     def _begin(self, moment):
         if moment == (self._coming if self._task else self._moment):
             return
-        self._finish()
+        self._drop()
         surface = self._surface_at(moment)
         self._moment = None
         if self._surface is None or len(surface) != len(self._surface):
-            self._arrays = {product: np.empty(len(surface) if product == "coverage" else (len(surface), 3), np.float32)
+            self._arrays = {product: np.empty(len(surface) if product in NUMBERS else (len(surface), 3), np.float32)
                             for product in self.sea.products}
         self._surface, self._seen_from = surface, (moment.view, moment.share)
         self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, cell_m=surface.cell_m,
                                        pixel_m=surface.cell_m, cell_axis_m=surface.cell_axis_m,
                                        pixel_axis_m=surface.cell_axis_m, **self._arrays)
         self._coming = moment
+
+    def _drop(self):
+        """What was begun isn't wanted any more."""
+        if self._task is None:
+            return
+        task, self._task = self._task, None
+        task.cancel()
+        try:
+            task.result()
+        except pelagic.Cancelled:
+            pass
 
     def _finish(self):
         """Waits for what was begun, if anything was."""

@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t kNodes = FoamPlan::kTileNodes, kStride = FoamPlan::kTileStride;
 constexpr int kSide = FoamPlan::kTileCells + 1;
 constexpr std::size_t kPart = 256;  // points
+constexpr std::int64_t kLong = 6;   // samples: a run's frame takes fewer, and is soon done
 constexpr int kSamples = 6;         // that an interval is known by: from two before it to two after it
 
 // Of a division whose divisor is positive.
@@ -179,7 +180,7 @@ template <class T>
 FoamHistory<T>::~FoamHistory() = default;
 
 template <class T>
-void FoamHistory<T>::set(double t_s) {
+void FoamHistory<T>::set(double t_s, double back_s) {
     if (!(std::abs(t_s) <= Frame<T>::kLatest_s))
         throw std::invalid_argument("the foam's time must be a number of at most 1e12 s to either side of 0");
     ++round_;
@@ -188,6 +189,9 @@ void FoamHistory<T>::set(double t_s) {
     time_s_ = time_within_loop_s(t_s, sea_->loop_s());
     last_ = static_cast<std::int64_t>(std::floor(time_s_ / foam_.step_s));
     first_ = last_ + 1 - foam_.intervals();
+    const double back =
+        std::clamp(back_s / foam_.step_s, 0.0, static_cast<double>(FoamPlan::kSpareIntervals));
+    begin_ = first_ - static_cast<std::int64_t>(std::ceil(back));
     weights_.clear();
     for (std::int64_t n = first_; n <= last_; ++n) {
         const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
@@ -248,9 +252,9 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
 // some are read again when those are made.
 template <class T>
 template <class Use>
-void FoamHistory<T>::for_parts(const Points<T>& points, int query, const Use& use) {
+void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use) {
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
-    renew();
+    renew(watch);
     const Locator locate(*this, points, query);
     std::vector<std::size_t> parts, later;
     for (std::size_t first = 0; first < points.count; first += kPart) parts.push_back(first);
@@ -274,28 +278,28 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const Use& us
             places.insert(places.end(), own.begin(), own.end()), own.clear();
         for (std::vector<std::size_t>& own : undone)
             parts.insert(parts.end(), own.begin(), own.end()), own.clear();
-        make(places);
+        make(places, watch);
     }
 }
 
 template <class T>
-void FoamHistory<T>::prepare(const Points<T>& points, int query) {
+void FoamHistory<T>::prepare(const Points<T>& points, int query, const BuildWatch& watch) {
     if (leaves_nothing()) return;
-    for_parts(points, query, [](std::size_t, std::span<const float>, std::span<const float>) {});
+    for_parts(points, query, watch, [](std::size_t, std::span<const float>, std::span<const float>) {});
 }
 
 // Brings the tiles of the time before to this one.
 template <class T>
-void FoamHistory<T>::renew() {
+void FoamHistory<T>::renew(const BuildWatch& watch) {
     if (is_renewed_) return;
     is_renewed_ = true;
     std::vector<Place> places;
     for (const auto& [place, tile] : tiles_) places.push_back(place);
-    make(places);
+    make(places, watch);
 }
 
 template <class T>
-void FoamHistory<T>::make(std::vector<Place>& places) {
+void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
     const auto key = [](const Place& p) { return std::tuple(p.level, p.y, p.x); };
     std::sort(places.begin(), places.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
     places.erase(std::unique(places.begin(), places.end()), places.end());
@@ -307,7 +311,7 @@ void FoamHistory<T>::make(std::vector<Place>& places) {
         if (!tile->is_of(time_s_)) old.push_back(tile.get());
     }
     if (old.empty()) return;
-    advance(old);
+    advance(old, watch);
     tbb::parallel_for(std::size_t(0), old.size(), [&](std::size_t i) {
         Tile& tile = *old[i];
         std::vector<FoamShares> shares;
@@ -324,27 +328,36 @@ void FoamHistory<T>::make(std::vector<Place>& places) {
 
 // Takes the samples that the tiles lack. The interval after sample n is known by samples n − 2 … n + 3.
 template <class T>
-void FoamHistory<T>::advance(const std::vector<Tile*>& tiles) {
+void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& watch) {
     const auto kept = static_cast<std::int64_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
     std::int64_t from = last_ + 4;
     for (Tile* tile : tiles) {
         const bool holds_first = tile->begin <= first_ && first_ >= tile->end - kept && first_ <= tile->end;
         if (!holds_first) {
-            tile->begin = tile->end = first_;
-            tile->next = first_ - 2;
+            tile->begin = tile->end = begin_;
+            tile->next = begin_ - 2;
         }
         from = std::min(from, tile->next);
     }
     std::vector<Tile*> due;
-    for (std::int64_t n = from; n <= last_ + 3; ++n)
+    const std::int64_t end = last_ + 4;
+    const bool is_long = end - from > kLong;
+    for (std::int64_t n = from; n < end; ++n) {
         for (int l = 0; l < FoamPlan::kLevels; ++l) {
             due.clear();
             for (Tile* tile : tiles)
                 if (tile->place.level == l && tile->next == n) due.push_back(tile);
             if (due.empty()) continue;
+            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) {
+                for (Tile* tile : tiles) tile->used = round_;  // what they have is kept for the next time
+                throw BuildCancelled();
+            }
             level(l).frame.set(static_cast<double>(n) * foam_.step_s);
             tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) { sample(*due[i], n); });
         }
+        if (is_long && watch.progress)
+            watch.progress(static_cast<double>(n + 1 - from) / static_cast<double>(end - from));
+    }
 }
 
 template <class T>
@@ -387,7 +400,8 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
 }
 
 template <class T>
-void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& results) {
+void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& results,
+                         const BuildWatch& watch) {
     if (leaves_nothing()) {
         for (std::size_t i = 0; i < points.count; ++i) {
             if (results.active) results.active[i] = results.coverage[i];
@@ -395,7 +409,7 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& 
         }
         return;
     }
-    for_parts(points, query,
+    for_parts(points, query, watch,
               [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
                   for (std::size_t i = 0; i < foam.size(); ++i) {
                       const float active = results.coverage[first + i];

@@ -43,15 +43,19 @@ class FoamHistory {
     explicit FoamHistory(std::shared_ptr<const Sea<T>> sea);
     ~FoamHistory();
 
-    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what the times before have in common with it.
-    void set(double t_s);
+    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what the times before have in common with it. `back_s`: how far
+    // back from here the next times go, as a shutter's moments do: what is begun anew begins so much earlier.
+    void set(double t_s, double back_s = 0.0);
 
     // Makes what add() will read at these points: where add() is called for a few at a time, it needn't take the earlier
-    // times again for each. `query`: of the sea's plan, whose footprint points without their own have.
-    void prepare(const Points<T>& points, int query);
+    // times again for each. `query`: of the sea's plan, whose footprint points without their own have. Where it has to go
+    // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may
+    // be asked again.
+    void prepare(const Points<T>& points, int query, const BuildWatch& watch = {});
 
     // Adds to answers of evaluate() what earlier breaking has left. On all threads of the calling arena, one call at a time.
-    void add(const Points<T>& points, int query, const FoamResults& results);
+    // `watch`: as prepare()'s.
+    void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
 
     // Bytes of all tiles: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
     std::size_t held_bytes() const;
@@ -71,12 +75,12 @@ class FoamHistory {
 
     bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
     template <class Use>
-    void for_parts(const Points<T>& points, int query, const Use& use);
+    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use);
     bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
               std::vector<Place>& missing) const;
-    void make(std::vector<Place>& places);
-    void renew();
-    void advance(const std::vector<Tile*>& tiles);
+    void make(std::vector<Place>& places, const BuildWatch& watch);
+    void renew(const BuildWatch& watch);
+    void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n) const;
     Level& level(int index);
 
@@ -88,6 +92,7 @@ class FoamHistory {
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea
     double time_s_ = 0.0;
     std::int64_t first_ = 0, last_ = -1;  // the intervals that count now
+    std::int64_t begin_ = 0;              // the first of a tile that is begun now
     struct IntervalWeight {
         float foam, age;
     };

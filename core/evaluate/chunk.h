@@ -24,6 +24,7 @@ struct Chunk {
     alignas(64) Values rest_x, rest_y;  // [m], relative to the query's origin
     // Σ over the components so far, by field; only the wanted ones are set.
     alignas(64) std::array<Values, kFieldCount> sums;
+    alignas(64) Values turn;  // ∂Dy/∂x − ∂Dx/∂y: 0 but where copies blend (core/plan/copies.h)
 };
 
 }  // namespace pelagic

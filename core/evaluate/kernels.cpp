@@ -294,8 +294,10 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
             return N(hn::LoadU(d, args.breaking->sums[index(field)].data() + i));
         };
         const HiddenStrain<N> strain = hidden.strain_at(i);
-        const JacobianMoments<N> j = jacobian_moments(at(Field::Dxx), at(Field::Dyy), at(Field::Dxy), strain,
-                                                      hidden.traces_of(strain));
+        const JacobianMoments<N> j =
+            jacobian_moments(at(Field::Dxx), at(Field::Dyy), at(Field::Dxy),
+                             at(Field::Dxy) + N(hn::LoadU(d, args.breaking->turn.data() + i)), strain,
+                             hidden.traces_of(strain));
         if (moments) Put(d, moments, i, chunk.count, std::array<N, 3>{j.mean, j.variance, j.third});
         hn::StoreU(j.mean.v, d, mean.data() + i);
         hn::StoreU(j.variance.v, d, variance.data() + i);
@@ -325,6 +327,8 @@ void Derive(const DeriveArgs<T>& args) {
     const std::size_t count = chunk.count;
     const auto at = [&](Field field, std::size_t i)
                         HWY_ATTR { return N(hn::LoadU(d, chunk.sums[index(field)].data() + i)); };
+    const auto dyx = [&](std::size_t i)
+                         HWY_ATTR { return at(Field::Dxy, i) + N(hn::LoadU(d, chunk.turn.data() + i)); };
     using Vector = std::array<N, 3>;
     const auto each = [&](const Strided<glm::vec<3, T>>& out, const auto& value) HWY_ATTR {
         if (!out) return;
@@ -343,7 +347,7 @@ void Derive(const DeriveArgs<T>& args) {
     each(results.vectors(Product::Normal), [&](std::size_t i) HWY_ATTR {
         const SurfaceNormal<N> normal =
             surface_normal(at(Field::SlopeX, i), at(Field::SlopeY, i), at(Field::Dxx, i), at(Field::Dyy, i),
-                           at(Field::Dxy, i));
+                           at(Field::Dxy, i), dyx(i));
         return Vector{normal.x, normal.y, normal.z};
     });
     const Hidden<T> hidden(args);
@@ -351,9 +355,8 @@ void Derive(const DeriveArgs<T>& args) {
         return SlopeVariances<N>{hidden.moment_at(0, i), hidden.moment_at(2, i), hidden.moment_at(1, i)};
     };
     each(results.vectors(Product::SlopeVariance), [&](std::size_t i) HWY_ATTR {
-        const N dxy = at(Field::Dxy, i);
         const SlopeVariances<N> carried =
-            carried_slopes(at_rest(i), at(Field::Dxx, i), at(Field::Dyy, i), dxy, dxy);
+            carried_slopes(at_rest(i), at(Field::Dxx, i), at(Field::Dyy, i), at(Field::Dxy, i), dyx(i));
         return Vector{carried.xx, carried.yy, carried.xy};
     });
     each(results.vectors(Product::SlopeVarianceAtRest), [&](std::size_t i) HWY_ATTR {

@@ -233,6 +233,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
     std::fill(chunk.rest_y.begin() + chunk.count, chunk.rest_y.begin() + padded, T(0));
     // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
     for (typename Chunk<T>::Values& sum : chunk.sums) std::fill(sum.begin(), sum.begin() + padded, T(0));
+    std::fill(chunk.turn.begin(), chunk.turn.begin() + padded, T(0));
     if (call.on_ladder) {
         const Query& query = planned_->query;
         work.cells.take(query.cell_m, call.points.cell_m, call.points.cell_axis_m, first, chunk.count);
@@ -249,6 +250,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
             auto& sum = work.breaking.sums[index(field)];
             std::fill(sum.begin(), sum.begin() + padded, T(0));
         }
+        std::fill(work.breaking.turn.begin(), work.breaking.turn.begin() + padded, T(0));
     }
     if (call.on_ladder) {
         add_ladder(call, work);
@@ -317,6 +319,7 @@ void PreparedQuery<T>::add_only_footprint(const Call& call, Work& work) const {
         for (const Field field : kStrain)
             std::copy_n(work.chunk.sums[index(field)].begin(), work.chunk.padded(),
                         work.breaking.sums[index(field)].begin());
+        std::copy_n(work.chunk.turn.begin(), work.chunk.padded(), work.breaking.turn.begin());
     }
     add(has_strain ? Part::Other : Part::All);
     for (std::size_t l = 0; l < levels_.size(); ++l)

@@ -6,12 +6,13 @@ struct SurfaceNormal {
     T x, y, z;
 };
 
-// T_x × T_y of T_x = (1 + Dxx, Dxy, ηx), T_y = (Dxy, 1 + Dyy, ηy), of length 1: its z has the sign of J, and
+// T_x × T_y of T_x = (1 + Dxx, Dyx, ηx), T_y = (Dxy, 1 + Dyy, ηy), of length 1: its z has the sign of J, and
 // it is finite however J vanishes. Both tangents parallel: no normal exists; up is as good as any.
+// dxy = ∂Dx/∂y, dyx = ∂Dy/∂x: for a sum of waves both are the same, where copies blend (core/plan/copies.h) they aren't.
 template <class T>
-inline SurfaceNormal<T> surface_normal(T slope_x, T slope_y, T dxx, T dyy, T dxy) {
-    const T x = dxy * slope_y - slope_x * (T(1) + dyy), y = slope_x * dxy - slope_y * (T(1) + dxx);
-    const T z = (T(1) + dxx) * (T(1) + dyy) - dxy * dxy;
+inline SurfaceNormal<T> surface_normal(T slope_x, T slope_y, T dxx, T dyy, T dxy, T dyx) {
+    const T x = dyx * slope_y - slope_x * (T(1) + dyy), y = slope_x * dxy - slope_y * (T(1) + dxx);
+    const T z = (T(1) + dxx) * (T(1) + dyy) - dxy * dyx;
     const T length = square_root(x * x + y * y + z * z);
     const T by = T(1) / select(length > T(0), length, T(1));
     return SurfaceNormal<T>(select(length > T(0), x * by, T(0)), select(length > T(0), y * by, T(0)),
@@ -29,7 +30,7 @@ inline constexpr double kLeastJacobian = 0.1;
 
 // Hidden waves ride on the waves that are shown. These move a point at rest x to P(x), M = ∂P/∂x = 1 + ∇D, so that a slope
 // ∇ₓη at rest is M⁻ᵀ ∇ₓη on the sea, and variances Σ at rest are M⁻ᵀ Σ M⁻¹: larger where a crest is compressed, smaller where
-// a trough is stretched. dxy = ∂Dx/∂y, dyx = ∂Dy/∂x: for a sum of waves both are the same.
+// a trough is stretched.
 template <class T>
 inline SlopeVariances<T> carried_slopes(SlopeVariances<T> rest, T dxx, T dyy, T dxy, T dyx) {
     const T jacobian = (T(1) + dxx) * (T(1) + dyy) - dxy * dyx;

@@ -78,7 +78,7 @@ void add_maps(const OutputRow& row, const OutputContext& context, const Square& 
             if (cascade && query.products[index(Product::SlopeVariance)])
                 query.products = products(Product::SlopeVarianceAtRest);
             query.points = static_cast<std::size_t>(n) * n;
-            query.lattice = Lattice{-0.5 * size_m, size_m / n};
+            query.lattice = Lattice{-0.5 * size_m, size_m / n, 0.5 * size_m};
             query.only_cascade = cascade;
             query.pixel_m = at.asks_each_level ? mip_footprints(size_m, n) : std::vector{size_m / n};
             // A tile's nodes carry each of its modes: there is nothing to filter out.

@@ -217,6 +217,12 @@ void add_waves(Built& out) {
                                                 .help = "samples a side, even",
                                                 .range = limits::kCascadeResolution,
                                                 .soft = SoftRange{16.0, 2048.0, true}})),
+        row<&Waves::tiling>(
+            {.name = "tiling",
+             .help =
+                 "of the cascades: random, copies of each tile at random offsets, blended, so that no pattern is "
+                 "seen from the air; periodic, each tile repeats after its size",
+             .feeds = kWaves}),
         entries<&Waves::band_gains>(
             {.name = "band_gains",
              .help =

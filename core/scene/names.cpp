@@ -37,6 +37,10 @@ constexpr std::array kModels = std::to_array<Word<WaveModel>>({
     {WaveModel::Fft, "fft"},
     {WaveModel::Trochoid, "trochoid"},
 });
+constexpr std::array kTilings = std::to_array<Word<Tiling>>({
+    {Tiling::Random, "random"},
+    {Tiling::Periodic, "periodic"},
+});
 constexpr std::array kSurfaces = std::to_array<Word<SurfaceKind>>({
     {SurfaceKind::Patch, "patch"},
     {SurfaceKind::ProjectedGrid, "projected-grid"},
@@ -131,6 +135,9 @@ std::span<const Word<SpreadingKind>> words_of(SpreadingKind) {
 }
 std::span<const Word<WaveModel>> words_of(WaveModel) {
     return kModels;
+}
+std::span<const Word<Tiling>> words_of(Tiling) {
+    return kTilings;
 }
 std::span<const Word<SurfaceKind>> words_of(SurfaceKind) {
     return kSurfaces;

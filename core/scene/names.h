@@ -26,6 +26,7 @@ std::span<const Word<ShortWaves>> words_of(ShortWaves);
 std::span<const Word<WhitecapLaw>> words_of(WhitecapLaw);
 std::span<const Word<SpreadingKind>> words_of(SpreadingKind);
 std::span<const Word<WaveModel>> words_of(WaveModel);
+std::span<const Word<Tiling>> words_of(Tiling);
 std::span<const Word<SurfaceKind>> words_of(SurfaceKind);
 std::span<const Word<CameraInterpolation>> words_of(CameraInterpolation);
 std::span<const Word<WaterType>> words_of(WaterType);

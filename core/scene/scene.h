@@ -22,6 +22,7 @@ enum class ShortWaves { Elfouhaily, None };
 enum class WhitecapLaw { Monahan1980, Monahan1986, Callaghan2008 };
 enum class SpreadingKind { Hasselmann, DonelanBanner, Cosine, Elfouhaily };
 enum class WaveModel { Fft, Trochoid };
+enum class Tiling { Random, Periodic };
 enum class SurfaceKind { Patch, ProjectedGrid, NearFar, Cage, Planet };
 enum class CameraInterpolation { Linear, Smooth };
 enum class WaterType { Ocean, Coastal, Turbid };
@@ -120,6 +121,7 @@ struct Waves {
     // Largest first; empty: "auto", which is none with WaveModel::Trochoid. With both, the cascades hold the
     // waves that are shorter than the trains.
     std::vector<CascadeSize> cascades;
+    Tiling tiling = Tiling::Periodic;  // of the cascades (core/plan/copies.h)
     std::vector<BandGain> band_gains;  // where bands overlap, their gains multiply
     // With WaveModel::Trochoid. One from each bin of a geometric progression; without a value, the range is the
     // spectrum's (core/plan/trains.h).

@@ -39,7 +39,7 @@ class Patch final : public RestSurface {
         const auto side = static_cast<std::size_t>(lattice_.per_side);
         return {.finest_cell_m = lattice_.spacing_m,
                 .finest_pixel_m = lattice_.spacing_m,
-                .lattice = Lattice{lattice_.first_m, lattice_.spacing_m},
+                .lattice = Lattice{lattice_.first_m, lattice_.spacing_m, -lattice_.first_m},
                 .points = side * side};
     }
     void points_at(int, RestPoints<float>& points) const override { lay_out(points); }

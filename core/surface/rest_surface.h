@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,6 +31,7 @@ struct SeaReach {
 struct Lattice {
     double first_m = 0.0;
     double spacing_m = 1.0;
+    double last_m = std::numeric_limits<double>::infinity();  // no point lies further in x or y
     bool operator==(const Lattice&) const = default;
 };
 

@@ -14,7 +14,7 @@ namespace {
 double share_of(const SpectralMoments& all, double choppiness) {
     const double c = choppiness * choppiness;
     const auto j = jacobian_moments<double>(
-        0.0, 0.0, 0.0, {c * all.xxxx, c * all.xxxy, c * all.xxyy, c * all.xyyy, c * all.yyyy});
+        0.0, 0.0, 0.0, 0.0, {c * all.xxxx, c * all.xxxy, c * all.xxyy, c * all.xyyy, c * all.yyyy});
     if (!(j.variance > 0.0)) return 0.0;
     const double sigma = std::sqrt(j.variance);
     const double y = whitecaps_detail::to_normal(-j.mean / sigma, j.third / (j.variance * sigma)).y;

@@ -97,7 +97,8 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
     const auto whole = likely_values(shown_amplitudes(plan, 0.0));
     constexpr double kMostScale = 100.0;
     const double scale = solve(0.0, kMostScale, mean, [&](double by) {
-        return mean_of(whole, [&](double value) { return std::min(by * cubed(level_of(value)), kMostCoverage); });
+        return mean_of(whole,
+                       [&](double value) { return std::min(by * cubed(level_of(value)), kMostCoverage); });
     });
 
     std::array<double, Gusts::kLevelTerms> level{}, at_level{};

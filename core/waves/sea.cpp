@@ -127,7 +127,7 @@ void Sea<T>::calibrate_whitecaps() {
     const double law = law_coverage(plan_.from->scene);
     whitecap_threshold_ = calibrated_threshold(total_, law, plan_.breaking.choppiness, third, life);
     const auto j = jacobian_moments<double>(
-        0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
+        0.0, 0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
     double left = 0.0;
     if (plan_.foam && std::isfinite(whitecap_threshold_)) {
         const double deviate = breaking_deviate(j, whitecap_threshold_, third);
@@ -136,8 +136,7 @@ void Sea<T>::calibrate_whitecaps() {
         residual_coverage_ = pelagic::residual_coverage(deviate, left);
     }
     if (plan_.gusts)
-        gusts_ = make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third},
-                            whitecap_threshold_);
+        gusts_ = make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third}, whitecap_threshold_);
 }
 
 template <class T>

@@ -39,7 +39,7 @@ double whole_coverage(const JacobianMoments<double>& j, double threshold, bool t
 double calibrated_threshold(const SpectralMoments& breaking, double law_coverage, double choppiness,
                             bool third_moment, const FoamLife& life) {
     const auto j = jacobian_moments<double>(
-        0.0, 0.0, 0.0, {breaking.xxxx, breaking.xxxy, breaking.xxyy, breaking.xyyy, breaking.yyyy});
+        0.0, 0.0, 0.0, 0.0, {breaking.xxxx, breaking.xxxy, breaking.xxyy, breaking.xyyy, breaking.yyyy});
     constexpr double kNoFoam = 1e-9;  // a square millimetre in a thousand square metres
     if (law_coverage < kNoFoam || !(j.variance > 0.0)) return -std::numeric_limits<double>::infinity();
     constexpr double kLeastPressed = 0.1;

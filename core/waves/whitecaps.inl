@@ -42,21 +42,22 @@ inline StrainTraces<T> strain_traces(HiddenStrain<T> v) {
     return StrainTraces<T>(second, third);
 }
 
-// J's cumulants, given the shown derivatives of the displacement. The variance is ≥ 0, and exactly 0 where no
-// waves are hidden.
+// J's cumulants, given the shown derivatives of the displacement, dxy = ∂Dx/∂y and dyx = ∂Dy/∂x. The variance is ≥ 0, and
+// exactly 0 where no waves are hidden.
 template <class T>
-inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, HiddenStrain<T> v, StrainTraces<T> traces) {
-    const T gx = T(1) + dyy, gy = T(1) + dxx, gs = T(-2) * dxy;
+inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, T dyx, HiddenStrain<T> v,
+                                           StrainTraces<T> traces) {
+    const T gx = T(1) + dyy, gy = T(1) + dxx, gs = -(dxy + dyx);
     const T vg_x = v.xxxx * gx + v.xxyy * gy + v.xxxy * gs;
     const T vg_y = v.xxyy * gx + v.yyyy * gy + v.xyyy * gs;
     const T vg_s = v.xxxy * gx + v.xyyy * gy + v.xxyy * gs;
-    return JacobianMoments<T>(gx * gy - dxy * dxy,
+    return JacobianMoments<T>(gx * gy - dxy * dyx,
                               maximum(gx * vg_x + gy * vg_y + gs * vg_s + T(2) * traces.second, T(0)),
                               T(6) * (vg_x * vg_y - vg_s * vg_s) + T(8) * traces.third);
 }
 template <class T>
-inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, HiddenStrain<T> v) {
-    return jacobian_moments(dxx, dyy, dxy, v, strain_traces(v));
+inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, T dyx, HiddenStrain<T> v) {
+    return jacobian_moments(dxx, dyy, dxy, dyx, v, strain_traces(v));
 }
 
 namespace whitecaps_detail {

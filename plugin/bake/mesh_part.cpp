@@ -61,11 +61,13 @@ class MeshPart final : public OutputPart {
     }
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MeshSlot>(); }
 
-    void compute(const Frame<float>& sea, FoamHistory<float>* foam, int frame, OutputSlot& slot) override {
-        compute_as(single_, sea, foam, frame, static_cast<MeshSlot&>(slot));
+    void compute(const Frame<float>& sea, FoamHistory<float>* foam, int frame, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(single_, sea, foam, frame, static_cast<MeshSlot&>(slot), watch);
     }
-    void compute(const Frame<double>& sea, FoamHistory<double>* foam, int frame, OutputSlot& slot) override {
-        compute_as(wide_, sea, foam, frame, static_cast<MeshSlot&>(slot));
+    void compute(const Frame<double>& sea, FoamHistory<double>* foam, int frame, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(wide_, sea, foam, frame, static_cast<MeshSlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
@@ -165,7 +167,8 @@ class MeshPart final : public OutputPart {
     bool is_text() const { return scene().output.mesh == MeshFormat::Usda; }
 
     template <class T>
-    void compute_as(State<T>& state, const Frame<T>& sea, FoamHistory<T>* foam, int frame, MeshSlot& slot) {
+    void compute_as(State<T>& state, const Frame<T>& sea, FoamHistory<T>* foam, int frame, MeshSlot& slot,
+                    const BuildWatch& watch) {
         const RestSurface& surface = *plan_.surface;
         if (!state.is_laid_out || !surface.is_constant()) surface.points_at(frame, state.points);
         state.is_laid_out = true;
@@ -177,7 +180,7 @@ class MeshPart final : public OutputPart {
         if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
         if (!at.pixel_axis_m.empty()) points.pixel_axis_m = {at.pixel_axis_m.data()};
         state.runner.run(sea, output_.query, points, slot.values);
-        add_foam(foam, points, slot);
+        add_foam(foam, points, slot, watch);
         if (attributes_.origin) slot.origin_m = local_origin(place_of_origin(at), finest_of(at.cell_m));
         if (at.curvature_per_m != 0.0)
             lay_on_earth(at, slot.origin_m, slot.values);

@@ -73,10 +73,12 @@ class OutputPart {
     const std::string& fingerprint() const { return base_; }
 
     virtual std::unique_ptr<OutputSlot> make_slot() const { return std::make_unique<OutputSlot>(); }
-    // The frame's values. One frame at a time. `foam`: at the frame's time; null where foam doesn't live.
-    virtual void compute(const Frame<float>& sea, FoamHistory<float>* foam, int frame, OutputSlot& slot) = 0;
-    virtual void compute(const Frame<double>& sea, FoamHistory<double>* foam, int frame,
-                         OutputSlot& slot) = 0;
+    // The frame's values. One frame at a time. `foam`: at the frame's time; null where foam doesn't live. Throws
+    // BuildCancelled where `watch` ends it.
+    virtual void compute(const Frame<float>& sea, FoamHistory<float>* foam, int frame, OutputSlot& slot,
+                         const BuildWatch& watch) = 0;
+    virtual void compute(const Frame<double>& sea, FoamHistory<double>* foam, int frame, OutputSlot& slot,
+                         const BuildWatch& watch) = 0;
     // What it will hold, beside the values of its query.
     virtual OutputMemory memory() const = 0;
     // The bytes that aren't the values as they are. Different slots side by side, also while another frame is
@@ -92,14 +94,16 @@ class OutputPart {
     bool has_foam_history() const { return plan_.foam && query().products[index(Product::Coverage)]; }
     // Adds to the slot's coverage what earlier breaking has left.
     template <class T>
-    void add_foam(FoamHistory<T>* foam, const Points<T>& points, OutputSlot& slot) const {
+    void add_foam(FoamHistory<T>* foam, const Points<T>& points, OutputSlot& slot,
+                  const BuildWatch& watch) const {
         if (!foam || !has_foam_history()) return;
         slot.foam_active.resize(points.count);
         slot.foam_age_s.resize(points.count);
         foam->add(points, output_.query,
                   {.coverage = {slot.values.numbers(Product::Coverage).data()},
                    .active = {slot.foam_active.data()},
-                   .age_s = {slot.foam_age_s.data()}});
+                   .age_s = {slot.foam_age_s.data()}},
+                  watch);
     }
 
     const Plan& plan_;

@@ -30,7 +30,10 @@ template <class T>
 class SequenceOf final : public Sequence {
   public:
     SequenceOf(const Plan& plan, const BuildWatch& watch)
-        : sea_(std::make_shared<const Sea<T>>(plan, watch)), frame_(sea_), parts_(make_parts(sea_->plan())) {
+        : sea_(std::make_shared<const Sea<T>>(plan, watch)),
+          frame_(sea_),
+          parts_(make_parts(sea_->plan())),
+          watch_{.progress = {}, .cancel = watch.cancel} {
         if (sea_->plan().foam) foam_.emplace(sea_);
     }
 
@@ -46,7 +49,7 @@ class SequenceOf final : public Sequence {
             slot.outputs.push_back(parts_[slot.outputs.size()]->make_slot());
         for (std::size_t p = 0; p < parts_.size(); ++p)
             if (wants(slot, p))
-                parts_[p]->compute(frame_, foam_ ? &*foam_ : nullptr, frame, *slot.outputs[p]);
+                parts_[p]->compute(frame_, foam_ ? &*foam_ : nullptr, frame, *slot.outputs[p], watch_);
     }
 
     void encode(FrameSlot& slot) const override {
@@ -112,6 +115,7 @@ class SequenceOf final : public Sequence {
     Frame<T> frame_;
     std::optional<FoamHistory<T>> foam_;
     std::vector<std::unique_ptr<OutputPart>> parts_;
+    BuildWatch watch_;
 };
 
 }  // namespace

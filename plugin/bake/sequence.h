@@ -24,7 +24,8 @@ struct FrameSlot {
 class Sequence {
   public:
     virtual ~Sequence() = default;
-    // The frame's values, of the parts that the slot wants. One frame at a time.
+    // The frame's values, of the parts that the slot wants. One frame at a time. Throws BuildCancelled: a frame alone goes
+    // through its foam's past.
     virtual void compute(int frame, FrameSlot& slot) = 0;
     // Their bytes. Different slots side by side, also while another frame is computed.
     virtual void encode(FrameSlot& slot) const = 0;
@@ -38,7 +39,7 @@ class Sequence {
 };
 
 // In the plan's precision. The plan must be one of a bake (plan_bake), and is copied.
-// Throws BuildCancelled.
+// Throws BuildCancelled. What `watch` has to cancel outlives it: frames look at it too.
 std::unique_ptr<Sequence> make_sequence(const Plan& plan, const BuildWatch& watch = {});
 
 // What the statistics of a frame's record were made of: they are those of the first output.

@@ -42,7 +42,7 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(pixel, finest_m.y), sums);
     PixelFields f = sums.fields;
     PixelMoments hidden = possible_moments(sums.hidden);
-    SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy);
+    SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy, f.dxy);
     SlopeVariances carried =
         carried_slopes(SlopeVariances(hidden.xx, hidden.yy, hidden.xy), f.dxx, f.dyy, f.dxy, f.dxy);
     vec3 strain = apart ? sums.breaking : vec3(f.dxx, f.dyy, f.dxy);
@@ -50,7 +50,7 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     if (kGusts) gust = gusts_at(rest_m, pixel);
     float foam = 0.0;
     if (kCoverage)
-        foam = coverage(jacobian_moments(strain.x, strain.y, strain.z,
+        foam = coverage(jacobian_moments(strain.x, strain.y, strain.z, strain.z,
                                          HiddenStrain(hidden.xxxx, hidden.xxxy, hidden.xxyy, hidden.xyyy,
                                                       hidden.yyyy)),
                         gust.whitecap_threshold, kThirdMoment);

@@ -77,7 +77,8 @@ class SeaLayout {
     int ellipse_columns() const;
 
     // Of gusts.glsl.
-    static constexpr int kGustRows = 2 * GustsPlan::kWaves + (Gusts::kLevelTerms + Gusts::kKeptTerms + 1 + 3) / 4;
+    static constexpr int kGustRows =
+        2 * GustsPlan::kWaves + (Gusts::kLevelTerms + Gusts::kKeptTerms + 1 + 3) / 4;
 
     // For points relative to an origin [m]: the uniform block of cascades.glsl, as large for each, in which the time counts
     // only for gusts; and, where the sea has trains, their phases there [cycles], one float a train.

@@ -40,7 +40,7 @@ TileRow tile_row(const SeaLayout& layout, const SeaLayout::Tile& tile, glm::dvec
 
 // Those of gusts.glsl.
 std::vector<std::array<float, 4>> rows_of(const Gusts& gusts, glm::dvec2 origin_m,
-                                            double time_within_loop_s) {
+                                          double time_within_loop_s) {
     const auto cycles = gusts.plan.cycles_at(origin_m, time_within_loop_s);
     const auto number = [](double value) { return static_cast<float>(value); };
     std::vector<std::array<float, 4>> rows;

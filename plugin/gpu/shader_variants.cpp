@@ -59,23 +59,13 @@ const std::vector<std::string_view>& lighting_files() {
 }
 
 const std::vector<std::string_view>& query_files() {
-    static const std::vector<std::string_view> files{"core/lighting/special.glsl",
-                                                     "plugin/gpu/prelude.glsl",
-                                                     "core/plan/filter.inl",
-                                                     "core/plan/taps.inl",
-                                                     "core/waves/spline.inl",
-                                                     "core/waves/whitecaps.inl",
-                                                     "core/waves/gusts.inl",
-                                                     "core/evaluate/surface.inl",
-                                                     "core/waves/trains.inl",
-                                                     "core/evaluate/hidden.inl",
-                                                     "core/surface/earth.inl",
-                                                     "core/surface/pixel_footprint.inl",
-                                                     "plugin/gpu/places.glsl",
-                                                     "plugin/gpu/cascades.glsl",
-                                                     "plugin/gpu/trains.glsl",
-                                                     "plugin/gpu/gusts.glsl",
-                                                     "plugin/gpu/query.glsl"};
+    static const std::vector<std::string_view> files{
+        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",   "core/plan/filter.inl",
+        "core/plan/taps.inl",         "core/waves/spline.inl",     "core/waves/whitecaps.inl",
+        "core/waves/gusts.inl",       "core/evaluate/surface.inl", "core/waves/trains.inl",
+        "core/evaluate/hidden.inl",   "core/surface/earth.inl",    "core/surface/pixel_footprint.inl",
+        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl",  "plugin/gpu/trains.glsl",
+        "plugin/gpu/gusts.glsl",      "plugin/gpu/query.glsl"};
     return files;
 }
 

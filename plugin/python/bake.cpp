@@ -26,6 +26,7 @@
 #include "plugin/bake/verify.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/outputs.h"
 #include "plugin/python/task.h"
 #include "plugin/python/values.h"
 #include "plugin/python/watch.h"
@@ -190,12 +191,14 @@ void add_verify(py::module_& module) {
 
 // ---- Arrays
 
+using Slots = std::vector<std::unique_ptr<OutputSlot>>;
+
 // The maps of a scene at any time.
 class Maps {
   public:
     virtual ~Maps() = default;
-    // The values of each output, in the plan's order.
-    virtual std::vector<Values> at(double t_s) = 0;
+    // Each output's, in the plan's order. Throws BuildCancelled.
+    virtual Slots at(double t_s, const BuildWatch& watch) = 0;
     virtual const Plan& plan() const = 0;
 };
 
@@ -209,24 +212,23 @@ class MapsOf final : public Maps {
         if (sea_->plan().foam) foam_.emplace(sea_);
     }
 
-    std::vector<Values> at(double t_s) override {
+    Slots at(double t_s, const BuildWatch& watch) override {
         const std::lock_guard alone(mutex_);
-        return tbb::this_task_arena::isolate([&] { return made_at(t_s); });
+        return tbb::this_task_arena::isolate([&] { return made_at(t_s, watch); });
     }
     const Plan& plan() const override { return frame_.sea().plan(); }
 
   private:
-    std::vector<Values> made_at(double t_s) {
+    Slots made_at(double t_s, const BuildWatch& watch) {
         frame_.set(t_s);
         if (foam_) foam_->set(t_s);
-        std::vector<Values> values;
+        Slots slots;
         for (const auto& part : parts_) {
-            const auto slot = part->make_slot();
+            slots.push_back(part->make_slot());
             // The number is for surfaces that a camera shapes.
-            part->compute(frame_, foam_ ? &*foam_ : nullptr, 0, *slot);
-            values.push_back(std::move(slot->values));
+            part->compute(frame_, foam_ ? &*foam_ : nullptr, 0, *slots.back(), watch);
         }
-        return values;
+        return slots;
     }
 
     std::mutex mutex_;
@@ -261,35 +263,41 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     return made;
 }
 
-// The arrays of one output, n × n texels, by product.
-void add_arrays(py::dict& arrays, Values& values) {
-    for (const ProductRow& row : kProductTable) {
-        const std::size_t texels = values.size(row.product);
-        if (texels == 0) continue;
-        const auto n = static_cast<py::ssize_t>(std::llround(std::sqrt(static_cast<double>(texels))));
+// The arrays of one output, n × n texels, by name.
+void add_arrays(py::dict& arrays, OutputSlot& slot) {
+    const auto add = [&](const char* name, auto& values) {
+        if (values.empty()) return;
+        const auto n = static_cast<py::ssize_t>(std::llround(std::sqrt(static_cast<double>(values.size()))));
+        arrays[name] = array_of<float>(std::move(values), {n, n});
+    };
+    for (const ProductRow& row : kProductTable)
         if (row.components == 1)
-            arrays[row.identifier] =
-                array_of<float>(std::move(values.numbers(NumberProduct::checked(row.product))), {n, n});
+            add(row.identifier, slot.values.numbers(NumberProduct::checked(row.product)));
         else
-            arrays[row.identifier] =
-                array_of<float>(std::move(values.vectors(VectorProduct::checked(row.product))), {n, n});
-    }
+            add(row.identifier, slot.values.vectors(VectorProduct::checked(row.product)));
+    add(kOutputs[kFoamActive].identifier, slot.foam_active);
+    add(kOutputs[kFoamAge].identifier, slot.foam_age_s);
 }
 
 // By square: the patch first, then each cascade's tile.
-py::tuple maps_at(Maps& self, double t_s) {
-    std::vector<Values> values;
-    {
+py::tuple maps_at(Maps& self, double t_s, const py::object& progress, const py::object& cancel) {
+    Watch watch(progress, cancel);
+    Slots slots;
+    try {
         const OthersMayRun others_may_run;
-        values = self.at(t_s);
+        slots = self.at(t_s, {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()});
+    } catch (const BuildCancelled&) {
+        watch.rethrow();
+        throw Cancelled("computing the maps was cancelled");
     }
+    watch.rethrow();
     py::dict patch;
     py::list tiles;
-    for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t i = 0; i < slots.size(); ++i) {
         const std::optional<int> cascade = self.plan().outputs[i].cascade;
         while (cascade && static_cast<int>(tiles.size()) <= *cascade) tiles.append(py::dict());
         py::dict to = cascade ? tiles[*cascade].cast<py::dict>() : patch;
-        add_arrays(to, values[i]);
+        add_arrays(to, *slots[i]);
     }
     return py::make_tuple(patch, tiles);
 }
@@ -335,11 +343,13 @@ void add_bake(py::module_& module) {
              py::kw_only(), py::arg("tiles") = false, py::arg("progress") = py::none(),
              py::arg("cancel") = py::none())
         .def(
-            "at", &maps_at, py::arg("t"),
+            "at", &maps_at, py::arg("t"), py::kw_only(), py::arg("progress") = py::none(),
+            py::arg("cancel") = py::none(),
             "(patch, tiles) at a time [s]: the patch's arrays, and a list of each cascade's, the largest first. "
             "Each is a dict of float32 (n, n, 3): displacement [m], normal, slope_variance (of tiles slope_variance_at_rest: what carries it is the whole "
-            "sea), jacobian, and (n, n): coverage. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. Any "
-            "thread may call; calls wait for each other.");
+            "sea), jacobian, and (n, n): coverage; where foam lives the patch's is all foam, with foam_active, what of it breaks "
+            "now, and foam_age [s], and a tile's is what breaks now. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. Any "
+            "thread may call; calls wait for each other. progress, cancel: as Frame.evaluate()'s.");
 }
 
 }  // namespace pelagic::python

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/effects/foam_history.h"
 #include "core/evaluate/places.h"
 #include "core/scene/limits.h"
 #include "plugin/python/arrays.h"
@@ -36,7 +37,7 @@ constexpr Range kRest_m = limits::kCameraCoordinate_m;
 
 struct Arguments {
     py::object cell_m, pixel_m, cell_axis_m, pixel_axis_m;
-    std::array<py::object, kProductCount> arrays;  // in the order of kProductTable
+    std::array<py::object, kOutputs.size()> arrays;  // in the order of kOutputs
     std::optional<std::vector<std::string>> outputs;
 };
 
@@ -66,7 +67,24 @@ struct Evaluation {
     Points<float> points;
     Footprints cell, pixel;
     Results<float> results;
+    FoamResults foam;             // its coverage is the results'
+    std::vector<float> coverage;  // where foam is asked for, and coverage isn't
+
+    bool has_foam() const { return foam.active || foam.age_s || results.holds(Product::Coverage); }
 };
+
+void write_to(Evaluation& asked, std::size_t output, const py::object& array, py::ssize_t count) {
+    const OutputRow& row = kOutputs[output];
+    const Asked of{row.identifier, count};
+    if (row.components == 3)
+        asked.results.set(VectorProduct::checked(static_cast<Product>(output)), writable_vectors(array, of));
+    else if (output == kFoamActive)
+        asked.foam.active = writable_numbers(array, of);
+    else if (output == kFoamAge)
+        asked.foam.age_s = writable_numbers(array, of);
+    else
+        asked.results.set(NumberProduct::checked(static_cast<Product>(output)), writable_numbers(array, of));
+}
 
 // None, or an array of each point's own.
 Strided<const glm::vec2> axes(const py::object& object, const Asked& asked) {
@@ -89,14 +107,6 @@ Points<float> points_of(const py::object& array, std::array<double, 2> origin_m,
         .origin_m = {origin_m[0], origin_m[1]}, .count = static_cast<std::size_t>(count), .rest_m = points};
 }
 
-void write_to(Results<float>& results, const ProductRow& row, const py::object& array, py::ssize_t count) {
-    const Asked asked{row.identifier, count};
-    if (row.components == 1)
-        results.set(NumberProduct::checked(row.product), writable_numbers(array, asked));
-    else
-        results.set(VectorProduct::checked(row.product), writable_vectors(array, asked));
-}
-
 // While the work waits for its parts, this thread takes up nobody else's: Blender runs drivers as tasks of the same TBB,
 // and one that asked this frame would wait for the lock that its own thread holds.
 template <class Work>
@@ -106,7 +116,9 @@ void alone(const Work& work) {
 
 class PythonFrame {
   public:
-    explicit PythonFrame(const PythonSea& sea) : sea_(sea), frame_(sea.sea) {}
+    explicit PythonFrame(const PythonSea& sea) : sea_(sea), frame_(sea.sea) {
+        if (sea.plan().foam) foam_.emplace(sea.sea);
+    }
 
     void set(double t_s) {
         const OthersMayRun others_may_run;
@@ -114,13 +126,21 @@ class PythonFrame {
         alone([&] { frame_.set(t_s); });
     }
 
-    py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given) const {
+    py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given,
+                      const py::object& progress, const py::object& cancel) const {
         Evaluation asked;
         py::dict written = read(asked, rest, origin_m, given);
-        const OthersMayRun others_may_run;
-        require_on_the_sea(asked.points, "rest");
-        const std::shared_lock reading(mutex_);
-        run(asked);
+        Watch watch(progress, cancel);
+        try {
+            const OthersMayRun others_may_run;
+            require_on_the_sea(asked.points, "rest");
+            const std::shared_lock reading(mutex_);
+            run(asked, watch_of(watch));
+        } catch (const BuildCancelled&) {
+            watch.rethrow();
+            throw Cancelled("evaluating was cancelled");
+        }
+        watch.rethrow();
         return written;
     }
 
@@ -131,11 +151,11 @@ class PythonFrame {
         const auto asked = std::make_shared<Evaluation>();
         py::dict written = frame.read(*asked, rest, origin_m, given);
         return std::make_unique<Task>(
-            [&frame, asked, t_s](Task&) -> Task::Made {
+            [&frame, asked, t_s](Task& task) -> Task::Made {
                 require_on_the_sea(asked->points, "rest");
                 const std::unique_lock writing(frame.mutex_);
                 alone([&] { frame.frame_.set(t_s); });
-                frame.run(*asked);
+                frame.run(*asked, watch_of(task));
                 return {};
             },
             py::make_tuple(self, rest, given.cell_m, given.pixel_m, given.cell_axis_m, given.pixel_axis_m),
@@ -144,7 +164,7 @@ class PythonFrame {
 
     py::dict heights(const py::object& xy, std::array<double, 2> origin_m, const py::object& footprint_m,
                      const std::optional<std::vector<std::string>>& outputs) const {
-        require_product(row_of(Product::Position));
+        require_output(index(Product::Position));
         const auto places = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(xy);
         if (!places || places.ndim() != 2 || places.shape(1) != 2)
             throw py::value_error("xy: accepted: numbers of shape (n, 2)");
@@ -154,19 +174,20 @@ class PythonFrame {
         read_footprints(footprints, footprint_m, {"footprint_m", count});
         points.cell_m = points.pixel_m = footprints.view;
 
-        ProductSet wanted;
+        OutputSet wanted;
         if (outputs)
-            for (const std::string& name : *outputs) wanted.set(index(product_of(name).product));
+            for (const std::string& name : *outputs) wanted.set(output_of(name));
         else
-            wanted = sea_.products & products(Product::Normal, Product::Velocity);
-        Results<float> results;
+            for (const Product product : {Product::Normal, Product::Velocity})
+                wanted[index(product)] = sea_.outputs[index(product)];
+        Evaluation asked;
         py::dict written;
-        for (const ProductRow& row : kProductTable) {
-            if (!wanted[index(row.product)]) continue;
-            require_product(row);
-            const py::array array = fresh(row, count);
-            write_to(results, row, array, count);
-            written[row.identifier] = array;
+        for (std::size_t i = 0; i < kOutputs.size(); ++i) {
+            if (!wanted[i]) continue;
+            require_output(i);
+            const py::array array = fresh(i, count);
+            write_to(asked, i, array, count);
+            written[kOutputs[i].identifier] = array;
         }
         std::vector<glm::vec2> rest_m(points.count);
         std::vector<float> residual_m(points.count), height_m(points.count);
@@ -175,16 +196,20 @@ class PythonFrame {
             require_on_the_sea(points, "xy");
             const std::shared_lock reading(mutex_);
             require_time();
-            wanted.set(index(Product::Displacement));
-            const PreparedQuery<float> query(frame_, 0, wanted, points.origin_m);
+            add_coverage(asked, points.count);
+            ProductSet summed = asked.results.given();
+            summed.set(index(Product::Displacement));
+            const PreparedQuery<float> query(frame_, 0, summed, points.origin_m);
             alone([&] { find_rest(query, points, {}, {rest_m.data()}, {residual_m.data()}); });
             std::vector<glm::vec3> displacement_m(points.count);
-            if (!results.holds(Product::Displacement))
-                results.set(Product::Displacement, {displacement_m.data()});
+            if (!asked.results.holds(Product::Displacement))
+                asked.results.set(Product::Displacement, {displacement_m.data()});
             points.rest_m = {rest_m.data()};
-            alone([&] { query.evaluate(points, results); });
-            const Strided<glm::vec3> displaced_m = results.vectors(Product::Displacement);
+            alone([&] { query.evaluate(points, asked.results); });
+            const Strided<glm::vec3> displaced_m = asked.results.vectors(Product::Displacement);
             for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
+            asked.points = points;
+            add_foam(asked, {});
         }
         written["height_m"] = array_of<float>(std::move(height_m));
         written["rest_m"] = array_of<float>(std::move(rest_m));
@@ -198,35 +223,32 @@ class PythonFrame {
 
   private:
     // The caller's arrays, and new ones for the outputs that he names, or, if he does neither, for all
-    // products.
-    std::array<py::object, kProductCount> with_fresh(const Arguments& given, py::ssize_t count) const {
+    // that the sea holds.
+    std::array<py::object, kOutputs.size()> with_fresh(const Arguments& given, py::ssize_t count) const {
         auto arrays = given.arrays;
-        ProductSet wanted;
+        OutputSet wanted;
         bool none_given = true;
         for (const py::object& array : arrays) none_given = none_given && array.is_none();
         if (given.outputs)
-            for (const std::string& name : *given.outputs) wanted.set(index(product_of(name).product));
+            for (const std::string& name : *given.outputs) wanted.set(output_of(name));
         else if (none_given)
-            wanted = sea_.products;
-        for (const ProductRow& row : kProductTable) {
-            const bool asked = wanted[index(row.product)] || !arrays[index(row.product)].is_none();
-            if (asked) require_product(row);
-        }
-        for (const ProductRow& row : kProductTable) {
-            py::object& array = arrays[index(row.product)];
-            if (wanted[index(row.product)] && array.is_none()) array = fresh(row, count);
-        }
+            wanted = sea_.outputs;
+        for (std::size_t i = 0; i < kOutputs.size(); ++i)
+            if (wanted[i] || !arrays[i].is_none()) require_output(i);
+        for (std::size_t i = 0; i < kOutputs.size(); ++i)
+            if (wanted[i] && arrays[i].is_none()) arrays[i] = fresh(i, count);
         return arrays;
     }
 
-    static py::array_t<float> fresh(const ProductRow& row, py::ssize_t count) {
-        if (row.components == 1) return py::array_t<float>(count);
-        return py::array_t<float>({count, static_cast<py::ssize_t>(row.components)});
+    static py::array_t<float> fresh(std::size_t output, py::ssize_t count) {
+        const auto components = static_cast<py::ssize_t>(kOutputs[output].components);
+        if (components == 1) return py::array_t<float>(count);
+        return py::array_t<float>({count, components});
     }
 
-    void require_product(const ProductRow& row) const {
-        if (!sea_.products[index(row.product)])
-            throw py::value_error(std::string(row.identifier) +
+    void require_output(std::size_t output) const {
+        if (!sea_.outputs[output])
+            throw py::value_error(std::string(kOutputs[output].identifier) +
                                   ": the sea was built without it; accepted: what its products name");
     }
 
@@ -244,19 +266,53 @@ class PythonFrame {
 
         const auto arrays = with_fresh(given, count);
         py::dict written;
-        for (const ProductRow& row : kProductTable) {
-            const py::object& array = arrays[index(row.product)];
-            if (array.is_none()) continue;
-            write_to(asked.results, row, array, count);
-            written[row.identifier] = array;
+        for (std::size_t i = 0; i < kOutputs.size(); ++i) {
+            if (arrays[i].is_none()) continue;
+            write_to(asked, i, arrays[i], count);
+            written[kOutputs[i].identifier] = arrays[i];
         }
         return written;
     }
 
-    // Whoever calls it holds the lock.
-    void run(const Evaluation& asked) const {
+    // Of a Watch or a Task.
+    template <class Watching>
+    static BuildWatch watch_of(Watching& watch) {
+        return {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
+    }
+
+    // Whoever calls it holds the lock. Throws BuildCancelled.
+    void run(Evaluation& asked, const BuildWatch& watch) const {
         require_time();
+        add_coverage(asked, asked.points.count);
         alone([&] { pelagic::evaluate(frame_, 0, asked.points, asked.results); });
+        add_foam(asked, watch);
+    }
+
+    // Foam begins with what breaks now.
+    static void add_coverage(Evaluation& asked, std::size_t count) {
+        if (!asked.has_foam() || asked.results.holds(Product::Coverage)) return;
+        asked.coverage.resize(count);
+        asked.results.set(Product::Coverage, {asked.coverage.data()});
+    }
+
+    // The frame's own history, made where somebody asks for foam; one asks at a time.
+    void add_foam(const Evaluation& asked, const BuildWatch& watch) const {
+        if (!asked.has_foam()) return;
+        FoamResults foam = asked.foam;
+        foam.coverage = asked.results.numbers(Product::Coverage);
+        if (!foam_) {
+            for (std::size_t i = 0; i < asked.points.count; ++i) {
+                if (foam.active) foam.active[i] = foam.coverage[i];
+                if (foam.age_s) foam.age_s[i] = 0.0f;
+            }
+            return;
+        }
+        const std::lock_guard adding(foam_mutex_);
+        alone([&] {
+            if (foam_time_s_ != frame_.time_s()) foam_->set(frame_.time_s());
+            foam_time_s_ = frame_.time_s();
+            foam_->add(asked.points, 0, foam, watch);
+        });
     }
 
     void require_time() const {
@@ -289,12 +345,15 @@ class PythonFrame {
     PythonSea sea_;
     Frame<float> frame_;
     mutable std::shared_mutex mutex_;
+    mutable std::optional<FoamHistory<float>> foam_;
+    mutable std::optional<double> foam_time_s_;
+    mutable std::mutex foam_mutex_;
 };
 
-// A line about each product's array.
-std::string product_lines() {
+// A line about each output's array.
+std::string output_lines() {
     std::string lines;
-    for (const ProductRow& row : kProductTable)
+    for (const OutputRow& row : kOutputs)
         lines += row.identifier + std::string(row.components == 1 ? ": (n,), " : ": (n, 3), ") +
                  row.description + ".\n";
     return lines;
@@ -308,52 +367,58 @@ const std::string kEvaluateDoc =
     "first.\n"
     "cell_axis_m, pixel_axis_m: float32 (n, 2), for footprints that are ellipses: the long axis [m], where it is "
     "longer than cell_m or pixel_m, which then is the short one's length.\n" +
-    product_lines() +
+    output_lines() +
     "Velocities are per second of the frame's time; shot.time_scale of those make a second of the screen.\n"
     "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
     "sea's products.\n\n"
     "Arrays are float32. Points may lie any multiple of 4 bytes apart, the components of one are adjacent; "
-    "nothing between them is touched. Outputs must not overlap. Any thread may call; others run meanwhile.";
+    "nothing between them is touched. Outputs must not overlap. Any thread may call; others run meanwhile.\n\n"
+    "Coverage is all foam: where it lives, with what earlier breaking has left. That is a sum over earlier times, of which the "
+    "frame keeps what it can from one time to the next; a time far from those before it takes several times as long. "
+    "progress: called with the share of those times that is done, 0 to 1, where they are many. cancel: a Cancel, or a callable "
+    "that is asked as often and is true when it is enough; Cancelled is then raised, and the arrays hold nothing of use.";
 
 // An output's array by its name, None where it isn't wanted.
 py::object none() {
     return py::none();
 }
 
-// evaluate() and begin() with an argument for each product's array, under its identifier: a parameter for each
+// evaluate() and begin() with an argument for each output's array, under its identifier: a parameter for each
 // number in the pack.
 template <std::size_t>
 using ArrayArgument = const py::object&;
-template <std::size_t... kProducts>
-void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kProducts...>) {
+template <std::size_t... kRows>
+void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kRows...>) {
     frame.def(
         "evaluate",
         [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
            const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
-           const py::object& pixel_axis_m, ArrayArgument<kProducts>... arrays,
-           const std::optional<std::vector<std::string>>& outputs) {
+           const py::object& pixel_axis_m, ArrayArgument<kRows>... arrays,
+           const std::optional<std::vector<std::string>>& outputs, const py::object& progress,
+           const py::object& cancel) {
             return self.evaluate(rest, origin,
-                                 {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs});
+                                 {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs}, progress,
+                                 cancel);
         },
         py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(), py::arg("cell_m") = none(),
         py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(), py::arg("pixel_axis_m") = none(),
-        (py::arg(kProductTable[kProducts].identifier) = none())..., py::arg("outputs") = none(),
-        kEvaluateDoc.c_str());
+        (py::arg(kOutputs[kRows].identifier) = none())..., py::arg("outputs") = none(),
+        py::arg("progress") = none(), py::arg("cancel") = none(), kEvaluateDoc.c_str());
     frame.def(
         "begin",
         [](const py::object& self, double t, const py::object& rest, std::array<double, 2> origin,
            const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
-           const py::object& pixel_axis_m, ArrayArgument<kProducts>... arrays,
+           const py::object& pixel_axis_m, ArrayArgument<kRows>... arrays,
            const std::optional<std::vector<std::string>>& outputs) {
             return PythonFrame::begin(self, t, rest, origin,
                                       {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs});
         },
         py::arg("t"), py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(),
         py::arg("cell_m") = none(), py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(),
-        py::arg("pixel_axis_m") = none(), (py::arg(kProductTable[kProducts].identifier) = none())...,
+        py::arg("pixel_axis_m") = none(), (py::arg(kOutputs[kRows].identifier) = none())...,
         py::arg("outputs") = none(),
-        "Begins set(t) and evaluate() with the rest: a Task whose result is evaluate()'s. It keeps the arrays alive; "
-        "nobody may write to them meanwhile.");
+        "Begins set(t) and evaluate() with the rest: a Task whose result is evaluate()'s, and whose progress is what that "
+        "calls progress with. It keeps the arrays alive; nobody may write to them meanwhile.");
 }
 
 }  // namespace
@@ -363,7 +428,7 @@ void add_frame(py::module_& module) {
         module, "Frame",
         "The state of a sea at one time. Its buffers are made once and reused: who needs two "
         "times at once makes two frames.");
-    add_evaluate(frame, std::make_index_sequence<kProductCount>());
+    add_evaluate(frame, std::make_index_sequence<kOutputs.size()>());
     frame.def(py::init<const PythonSea&>(), py::arg("sea"))
         .def(
             "set", &PythonFrame::set, py::arg("t"),

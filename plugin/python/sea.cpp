@@ -20,12 +20,12 @@ namespace pelagic::python {
 
 namespace py = pybind11;
 
-const ProductRow& product_of(const std::string& name) {
+std::size_t output_of(const std::string& name) {
     std::vector<std::string> names;
     std::string accepted;
-    for (const ProductRow& row : kProductTable) {
-        if (name == row.identifier) return row;
-        names.emplace_back(row.identifier);
+    for (std::size_t i = 0; i < kOutputs.size(); ++i) {
+        if (name == kOutputs[i].identifier) return i;
+        names.emplace_back(kOutputs[i].identifier);
         accepted += (accepted.empty() ? "" : " ") + names.back();
     }
     const std::string near = nearest(name, names);
@@ -34,10 +34,9 @@ const ProductRow& product_of(const std::string& name) {
                           "; accepted: " + accepted);
 }
 
-std::string product_names() {
+std::string output_names() {
     std::string names;
-    for (const ProductRow& row : kProductTable)
-        names += (names.empty() ? "" : ", ") + std::string(row.identifier);
+    for (const OutputRow& row : kOutputs) names += (names.empty() ? "" : ", ") + std::string(row.identifier);
     return names;
 }
 
@@ -87,7 +86,8 @@ Query query_of_views(const PreparedScene& prepared, const SeaRequest& request, P
 // What a sea is built from; bad requests throw before any work.
 struct SeaOrder {
     Scene scene;  // a copy: other threads may change the caller's meanwhile
-    ProductSet asked, held;
+    OutputSet asked;
+    ProductSet held;
     std::optional<Query> plain;
     SeaRequest request;
 };
@@ -95,9 +95,10 @@ struct SeaOrder {
 SeaOrder order_of(const Scene& scene, SeaRequest request) {
     require_valid(scene);
     SeaOrder order{.scene = scene, .asked = {}, .held = {}, .plain = {}, .request = std::move(request)};
-    for (const std::string& name : order.request.products) order.asked.set(index(product_of(name).product));
-    order.held = order.asked;
+    for (const std::string& name : order.request.products) order.asked.set(output_of(name));
+    order.held = products_of(order.asked);
     if (order.asked[index(Product::Position)]) order.held.set(index(Product::Displacement));
+    if (order.asked[kFoamActive] || order.asked[kFoamAge]) order.held.set(index(Product::Coverage));
     const SeaRequest& kept = order.request;
     if (!kept.views.empty() && (kept.cell_m || kept.pixel_m || kept.lattice))
         throw py::value_error(
@@ -115,9 +116,8 @@ PythonSea built(const SeaOrder& order, Watching& watch) {
     query.name = "python";
     query.products = order.held;
     // Whatever the level, arrays are float32.
-    return {std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.double_precision = false}),
-                                               building),
-            order.asked};
+    Plan plan = make_plan(prepared, {query}, {.double_precision = false, .living_foam = true});
+    return {std::make_shared<const Sea<float>>(std::move(plan), building), order.asked};
 }
 
 PythonSea build_sea(const SeaOrder& order, Watch& watch) {
@@ -138,8 +138,9 @@ const std::string kSeaDoc =
     "Single precision.\n\n"
     "scene: a valid Scene (ShotError otherwise); later changes to it don't matter here.\n"
     "products: what evaluate() may be asked for, and so what each frame computes: " +
-    product_names() +
-    ".\n"
+    output_names() +
+    ". Coverage, foam_active and foam_age are of foam that lives where effects.foam_decay_s is above 0; without it all foam "
+    "is active.\n"
     "cell_m, pixel_m: footprints [m], of positions and velocities and of everything that comes from "
     "derivatives: waves too short for them are left out, and counted in slope_variance and coverage. A "
     "number for all points, or a rising ladder between whose rungs each point's own footprint is blended; 0 "
@@ -201,8 +202,8 @@ void add_sea(py::module_& module) {
             "products",
             [](const PythonSea& self) {
                 py::list names;
-                for (const ProductRow& row : kProductTable)
-                    if (self.products[index(row.product)]) names.append(row.identifier);
+                for (std::size_t i = 0; i < kOutputs.size(); ++i)
+                    if (self.outputs[i]) names.append(kOutputs[i].identifier);
                 return py::tuple(names);
             },
             "What evaluate() may be asked for.")
@@ -214,7 +215,7 @@ void add_sea(py::module_& module) {
             "Memory that the sea holds, once for all its frames [bytes].")
         .def_property_readonly(
             "frame_bytes", [](const PythonSea& self) { return self.plan().frame_bytes(); },
-            "Memory that each of its frames holds [bytes].");
+            "Memory that each of its frames holds, without what foam that lives keeps of earlier times [bytes].");
     add_grids(module, sea);
 }
 

@@ -24,7 +24,7 @@ PARAMETERS = {
 # The same where a name means another thing in one place.
 PARAMETERS_OF = {("shade", name): ARRAY for name in ("normal", "slope_variance")} | {
     (function, name): f"{ARRAY} | None" for function in ("evaluate", "begin")
-    for name in ("normal", "slope_variance", "slope_variance_at_rest")}
+    for name in ("normal", "slope_variance", "slope_variance_at_rest", "foam_active", "foam_age")}
 
 # Results that are objects, dictionaries and tuples to pybind11, by the name after the last dot.
 RESULTS = {

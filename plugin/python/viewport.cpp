@@ -250,7 +250,8 @@ class GpuSea {
             const auto count = static_cast<py::ssize_t>(values.size());
             cycles = array_of<float>(std::move(values), {1, count, 1});
         }
-        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, packed_.time_within_loop_s())), cycles);
+        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, packed_.time_within_loop_s())),
+                              cycles);
     }
 
     GpuGrid grid(const View& view, std::optional<double> cell_px, bool on_earth) const {

@@ -75,8 +75,10 @@ class RendererOf final : public Impl {
         clear(picture);
         const std::vector<double> moments = moments_of(frame, options_);
         const auto passes = static_cast<int>(moments.size());
+        const double first_s = scene_.shot.time_s(*std::min_element(moments.begin(), moments.end()));
+        double begun = 0.0;  // the share of the pass that its foam's past took
         const auto go_on = [&](int pass, double done) {
-            if (watch.progress) watch.progress((pass + done) / passes);
+            if (watch.progress) watch.progress((pass + begun + (1.0 - begun) * done) / passes);
             return !(watch.cancel && watch.cancel->load(std::memory_order_relaxed));
         };
         for (int pass = 0; pass < passes; ++pass) {
@@ -86,7 +88,18 @@ class RendererOf final : public Impl {
             sampling_ = passes == 1 ? Sampling{}
                         : is_own    ? Sampling{n, glm::ivec2(n / 2)}
                                     : Sampling{n, {sample % n, sample / n}};
-            begin(moments[pass]);
+            begun = 0.0;
+            try {
+                begin(moments[pass], scene_.shot.time_s(moments[pass]) - first_s,
+                      {.progress =
+                           [&](double done) {
+                               begun = 0.5 * done;
+                               go_on(pass, 0.0);
+                           },
+                       .cancel = watch.cancel});
+            } catch (const BuildCancelled&) {
+                return false;
+            }
             const int step = rows_of_batch(raster_size().x, n / sampling_.stride);
             for (int row = 0; row < raster_size().y; row += step) {
                 const int rows = std::min(step, raster_size().y - row);
@@ -130,7 +143,8 @@ class RendererOf final : public Impl {
                 !row.light && options_.layers[index(row.layer)] ? pixels * row.components : 0);
     }
 
-    void begin(double moment) {
+    // `back_s`: how much earlier moments follow. Throws BuildCancelled.
+    void begin(double moment, double back_s, const BuildWatch& watch) {
         frame_.set(scene_.shot.time_s(moment));
         refuse_under_water(frame_, scene_, moment, grid_options_);
         const double height_m = view_.position_m.z;
@@ -138,13 +152,13 @@ class RendererOf final : public Impl {
         if (sky_.air && (air_.empty() || view_.position_m.z != height_m))
             air_ = sky_.air->seen_from(view_.position_m.z);
         lay_out_grid();
-        prepare_foam(scene_.shot.time_s(moment));
+        prepare_foam(scene_.shot.time_s(moment), back_s, watch);
     }
 
     // Of all that the picture shows, so that its parts don't each go through the earlier times.
-    void prepare_foam(double time_s) {
+    void prepare_foam(double time_s, double back_s, const BuildWatch& watch) {
         if (!history_) return;
-        history_->set(time_s);
+        history_->set(time_s, back_s);
         const std::vector<T> pixel_m(grid_.pixel_m.begin(), grid_.pixel_m.end());
         const std::vector<glm::vec<2, T>> axis_m(grid_.pixel_axis_m.begin(), grid_.pixel_axis_m.end());
         history_->prepare(Points<T>{.origin_m = grid_.origin_m,
@@ -152,7 +166,7 @@ class RendererOf final : public Impl {
                                     .rest_m = {rest_.data()},
                                     .pixel_m = {pixel_m.data()},
                                     .pixel_axis_m = {axis_m.data()}},
-                          kQuery);
+                          kQuery, watch);
     }
 
     void lay_out_grid() {

@@ -87,6 +87,25 @@ with checking("an effect that is off has no attribute"):
     change(obj, effects__whitecaps=True)
     assert "whitecap_coverage" in obj.data.attributes
 
+with checking("foam that lives has its age and what breaks now, the same after a jump as when it plays, and the core's"):
+    obj.pelagic.effects.foam_decay_s = 3.0
+    scene.frame_set(20)
+    shot = ocean.scene_of(obj, scene)
+    rest, _ = pelagic.patch(shot.surface.size_m, shot.surface.resolution)
+    products = ("position", "velocity", "slope_variance", "coverage", "foam_active", "foam_age")
+    frame = pelagic.Frame(pelagic.Sea(shot, products))
+    named = (("whitecap_coverage", "coverage"), ("foam_active", "foam_active"), ("foam_age", "foam_age"))
+    for number in (20, 90, 91, 92):
+        scene.frame_set(number)
+        frame.set(shot.shot.time_s(number))
+        core = frame.evaluate(rest)
+        for name, product in named:
+            assert np.array_equal(numbers(obj.data, name)[:len(rest)], core[product]), (number, name)
+    assert 1.0 < core["foam_age"].max() < 9.0 and (core["coverage"] > core["foam_active"] + 0.05).any()
+    obj.pelagic.effects.foam_decay_s = 0.0
+    bpy.context.view_layer.update()
+    assert "foam_age" not in obj.data.attributes and "foam_active" not in obj.data.attributes
+
 with checking("played in even steps, when frames are computed ahead, two oceans of one sea show what they do at a jump"):
     bpy.ops.object.duplicate()
     twin = bpy.context.object

@@ -5,7 +5,9 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "core/surface/projected_grid.h"
@@ -199,6 +201,48 @@ TEST(LivingFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
     expect_same(single.at(5.2, points), cold);
 }
 
+// A time far from those before says how far it is; a step, and a shutter's moments, have no past to go through.
+TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
+    const auto sea = sea_of(scene_of(2.0), 0.7);
+    const auto rest_m = square(50, 0.9);
+    const Points<float> points{.count = rest_m.size(), .rest_m = {rest_m.data()}};
+    FoamHistory<float> history(sea);
+    std::vector<double> told;
+    std::atomic<bool> enough = false;
+    const BuildWatch watch{.progress = [&](double done) { told.push_back(done); }, .cancel = &enough};
+    const double shutter_s = 2.5 * sea->plan().foam->step_s;
+    history.set(9.0, shutter_s);
+    history.prepare(points, 0, watch);
+    EXPECT_GT(told.size(), 10u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_EQ(told.back(), 1.0);
+    told.clear();
+    for (const double back_s : {shutter_s, 0.3 * shutter_s, -0.02}) {
+        history.set(9.0 - back_s);
+        history.prepare(points, 0, watch);
+    }
+    EXPECT_TRUE(told.empty());
+    // What was gone through is kept: as far as it was, it needn't begin again.
+    const BuildWatch half{.progress =
+                              [&](double done) {
+                                  told.push_back(done);
+                                  enough = done > 0.5;
+                              },
+                          .cancel = &enough};
+    history.set(50.0);
+    EXPECT_THROW(history.prepare(points, 0, half), BuildCancelled);
+    const std::size_t first = told.size();
+    enough = false;
+    history.set(50.01);
+    history.prepare(points, 0, watch);
+    EXPECT_LT(told.size() - first, first + 3);
+    Shown<> other(sea);
+    const Foam whole = other.at(50.01, rest_m);
+    std::vector<float> total(whole.active);
+    history.add(points, 0, {.coverage = {total.data()}});
+    EXPECT_EQ(total, whole.total);
+}
+
 TEST(LivingFoam, OfALoopCloses) {
     Scene scene = scene_of(2.0);
     scene.shot.loop_s = 4.0;
@@ -269,6 +313,32 @@ TEST(LivingFoam, HasTheLawsCoverage) {
         // Breaking lies on what it leaves where it is resolved: the calibration is between both (core/waves/whitecaps.cpp).
         EXPECT_NEAR(share * of_8m, 1.0, 0.06) << footprint_m;
     }
+}
+
+// Gusts change where waves break, and not how much foam there is.
+TEST(LivingFoam, OfGustsIsAsMuchAndWhereTheyBlew) {
+    Scene scene = scene_of(4.0);
+    scene.sea.gust_size_m = 120.0;
+    const auto points = square(150, 16.0);
+    const auto residual_of = [&](double strength) {
+        scene.sea.gust_strength = strength;
+        Shown<> shown(sea_of(scene, 12.0));
+        const std::vector<float> left = shown.at(11.0, points).residual();
+        return std::vector<double>(left.begin(), left.end());
+    };
+    const std::vector<double> even = residual_of(0.0), gusty = residual_of(0.8);
+    const auto mean = [](const std::vector<double>& of) {
+        return std::accumulate(of.begin(), of.end(), 0.0) / static_cast<double>(of.size());
+    };
+    const auto spread = [&](const std::vector<double>& of) {
+        double sum = 0.0;
+        for (const double v : of) sum += (v - mean(of)) * (v - mean(of)) / static_cast<double>(of.size());
+        return std::sqrt(sum) / mean(of);
+    };
+    std::printf("residual of gusts %.3f of that without; spread %.2f and %.2f\n", mean(gusty) / mean(even),
+                spread(gusty), spread(even));
+    EXPECT_NEAR(mean(gusty) / mean(even), 1.0, 0.05);
+    EXPECT_GT(spread(gusty), 1.5 * spread(even));
 }
 
 TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {

@@ -49,12 +49,13 @@ TEST(Gusts, ChangeNoMean) {
                 scene.sea.gust_strength = strength;
                 const auto gusty = frame_of<float>(scene, queries, 3.0);
                 for (int q = 0; q < static_cast<int>(queries.size()); ++q) {
-                    SCOPED_TRACE(testing::Message() << wind_mps << " m/s, strength " << strength << ", footprint "
-                                                    << footprints_m[q] << " m");
+                    SCOPED_TRACE(testing::Message() << wind_mps << " m/s, strength " << strength
+                                                    << ", footprint " << footprints_m[q] << " m");
                     const auto with = sample(gusty, q, points), without = sample(even, q, points);
                     EXPECT_NEAR(mean_variance(with) / mean_variance(without), 1.0, 0.01);
                     EXPECT_NEAR(mean_foam(with) / mean_foam(without), 1.0, 0.02);
-                    const auto [least, most] = std::ranges::minmax(with.vectors(SlopeVariance), {}, &glm::vec3::x);
+                    const auto [least, most] =
+                        std::ranges::minmax(with.vectors(SlopeVariance), {}, &glm::vec3::x);
                     const auto [even_least, even_most] =
                         std::ranges::minmax(without.vectors(SlopeVariance), {}, &glm::vec3::x);
                     EXPECT_GE(least.x, 0.0f);
@@ -62,8 +63,10 @@ TEST(Gusts, ChangeNoMean) {
                         EXPECT_EQ(most.x, even_most.x);
                         EXPECT_EQ(least.x, even_least.x);
                     } else if (footprints_m[q] < 50.0) {
-                        EXPECT_GT(static_cast<double>(most.x), (1.0 + 0.7 * strength) * static_cast<double>(even_least.x));
-                        EXPECT_LT(static_cast<double>(least.x), (1.0 - 0.7 * strength) * static_cast<double>(even_most.x));
+                        EXPECT_GT(static_cast<double>(most.x),
+                                  (1.0 + 0.7 * strength) * static_cast<double>(even_least.x));
+                        EXPECT_LT(static_cast<double>(least.x),
+                                  (1.0 - 0.7 * strength) * static_cast<double>(even_most.x));
                     }
                 }
             }
@@ -75,10 +78,13 @@ TEST(Gusts, ChangeNoMean) {
 TEST(Gusts, BreakMoreWavesAndNoLessFoamOnEach) {
     const auto points = random_points<float>(20000.0, 200000);
     for (const double footprint_m : {0.5, 4.0}) {
-        const auto even = sample(frame_of<float>(scene_of(0.0), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
-        const auto gusty = sample(frame_of<float>(scene_of(0.8), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
+        const auto even =
+            sample(frame_of<float>(scene_of(0.0), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
+        const auto gusty =
+            sample(frame_of<float>(scene_of(0.8), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
         EXPECT_NEAR(mean_foam(gusty) / mean_foam(even), 1.0, 0.05) << footprint_m;
-        EXPECT_NEAR(std::ranges::max(gusty.numbers(Coverage)), std::ranges::max(even.numbers(Coverage)), 0.1f);
+        EXPECT_NEAR(std::ranges::max(gusty.numbers(Coverage)), std::ranges::max(even.numbers(Coverage)),
+                    0.1f);
     }
 }
 
@@ -126,8 +132,10 @@ TEST(Gusts, AreSmoothAnywhereAndAtAnyTime) {
     for (const auto& [far_m, t_s] : {std::pair(0.0, 0.0), std::pair(1e8, 1e9), std::pair(-3e8, -1e9)}) {
         auto frame = frame_of<float>(scene_of(1.0), {filtered(kGusty, 200.0), filtered(kGusty, 20.0)}, t_s);
         std::vector<glm::vec2> line;
-        for (int i = 0; i < 3000; ++i) line.emplace_back(static_cast<float>(i), 0.25f * static_cast<float>(i));
-        const auto along = sample<float>(frame, 1, line, {.origin_m = {far_m, 0.5 * far_m}, .cell_m = {}, .pixel_m = {}});
+        for (int i = 0; i < 3000; ++i)
+            line.emplace_back(static_cast<float>(i), 0.25f * static_cast<float>(i));
+        const auto along =
+            sample<float>(frame, 1, line, {.origin_m = {far_m, 0.5 * far_m}, .cell_m = {}, .pixel_m = {}});
         float least = 1e9f, most = 0.0f, step = 0.0f;
         for (std::size_t i = 0; i < line.size(); ++i) {
             const float at = along.vectors(SlopeVariance)[i].x;
@@ -153,8 +161,8 @@ TEST(Gusts, DependOnNothingButThePoint) {
         where.pixel_m.push_back(0.4f * std::exp2(static_cast<float>(i % 7)));
     const auto together = sample(frame, 0, points, where);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const auto alone =
-            sample<float>(frame, 0, {points[i]}, {.origin_m = {}, .cell_m = {}, .pixel_m = {where.pixel_m[i]}});
+        const auto alone = sample<float>(frame, 0, {points[i]},
+                                         {.origin_m = {}, .cell_m = {}, .pixel_m = {where.pixel_m[i]}});
         ASSERT_EQ(alone.vectors(SlopeVariance)[0], together.vectors(SlopeVariance)[i]) << i;
         ASSERT_EQ(alone.numbers(Coverage)[0], together.numbers(Coverage)[i]) << i;
     }

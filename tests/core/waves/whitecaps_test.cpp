@@ -106,7 +106,7 @@ TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
         };
         const double threshold =
             calibrated_threshold(moments(spectrum, 0.0, 1e9), law_coverage(scene), 1.0, true);
-        const double all = coverage(jacobian_moments(0.0, 0.0, 0.0, strain(0.0, 1e9)), threshold, true);
+        const double all = coverage(jacobian_moments(0.0, 0.0, 0.0, 0.0, strain(0.0, 1e9)), threshold, true);
         for (const double edge : {0.3, 3.0, 30.0}) {  // rad/m: longer waves are shown
             const HiddenStrain<double> shown = strain(0.0, edge), hidden = strain(edge, 1e9);
             const double a = std::sqrt(shown.xxxx), b = shown.xxyy / a;
@@ -116,7 +116,7 @@ TEST(Coverage, OverTheSeasAreaIsTheSameAtEveryFootprint) {
             double foam = 0.0, sea = 0.0;
             for (int i = 0; i < 400000; ++i) {
                 const double x = normal(generator), y = normal(generator), z = normal(generator);
-                const auto j = jacobian_moments(a * x, b * x + d * y, f * z, hidden);
+                const auto j = jacobian_moments(a * x, b * x + d * y, f * z, f * z, hidden);
                 const double area = sea_area(j, true);
                 sea += area;
                 foam += area * coverage(j, threshold, true);
@@ -150,7 +150,7 @@ TEST_P(GaussianRemainder, GivesTheseJacobianMoments) {
          {std::array{0.0, 0.0, 0.0}, {-0.25, 0.1, 0.12}, {0.2, -0.3, -0.05}}) {
         const auto [dxx, dyy, dxy] = shown;
         constexpr int kBatches = 20, kDraws = 50000;
-        const JacobianMoments<double> theory = jacobian_moments(dxx, dyy, dxy, v);
+        const JacobianMoments<double> theory = jacobian_moments(dxx, dyy, dxy, dxy, v);
         const double sigma = std::sqrt(theory.variance);
         std::array<std::array<double, kBatches>, 3> batches;
         const double threshold = theory.mean - 2.2 * sigma;
@@ -195,7 +195,7 @@ TEST_P(GaussianRemainder, GivesTheseJacobianMoments) {
 INSTANTIATE_TEST_SUITE_P(Choppiness, GaussianRemainder, testing::Values(1.0, 4.0));
 
 TEST(JacobianMoments, AreExactWhereNothingIsHidden) {
-    const auto j = jacobian_moments(0.3f, -0.2f, 0.1f, HiddenStrain<float>{});
+    const auto j = jacobian_moments(0.3f, -0.2f, 0.1f, 0.1f, HiddenStrain<float>{});
     EXPECT_FLOAT_EQ(j.mean, 1.3f * 0.8f - 0.01f);
     EXPECT_EQ(j.variance, 0.0f);
     EXPECT_EQ(j.third, 0.0f);
@@ -245,8 +245,8 @@ TEST(CalibratedThreshold, GivesTheObservedCoverageOfTheWholeSea) {
         scene.sea.wind_speed_mps = wind;
         const SpectralMoments m =
             moments(DirectionalSpectrum(scene.sea), 0.0, std::numeric_limits<double>::infinity());
-        const auto j =
-            jacobian_moments(0.0, 0.0, 0.0, HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
+        const auto j = jacobian_moments(0.0, 0.0, 0.0, 0.0,
+                                        HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
         for (const bool third_moment : {false, true}) {
             const double w =
                 coverage(j, calibrated_threshold(m, law_coverage(scene), 1.0, third_moment), third_moment);
@@ -265,8 +265,8 @@ TEST(Whitecaps, OfEveryChoppinessHaveFoam) {
     for (const double choppiness : {0.5, 1.0, 2.0, 4.0, 8.0, 9.0, 10.0}) {
         SpectralMoments m = moments(DirectionalSpectrum(scene.sea), 0.0, 6.0);
         m.scale_strain(choppiness * choppiness);
-        const auto j =
-            jacobian_moments(0.0, 0.0, 0.0, HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
+        const auto j = jacobian_moments(0.0, 0.0, 0.0, 0.0,
+                                        HiddenStrain<double>{m.xxxx, m.xxxy, m.xxyy, m.xyyy, m.yyyy});
         const double foam = coverage(j, calibrated_threshold(m, law, choppiness, true), true);
         EXPECT_NEAR(foam, law, 1e-6 * law) << choppiness;
     }

@@ -1,0 +1,50 @@
+// waves.tiling = "random": a cascade is copies of its one tile at random offsets, blended, so that no pattern is seen from
+// the air (Heitz and Neyret 2018, "High-performance by-example noise using a histogram-preserving blending operator"; on
+// squares instead of triangles, and of a Gaussian field, which needs no histogram preserved).
+//
+// For cascade c of size L the plane is cut into square cells of side L, cell (i, j) round the middle (i L, j L). Each shows the
+// tile displaced by an offset of its own, copy_offset(copies_key(seed, c), i, j), and across a border the copies on both
+// sides blend over kCopyRamp L, along x and y apart: a point shows one copy, two, or near a corner four. The squares of their weights
+// add up to 1, and different copies are uncorrelated, so all second moments are the spectrum's. Offsets depend on the
+// shot's seed, the cascade and the cell alone: not on time, camera, surface or footprint. Cell (0, 0) has none: the middle of it,
+// out to 0.5 − 0.5 kCopyRamp of L, is the tile as it is.
+//
+// The weights' gradient belongs to what is derived from the sum: ηx = Σ w ηx_c + wx η_c, and likewise Dxx; Dxy = Σ w Dxy_c + wy Dx_c and
+// Dyx = Σ w Dxy_c + wx Dy_c differ. It adds the variance E[|∇w|²] Var η to the slopes', kCopySlope Var η/L² along each
+// axis: with ten peak waves in a tile some 0.3 % of theirs.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/base/number.h"
+#include "core/plan/filter.h"
+
+namespace pelagic {
+
+using uint = std::uint32_t;  // GLSL's name
+
+#include "core/plan/copies.inl"
+
+// The part of a cell's half in which there is but one copy.
+inline constexpr double kPlainHalf = 0.5 - 0.5 * kCopyRamp;
+
+inline uint copies_key(std::uint64_t seed, int cascade) {
+    const CopyBits low =
+        copy_bits(static_cast<uint>(seed), static_cast<uint>(seed >> 32), static_cast<uint>(cascade));
+    return low.x << 10 | low.y;
+}
+
+// Along an axis, in double: the cell that a point lies in, and how far it lies from its middle, in cells, −½ … ½. A place
+// that is no number, or beyond 2⁶² cells, is in cell 0.
+struct CopyPlace {
+    std::int64_t cell = 0;
+    double from_middle = 0.0;
+};
+inline CopyPlace copy_place(double cells) {
+    if (!(std::abs(cells) < 0x1p62)) return {};
+    const double cell = std::floor(cells + 0.5);
+    return {static_cast<std::int64_t>(cell), cells - cell};
+}
+
+}  // namespace pelagic

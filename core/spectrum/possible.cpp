@@ -59,8 +59,9 @@ std::vector<Problem> impossible_waves(const SeaState& sea) {
             problems.push_back({"sea.significant_height_m", number_text(*sea.significant_height_m),
                                 sea.measured ? "the measured spectrum has no waves to be that high"
                                              : "without wind there are no waves to be that high",
-                                sea.measured ? "0, or another spectrum_time"
-                                             : "0, or more sea.wind_speed_mps; a swell has its own height_m"});
+                                sea.measured
+                                    ? "0, or another spectrum_time"
+                                    : "0, or more sea.wind_speed_mps; a swell has its own height_m"});
         if (has_waves && *sea.significant_height_m > 0.0)
             check(problems, "sea.significant_height_m", *sea.significant_height_m,
                   systems.front().peak_wavenumber(), dispersion,

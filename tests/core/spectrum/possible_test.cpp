@@ -56,9 +56,10 @@ TEST(ImpossibleWaves, AreHeightsOfNoWaves) {
     EXPECT_TRUE(impossible_waves(sea).empty());
     sea.significant_height_m = 1.0;
     sea.spectrum = SpectrumKind::File;
-    sea.measured = MeasuredSpectrum{.bins = {{0.1, 0.0, 1.0, 0.0, 1.0, 0.0, true}, {0.2, 0.0, 1.0, 0.0, 1.0, 0.0, true}},
-                                    .station = "41010",
-                                    .time = "2019-02-06T00:40:00Z"};
+    sea.measured =
+        MeasuredSpectrum{.bins = {{0.1, 0.0, 1.0, 0.0, 1.0, 0.0, true}, {0.2, 0.0, 1.0, 0.0, 1.0, 0.0, true}},
+                         .station = "41010",
+                         .time = "2019-02-06T00:40:00Z"};
     EXPECT_EQ(impossible_waves(sea).size(), 1u);
 }
 

@@ -112,6 +112,58 @@ void extremes_ahead(std::vector<T>& values, std::vector<T>& scratch, int window,
     }
 }
 
+Interval times(const Interval& weight, const Interval& value) {  // weight ≥ 0
+    return {value.lo * (value.lo < 0.0 ? weight.hi : weight.lo),
+            value.hi * (value.hi > 0.0 ? weight.hi : weight.lo)};
+}
+
+// The copies of a tile that a block shows; more than two along an axis aren't told apart.
+struct ShownCopy {
+    Interval weight;
+    glm::dvec2 offset;  // in tiles
+};
+struct ShownCopies {
+    int count = 0;
+    std::array<ShownCopy, 4> of{};
+    double most = 2.0;  // of the sum of their weights: √2 along each axis
+};
+
+// Along an axis, a copy's weight so far from its cell's middle.
+double copy_weight(double distance) {
+    if (distance <= 0.5) return copy_weights(distance).own;
+    return distance < 0.5 + 0.5 * kCopyRamp ? copy_weights(1.0 - distance).next : 0.0;
+}
+
+// Of a block that begins and ends there, in cells.
+ShownCopies copies_of(uint key, glm::dvec2 from, glm::dvec2 to) {
+    constexpr double kHalf = 0.5 + 0.5 * kCopyRamp;
+    glm::dvec2 first, last;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double slack = 1e-6 + 1e-14 * std::max(std::abs(from[axis]), std::abs(to[axis]));
+        from[axis] -= slack;
+        to[axis] += slack;
+        first[axis] = std::ceil(from[axis] - kHalf);
+        last[axis] = std::floor(to[axis] + kHalf);
+        if (!(last[axis] - first[axis] <= 1.0) || !(std::abs(first[axis]) < 0x1p62)) return {};
+    }
+    const auto weight = [&](int axis, double cell) -> Interval {
+        const double low = cell - from[axis], high = to[axis] - cell;  // to either end
+        const double near = std::max({-low, -high, 0.0}), far = std::max(low, high);
+        return {copy_weight(far), copy_weight(near)};
+    };
+    ShownCopies copies;
+    for (double j = first.y; j <= last.y; ++j)
+        for (double i = first.x; i <= last.x; ++i) {
+            const Interval x = weight(0, i), y = weight(1, j);
+            const CopyOffset<double> offset =
+                copy_offset<double>(key, static_cast<uint>(static_cast<std::int64_t>(i)),
+                                    static_cast<uint>(static_cast<std::int64_t>(j)));
+            copies.of[static_cast<std::size_t>(copies.count++)] = {{x.lo * y.lo, x.hi * y.hi},
+                                                                   {offset.x, offset.y}};
+        }
+    return copies;
+}
+
 // Blocks first … last of an axis of a period: one piece, or two where they lie across its seam.
 struct Pieces {
     int count = 0;
@@ -195,6 +247,8 @@ void FrameBounds<T>::refresh() {
             places.push_back({c, g});
             GridBounds& grid = grids_.emplace_back();
             grid.size_m = plan.cascades[c].size_m;
+            if (plan.cascades[c].has_copies && !planned_->query.only_cascade)
+                grid.copies_key = copies_key(plan.from->scene.shot.seed, c);
             const Grid& planned = plan.cascades[c].grids[g];
             grid.n = planned.resolution * (is_refined(planned) ? 2 : 1);
             smallest_block_m_ = std::max(smallest_block_m_, 0.5 * kBlockCells * grid.size_m / grid.n);
@@ -272,42 +326,61 @@ typename FrameBounds<T>::Pyramid FrameBounds<T>::pyramid_of(int cascade, int gri
     return pyramid;
 }
 
+template <class T>
+DisplacementBounds::Interval FrameBounds<T>::interval_of(const GridBounds& grid, const Pyramid& field,
+                                                         glm::dvec2 from_m, glm::dvec2 to_m) {
+    constexpr int kMostBlocks = 4;  // along an axis: coarser blocks serve longer pieces
+    const double per_m = grid.n / grid.size_m;
+    const Pieces x = pieces_of(from_m.x * per_m, to_m.x * per_m, grid.n),
+                 y = pieces_of(from_m.y * per_m, to_m.y * per_m, grid.n);
+    Interval found;
+    for (int py = 0; py < y.count; ++py)
+        for (int px = 0; px < x.count; ++px) {
+            const auto [x0, x1] = x.of[px];
+            const auto [y0, y1] = y.of[py];
+            int l = 0;
+            while (std::max((x1 >> l) - (x0 >> l), (y1 >> l) - (y0 >> l)) >= kMostBlocks) ++l;
+            const Level& level = field.levels[l];
+            for (int j = y0 >> l; j <= y1 >> l; ++j)
+                for (int i = x0 >> l; i <= x1 >> l; ++i) {
+                    const std::size_t at = static_cast<std::size_t>(j) * level.side + i;
+                    include(found, {static_cast<double>(level.low[at]), static_cast<double>(level.high[at])});
+                }
+        }
+    return found;
+}
+
 // `cycles`: the trains' phases at origin_m, where the block's coordinates begin.
 template <class T>
 DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vector<double>& cycles,
                                              glm::dvec2 origin_m) const {
-    constexpr int kMostBlocks = 4;  // along an axis: coarser blocks serve longer pieces
     DisplacementBounds bounds;
     for (const std::vector<int>& of_level : grid_of_level_) {
         DisplacementBounds sum{{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
         for (const int g : of_level) {
             const GridBounds& grid = grids_[g];
-            const double per_m = grid.n / grid.size_m;
-            const auto along = [&](int axis) {
-                return pieces_of((origin_m[axis] + block.min_m[axis]) * per_m,
-                                 (origin_m[axis] + block.max_m[axis]) * per_m, grid.n);
-            };
-            const Pieces x = along(0), y = along(1);
+            const glm::dvec2 from_m = origin_m + block.min_m, to_m = origin_m + block.max_m;
+            const auto copies = grid.copies_key
+                                    ? copies_of(*grid.copies_key, from_m / grid.size_m, to_m / grid.size_m)
+                                    : ShownCopies{1, {{{{1.0, 1.0}, glm::dvec2(0.0)}}}};
             for (std::size_t f = 0; f < kFields.size(); ++f) {
                 const Pyramid& pyramid = grid.fields[f];
                 if (pyramid.levels.empty()) continue;
-                Interval found;
-                for (int py = 0; py < y.count; ++py)
-                    for (int px = 0; px < x.count; ++px) {
-                        const auto [x0, x1] = x.of[px];
-                        const auto [y0, y1] = y.of[py];
-                        int l = 0;
-                        while (std::max((x1 >> l) - (x0 >> l), (y1 >> l) - (y0 >> l)) >= kMostBlocks) ++l;
-                        const Level& level = pyramid.levels[l];
-                        for (int j = y0 >> l; j <= y1 >> l; ++j)
-                            for (int i = x0 >> l; i <= x1 >> l; ++i) {
-                                const std::size_t at = static_cast<std::size_t>(j) * level.side + i;
-                                include(found, {static_cast<double>(level.low[at]),
-                                                static_cast<double>(level.high[at])});
-                            }
-                    }
                 const Level& all = pyramid.levels.back();
-                widen(found, kRounding<T> * static_cast<double>(std::max(-all.low[0], all.high[0])));
+                const Interval whole{static_cast<double>(all.low[0]), static_cast<double>(all.high[0])};
+                Interval found{0.0, 0.0};
+                if (copies.count == 0)  // of any: their weights add up to that at most
+                    found = times({0.0, copies.most}, whole);
+                for (int i = 0; i < copies.count; ++i) {
+                    const ShownCopy& copy = copies.of[static_cast<std::size_t>(i)];
+                    const glm::dvec2 by_m = copy.offset * grid.size_m;
+                    const Interval shown =
+                        times(copy.weight, interval_of(grid, pyramid, from_m + by_m, to_m + by_m));
+                    found.lo += shown.lo;
+                    found.hi += shown.hi;
+                }
+                const double rounding = grid.copies_key ? 4.0 * kRounding<T> : kRounding<T>;
+                widen(found, rounding * std::max(-whole.lo, whole.hi));
                 Interval& axis = sum.*axes()[f];
                 axis.lo += found.lo;
                 axis.hi += found.hi;

@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <glm/vec2.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "core/plan/copies.h"
 #include "core/plan/plan.h"
 #include "core/waves/frame.h"
 
@@ -76,11 +78,15 @@ class FrameBounds {
     };
     struct GridBounds {
         double size_m = 1.0;
-        int n = 1;                      // cells along an axis
-        std::array<Pyramid, 3> fields;  // height, Dx, Dy
+        int n = 1;                         // cells along an axis
+        std::optional<uint> copies_key{};  // where it has copies (core/plan/copies.h)
+        std::array<Pyramid, 3> fields;     // height, Dx, Dy
     };
     using Block = RestRegion;
 
+    // Of the periodic grid's field over a block that begins and ends there [m], from its origin.
+    static DisplacementBounds::Interval interval_of(const GridBounds& grid, const Pyramid& field,
+                                                    glm::dvec2 from_m, glm::dvec2 to_m);
     Pyramid pyramid_of(int cascade, int grid, Field field) const;
     DisplacementBounds bounds_of(const Block& block, const std::vector<double>& cycles,
                                  glm::dvec2 origin_m) const;

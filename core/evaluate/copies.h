@@ -90,7 +90,7 @@ class CopyChunk {
             bool has_cell = false;
             for (std::size_t i = 0; i < to.count; ++i) {
                 const T weight_x = next_x ? x.next[i] : x.own[i], weight_y = next_y ? y.next[i] : y.own[i];
-                if (!(weight_x > T(0) && weight_y > T(0)) || !counts(grid, i)) continue;
+                if (!(weight_x > T(0) && weight_y > T(0)) || !counts(i)) continue;
                 const std::int64_t at_x = x.cell[i] + (next_x ? side_of(x.rate[i]) : 0);
                 const std::int64_t at_y = y.cell[i] + (next_y ? side_of(y.rate[i]) : 0);
                 if (!has_cell || at_x != cell_x || at_y != cell_y) {
@@ -119,14 +119,16 @@ class CopyChunk {
   private:
     // The neighbour lies where the weights change to.
     static int side_of(T rate) { return rate < T(0) ? -1 : 1; }
-    // Whether a point has a share in the grid.
-    static bool counts(const GridArgs<T>& grid, std::size_t i) {
-        return !grid.cell_weight || grid.cell_weight[i] > T(0) || grid.pixel_weight[i] > T(0);
+    // Whether a point has a share in the grid: where it has a weight, that of what is read.
+    bool counts(std::size_t i) const {
+        return (!of_cells_ && !of_pixels_) || (of_cells_ && of_cells_[i] > T(0)) ||
+               (of_pixels_ && of_pixels_[i] > T(0));
     }
 
     void begin(const GridArgs<T>& grid, FieldSet wanted) {
-        wanted_ = wanted;
         args_ = grid;
+        of_cells_ = (wanted & cell_fields()).any() ? grid.cell_weight : nullptr;
+        of_pixels_ = (wanted & ~cell_fields()).any() ? grid.pixel_weight : nullptr;
         const FieldSet read = wanted | gradient_fields(wanted);
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!read[f]) args_.samples[f] = nullptr;
@@ -178,10 +180,28 @@ class CopyChunk {
 
     GridArgs<T> args_;
     FieldSet wanted_, read_;
+    const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
     Chunk<T> copies_;
     alignas(64) std::array<double, Chunk<T>::kPoints> nodes_x_, nodes_y_;
     typename Chunk<T>::Values weight_, slope_x_, slope_y_;
     std::array<std::uint16_t, Chunk<T>::kPoints> point_;
 };
+
+// Adds the wanted fields of a grid at the chunk's points. `args`: the grid with those fields' samples alone, and where the origin
+// lies in the tile; `grid`: with all samples.
+template <class T>
+void add_copies(const GridArgs<T>& grid, GridArgs<T> args, FieldSet wanted, const CopyOrigin& origin,
+                CopyPlaces<T>& places, CopyChunk<T>& copies, Chunk<T>& chunk,
+                const EvaluateKernels<T>& kernels) {
+    places.find(origin, chunk, kernels);
+    if (places.is_one()) {
+        args.origin_nodes_x += places.offset().x * args.n;
+        args.origin_nodes_y += places.offset().y * args.n;
+        kernels.add_grid(args, chunk);
+        return;
+    }
+    args.samples = grid.samples;
+    copies.add(args, wanted, origin, places, chunk, kernels);
+}
 
 }  // namespace pelagic

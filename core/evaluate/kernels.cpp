@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "core/base/pack-inl.h"
+#include "core/plan/copies.h"
 #include "core/plan/grid_layout.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,8 +20,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 namespace {  // names are this file's own
 
 #include "core/evaluate/surface.inl"
+#include "core/plan/filter.inl"
 #include "core/waves/spline.inl"
 #include "core/waves/whitecaps.inl"
+// After filter.inl, of which it is made.
+#include "core/plan/copies.inl"
 
 // A point's place in a grid: the node at or below it, and the rest, 0 … 1.
 template <class T>
@@ -59,8 +63,8 @@ HWY_INLINE auto Widen(DD dd, const double* from) {
 // Along one axis, in double: exact wherever in the world the origin is. A place that is no number, or so far
 // that nothing of it is left, becomes 0.
 template <class T>
-void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, std::size_t count,
-            Places<T>& places) {
+void Locate(const GridArgs<T>& args, double origin_nodes, const double* nodes_of, const T* rest_m,
+            std::size_t count, Places<T>& places) {
     const hn::ScalableTag<double> dd;
     using Wide = decltype(dd);
     const hn::Rebind<T, Wide> narrow;
@@ -68,7 +72,8 @@ void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, std::
     const auto n = hn::Set(dd, args.n), per_n = hn::Set(dd, 1.0 / args.n);
     const auto scale = hn::Set(dd, args.nodes_per_m), origin = hn::Set(dd, origin_nodes);
     for (std::size_t i = 0; i < count; i += hn::Lanes(dd)) {
-        const auto nodes = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
+        const auto nodes =
+            hn::MulAdd(Widen(dd, rest_m + i), scale, nodes_of ? hn::LoadU(dd, nodes_of + i) : origin);
         auto inside = hn::NegMulAdd(hn::Floor(hn::Mul(nodes, per_n)), n, nodes);
         // −1e-20 is rounded up to n itself, and the quotient may be off by a unit in its last place.
         inside = hn::IfThenElse(hn::Lt(inside, hn::Zero(dd)), hn::Add(inside, n), inside);
@@ -82,10 +87,60 @@ void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, std::
     }
 }
 
-// The points' weights in a field; null: 1.
+// Along one axis, in double as well.
 template <class T>
-HWY_INLINE const T* WeightOf(const GridArgs<T>& args, std::size_t field) {
-    return args.cell_group[field] ? args.cell_weight : args.pixel_weight;
+void PlaceCopies(const CopyAxisArgs& args, const T* rest_m, std::size_t count, CopyAxis<T>& axis) {
+    const hn::ScalableTag<double> dd;
+    using Wide = decltype(dd);
+    const hn::Rebind<T, Wide> narrow;
+    const hn::Rebind<hwy::MakeSigned<T>, Wide> index;
+    const auto scale = hn::Set(dd, args.cells_per_m), origin = hn::Set(dd, args.origin_from_middle);
+    const auto half = hn::Set(dd, 0.5), most = hn::Set(dd, 0x1p30);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(dd)) {
+        auto cells = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
+        cells = hn::IfThenElseZero(hn::Lt(hn::Abs(cells), most), cells);  // no number, or no place
+        const auto cell = hn::Floor(hn::Add(cells, half));
+        hn::StoreU(Index(dd, cell, T()), index, axis.cell.data() + i);
+        hn::StoreU(Narrow(dd, hn::Sub(cells, cell), T()), narrow, axis.rate.data() + i);
+    }
+    const hn::ScalableTag<T> d;
+    using N = Pack<decltype(d)>;
+    const auto per_m = hn::Set(d, static_cast<T>(args.cells_per_m));
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const auto from_middle = hn::LoadU(d, axis.rate.data() + i);
+        const CopyWeights<N> weights = copy_weights(N(hn::Abs(from_middle)));
+        hn::StoreU(weights.own.v, d, axis.own.data() + i);
+        hn::StoreU(weights.next.v, d, axis.next.data() + i);
+        hn::StoreU(hn::CopySignToAbs(hn::Mul(weights.rate.v, per_m), from_middle), d, axis.rate.data() + i);
+    }
+}
+
+template <class T>
+ChunkSpan<T> SpanOf(const Chunk<T>& chunk) {
+    const hn::ScalableTag<T> d;
+    const std::size_t lanes = hn::Lanes(d);
+    const auto along = [&](const T* at, T& low, T& high) HWY_ATTR {
+        low = high = at[0];
+        std::size_t i = 0;
+        if (chunk.count >= lanes) {
+            auto least = hn::LoadU(d, at), most = least;
+            for (i = lanes; i + lanes <= chunk.count; i += lanes) {
+                const auto here = hn::LoadU(d, at + i);
+                least = hn::Min(least, here);
+                most = hn::Max(most, here);
+            }
+            low = hn::GetLane(hn::MinOfLanes(d, least));
+            high = hn::GetLane(hn::MaxOfLanes(d, most));
+        }
+        for (; i < chunk.count; ++i) {
+            low = std::min(low, at[i]);
+            high = std::max(high, at[i]);
+        }
+    };
+    ChunkSpan<T> span;
+    along(chunk.rest_x.data(), span.low_x, span.high_x);
+    along(chunk.rest_y.data(), span.low_y, span.high_y);
+    return span;
 }
 
 template <class T>
@@ -105,7 +160,7 @@ void AddNodes(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, cons
             if (!args.samples[f]) continue;
             auto value =
                 run ? hn::LoadU(d, args.samples[f] + begin) : hn::GatherIndex(d, args.samples[f], at);
-            if (const T* weight = WeightOf(args, f)) value = hn::Mul(value, hn::LoadU(d, weight + i));
+            if (const T* weight = weight_of(args, f)) value = hn::Mul(value, hn::LoadU(d, weight + i));
             T* sum = chunk.sums[f].data() + i;
             hn::StoreU(hn::Add(hn::LoadU(d, sum), value), d, sum);
         }
@@ -177,7 +232,7 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
                     sum = hn::MulAdd(column, hn::Load(taps, weights[begin] + k), sum);
                 }
                 const T value = hn::GetLane(hn::SumOfLanes(taps, sum));
-                const T* weight = WeightOf(args, f);
+                const T* weight = weight_of(args, f);
                 chunk.sums[f][begin] += weight ? weight[begin] * value : value;
             }
             continue;
@@ -194,7 +249,7 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
                                      hn::LoadU(d, samples + row[p] + k), sum);
                 hn::StoreU(sum, d, columns + k);
             }
-            const T* weight = WeightOf(args, f);
+            const T* weight = weight_of(args, f);
             for (std::size_t i = begin; i < end; ++i) {
                 const T* from = columns + (first_column(i) - low);
                 auto sum = hn::Zero(taps);
@@ -210,8 +265,8 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     Places<T> x, y;  // a vector's last lanes are somewhere in the grid, too
-    Locate(args, args.origin_nodes_x, chunk.rest_x.data(), chunk.padded(), x);
-    Locate(args, args.origin_nodes_y, chunk.rest_y.data(), chunk.padded(), y);
+    Locate(args, args.origin_nodes_x, args.nodes_x, chunk.rest_x.data(), chunk.padded(), x);
+    Locate(args, args.origin_nodes_y, args.nodes_y, chunk.rest_y.data(), chunk.padded(), y);
     if (args.sampling == Sampling::Nodes)
         AddNodes(args, chunk, x, y);
     else if (args.taps == 6)
@@ -367,10 +422,10 @@ void Derive(const DeriveArgs<T>& args) {
 }
 
 EvaluateKernels<float> TableOfFloat() {
-    return {&AddGrid<float>, &Derive<float>};
+    return {&AddGrid<float>, &Derive<float>, &SpanOf<float>, &PlaceCopies<float>};
 }
 EvaluateKernels<double> TableOfDouble() {
-    return {&AddGrid<double>, &Derive<double>};
+    return {&AddGrid<double>, &Derive<double>, &SpanOf<double>, &PlaceCopies<double>};
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <type_traits>
 
 #include "core/evaluate/chunk.h"
 #include "core/evaluate/results.h"
@@ -19,10 +21,37 @@ struct GridArgs {
     int taps = 6, n = 1;
     double size_m = 1.0;  // of the tile
     double nodes_per_m = 1.0, origin_nodes_x = 0.0,
-           origin_nodes_y = 0.0;                  // where the chunk's origin lies, 0 … n
+           origin_nodes_y = 0.0;  // where the chunk's origin lies, 0 … 2n
+    const double *nodes_x = nullptr,
+                 *nodes_y = nullptr;              // the same by point, where each sees a copy of its own
     std::array<const T*, kFieldCount> samples{};  // as Frame::samples(); null: not wanted
     FieldSet cell_group;                          // fields that cell_weight weighs; pixel_weight the others
     const T *cell_weight = nullptr, *pixel_weight = nullptr;  // by point; null: 1
+};
+
+// The points' weight in a field; null: 1.
+template <class T>
+const T* weight_of(const GridArgs<T>& args, std::size_t field) {
+    return args.cell_group[field] ? args.cell_weight : args.pixel_weight;
+}
+
+// The least and the greatest of a chunk's coordinates.
+template <class T>
+struct ChunkSpan {
+    T low_x, high_x, low_y, high_y;
+};
+
+// Along an axis, which of a cascade's copies a chunk's points show (core/plan/copies.h): the cell that each lies in, counted
+// from the origin's, CopyWeights, and by `rate` [1/m] on which side the other copy lies: where it is below 0, below.
+template <class T>
+struct CopyAxis {
+    using Cell = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+    alignas(64) std::array<Cell, Chunk<T>::kPoints> cell;
+    alignas(64) typename Chunk<T>::Values own, next, rate;
+};
+// Where the points' origin lies in its cell, and how large cells are.
+struct CopyAxisArgs {
+    double cells_per_m = 1.0, origin_from_middle = 0.0;
 };
 
 // The chunk's sums, turned into results: what isn't linear, once.
@@ -42,6 +71,9 @@ template <class T>
 struct EvaluateKernels {
     void (*add_grid)(const GridArgs<T>&, Chunk<T>&);
     void (*derive)(const DeriveArgs<T>&);
+    ChunkSpan<T> (*span_of)(const Chunk<T>&);
+    // Of `count` points that rest there [m], a multiple of every vector's length.
+    void (*place_copies)(const CopyAxisArgs&, const T* rest_m, std::size_t count, CopyAxis<T>&);
 };
 
 // For the CPU that runs this.

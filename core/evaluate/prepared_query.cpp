@@ -12,14 +12,12 @@
 #include "core/base/number.h"
 #include "core/evaluate/taps.h"
 #include "core/evaluate/trains.h"
+#include "core/scene/limits.h"
 
 namespace pelagic {
 namespace {
 
 #include "core/evaluate/hidden.inl"
-
-// What gusts change.
-constexpr ProductSet kGusty = products(Product::SlopeVariance, Product::Coverage);
 
 constexpr std::array kStrain{Field::Dxx, Field::Dyy, Field::Dxy};
 
@@ -71,6 +69,8 @@ struct PreparedQuery<T>::Work {
     GustChunk<T> gusts;
     FieldSet needed;
     bool apart;  // the strain of the waves that break is in `breaking`, not in `chunk`
+    std::array<CopyPlaces<T>, limits::kCascades> copies;  // of the chunk's points, by cascade
+    CopyChunk<T> copy_chunk;
 };
 
 template <class T>
@@ -89,9 +89,13 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
             throw std::invalid_argument("query \"" + query.name + "\" does not hold \"" + row.name +
                                         "\": ask for it when the plan is made");
     has_trains_ = plan.trains && !query.only_cascade;
+    has_copies_ =
+        !query.only_cascade && std::any_of(plan.cascades.begin(), plan.cascades.end(),
+                                           [](const CascadePlan& cascade) { return cascade.has_copies; });
     breaks_ = (wanted & breaking_products()).any();
     // A cascade's own tile is periodic, and a part of the sea.
-    if (frame.sea().gusts() && !query.only_cascade && (wanted & kGusty).any()) gusts_ = &*frame.sea().gusts();
+    if (frame.sea().gusts() && !query.only_cascade && (wanted & gusty_products()).any())
+        gusts_ = &*frame.sea().gusts();
     if ((wanted & hidden_products()).any())
         hidden_ = hidden_at<T>(*statistics_, {0, T(0)},
                                hidden_moments<double>(has_trains_ ? hidden(frame.sea().trains(), plan.filter,
@@ -102,7 +106,7 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
         for (const int level : *levels)
             if (std::none_of(levels_.begin(), levels_.end(),
                              [&](const LevelGrids& there) { return there.level == level; }))
-                levels_.push_back({level, {}, {}, {}});
+                levels_.push_back({level, {}, {}, {}, {}});
     for (const CascadePlan& cascade : plan.cascades)
         whole_m_.push_back(static_cast<T>(whole_footprint_m(cascade, plan.filter)));
     place_.origin_m = origin_m;
@@ -115,8 +119,10 @@ void PreparedQuery<T>::refresh() {
     const Plan& plan = frame_->sea().plan();
     FieldSet needed = fields_of(wanted_) & ~plan.dropped;
     if (breaks_) needed |= strain_fields();
+    if (has_copies_) needed |= gradient_fields(needed);
     for (LevelGrids& of : levels_) {
         of.grids.clear();
+        of.cascades.clear();
         of.breaks_alike.clear();
         of.of_cascade.assign(plan.cascades.size(), -1);
         for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
@@ -128,6 +134,7 @@ void PreparedQuery<T>::refresh() {
             of.breaks_alike.push_back(breaks_ &&
                                       cascade.grid_of_level[planned_->pixel_levels.front()] ==
                                           cascade.grid_of_level[planned_->breaking_levels.front()]);
+            of.cascades.push_back(c);
             GridArgs<T>& args = of.grids.emplace_back();
             args.sampling = grid.sampling;
             args.taps = plan.knobs.spline_taps;
@@ -145,7 +152,11 @@ void PreparedQuery<T>::refresh() {
 
 template <class T>
 typename PreparedQuery<T>::Place PreparedQuery<T>::place_of(glm::dvec2 origin_m) const {
-    Place place{origin_m, {}, {}, {}};
+    Place place{origin_m, {}, {}, {}, {}};
+    const Plan& plan = frame_->sea().plan();
+    for (std::size_t c = 0; has_copies_ && c < plan.cascades.size(); ++c)
+        place.copies.emplace_back(copies_key(plan.from->scene.shot.seed, static_cast<int>(c)),
+                                  plan.cascades[c].size_m, origin_m);
     for (const LevelGrids& of : levels_) {
         std::vector<glm::dvec2>& nodes = place.nodes.emplace_back();
         for (const GridArgs<T>& grid : of.grids) {
@@ -239,6 +250,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
         work.cells.take(query.cell_m, call.points.cell_m, call.points.cell_axis_m, first, chunk.count);
         work.pixels.take(query.pixel_m, call.points.pixel_m, call.points.pixel_axis_m, first, chunk.count);
     }
+    for (std::size_t c = 0; c < call.place.copies.size(); ++c) work.copies[c].forget();
     work.apart = breaks_apart(call, work);
     work.needed = call.needed;
     if (call.breaks && !work.apart) work.needed |= strain_fields();
@@ -258,7 +270,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
         add_only_footprint(call, work);
     }
     add_own_footprints(call, first, work);
-    const bool has_gusts = gusts_ && (call.results.given() & kGusty).any();
+    const bool has_gusts = gusts_ && (call.results.given() & gusty_products()).any();
     if (has_gusts) take_gusts(call, first, work);
     kernels_.derive({.chunk = &chunk,
                      .breaking = work.apart ? &work.breaking : &chunk,
@@ -309,7 +321,7 @@ void PreparedQuery<T>::add_only_footprint(const Call& call, Work& work) const {
             FieldSet fields;
             if (levels_[l].level == planned_->cell_levels.front()) fields |= cell_fields();
             if (levels_[l].level == planned_->pixel_levels.front()) fields |= ~cell_fields();
-            add_grids(call, l, {.fields = fields & work.needed, .part = part}, work.chunk);
+            add_grids(call, l, {.fields = fields & work.needed, .part = part}, work, work.chunk);
         }
     };
     if (!work.apart) return add(Part::All);
@@ -325,11 +337,11 @@ void PreparedQuery<T>::add_only_footprint(const Call& call, Work& work) const {
     for (std::size_t l = 0; l < levels_.size(); ++l)
         if (levels_[l].level == planned_->breaking_levels.front())
             add_grids(call, l, {.fields = strain_fields(), .part = has_strain ? Part::Other : Part::All},
-                      work.breaking);
+                      work, work.breaking);
 }
 
 template <class T>
-void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Share& share,
+void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Share& share, Work& work,
                                  Chunk<T>& chunk) const {
     if (share.fields.none()) return;
     const std::vector<GridArgs<T>>& grids = levels_[level].grids;
@@ -347,7 +359,13 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
         args.origin_nodes_y = call.place.nodes[level][g].y;
         args.cell_weight = share.cell_weight;
         args.pixel_weight = share.pixel_weight;
-        kernels_.add_grid(args, chunk);
+        if (!has_copies_) {
+            kernels_.add_grid(args, chunk);
+            continue;
+        }
+        const auto c = static_cast<std::size_t>(levels_[level].cascades[g]);
+        add_copies(grids[g], args, share.fields, call.place.copies[c], work.copies[c], work.copy_chunk, chunk,
+                   kernels_);
     }
 }
 
@@ -355,11 +373,12 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
 // it. Ellipses: see add_ellipses().
 template <class T>
 void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
-    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart] = work;
+    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
+           copy_chunk] = work;
     FieldSet round;
     if (cells.any_round) round |= cell_fields();
     if (pixels.any_round) round |= ~cell_fields();
-    add_round(call, round & needed, cells, planned_->pixel_levels, pixels, chunk);
+    add_round(call, round & needed, cells, planned_->pixel_levels, pixels, work, chunk);
     if (cells.any_ellipse) add_ellipses(call, planned_->cell_levels, cell_fields() & needed, cells, chunk);
     if (pixels.any_ellipse)
         add_ellipses(call, planned_->pixel_levels, ~cell_fields() & needed, pixels, chunk);
@@ -367,7 +386,7 @@ void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
         const std::vector<int>& levels = planned_->breaking_levels;
         breaking_pixels.take_breaking(pixels, frame_->sea().plan().breaking, chunk.count);
         if (breaking_pixels.any_round)
-            add_round(call, strain_fields(), cells, levels, breaking_pixels, breaking);
+            add_round(call, strain_fields(), cells, levels, breaking_pixels, work, breaking);
         if (breaking_pixels.any_ellipse)
             add_ellipses(call, levels, strain_fields(), breaking_pixels, breaking);
     }
@@ -384,7 +403,7 @@ void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
 
 template <class T>
 void PreparedQuery<T>::add_round(const Call& call, FieldSet fields, const ChunkFootprints<T>& cells,
-                                 const std::vector<int>& levels, const ChunkFootprints<T>& pixels,
+                                 const std::vector<int>& levels, const ChunkFootprints<T>& pixels, Work& work,
                                  Chunk<T>& chunk) const {
     if (fields.none()) return;
     const std::size_t count = chunk.count, padded = chunk.padded();
@@ -408,7 +427,7 @@ void PreparedQuery<T>::add_round(const Call& call, FieldSet fields, const ChunkF
         FieldSet here;
         if (of_cells.any() && shares(planned_->cell_levels, level, cells, cell_weight)) here |= of_cells;
         if (of_pixels.any() && shares(levels, level, pixels, pixel_weight)) here |= of_pixels;
-        add_grids(call, l, {here, cell_weight.data(), pixel_weight.data()}, chunk);
+        add_grids(call, l, {here, cell_weight.data(), pixel_weight.data()}, work, chunk);
     }
 }
 
@@ -448,7 +467,8 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
             if (grid < 0 || (rung > lowest && grid == grid_of(rung - 1))) continue;
             const std::size_t l = level_of(rung);
             const auto g = static_cast<std::size_t>(levels_[l].of_cascade[c]);
-            taps.begin(levels_[l].grids[g], call.place.nodes[l][g], fields, kernels_);
+            taps.begin(levels_[l].grids[g], call.place.nodes[l][g], fields,
+                       has_copies_ ? &call.place.copies[c] : nullptr, kernels_);
             for (std::size_t i = 0; i < chunk.count; ++i) {
                 const Footprint<T>& footprint = footprints.of[i];
                 if (!footprint.is_ellipse) continue;
@@ -466,7 +486,8 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
 template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
-    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart] = work;
+    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
+           copy_chunk] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     struct Own {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/evaluate/copies.h"
 #include "core/evaluate/evaluate.h"
 #include "core/evaluate/footprints.h"
 #include "core/evaluate/gusts.h"
@@ -37,6 +38,7 @@ class PreparedQuery {
     struct LevelGrids {
         int level;
         std::vector<GridArgs<T>> grids;  // where the origin lies stands in Place
+        std::vector<int> cascades;       // of each grid
         std::vector<int> of_cascade;     // index into grids; −1: nothing passes
         std::vector<bool>
             breaks_alike;  // by grid: whether normals and breaking at the first footprint share theirs
@@ -45,6 +47,7 @@ class PreparedQuery {
     struct Place {
         glm::dvec2 origin_m;
         std::vector<std::vector<glm::dvec2>> nodes;  // in each of a level's grids, 0 … n
+        std::vector<CopyOrigin> copies;              // in each cascade; empty: no copies
         std::vector<double> start_cycles;            // of each train
         GustPhases gusts{};
     };
@@ -63,14 +66,16 @@ class PreparedQuery {
     Place place_of(glm::dvec2 origin_m) const;
     Call call(const Points<T>& points, const Results<T>& results, const Place& place) const;
     void run(const Call& call, std::size_t first, Work& work) const;
-    void add_grids(const Call& call, std::size_t level, const Share& share, Chunk<T>& chunk) const;
+    void add_grids(const Call& call, std::size_t level, const Share& share, Work& work,
+                   Chunk<T>& chunk) const;
     // Whether the strain of the waves that break isn't that of the chunk's normals.
     bool breaks_apart(const Call& call, const Work& work) const;
     void add_only_footprint(const Call& call, Work& work) const;
     void add_ladder(const Call& call, Work& work) const;
     // Points whose footprints are round: those of `fields` that cells filter, and the others from `levels`.
     void add_round(const Call& call, FieldSet fields, const ChunkFootprints<T>& cells,
-                   const std::vector<int>& levels, const ChunkFootprints<T>& pixels, Chunk<T>& chunk) const;
+                   const std::vector<int>& levels, const ChunkFootprints<T>& pixels, Work& work,
+                   Chunk<T>& chunk) const;
     void add_ellipses(const Call& call, const std::vector<int>& levels, FieldSet fields,
                       const ChunkFootprints<T>& footprints, Chunk<T>& chunk) const;
     void add_own_footprints(const Call& call, std::size_t first, Work& work) const;
@@ -86,7 +91,7 @@ class PreparedQuery {
     std::vector<T> whole_m_;  // by cascade: whole_footprint_m()
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
-    bool has_trains_ = false, breaks_ = false;
+    bool has_trains_ = false, has_copies_ = false, breaks_ = false;
     const Gusts* gusts_ = nullptr;  // none, or nothing that they change is wanted
     HiddenMoments<T> hidden_{};     // of pixels that are all the query's first
     std::vector<LevelGrids> levels_;

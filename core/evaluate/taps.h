@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/evaluate/copies.h"
 #include "core/evaluate/footprints.h"
 #include "core/evaluate/kernels.h"
 
@@ -14,11 +15,12 @@ namespace pelagic {
 template <class T>
 class TapChunk {
   public:
-    // origin_nodes: where the points' origin lies in the grid.
-    void begin(const GridArgs<T>& grid, glm::dvec2 origin_nodes, FieldSet fields,
+    // origin_nodes: where the points' origin lies in the grid. `copies`: where the cascade has them.
+    void begin(const GridArgs<T>& grid, glm::dvec2 origin_nodes, FieldSet fields, const CopyOrigin* copies,
                const EvaluateKernels<T>& kernels) {
-        args_ = grid;
+        whole_ = args_ = grid;
         kernels_ = &kernels;
+        copies_ = copies;
         fields_ = FieldSet();
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!fields[f]) args_.samples[f] = nullptr;
@@ -26,6 +28,7 @@ class TapChunk {
         }
         args_.origin_nodes_x = origin_nodes.x;
         args_.origin_nodes_y = origin_nodes.y;
+        turns_ = copies && fields_[index(Field::Dxy)];
         taps_.count = 0;
     }
 
@@ -52,18 +55,30 @@ class TapChunk {
         std::fill(taps_.rest_y.begin() + count, taps_.rest_y.begin() + padded, T(0));
         for (std::size_t f = 0; f < kFieldCount; ++f)
             if (fields_[f]) std::fill(taps_.sums[f].begin(), taps_.sums[f].begin() + padded, T(0));
-        kernels_->add_grid(args_, taps_);
+        if (turns_) std::fill(taps_.turn.begin(), taps_.turn.begin() + padded, T(0));
+        if (copies_) {
+            places_.forget();
+            add_copies(whole_, args_, fields_, *copies_, places_, copy_chunk_, taps_, *kernels_);
+        } else {
+            kernels_->add_grid(args_, taps_);
+        }
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!fields_[f]) continue;
             for (std::size_t at = 0; at < count; ++at)
                 to.sums[f][point_[at]] += weight_[at] * taps_.sums[f][at];
         }
+        for (std::size_t at = 0; turns_ && at < count; ++at)
+            to.turn[point_[at]] += weight_[at] * taps_.turn[at];
         taps_.count = 0;
     }
 
   private:
-    GridArgs<T> args_;
+    GridArgs<T> args_, whole_;  // the wanted samples, and all
     const EvaluateKernels<T>* kernels_ = nullptr;
+    const CopyOrigin* copies_ = nullptr;
+    bool turns_ = false;
+    CopyPlaces<T> places_;
+    CopyChunk<T> copy_chunk_;
     FieldSet fields_;
     Chunk<T> taps_;
     typename Chunk<T>::Values weight_;

@@ -11,7 +11,7 @@
 //
 // The weights' gradient belongs to what is derived from the sum: ηx = Σ w ηx_c + wx η_c, and likewise Dxx; Dxy = Σ w Dxy_c + wy Dx_c and
 // Dyx = Σ w Dxy_c + wx Dy_c differ. It adds the variance E[|∇w|²] Var η to the slopes', kCopySlope Var η/L² along each
-// axis: with ten peak waves in a tile some 0.3 % of theirs.
+// axis.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,10 @@ using uint = std::uint32_t;  // GLSL's name
 
 // The part of a cell's half in which there is but one copy.
 inline constexpr double kPlainHalf = 0.5 - 0.5 * kCopyRamp;
+// E[w_x²] L², summed over the copies: the mean of θ′² over the plane, 3.0384 / kCopyRamp.
+inline constexpr double kCopySlopes = 3.0383937607 / kCopyRamp;
 
+// Below 2²⁰.
 inline uint copies_key(std::uint64_t seed, int cascade) {
     const CopyBits low =
         copy_bits(static_cast<uint>(seed), static_cast<uint>(seed >> 32), static_cast<uint>(cascade));

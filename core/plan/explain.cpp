@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/constants.h"
+#include "core/plan/copies.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/hidden_slopes.h"
@@ -150,7 +151,14 @@ std::string explain(const Plan& plan) {
     if (plan.trains) page += "\nWave trains\n" + trains_text(plan);
 
     page += "\nCascades and their transforms\n";
-    if (plan.cascades.empty()) page += "  none: the trains are the whole sea\n";
+    if (plan.cascades.empty())
+        page += "  none: the trains are the whole sea\n";
+    else if (scene.waves.tiling == Tiling::Random)
+        page += format(
+            "  each of copies at random offsets, blended: %.2f reads a point on average, 1 within a copy\n",
+            (1.0 + kCopyRamp) * (1.0 + kCopyRamp));
+    else
+        page += format("  periodic tiles: the largest repeats after %.4g m\n", plan.cascades.front().size_m);
     std::size_t cascade_number = 0;
     for (const CascadePlan& cascade : plan.cascades) {
         page +=

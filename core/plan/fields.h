@@ -41,4 +41,25 @@ constexpr FieldSet horizontal_fields() {
                   Field::VelocityY);
 }
 
+// Where copies of a tile blend, the weights' gradient times this field belongs to the derivative (core/plan/copies.h).
+// Height and Dx or Dy themselves have none.
+struct Gradient {
+    Field derivative, of;
+    bool along_y;
+};
+inline constexpr Gradient kGradients[]{{Field::SlopeX, Field::Height, false},
+                                       {Field::SlopeY, Field::Height, true},
+                                       {Field::Dxx, Field::Dx, false},
+                                       {Field::Dyy, Field::Dy, true},
+                                       {Field::Dxy, Field::Dx, true}};
+
+// What the derivatives among these need so: Dyx, which has no transform of its own, needs Dy as well.
+inline FieldSet gradient_fields(FieldSet derivatives) {
+    FieldSet needed;
+    for (const Gradient& gradient : kGradients)
+        if (derivatives[index(gradient.derivative)]) needed[index(gradient.of)] = true;
+    if (derivatives[index(Field::Dxy)]) needed[index(Field::Dy)] = true;
+    return needed;
+}
+
 }  // namespace pelagic

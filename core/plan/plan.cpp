@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/constants.h"
+#include "core/plan/copies.h"
 #include "core/plan/extent.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/mode_lattice.h"
@@ -68,17 +69,25 @@ int level_index(Plan& plan, const Level& level) {
     return static_cast<int>(plan.levels.size()) - 1;
 }
 
-// Fields that the grids of this level must hold for all queries together.
-FieldSet fields_at(const Plan& plan, int level) {
+// Whether all of the lattice's points show the tile itself, and no other copy of it.
+bool shows_one_copy(const Lattice& lattice, double size_m) {
+    return std::max(-lattice.first_m, lattice.last_m) < kPlainHalf * size_m;
+}
+
+// Fields that this cascade's grids of this level must hold for all queries together.
+FieldSet fields_at(const Plan& plan, int level, bool blends) {
     FieldSet wanted;
+    const auto derivatives = [&](const FieldSet& fields) {
+        return blends ? fields | (gradient_fields(fields) & ~plan.dropped) : fields;
+    };
     for (const PlannedQuery& planned : plan.queries) {
         const auto uses = [&](const std::vector<int>& levels) {
             return std::find(levels.begin(), levels.end(), level) != levels.end();
         };
         const FieldSet needed = fields_of(planned.query.products & ~breaking_products()) & ~plan.dropped;
         if (uses(planned.cell_levels)) wanted |= needed & cell_fields();
-        if (uses(planned.pixel_levels)) wanted |= needed & ~cell_fields();
-        if (uses(planned.breaking_levels)) wanted |= strain_fields();
+        if (uses(planned.pixel_levels)) wanted |= derivatives(needed & ~cell_fields());
+        if (uses(planned.breaking_levels)) wanted |= derivatives(strain_fields());
     }
     return wanted;
 }
@@ -113,7 +122,9 @@ void add_grids(Plan& plan, int cascade_index) {
     for (int level = 0; level < static_cast<int>(plan.levels.size()); ++level) {
         const Level& at = plan.levels[level];
         if (at.only_cascade && *at.only_cascade != cascade_index) continue;
-        const FieldSet wanted = fields_at(plan, level);
+        const bool is_copied = cascade.has_copies && !at.only_cascade;
+        const bool blends = is_copied && !(at.lattice && shows_one_copy(*at.lattice, cascade.size_m));
+        const FieldSet wanted = fields_at(plan, level, blends);
         // A tile shows the modes that its own nodes can hold; the cascade may have more, for a nearby camera.
         const double resolution =
             at.only_cascade && at.lattice
@@ -147,7 +158,8 @@ void add_grids(Plan& plan, int cascade_index) {
         grid.radius = radius;
         grid.resolution =
             transform_size(static_cast<int>(std::ceil(plan.knobs.oversampling * (2.0 * radius - 1.0))));
-        if (const auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
+        if (const auto nodes =
+                at.lattice && !blends ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
             nodes && *nodes >= 2 * radius - 1 &&
             (at.only_cascade || (*nodes <= 2 * grid.resolution && *nodes == transform_size(*nodes)))) {
             // Up to four times the samples of the spline's grid are cheaper than the spline, and without its
@@ -324,6 +336,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
         CascadePlan cascade;
         cascade.size_m = sizes[i].size_m;
         cascade.resolution = sizes[i].resolution;
+        cascade.has_copies = scene.waves.tiling == Tiling::Random;
         cascade.k_lower = plan.trains ? std::max(edges[i], kTwoPi / plan.trains->shortest_m) : edges[i];
         cascade.k_upper = i + 1 < sizes.size() ? edges[i + 1] : std::numeric_limits<double>::infinity();
         cascade.grid_of_level.assign(plan.levels.size(), -1);
@@ -367,6 +380,8 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
         if (output.has_surface) output.feeds |= surface->feeds();
         if ((request.query.products & products(Product::JacobianMoments, Product::Coverage)).any())
             output.feeds |= feeds(Feed::Foam);
+        if (!request.cascade && (request.query.products & gusty_products()).any())
+            output.feeds |= feeds(Feed::Gusts);
         outputs.push_back(std::move(output));
         queries.push_back(request.query);
     }

@@ -62,6 +62,9 @@ struct CascadePlan {
     std::vector<int> radius_of_level;
     std::string why_empty;  // set when there are no grids
 
+    // Of copies at random offsets (core/plan/copies.h), but for queries of a cascade's own tile.
+    bool has_copies = false;
+
     bool moves() const;       // whether somebody asks for velocities
     int grid_radius() const;  // the largest of its grids': modes within it have amplitudes; 0 without grids
 };

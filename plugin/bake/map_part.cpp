@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/evaluate/gusts.h"
+#include "core/plan/copies.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "plugin/bake/output_part.h"
@@ -193,9 +194,9 @@ class MapPart final : public OutputPart {
     }
 
     // Only if the patch is a common period of every cascade that shows in this map, whatever other outputs
-    // show; trains have none.
+    // show; trains have none, nor have copies at random offsets.
     bool patch_is_periodic() const {
-        if (plan_.trains) return false;
+        if (plan_.trains || scene().waves.tiling == Tiling::Random) return false;
         const std::vector<int> levels = summed_levels(plan_, plan_.queries[output_.query]);
         for (const CascadePlan& cascade : plan_.cascades) {
             const double periods = scene().surface.size_m / cascade.size_m;
@@ -400,6 +401,12 @@ class MapPart final : public OutputPart {
             {"fingerprint", made_of},
             {"software", std::string("pelagic " PELAGIC_VERSION)}};
         if (periodic_) header.attributes.push_back({"period", size_m_});  // absent: it does not repeat
+        // With these, tiles add up to the sea (core/plan/copies.h).
+        if (output_.cascade && scene().waves.tiling == Tiling::Random) {
+            header.attributes.push_back({"copiesRamp", kCopyRamp});
+            header.attributes.push_back(
+                {"copiesKey", static_cast<int>(copies_key(scene().shot.seed, *output_.cascade))});
+        }
         if (scene().shot.loop_s > 0.0) header.attributes.push_back({"loop", scene().shot.exact_loop_s()});
         for (const DescribedKey& key : described(scene(), output_.feeds))
             std::visit(

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "core/base/constants.h"
+#include "core/plan/copies.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/mode_lattice.h"
 #include "core/scene/keys.h"
@@ -292,12 +293,17 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
                              {"longest_m", plan.trains->longest_m},
                              {"shortest_m", plan.trains->shortest_m}};
     planned["cascades"] = Json::array();
-    for (const CascadePlan& cascade : plan.cascades)
-        planned["cascades"].push_back({{"size_m", cascade.size_m},
-                                       {"resolution", cascade.resolution},
-                                       {"k_lower_rad_per_m", cascade.k_lower},
-                                       {"k_upper_rad_per_m", number(cascade.k_upper)},
-                                       {"modes", lattice_modes(cascade.grid_radius())}});
+    for (const CascadePlan& cascade : plan.cascades) {
+        const auto number_of = static_cast<int>(planned["cascades"].size());
+        Json& row = planned["cascades"].emplace_back(Json{{"size_m", cascade.size_m},
+                                                          {"resolution", cascade.resolution},
+                                                          {"k_lower_rad_per_m", cascade.k_lower},
+                                                          {"k_upper_rad_per_m", number(cascade.k_upper)},
+                                                          {"modes", lattice_modes(cascade.grid_radius())}});
+        // By these and the rule of core/plan/copies.h the tiles add up to the sea.
+        if (cascade.has_copies)
+            row["copies"] = {{"key", copies_key(plan.from->scene.shot.seed, number_of)}, {"ramp", kCopyRamp}};
+    }
 }
 
 void Record::set(const std::string& path, const files::FileState& file) {

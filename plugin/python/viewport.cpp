@@ -315,7 +315,7 @@ class GpuSea {
         return view;
     }
 
-    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Foam, Feed::Quality, Feed::Grid);
+    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Foam, Feed::Gusts, Feed::Quality, Feed::Grid);
     // A side of a grid. Views along the surface from far behind, as orthographic ones are, would need millions.
     static constexpr int kMostCells = 1024;
     static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres

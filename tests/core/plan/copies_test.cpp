@@ -19,7 +19,7 @@ TEST(Copies, SquaresOfTheirWeightsAddUpToOne) {
         const CopyWeights<float> narrow = copy_weights(static_cast<float>(middle));
         EXPECT_NEAR(narrow.own, wide.own, 1e-6);
         EXPECT_NEAR(narrow.next, wide.next, 1e-6);
-        EXPECT_NEAR(narrow.rate, wide.rate, 1e-5 * 12.0);
+        EXPECT_NEAR(narrow.rate, wide.rate, 1e-4);
     }
 }
 

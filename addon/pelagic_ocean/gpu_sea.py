@@ -102,7 +102,7 @@ class Grid:
     def __init__(self, sea, view, cell_px, on_earth, before):
         """on_earth: False for views that no eye sees, which are of a flat sea. before: the region's last Grid, whose triangles may serve again, or None."""
         grid = sea.grid(view, cell_px, on_earth)
-        self.curvature_per_m = grid.curvature_per_m
+        self.curvature_per_m, self.grid = grid.curvature_per_m, grid
         self.key, self.size, self.origin_m = (view, cell_px, on_earth), grid.size, grid.origin_m
         form = gpu.types.GPUVertFormat()
         for name, length in (("rest_in", 2), ("cell_in", 3), ("pixel_in", 3)):
@@ -126,6 +126,8 @@ class Drawing:
         self._time_s = None
         self._air, self._air_height_m = {}, ()
         self._sky_batch = None
+        self._foam_asked = None  # for what, and whether it hasn't come yet
+        self.awaits_foam = False
         self.is_under_water = False  # the view that was drawn last, which then stayed empty
 
     def take(self, sea, light):
@@ -133,7 +135,8 @@ class Drawing:
         if sea is not self.sea:
             self._grids.clear()
             self._textures.clear()
-            self._time_s = None
+            self._time_s = self._foam_asked = None
+            self.awaits_foam = False
         self._shaders.clear()
         self._air_height_m = ()
         self.sea, self.light = sea, light
@@ -146,9 +149,14 @@ class Drawing:
         """Whether a view's last picture was of its coarse grid."""
         return any(grid.key[1] != self._cell_px for grid in self._grids.values())
 
-    def draw(self, region, camera, time_s, cell_px, exposure, with_sky):
+    def has_foam(self):
+        """Whether foam has come that no picture shows yet."""
+        return self.awaits_foam and not self.sea.is_foam_busy
+
+    def draw(self, region, camera, scene, time_s, exposure, with_sky):
         """The sea at a time [s] into the bound framebuffer, where it is nearer than what is there; the sky where nothing
-        is. region: what tells views apart. cell_px: the side of the cells, larger while the view moves."""
+        is. region: what tells views apart. scene: one that sea and light serve; cells are larger while the view moves."""
+        cell_px = scene.surface.cell_px
         self._cell_px = cell_px
         self._prepare(time_s)
         self.is_under_water = camera.is_perspective and self.sea.water_over(camera.view()) is not None
@@ -162,7 +170,7 @@ class Drawing:
         gpu.state.depth_mask_set(True)
         try:
             gpu.state.depth_test_set("LESS")
-            self._draw_sea(region, camera, light)
+            self._draw_sea(region, camera, scene, light)
             if with_sky:
                 gpu.state.depth_test_set("LESS_EQUAL")
                 self._draw_sky(light)
@@ -204,16 +212,31 @@ class Drawing:
             del self._grids[next(iter(self._grids))]
         return grid
 
-    def _draw_sea(self, region, camera, light):
+    def _follow_foam(self):
+        """Living foam comes when it is ready: until then a picture has what there is."""
+        asked = self._time_s, tuple(grid.key for grid in self._grids.values())
+        if asked != self._foam_asked:
+            self._foam_asked, self.awaits_foam = asked, True
+            self.sea.ask_foam(self._time_s, [grid.grid for grid in self._grids.values()])
+        is_done = not self.sea.is_foam_busy
+        for name, pixels in self.sea.take_foam().items():
+            self._textures[name] = _texture(pixels)
+        self.awaits_foam = self.awaits_foam and not is_done
+
+    def _draw_sea(self, region, camera, scene, light):
         shader = self._shaders["sea"]
         grid = self._grid(region, camera)
+        if self.sea.has_living_foam:
+            self._follow_foam()
         tables, cycles = self.sea.at_origin(grid.origin_m)
         tables = gpu.types.GPUUniformBuf(tables)
         shader.bind()
         shader.uniform_block("SeaTables", tables)
-        _set(shader, {**self.sea.uniforms, **light, **self.light.foam(grid.origin_m), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
+        _set(shader, {**self.sea.uniforms, **light, **self.sea.foam(scene, grid.origin_m), "clip_from_grid": camera.clip_from_grid(grid.origin_m),
                       "curvature_per_m": grid.curvature_per_m})
         textures = dict(self._textures)
+        if self.sea.has_living_foam:
+            textures["foam_levels"] = _texture(self.sea.foam_levels(grid.origin_m))
         if cycles is not None:
             textures["train_cycles"] = _texture(cycles)
         _bind(shader, textures)

@@ -121,11 +121,10 @@ class Preview:
         if scene is not None and self.build(scene) and is_hidden and context.space_data.shading.type in SHADINGS:
             camera = Camera(gpu.matrix.get_projection_matrix(), gpu.matrix.get_model_view_matrix(),
                             gpu.state.viewport_get()[2:], obj.matrix_world)
-            self.drawing.draw(context.region.as_pointer(), camera, scene.shot.time_s(context.scene.frame_current_final),
-                              scene.surface.cell_px,
+            self.drawing.draw(context.region.as_pointer(), camera, scene, scene.shot.time_s(context.scene.frame_current_final),
                               self.drawing.light.exposure(scene, light.stops_by_hand(context.scene)),
                               context.window_manager.pelagic_preview.show_sky)
-        if self.is_building or not is_hidden or self.drawing.is_coarse():
+        if self.is_building or not is_hidden or self.drawing.is_coarse() or self.drawing.awaits_foam:
             _tend_soon()
 
     def wants_mesh(self):
@@ -244,14 +243,14 @@ def _tend():
     if preview.hidden_in and preview.is_shown_again():
         turn_off()
         return None
-    if preview.poll():
+    if preview.poll() or preview.drawing.has_foam():
         _redraw()
     if preview.wants_mesh():
         if preview.hidden_in:
             preview.show()
     elif preview.drawing.sea is not None and preview.hide():
         _redraw()
-    if preview.is_building:
+    if preview.is_building or preview.drawing.awaits_foam:
         return POLL_S
     if preview.drawing.is_coarse():
         # Views that were drawn since the last look are moving.

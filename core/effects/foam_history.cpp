@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "core/base/buffer.h"
@@ -29,6 +30,10 @@ constexpr int kSamples = 6;         // that an interval is known by: from two be
 std::size_t modulo(std::int64_t n, std::size_t by) {
     const auto rest = n % static_cast<std::int64_t>(by);
     return static_cast<std::size_t>(rest < 0 ? rest + static_cast<std::int64_t>(by) : rest);
+}
+
+auto order_of(const FoamPlace& place) {
+    return std::tuple(place.level, place.y, place.x);
 }
 
 // The sea seen through the cells of one level.
@@ -130,14 +135,11 @@ class FoamHistory<T>::Locator {
   private:
     FoamRung rung_of(std::size_t i) const {
         if (!points_.pixel_m) return whole_;
-        auto footprint_m = static_cast<float>(points_.pixel_m[i]);
-        if (points_.pixel_axis_m) {
-            // An ellipse counts as the circle of its area.
-            const glm::vec<2, T> axis = points_.pixel_axis_m[i];
-            const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
-            if (length_m > footprint_m) footprint_m = std::sqrt(footprint_m * length_m);
-        }
-        return foam_rung(foam_, footprint_m);
+        const auto width_m = static_cast<float>(points_.pixel_m[i]);
+        if (!points_.pixel_axis_m) return foam_rung(foam_, width_m);
+        const glm::vec<2, T> axis = points_.pixel_axis_m[i];
+        const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
+        return foam_rung(foam_, foam_footprint_m(width_m, length_m));
     }
 
     // Of a place that is counted in cells: its node in the tile, the tile, and the way to the next node.
@@ -288,6 +290,26 @@ void FoamHistory<T>::prepare(const Points<T>& points, int query, const BuildWatc
     for_parts(points, query, watch, [](std::size_t, std::span<const float>, std::span<const float>) {});
 }
 
+template <class T>
+void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& watch) {
+    if (leaves_nothing()) return;
+    if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
+    renew(watch);
+    make(places, watch);
+    for (const FoamPlace& place : places) tiles_.at(place)->used.store(round_, std::memory_order_relaxed);
+}
+
+template <class T>
+std::vector<FoamNodes> FoamHistory<T>::nodes() const {
+    std::vector<FoamNodes> nodes;
+    for (const auto& [place, tile] : tiles_)
+        if (tile->used.load() == round_ && tile->is_of(time_s_))
+            nodes.push_back({place, tile->foam.data(), tile->foam.data() + kStride});
+    std::sort(nodes.begin(), nodes.end(),
+              [](const FoamNodes& a, const FoamNodes& b) { return order_of(a.place) < order_of(b.place); });
+    return nodes;
+}
+
 // Brings the tiles of the time before to this one.
 template <class T>
 void FoamHistory<T>::renew(const BuildWatch& watch) {
@@ -300,8 +322,8 @@ void FoamHistory<T>::renew(const BuildWatch& watch) {
 
 template <class T>
 void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
-    const auto key = [](const Place& p) { return std::tuple(p.level, p.y, p.x); };
-    std::sort(places.begin(), places.end(), [&](const Place& a, const Place& b) { return key(a) < key(b); });
+    std::sort(places.begin(), places.end(),
+              [](const Place& a, const Place& b) { return order_of(a) < order_of(b); });
     places.erase(std::unique(places.begin(), places.end()), places.end());
     std::vector<Tile*> old;
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
@@ -339,6 +361,12 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& 
         }
         from = std::min(from, tile->next);
     }
+    const auto is_cancelled = [&] { return watch.cancel && watch.cancel->load(std::memory_order_relaxed); };
+    const auto stop_if_cancelled = [&] {
+        if (!is_cancelled()) return;
+        for (Tile* tile : tiles) tile->used = round_;  // what they have is kept for the next time
+        throw BuildCancelled();
+    };
     std::vector<Tile*> due;
     const std::int64_t end = last_ + 4;
     const bool is_long = end - from > kLong;
@@ -348,12 +376,12 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& 
             for (Tile* tile : tiles)
                 if (tile->place.level == l && tile->next == n) due.push_back(tile);
             if (due.empty()) continue;
-            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) {
-                for (Tile* tile : tiles) tile->used = round_;  // what they have is kept for the next time
-                throw BuildCancelled();
-            }
+            stop_if_cancelled();
             level(l).frame.set(static_cast<double>(n) * foam_.step_s);
-            tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) { sample(*due[i], n); });
+            tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) {
+                if (!is_cancelled()) sample(*due[i], n);
+            });
+            stop_if_cancelled();
         }
         if (is_long && watch.progress)
             watch.progress(static_cast<double>(n + 1 - from) / static_cast<double>(end - from));

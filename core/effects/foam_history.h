@@ -13,6 +13,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -36,6 +37,19 @@ struct FoamResults {
         age_s{};  // the mean age of the foam that is there, what breaks counting as 0 [s], or no view
 };
 
+// A tile of a level's cells: its first node is kTileCells · (x, y) cells from the drifting water's origin.
+struct FoamPlace {
+    int level = 0;
+    std::int64_t x = 0, y = 0;
+    bool operator==(const FoamPlace&) const = default;
+};
+
+// What a tile has at its nodes, rows of kTileCells + 1: what add() reads, for who reads it elsewhere.
+struct FoamNodes {
+    FoamPlace place;
+    const float *foam, *foam_age;  // residual foam, not limited to 1, and that times its age [s]
+};
+
 template <class T>
 class FoamHistory {
   public:
@@ -52,6 +66,16 @@ class FoamHistory {
     // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may
     // be asked again.
     void prepare(const Points<T>& points, int query, const BuildWatch& watch = {});
+    // The same for whole tiles.
+    void prepare(std::vector<FoamPlace> places, const BuildWatch& watch = {});
+    // The tiles that were asked for since set(), in order. They last until the next call of anything else.
+    std::vector<FoamNodes> nodes() const;
+    const FoamPlan& plan() const { return foam_; }
+    // How far the foam has drifted from where it was at time 0 [m].
+    glm::dvec2 drifted_m() const { return foam_.drift_mps * time_s_; }
+    // Beyond the last level: residual foam, and that times its age [s].
+    float mean() const { return mean_; }
+    float mean_times_age_s() const { return mean_ * mean_age_s_; }
 
     // Adds to answers of evaluate() what earlier breaking has left. On all threads of the calling arena, one call at a time.
     // `watch`: as prepare()'s.
@@ -63,11 +87,7 @@ class FoamHistory {
   private:
     struct Level;
     struct Tile;
-    struct Place {
-        int level;
-        std::int64_t x, y;
-        bool operator==(const Place&) const = default;
-    };
+    using Place = FoamPlace;
     struct HashOf {
         std::size_t operator()(const Place& place) const;
     };

@@ -19,9 +19,13 @@ struct Chunk {
     // 1 … kPoints. Vectors work on whole multiples of their length: what lies beyond, up to padded(), is
     // finite and goes nowhere.
     std::size_t count = 0;
-    std::size_t padded() const { return (count + kLongestVector - 1) / kLongestVector * kLongestVector; }
+    static constexpr std::size_t padded(std::size_t count) {
+        return (count + kLongestVector - 1) / kLongestVector * kLongestVector;
+    }
+    std::size_t padded() const { return padded(count); }
 
-    alignas(64) Values rest_x, rest_y;  // [m], relative to the query's origin
+    // [m], relative to the query's origin; with room for a vector that begins at the last point.
+    alignas(64) std::array<T, kPoints + kLongestVector> rest_x, rest_y;
     // Σ over the components so far, by field; only the wanted ones are set.
     alignas(64) std::array<Values, kFieldCount> sums;
     alignas(64) Values turn;  // ∂Dy/∂x − ∂Dx/∂y: 0 but where copies blend (core/plan/copies.h)

@@ -83,62 +83,131 @@ class CopyChunk {
              Chunk<T>& to, const EvaluateKernels<T>& kernels) {
         begin(grid, wanted);
         const CopyAxis<T>&x = places.x(), &y = places.y();
-        for (int copy = 0; copy < 4; ++copy) {
-            const bool next_x = copy & 1, next_y = copy & 2;
-            std::int64_t cell_x = 0, cell_y = 0;
-            glm::dvec2 nodes(0.0);
-            bool has_cell = false;
-            for (std::size_t i = 0; i < to.count; ++i) {
-                const T weight_x = next_x ? x.next[i] : x.own[i], weight_y = next_y ? y.next[i] : y.own[i];
-                if (!(weight_x > T(0) && weight_y > T(0)) || !counts(i)) continue;
-                const std::int64_t at_x = x.cell[i] + (next_x ? side_of(x.rate[i]) : 0);
-                const std::int64_t at_y = y.cell[i] + (next_y ? side_of(y.rate[i]) : 0);
-                if (!has_cell || at_x != cell_x || at_y != cell_y) {
-                    const CopyOffset<double> offset = origin.offset(at_x, at_y);
-                    nodes = {grid.origin_nodes_x + offset.x * grid.n,
-                             grid.origin_nodes_y + offset.y * grid.n};
-                    cell_x = at_x;
-                    cell_y = at_y;
-                    has_cell = true;
-                }
-                const std::size_t at = copies_.count++;
-                copies_.rest_x[at] = to.rest_x[i];
-                copies_.rest_y[at] = to.rest_y[i];
-                nodes_x_[at] = nodes.x;
-                nodes_y_[at] = nodes.y;
-                weight_[at] = weight_x * weight_y;
-                slope_x_[at] = (next_x ? x.own[i] : -x.next[i]) * x.rate[i] * weight_y;
-                slope_y_[at] = (next_y ? y.own[i] : -y.next[i]) * y.rate[i] * weight_x;
-                point_[at] = static_cast<std::uint16_t>(i);
-                if (copies_.count == Chunk<T>::kPoints) flush(grid, to, kernels);
+        for (std::size_t first = 0, end; first < to.count; first = end) {
+            end = first + 1;
+            if (has_shares_ && !counts(first)) continue;
+            // Points that show the same copies, one after another.
+            const auto code_x = x.code[first], code_y = y.code[first];
+            while (end < to.count && x.code[end] == code_x && y.code[end] == code_y &&
+                   !(has_shares_ && !counts(end)))
+                ++end;
+            const std::int64_t cell_x = CopyAxis<T>::cell_of(code_x), cell_y = CopyAxis<T>::cell_of(code_y);
+            const int side_x = CopyAxis<T>::side_of(code_x), side_y = CopyAxis<T>::side_of(code_y);
+            // A call of its own for these, without the way by way of copies_.
+            constexpr std::size_t kLong = 16;
+            if (side_x == 0 && side_y == 0 && end - first >= kLong && grid.sampling == Sampling::Spline) {
+                const CopyOffset<double> offset = origin.offset(cell_x, cell_y);
+                GridArgs<T> part = plain_;
+                part.origin_nodes_x += offset.x * grid.n;
+                part.origin_nodes_y += offset.y * grid.n;
+                part.first = first;
+                part.count = end - first;
+                kernels.add_grid(part, to);
+                continue;
             }
+            for (const bool next_y : {false, true})
+                for (const bool next_x : {false, true}) {
+                    if ((next_x && side_x == 0) || (next_y && side_y == 0)) continue;
+                    const CopyOffset<double> offset =
+                        origin.offset(cell_x + (next_x ? side_x : 0), cell_y + (next_y ? side_y : 0));
+                    const glm::dvec2 nodes(grid.origin_nodes_x + offset.x * grid.n,
+                                           grid.origin_nodes_y + offset.y * grid.n);
+                    for (std::size_t i = first; i < end;) {
+                        const std::size_t room = Chunk<T>::kPoints - copies_.count,
+                                          count = std::min(end - i, room);
+                        take({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(copies_.count),
+                              static_cast<std::uint16_t>(count)},
+                             nodes, next_x, next_y, places, to);
+                        i += count;
+                        if (copies_.count == Chunk<T>::kPoints) flush(grid, to, kernels);
+                    }
+                }
         }
         flush(grid, to, kernels);
     }
 
   private:
-    // The neighbour lies where the weights change to.
-    static int side_of(T rate) { return rate < T(0) ? -1 : 1; }
+    // Points of a chunk one after another, and where the copy that they show stands.
+    struct Stretch {
+        std::uint16_t point, at, count;
+    };
+
+    void take(const Stretch& stretch, glm::dvec2 nodes, bool next_x, bool next_y, const CopyPlaces<T>& places,
+              const Chunk<T>& to) {
+        const std::size_t at = copies_.count, from = stretch.point, count = stretch.count;
+        stretches_[stretch_count_++] = stretch;
+        copies_.count += count;
+        std::copy_n(to.rest_x.begin() + from, count, copies_.rest_x.begin() + at);
+        std::copy_n(to.rest_y.begin() + from, count, copies_.rest_y.begin() + at);
+        std::fill_n(nodes_x_.begin() + at, count, nodes.x);
+        std::fill_n(nodes_y_.begin() + at, count, nodes.y);
+        const CopyAxis<T>&x = places.x(), &y = places.y();
+        const T *weight_x = (next_x ? x.next : x.own).data() + from,
+                *weight_y = (next_y ? y.next : y.own).data() + from;
+        const T *other_x = (next_x ? x.own : x.next).data() + from,
+                *other_y = (next_y ? y.own : y.next).data() + from;
+        const T *rate_x = x.rate.data() + from, *rate_y = y.rate.data() + from;
+        const T sign_x = next_x ? T(1) : T(-1), sign_y = next_y ? T(1) : T(-1);
+        T *__restrict weight = weight_.data() + at, *__restrict slope_x = slope_x_.data() + at,
+                      *__restrict slope_y = slope_y_.data() + at;
+        for (std::size_t i = 0; i < count; ++i) weight[i] = weight_x[i] * weight_y[i];
+        if (!has_gradient_) return;
+        for (std::size_t i = 0; i < count; ++i) {
+            slope_x[i] = sign_x * other_x[i] * rate_x[i] * weight_y[i];
+            slope_y[i] = sign_y * other_y[i] * rate_y[i] * weight_x[i];
+        }
+    }
+
+    // Adds Σ a·b over the copies to the points' sums, times their shares.
+    struct Term {
+        const T *a, *b;
+    };
+    void add_up(Term first, Term second, T sign, const T* share, T* sums) const {
+        for (std::size_t s = 0; s < stretch_count_; ++s) {
+            const auto [point, at, count] = stretches_[s];
+            const T *a = first.a + at, *b = first.b + at;
+            T* __restrict to = sums + point;
+            alignas(64) typename Chunk<T>::Values sum;
+            T* __restrict of = sum.data();
+            if (second.a) {
+                const T *c = second.a + at, *d = second.b + at;
+                for (std::size_t i = 0; i < count; ++i) of[i] = a[i] * b[i] + sign * (c[i] * d[i]);
+            } else {
+                for (std::size_t i = 0; i < count; ++i) of[i] = a[i] * b[i];
+            }
+            if (share) {
+                const T* by = share + point;
+                for (std::size_t i = 0; i < count; ++i) to[i] += by[i] * of[i];
+            } else {
+                for (std::size_t i = 0; i < count; ++i) to[i] += of[i];
+            }
+        }
+    }
+
     // Whether a point has a share in the grid: where it has a weight, that of what is read.
     bool counts(std::size_t i) const {
-        return (!of_cells_ && !of_pixels_) || (of_cells_ && of_cells_[i] > T(0)) ||
-               (of_pixels_ && of_pixels_[i] > T(0));
+        return (of_cells_ && of_cells_[i] > T(0)) || (of_pixels_ && of_pixels_[i] > T(0));
     }
 
     void begin(const GridArgs<T>& grid, FieldSet wanted) {
         args_ = grid;
         of_cells_ = (wanted & cell_fields()).any() ? grid.cell_weight : nullptr;
         of_pixels_ = (wanted & ~cell_fields()).any() ? grid.pixel_weight : nullptr;
+        has_shares_ = of_cells_ || of_pixels_;
         const FieldSet read = wanted | gradient_fields(wanted);
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!read[f]) args_.samples[f] = nullptr;
             wanted_[f] = wanted[f] && args_.samples[f];
             read_[f] = args_.samples[f] != nullptr;
         }
+        plain_ = args_;
+        for (std::size_t f = 0; f < kFieldCount; ++f)
+            if (!wanted_[f]) plain_.samples[f] = nullptr;
         args_.cell_weight = args_.pixel_weight = nullptr;
         args_.nodes_x = nodes_x_.data();
         args_.nodes_y = nodes_y_.data();
-        copies_.count = 0;
+        has_gradient_ = gradient_fields(wanted).any();
+        copies_.count = stretch_count_ = 0;
     }
 
     void flush(const GridArgs<T>& grid, Chunk<T>& to, const EvaluateKernels<T>& kernels) {
@@ -151,40 +220,30 @@ class CopyChunk {
         kernels.add_grid(args_, copies_);
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!wanted_[f]) continue;
-            const T* share = weight_of(grid, f);
-            const T* along = nullptr;
-            const T* of = nullptr;
-            for (const Gradient& gradient : kGradients) {
-                if (index(gradient.derivative) != f || !read_[index(gradient.of)]) continue;
-                along = gradient.along_y ? slope_y_.data() : slope_x_.data();
-                of = copies_.sums[index(gradient.of)].data();
-            }
-            const T* own = copies_.sums[f].data();
-            T* sums = to.sums[f].data();
-            for (std::size_t at = 0; at < count; ++at) {
-                T sum = weight_[at] * own[at];
-                if (along) sum += along[at] * of[at];
-                sums[point_[at]] += share ? share[point_[at]] * sum : sum;
-            }
+            Term gradient{nullptr, nullptr};
+            for (const Gradient& row : kGradients)
+                if (index(row.derivative) == f && read_[index(row.of)])
+                    gradient = {row.along_y ? slope_y_.data() : slope_x_.data(),
+                                copies_.sums[index(row.of)].data()};
+            add_up({weight_.data(), copies_.sums[f].data()}, gradient, T(1), weight_of(grid, f),
+                   to.sums[f].data());
         }
-        if (wanted_[index(Field::Dxy)] && read_[index(Field::Dx)]) {
-            const T *share = weight_of(grid, index(Field::Dxy)), *dx = copies_.sums[index(Field::Dx)].data(),
-                    *dy = copies_.sums[index(Field::Dy)].data();
-            for (std::size_t at = 0; at < count; ++at) {
-                const T turn = slope_x_[at] * dy[at] - slope_y_[at] * dx[at];
-                to.turn[point_[at]] += share ? share[point_[at]] * turn : turn;
-            }
-        }
-        copies_.count = 0;
+        if (wanted_[index(Field::Dxy)] && read_[index(Field::Dx)])
+            add_up({slope_x_.data(), copies_.sums[index(Field::Dy)].data()},
+                   {slope_y_.data(), copies_.sums[index(Field::Dx)].data()}, T(-1),
+                   weight_of(grid, index(Field::Dxy)), to.turn.data());
+        copies_.count = stretch_count_ = 0;
     }
 
-    GridArgs<T> args_;
+    GridArgs<T> args_, plain_;  // to read copies, and where there is but one
     FieldSet wanted_, read_;
     const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
     Chunk<T> copies_;
     alignas(64) std::array<double, Chunk<T>::kPoints> nodes_x_, nodes_y_;
     typename Chunk<T>::Values weight_, slope_x_, slope_y_;
-    std::array<std::uint16_t, Chunk<T>::kPoints> point_;
+    bool has_gradient_ = false, has_shares_ = false;
+    std::array<Stretch, Chunk<T>::kPoints> stretches_;
+    std::size_t stretch_count_ = 0;
 };
 
 // Adds the wanted fields of a grid at the chunk's points. `args`: the grid with those fields' samples alone, and where the origin

@@ -95,20 +95,26 @@ void PlaceCopies(const CopyAxisArgs& args, const T* rest_m, std::size_t count, C
     const hn::Rebind<T, Wide> narrow;
     const hn::Rebind<hwy::MakeSigned<T>, Wide> index;
     const auto scale = hn::Set(dd, args.cells_per_m), origin = hn::Set(dd, args.origin_from_middle);
-    const auto half = hn::Set(dd, 0.5), most = hn::Set(dd, 0x1p30);
+    const auto half = hn::Set(dd, 0.5), most = hn::Set(dd, 0x1p28);
     for (std::size_t i = 0; i < count; i += hn::Lanes(dd)) {
         auto cells = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
         cells = hn::IfThenElseZero(hn::Lt(hn::Abs(cells), most), cells);  // no number, or no place
         const auto cell = hn::Floor(hn::Add(cells, half));
-        hn::StoreU(Index(dd, cell, T()), index, axis.cell.data() + i);
+        hn::StoreU(Index(dd, cell, T()), index, axis.code.data() + i);
         hn::StoreU(Narrow(dd, hn::Sub(cells, cell), T()), narrow, axis.rate.data() + i);
     }
     const hn::ScalableTag<T> d;
     using N = Pack<decltype(d)>;
-    const auto per_m = hn::Set(d, static_cast<T>(args.cells_per_m));
+    const hn::RebindToSigned<decltype(d)> di;
+    const auto per_m = hn::Set(d, static_cast<T>(args.cells_per_m)), none = hn::Zero(d);
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
         const auto from_middle = hn::LoadU(d, axis.rate.data() + i);
         const CopyWeights<N> weights = copy_weights(N(hn::Abs(from_middle)));
+        const auto side =
+            hn::IfThenElse(hn::RebindMask(di, hn::Lt(from_middle, none)), hn::Set(di, 3), hn::Set(di, 1));
+        const auto shown = hn::IfThenElseZero(hn::RebindMask(di, hn::Gt(weights.next.v, none)), side);
+        const auto cell = hn::LoadU(di, axis.code.data() + i);
+        hn::StoreU(hn::Add(hn::ShiftLeft<2>(cell), shown), di, axis.code.data() + i);
         hn::StoreU(weights.own.v, d, axis.own.data() + i);
         hn::StoreU(weights.next.v, d, axis.next.data() + i);
         hn::StoreU(hn::CopySignToAbs(hn::Mul(weights.rate.v, per_m), from_middle), d, axis.rate.data() + i);
@@ -177,10 +183,11 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
     const hn::CappedTag<T, 1> one;
     const std::size_t lanes = hn::Lanes(d), stride = line_stride<T>(args.n);
     const int n = args.n;
+    const std::size_t count = args.count > 0 ? args.count : chunk.count;
 
     // Each point's weights along x, side by side.
     alignas(64) T weights[Chunk<T>::kPoints][kTaps];
-    for (std::size_t i = 0; i < chunk.count; i += lanes) {
+    for (std::size_t i = 0; i < count; i += lanes) {
         Pack<decltype(d)> w[P];
         bspline_weights<P>(Pack<decltype(d)>(hn::LoadU(d, x.rest.data() + i)), w);
         alignas(64) T column[P][64 / sizeof(T)];
@@ -198,9 +205,9 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
     constexpr int kColumnsPerPoint = 4;
     constexpr std::size_t kColumns = kColumnsPerPoint * Chunk<T>::kPoints + 2 * kTaps + 64 / sizeof(T);
     alignas(64) T columns[kColumns];
-    for (std::size_t begin = 0, end; begin < chunk.count; begin = end) {
+    for (std::size_t begin = 0, end; begin < count; begin = end) {
         int low = first_column(begin), high = low;
-        for (end = begin + 1; end < chunk.count; ++end) {
+        for (end = begin + 1; end < count; ++end) {
             if (y.node[end] != y.node[begin] || y.rest[end] != y.rest[begin]) break;
             const int column = first_column(end);
             const int lower = std::min(low, column), upper = std::max(high, column);
@@ -233,7 +240,8 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
                 }
                 const T value = hn::GetLane(hn::SumOfLanes(taps, sum));
                 const T* weight = weight_of(args, f);
-                chunk.sums[f][begin] += weight ? weight[begin] * value : value;
+                const std::size_t to = args.first + begin;
+                chunk.sums[f][to] += weight ? weight[to] * value : value;
             }
             continue;
         }
@@ -256,7 +264,8 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
                 for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps))
                     sum = hn::MulAdd(hn::LoadU(taps, from + k), hn::Load(taps, weights[i] + k), sum);
                 const T value = hn::GetLane(hn::SumOfLanes(taps, sum));
-                chunk.sums[f][i] += weight ? weight[i] * value : value;
+                const std::size_t to = args.first + i;
+                chunk.sums[f][to] += weight ? weight[to] * value : value;
             }
         }
     }
@@ -265,8 +274,9 @@ void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, con
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     Places<T> x, y;  // a vector's last lanes are somewhere in the grid, too
-    Locate(args, args.origin_nodes_x, args.nodes_x, chunk.rest_x.data(), chunk.padded(), x);
-    Locate(args, args.origin_nodes_y, args.nodes_y, chunk.rest_y.data(), chunk.padded(), y);
+    const std::size_t count = args.count > 0 ? Chunk<T>::padded(args.count) : chunk.padded();
+    Locate(args, args.origin_nodes_x, args.nodes_x, chunk.rest_x.data() + args.first, count, x);
+    Locate(args, args.origin_nodes_y, args.nodes_y, chunk.rest_y.data() + args.first, count, y);
     if (args.sampling == Sampling::Nodes)
         AddNodes(args, chunk, x, y);
     else if (args.taps == 6)

@@ -27,6 +27,8 @@ struct GridArgs {
     std::array<const T*, kFieldCount> samples{};  // as Frame::samples(); null: not wanted
     FieldSet cell_group;                          // fields that cell_weight weighs; pixel_weight the others
     const T *cell_weight = nullptr, *pixel_weight = nullptr;  // by point; null: 1
+    // A part of the chunk's points, of a grid that is read by spline; count 0: all of them.
+    std::size_t first = 0, count = 0;
 };
 
 // The points' weight in a field; null: 1.
@@ -41,13 +43,18 @@ struct ChunkSpan {
     T low_x, high_x, low_y, high_y;
 };
 
-// Along an axis, which of a cascade's copies a chunk's points show (core/plan/copies.h): the cell that each lies in, counted
-// from the origin's, CopyWeights, and by `rate` [1/m] on which side the other copy lies: where it is below 0, below.
+// Along an axis, which of a cascade's copies a chunk's points show (core/plan/copies.h), and their CopyWeights.
 template <class T>
 struct CopyAxis {
-    using Cell = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
-    alignas(64) std::array<Cell, Chunk<T>::kPoints> cell;
-    alignas(64) typename Chunk<T>::Values own, next, rate;
+    using Code = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+    // Four times the cell that each lies in, counted from the origin's, and the side on which the other copy lies that it
+    // shows: 1, above; 3, below; 0, it shows none.
+    alignas(64) std::array<Code, Chunk<T>::kPoints> code;
+    alignas(64) typename Chunk<T>::Values own, next,
+        rate;  // rate: signed, as the weights change with the place [1/m]
+
+    static std::int64_t cell_of(Code code) { return code >> 2; }
+    static int side_of(Code code) { return (code & 3) == 3 ? -1 : static_cast<int>(code & 3); }
 };
 // Where the points' origin lies in its cell, and how large cells are.
 struct CopyAxisArgs {

@@ -240,8 +240,8 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
         take(&call.points.rest_m[first]);  // side by side: in vectors
     else
         take(from_point(call.points.rest_m, first));
-    std::fill(chunk.rest_x.begin() + chunk.count, chunk.rest_x.begin() + padded, T(0));
-    std::fill(chunk.rest_y.begin() + chunk.count, chunk.rest_y.begin() + padded, T(0));
+    for (auto* rest : {&chunk.rest_x, &chunk.rest_y})
+        std::fill(rest->begin() + chunk.count, rest->begin() + padded + Chunk<T>::kLongestVector, T(0));
     // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
     for (typename Chunk<T>::Values& sum : chunk.sums) std::fill(sum.begin(), sum.begin() + padded, T(0));
     std::fill(chunk.turn.begin(), chunk.turn.begin() + padded, T(0));
@@ -256,8 +256,8 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
     if (call.breaks && !work.apart) work.needed |= strain_fields();
     if (work.apart) {
         work.breaking.count = chunk.count;
-        std::copy_n(chunk.rest_x.begin(), padded, work.breaking.rest_x.begin());
-        std::copy_n(chunk.rest_y.begin(), padded, work.breaking.rest_y.begin());
+        work.breaking.rest_x = chunk.rest_x;
+        work.breaking.rest_y = chunk.rest_y;
         for (const Field field : kStrain) {
             auto& sum = work.breaking.sums[index(field)];
             std::fill(sum.begin(), sum.begin() + padded, T(0));

@@ -2,7 +2,7 @@
 // core/base/number.h. The rule is in core/plan/copies.h.
 
 // Of the blend from a cell to the next, in cells: half of it lies on either side of the border.
-inline constexpr double kCopyRamp = 0.25;
+inline constexpr double kCopyRamp = 0.15;
 inline constexpr double kCopySteps = 1024.0;  // offsets are whole multiples of the tile's size by this
 inline constexpr double kEighthTurnTangent = 0.41421356237309504880;  // tan(π/8)
 
@@ -56,5 +56,7 @@ inline CopyWeights<T> copy_weights(T middle) {
     const T cosine = (T(1) - q * q) * by * T(0.70710678118654752440);
     const T sine = T(2) * q * by * T(0.70710678118654752440);
     const T rate = T(24.0 * kEighthTurnTangent / kCopyRamp) * t * (T(1) - t) * by;
-    return CopyWeights<T>(select(t > T(0), cosine - sine, T(1)), select(t > T(0), cosine + sine, T(0)), rate);
+    // Where the ramp begins the next weight is lost in rounding, and its rate, which is larger, must not be left out.
+    const T next = maximum(cosine + sine, T(1e-20));
+    return CopyWeights<T>(select(t > T(0), cosine - sine, T(1)), select(t > T(0), next, T(0)), rate);
 }

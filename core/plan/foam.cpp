@@ -50,6 +50,10 @@ std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m) {
     return foam;
 }
 
+float foam_footprint_m(float width_m, float length_m) {
+    return length_m > width_m ? std::sqrt(width_m * length_m) : width_m;
+}
+
 FoamRung foam_rung(const FoamPlan& foam, float footprint_m) {
     const float cells = 2.0f * footprint_m / static_cast<float>(foam.cell_m);
     if (!(cells > 1.0f)) return {};

@@ -52,6 +52,8 @@ struct FoamRung {
     float t = 0.0f;
 };
 FoamRung foam_rung(const FoamPlan& foam, float footprint_m);
+// An ellipse counts as the circle of its area.
+float foam_footprint_m(float width_m, float length_m);
 
 // What the history for these queries holds at most [bytes], whichever of a camera's places they look from.
 std::size_t foam_bytes(const FoamPlan& foam, const Scene& scene, const std::vector<Query>& queries);

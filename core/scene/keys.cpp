@@ -448,7 +448,7 @@ void add_effects_and_quality(Built& out) {
         row<&Effects::foam_decay_s>(
             {.name = "foam_decay_s",
              .help =
-                 "how long the foam that breaking leaves lives, to 1/e of it; 0: foam only where waves break now. In what bake and render write; previews and live seas show all foam as breaking",
+                 "how long the foam that breaking leaves lives, to 1/e of it; 0: foam only where waves break now",
              .unit = "s",
              .range = limits::kFoamDecay_s,
              .soft = SoftRange{0.0, 10.0},

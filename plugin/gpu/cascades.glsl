@@ -1,5 +1,5 @@
 // The cascades' fields at a point: the sums of evaluate() (core/evaluate), read from textures that SeaLayout
-// describes. Needs the constants kCascades, kCellRungs, kPixelRungs, kBreakingRungs, kChoppy, kCoverage and P, the
+// describes. Needs the constants kCascades, kCellRungs, kPixelRungs, kBreakingRungs, kChoppy, kCoverage, kCopies and P, the
 // spline's number of taps.
 
 layout(std140) uniform SeaTables {
@@ -7,20 +7,20 @@ layout(std140) uniform SeaTables {
     // number of nodes N, 0 where the filter lets nothing through; .w: a multiple of N that makes node numbers
     // positive.
     ivec4 tile_first[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];
-    ivec4 tile_origin[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];  // .xy: node at or below the origin
+    ivec4 tile_origin[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];  // .xy: node at or below the origin; .zw: which tile that is in, modulo 2³²
     vec4 tile_scale[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];    // .xy: fraction; .zw: nodes/m, split
     vec4 rungs[kCellRungs + kPixelRungs];  // .x: footprint [m]
     // Four vectors per rung of pixels: its hidden moments (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy), and
     // the same eight mixed with the next rung.
     vec4 hidden_rungs[4 * kPixelRungs];
-    vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]
+    vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]; .y: its copies' key; .z: tiles per metre
     vec4 gusts[kGustRows];         // gusts.glsl
 };
 
 uniform vec2 finest_m;             // the finest footprints of cells and pixels; trains and gusts are filtered no finer
 uniform sampler2D cell_fields;     // Height, Dx, Dy
 uniform sampler2D pixel_fields;    // ηx, ηy, Dxx, Dyy
-uniform sampler2D pixel_fields_2;  // Dxy
+uniform sampler2D pixel_fields_2;  // Dxy; where copies blend also Height, Dx, Dy
 // What ellipses hide beyond round footprints (core/waves/ellipse_moments.h): a row for each width; two texels for each
 // direction, the directions of a ratio side by side.
 uniform sampler2D ellipse_table;
@@ -47,16 +47,26 @@ struct Place {
     vec2 rest;    // 0 … 1, from the node
 };
 
-Place place_in(int tile, SplitMetres x) {
-    ivec4 first = tile_first[tile];
+// A point among a tile's nodes, counted from the tile that the origin is in.
+struct Node {
+    ivec2 node;  // at or below
+    vec2 rest;   // 0 … 1, from there
+};
+
+Node node_in(int tile, SplitMetres x) {
     vec4 scale = tile_scale[tile];
     vec2 coarse = x.coarse * scale.z;
     vec2 middle = x.middle * scale.z;
     vec2 rest = fract(coarse) + fract(middle) + (x.fine * scale.z + x.whole * scale.w) + scale.xy;
     vec2 carry = floor(rest);
     ivec2 node = ivec2(floor(coarse)) + ivec2(floor(middle)) + ivec2(carry) + tile_origin[tile].xy;
-    ivec2 tap = node + (first.w - P / 2 + 1);
-    return Place(first.xy + tap % first.z, rest - carry);
+    return Node(node, rest - carry);
+}
+
+Place place_of(int tile, Node at) {
+    ivec4 first = tile_first[tile];
+    ivec2 tap = at.node + (first.w - P / 2 + 1);
+    return Place(first.xy + tap % first.z, at.rest);
 }
 
 vec4 spline_sum(sampler2D fields, ivec2 texel, float wx[P], float wy[P]) {
@@ -107,10 +117,66 @@ float share_in(int tile, int r, float t) {
 struct FieldSums {
     vec4 first;
     float second;
+    float turn;  // Dyx − Dxy, where copies blend
 };
 
+// The copies that a point shows along an axis, as in core/evaluate/copies.h: the cell that it lies in, and on which side the
+// other copy's lies.
+struct CopyAxis {
+    int cell;
+    int side;
+    CopyWeights weights;  // rate [1/m]
+};
+
+CopyAxis copy_axis(int tile, int node, float rest, float cells_per_m) {
+    ivec4 first = tile_first[tile];
+    // Made positive, as node numbers are.
+    int cell = (2 * (node + first.w) + first.z) / (2 * first.z) - first.w / first.z;
+    float from_middle = (float(node - cell * first.z) + rest) / float(first.z);
+    CopyWeights weights = copy_weights(abs(from_middle));
+    weights.rate *= cells_per_m * (from_middle < 0.0 ? -1.0 : 1.0);
+    return CopyAxis(cell, from_middle < 0.0 ? -1 : 1, weights);
+}
+
+// Adds what a tile's copies show of a point: `weight` times the fields, and with both textures the gradient of the copies' weights
+// where it belongs to them.
+FieldSums add_copies(sampler2D first, sampler2D second, bool both, int tile, int cascade, Node at, float weight,
+                     FieldSums sums) {
+    CopyAxis x = copy_axis(tile, at.node.x, at.rest.x, cascades[cascade].z);
+    CopyAxis y = copy_axis(tile, at.node.y, at.rest.y, cascades[cascade].z);
+    float nodes = float(tile_first[tile].z);
+    for (int copy = 0; copy < 4; ++copy) {
+        bool next_x = (copy & 1) != 0;
+        bool next_y = (copy & 2) != 0;
+        float weight_x = next_x ? x.weights.next : x.weights.own;
+        float weight_y = next_y ? y.weights.next : y.weights.own;
+        if (!(weight_x > 0.0 && weight_y > 0.0)) continue;
+        ivec2 cell = tile_origin[tile].zw + ivec2(x.cell + (next_x ? x.side : 0), y.cell + (next_y ? y.side : 0));
+        CopyOffset offset = copy_offset(uint(cascades[cascade].y), uint(cell.x), uint(cell.y));
+        vec2 moved = nodes * vec2(offset.x, offset.y);
+        vec2 whole = floor(moved);
+        vec2 rest = at.rest + (moved - whole);
+        vec2 carry = floor(rest);
+        Place place = place_of(tile, Node(at.node + ivec2(whole + carry), rest - carry));
+        float wx[P];
+        float wy[P];
+        bspline_weights(place.rest.x, wx);
+        bspline_weights(place.rest.y, wy);
+        float own = weight * weight_x * weight_y;
+        sums.first += own * spline_sum(first, place.texel, wx, wy);
+        if (!both) continue;
+        vec4 beside = spline_sum(second, place.texel, wx, wy);
+        float along_x = weight * (next_x ? x.weights.own : -x.weights.next) * x.weights.rate * weight_y;
+        float along_y = weight * (next_y ? y.weights.own : -y.weights.next) * y.weights.rate * weight_x;
+        sums.first += vec4(along_x * beside.y, along_y * beside.y, along_x * beside.z, along_y * beside.w);
+        sums.second += own * beside.x + along_y * beside.z;
+        sums.turn += along_x * beside.w - along_y * beside.z;
+    }
+    return sums;
+}
+
 FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_rung, vec2 rest_m, Footprint footprint) {
-    FieldSums sums = FieldSums(vec4(0.0), 0.0);
+    FieldSums sums = FieldSums(vec4(0.0), 0.0, 0.0);
     for (int c = 0; c < kCascades; ++c) {
         Taps taps = taps_in(c, footprint);
         int last = last_tap(taps);
@@ -121,12 +187,17 @@ FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_r
             float share = share_in(tile, r, footprint.rung.t);
             if (!(share > 0.0)) continue;
             for (int j = -last; j <= last; ++j) {
-                Place place = place_in(tile, split_metres(rest_m + float(j) * taps.spacing_m * footprint.axis));
+                Node at = node_in(tile, split_metres(rest_m + float(j) * taps.spacing_m * footprint.axis));
+                float weight = share * tap_weight(taps.reach, float(j));
+                if (kCopies) {
+                    sums = add_copies(first, second, both, tile, c, at, weight, sums);
+                    continue;
+                }
+                Place place = place_of(tile, at);
                 float wx[P];
                 float wy[P];
                 bspline_weights(place.rest.x, wx);
                 bspline_weights(place.rest.y, wy);
-                float weight = share * tap_weight(taps.reach, float(j));
                 sums.first += weight * spline_sum(first, place.texel, wx, wy);
                 if (both) sums.second += weight * spline_sum(second, place.texel, wx, wy).x;
             }
@@ -142,14 +213,14 @@ vec3 cell_cascades(vec2 rest_m, Footprint footprint) {
 }
 
 struct PixelFields {
-    float slope_x, slope_y, dxx, dyy, dxy;
+    float slope_x, slope_y, dxx, dyy, dxy, dyx;
 };
 
 PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
-    FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, kChoppy, kCellRungs, rest_m, footprint);
+    FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, kChoppy || kCopies, kCellRungs, rest_m, footprint);
     vec4 sum = sums.first;
-    if (!kChoppy) return PixelFields(sum.x, sum.y, 0.0, 0.0, 0.0);
-    return PixelFields(sum.x, sum.y, sum.z, sum.w, sums.second);
+    if (!kChoppy) return PixelFields(sum.x, sum.y, 0.0, 0.0, 0.0, 0.0);
+    return PixelFields(sum.x, sum.y, sum.z, sum.w, sums.second, sums.second + sums.turn);
 }
 
 uniform float breaking_footprint_m;
@@ -160,13 +231,13 @@ bool breaks_apart(Footprint footprint) {
            (!kChoppy || kTrains || rungs[kCellRungs + footprint.rung.lower].x < breaking_footprint_m);
 }
 
-// Their Dxx, Dyy, Dxy.
-vec3 breaking_cascades(vec2 rest_m, Footprint pixel) {
+// Their Dxx, Dyy, Dxy, Dyx.
+vec4 breaking_cascades(vec2 rest_m, Footprint pixel) {
     Footprint footprint = pixel;
     footprint.width = max(pixel.width, breaking_footprint_m);
     if (!(footprint.along > footprint.width)) footprint.along = 0.0;
     FieldSums sums = cascade_sums(pixel_fields, pixel_fields_2, true, kCellRungs + kPixelRungs, rest_m, footprint);
-    return vec3(sums.first.zw, sums.second);
+    return vec4(sums.first.zw, sums.second, sums.second + sums.turn);
 }
 
 // What an ellipse hides beyond a round footprint of its width: (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy).

@@ -21,11 +21,17 @@ vec3 query_cell(vec2 rest_m, vec3 cell) {
 // What a mesh of such cells hides of the slopes, at rest: variances (xx, yy, xy).
 vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
     Footprint footprint = footprint_of(kCellRungs, kPixelRungs, cell);
-    TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0), vec3(0.0), hidden_of(footprint));
+    TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), vec4(0.0), hidden_of(footprint));
     if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(cell, finest_m.y), sums);
     PixelMoments hidden = possible_moments(sums.hidden);
     return vec3(hidden.xx, hidden.yy, hidden.xy);
 }
+
+struct AllFoam {
+    float coverage;  // of all foam
+    float breaking;  // of what breaks now
+    float age_s;     // of what earlier breaking has left, on average
+};
 
 struct PixelAnswer {
     vec3 normal;
@@ -37,20 +43,20 @@ struct PixelAnswer {
 PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     Footprint footprint = footprint_of(kCellRungs, kPixelRungs, pixel);
     bool apart = kCoverage && breaks_apart(footprint);
-    vec3 breaking = apart ? breaking_cascades(rest_m, footprint) : vec3(0.0);
+    vec4 breaking = apart ? breaking_cascades(rest_m, footprint) : vec4(0.0);
     TrainSums sums = TrainSums(pixel_cascades(rest_m, footprint), breaking, hidden_of(footprint));
     if (kTrains) sums = pixel_trains(split_metres(rest_m), train_footprint(pixel, finest_m.y), sums);
     PixelFields f = sums.fields;
     PixelMoments hidden = possible_moments(sums.hidden);
-    SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy, f.dxy);
+    SurfaceNormal n = surface_normal(f.slope_x, f.slope_y, f.dxx, f.dyy, f.dxy, f.dyx);
     SlopeVariances carried =
-        carried_slopes(SlopeVariances(hidden.xx, hidden.yy, hidden.xy), f.dxx, f.dyy, f.dxy, f.dxy);
-    vec3 strain = apart ? sums.breaking : vec3(f.dxx, f.dyy, f.dxy);
+        carried_slopes(SlopeVariances(hidden.xx, hidden.yy, hidden.xy), f.dxx, f.dyy, f.dxy, f.dyx);
+    vec4 strain = apart ? sums.breaking : vec4(f.dxx, f.dyy, f.dxy, f.dyx);
     GustAnswer gust = GustAnswer(1.0, whitecap_threshold);
     if (kGusts) gust = gusts_at(rest_m, pixel);
     float foam = 0.0;
     if (kCoverage)
-        foam = coverage(jacobian_moments(strain.x, strain.y, strain.z, strain.z,
+        foam = coverage(jacobian_moments(strain.x, strain.y, strain.z, strain.w,
                                          HiddenStrain(hidden.xxxx, hidden.xxxy, hidden.xxyy, hidden.xyyy,
                                                       hidden.yyyy)),
                         gust.whitecap_threshold, kThirdMoment);

@@ -10,6 +10,9 @@ void main() {
     }
     vec3 pixel = pixel_on_mesh();
     PixelAnswer answer = query_pixel(rest_m, pixel);
+    AllFoam all = AllFoam(0.0, 0.0, 0.0);
+    if (kCoverage) all = all_foam(rest_m, pixel, answer.coverage);
+    answer.coverage = all.coverage;
     if (kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), false_colour(answer), vec3(0.0), vec3(0.0), 1.0);
         return;
@@ -20,7 +23,7 @@ void main() {
     SeenFoam foam = plain_foam(0.0);
     if (kWhitecaps)
         foam = seen_foam(FoamPattern(foam_pattern_cell, foam_pattern_rest, foam_pattern_axes, foam_pattern_look), rest_m,
-                         pixel, answer.coverage, 1.0, 0.0);
+                         pixel, all.coverage, all.breaking, all.age_s);
     SeaTerms terms =
         sea_radiance_at(up, to_eye, visible_normal(answer.normal, to_eye, answer.slope_variance_at_rest, mesh_variance_along()),
                         answer.slope_variance, foam,

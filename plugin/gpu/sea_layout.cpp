@@ -13,6 +13,18 @@
 #include "core/plan/products.h"
 
 namespace pelagic {
+namespace {
+
+bool blends_copies(const Plan& plan) {
+    return std::any_of(plan.cascades.begin(), plan.cascades.end(),
+                       [](const CascadePlan& cascade) { return cascade.has_copies; });
+}
+
+}  // namespace
+
+bool SeaLayout::has_copies() const {
+    return blends_copies(sea_->plan());
+}
 
 SplitNumber split_number(double value) {
     constexpr int kBits = 12;
@@ -40,6 +52,12 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, La
     if (breaks && (!is_choppy || plan.trains || planned.breaking_levels != planned.pixel_levels))
         breaking = ladder_of(plan, planned.query.pixel_m, planned.breaking_levels);
     const glm::ivec2 cell_size = place(plan, {&cells}), pixel_size = place(plan, {&pixels, &breaking});
+    // Where copies blend, derivatives need what they are of.
+    if (blends_copies(plan))
+        return {is_choppy ? Plane{true, 4, {Field::Height, Field::Dx, Field::Dy}, cell_size}
+                          : Plane{true, 1, {Field::Height}, cell_size},
+                {false, 4, {Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy}, pixel_size},
+                {false, 4, {Field::Dxy, Field::Height, Field::Dx, Field::Dy}, pixel_size}};
     if (!is_choppy && !breaks)
         return {{true, 1, {Field::Height}, cell_size},
                 {false, 2, {Field::SlopeX, Field::SlopeY}, pixel_size}};

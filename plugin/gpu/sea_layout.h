@@ -28,6 +28,10 @@ class SeaLayout {
     int query() const { return query_; }
     bool is_choppy() const { return is_choppy_; }
     bool has_coverage() const { return has_coverage_; }
+    // Cascades are copies of their tiles, blended (core/plan/copies.h).
+    bool has_copies() const;
+    // What earlier breaking has left is part of the picture (PackedFoam).
+    bool has_living_foam() const { return has_coverage_ && sea_->plan().foam.has_value(); }
     bool has_trains() const { return sea_->plan().trains.has_value(); }
     bool has_gusts() const { return sea_->gusts().has_value(); }
     int cascades() const { return static_cast<int>(sea_->plan().cascades.size()); }

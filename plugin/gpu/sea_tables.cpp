@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/plan/copies.h"
 #include "core/plan/taps.h"
 #include "plugin/gpu/sea_layout.h"
 
@@ -30,6 +31,8 @@ TileRow tile_row(const SeaLayout& layout, const SeaLayout::Tile& tile, glm::dvec
         const double tiles = origin_m[axis] / size_m;
         const double nodes = (tiles - std::floor(tiles)) * tile.n, node = std::floor(nodes);
         row.origin[axis] = static_cast<std::int32_t>(node);
+        // In 32 bits wherever the origin is: copies' offsets need no more.
+        row.origin[2 + axis] = static_cast<std::int32_t>(static_cast<std::int64_t>(std::floor(tiles)));
         row.scale[axis] = static_cast<float>(nodes - node);
     }
     const SplitNumber nodes_per_m = split_number(tile.n / size_m);
@@ -102,9 +105,12 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within
     append(rung);
     append(hidden);
     std::vector<std::array<float, 4>> cascades;
-    for (const CascadePlan& cascade : sea_->plan().cascades)
-        cascades.push_back(
-            {static_cast<float>(whole_footprint_m(cascade, sea_->plan().filter)), 0.0f, 0.0f, 0.0f});
+    for (int c = 0; c < this->cascades(); ++c) {
+        const CascadePlan& cascade = sea_->plan().cascades[c];
+        cascades.push_back({static_cast<float>(whole_footprint_m(cascade, sea_->plan().filter)),
+                            static_cast<float>(copies_key(sea_->plan().from->scene.shot.seed, c)),
+                            static_cast<float>(1.0 / cascade.size_m), 0.0f});
+    }
     cascades.resize(std::max<std::size_t>(cascades.size(), 1));
     append(cascades);
     append(sea_->gusts() ? rows_of(*sea_->gusts(), origin_m, time_within_loop_s)

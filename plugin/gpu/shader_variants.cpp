@@ -5,6 +5,7 @@
 
 #include "core/lighting/air.h"
 #include "core/plan/taps.h"
+#include "plugin/gpu/packed_foam.h"
 
 namespace pelagic {
 namespace {
@@ -46,6 +47,11 @@ std::string picture_constants(const DrawOptions& options) {
            constant("kAirSky", options.sky_from_air);
 }
 
+std::string foam_constants() {
+    return constant("kFoamLevels", FoamPlan::kLevels) + constant("kFoamTileCells", FoamPlan::kTileCells) +
+           constant("kFoamTilesAcross", PackedFoam::kTilesAcross);
+}
+
 }  // namespace
 
 const std::vector<std::string_view>& lighting_files() {
@@ -59,13 +65,24 @@ const std::vector<std::string_view>& lighting_files() {
 }
 
 const std::vector<std::string_view>& query_files() {
-    static const std::vector<std::string_view> files{
-        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",   "core/plan/filter.inl",
-        "core/plan/taps.inl",         "core/waves/spline.inl",     "core/waves/whitecaps.inl",
-        "core/waves/gusts.inl",       "core/evaluate/surface.inl", "core/waves/trains.inl",
-        "core/evaluate/hidden.inl",   "core/surface/earth.inl",    "core/surface/pixel_footprint.inl",
-        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl",  "plugin/gpu/trains.glsl",
-        "plugin/gpu/gusts.glsl",      "plugin/gpu/query.glsl"};
+    static const std::vector<std::string_view> files{"core/lighting/special.glsl",
+                                                     "plugin/gpu/prelude.glsl",
+                                                     "core/plan/filter.inl",
+                                                     "core/plan/taps.inl",
+                                                     "core/plan/copies.inl",
+                                                     "core/waves/spline.inl",
+                                                     "core/waves/whitecaps.inl",
+                                                     "core/waves/gusts.inl",
+                                                     "core/evaluate/surface.inl",
+                                                     "core/waves/trains.inl",
+                                                     "core/evaluate/hidden.inl",
+                                                     "core/surface/earth.inl",
+                                                     "core/surface/pixel_footprint.inl",
+                                                     "plugin/gpu/places.glsl",
+                                                     "plugin/gpu/cascades.glsl",
+                                                     "plugin/gpu/trains.glsl",
+                                                     "plugin/gpu/gusts.glsl",
+                                                     "plugin/gpu/query.glsl"};
     return files;
 }
 
@@ -76,7 +93,7 @@ std::string query_constants(const SeaLayout& layout, bool coverage) {
            constant("kPixelRungs", static_cast<int>(layout.pixels().footprints_m.size())) +
            constant("kBreakingRungs", static_cast<int>(layout.breaking().footprints_m.size())) +
            constant("P", layout.sea().plan().knobs.spline_taps) + constant("kChoppy", layout.is_choppy()) +
-           constant("kCoverage", coverage) +
+           constant("kCopies", layout.has_copies()) + constant("kCoverage", coverage) +
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
            constant("kTrains", layout.has_trains()) + constant("kGusts", layout.has_gusts()) +
            constant("kGustRows", SeaLayout::kGustRows) + constant("kGustWaves", GustsPlan::kWaves) +
@@ -123,11 +140,13 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     lighting.sky = lighting.sky && sky_map_size > 0;
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
+    const bool lives = coverage && layout.has_living_foam();
     return {query_constants(layout, coverage) + lighting_constants(lighting, sky_map_size) +
-                picture_constants(options),
+                picture_constants(options) + (lives ? foam_constants() : std::string()),
             is_lit_afterwards(options) ? std::vector<std::string_view>{"plugin/gpu/full_vertex.glsl"}
                                        : joined({query_files(), {vertex_file(options)}}),
             joined({query_files(),
+                    {lives ? "plugin/gpu/foam_history.glsl" : "plugin/gpu/foam_active.glsl"},
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
                     {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "core/lighting/place.glsl",

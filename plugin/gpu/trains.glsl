@@ -58,7 +58,7 @@ vec3 cell_trains(SplitMetres x, vec3 footprint) {
 // Adds the trains' part to the shown and hidden sums of the cascades.
 struct TrainSums {
     PixelFields fields;
-    vec3 breaking;  // strain of the waves that break
+    vec4 breaking;  // strain of the waves that break
     PixelMoments hidden;
 };
 
@@ -96,8 +96,8 @@ TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
     PixelFields f = sums.fields;
     PixelMoments m = sums.hidden;
     return TrainSums(PixelFields(f.slope_x + first.x, f.slope_y + first.y, f.dxx + first.z, f.dyy + first.w,
-                                 f.dxy + dxy),
-                     sums.breaking + breaking,
+                                 f.dxy + dxy, f.dyx + dxy),
+                     sums.breaking + vec4(breaking, breaking.z),
                      PixelMoments(m.xx + low.x, m.xy + low.y, m.yy + low.z, m.xxxx + low.w, m.xxxy + high.x,
                                   m.xxyy + high.y, m.xyyy + high.z, m.yyyy + high.w));
 }

@@ -9,9 +9,11 @@
 
 #include "core/lighting/air.h"
 #include "core/plan/fingerprint.h"
+#include "core/scene/canonical.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
 #include "core/spectrum/possible.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/exr/read.h"
 
 namespace pelagic {
@@ -118,6 +120,17 @@ std::vector<exr::Attribute> radiance_attributes(const Scene& scene) {
 WaterBody make_water(const Scene& scene) {
     return water_body(
         {.kind = kind_of(scene.water.type), .chlorophyll_mg_m3 = scene.water.chlorophyll_mg_m3});
+}
+
+std::string light_content(const Scene& scene) {
+    Scene light = scene;
+    light.effects.foam_structure = light.effects.foam_streaks = 0.0;
+    return canonical(light, feeds(Feed::Light, Feed::Water));
+}
+
+double active_foam(const Scene& scene, double residual_coverage) {
+    const double law = law_coverage(scene);
+    return law > 0.0 ? std::clamp(1.0 - residual_coverage / law, 0.0, 1.0) : 1.0;
 }
 
 FoamLook make_foam(const Scene& scene, double active) {

@@ -34,7 +34,11 @@ std::string radiance_unit(const Scene& scene);
 std::vector<exr::Attribute> radiance_attributes(const Scene& scene);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
-// How its foam looks. active: the share of the law's foam that breaks now, the rest is what it left; 1 where foam doesn't live.
+// The light's keys as text: while that stays, sky and water do. How foam looks is no part of them.
+std::string light_content(const Scene& scene);
+// Of the law's foam, the share that breaks now in a sea whose earlier breaking has left that coverage; 1 where foam doesn't live.
+double active_foam(const Scene& scene, double residual_coverage);
+// How its foam looks. active: that share, the rest is what it left.
 // Foam is white while it breaks, and what it leaves is thin (Darles et al. 2007: less with its age), so that all of the law's foam
 // has Koepke's mean: in lighting by shares of area, whatever a pixel's size.
 FoamLook make_foam(const Scene& scene, double active = 1.0);

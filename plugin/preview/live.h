@@ -19,7 +19,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/sea.h"
-#include "plugin/preview/live_worker.h"
+#include "plugin/gpu/live_worker.h"
 #include "plugin/preview/sea_renderer.h"
 
 namespace pelagic {

@@ -12,6 +12,7 @@
 #include "core/scene/text.h"
 #include "core/spectrum/possible.h"
 #include "core/waves/folding.h"
+#include "plugin/gpu/packed_foam.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/preview/live.h"
 
@@ -29,6 +30,10 @@ MemoryNeed live_memory(const Plan& plan) {
                   static_cast<std::size_t>(plane.channels) * sizeof(float);
     need.add("the frame's grids as textures", 6 * packed,
              "lower the resolutions in waves.cascades, or quality.level");
+    // A history, three packed ones and the driver's.
+    if (plan.foam)
+        need.add("the foam as textures", 4 * PackedFoam::bytes_for(*plan.foam, plan.foam_history_bytes()),
+                 "lower effects.foam_decay_s");
     return need;
 }
 
@@ -53,7 +58,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
     const auto plan_from = [&](double finest_m) {
         return make_plan(prepared,
                          {view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m})},
-                         {.double_precision = false});
+                         {.double_precision = false, .living_foam = true});
     };
     for (const std::string& warning : sea_warnings(*prepared))
         made.note += (made.note.empty() ? "" : "\n") + warning;

@@ -16,6 +16,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "plugin/gpu/packed_foam.h"
 #include "plugin/gpu/packed_frame.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/light/light.h"
@@ -119,6 +120,10 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     const std::size_t frame = planned.plan.frame_bytes();
     need.add("the frame's grids as textures", packed + std::max(packed, frame) - frame,
              "lower quality.level (--quality draft), or the resolutions in waves.cascades");
+    if (planned.plan.foam)
+        need.add("the foam as textures",
+                 2 * PackedFoam::bytes_for(*planned.plan.foam, planned.plan.foam_history_bytes()),
+                 "lower effects.foam_decay_s");
     const glm::ivec2 size = planned.scene.camera.resolution;
     need.add("the picture",
              static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * (kDrawnBytes + kReadBytes),
@@ -146,7 +151,7 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
                                                  .finest_cell_m = needs.finest_cell_m,
                                                  .finest_pixel_m = finest_pixel_m,
                                                  .points = points_of(needs.size)})},
-                         {.double_precision = false});
+                         {.double_precision = false, .living_foam = true});
     };
     // Positions alone, by waves no shorter than the cells: little beside what pixels show. But which pixels are there
     // follows from them. A low camera has points nearby that a crest might bring into view and that no pixel shows:
@@ -173,6 +178,25 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     return planned;
 }
 
+namespace {
+
+// What the waves that broke before have left where the picture's pixels are.
+void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s,
+                 const View& view, const ProjectedGrid& grid) {
+    const SeaRenderer::ShownPoints shown = renderer.shown_points(view, grid);
+    FoamHistory<float> history(sea);
+    history.set(time_s);
+    history.prepare(Points<float>{.origin_m = grid.origin_m,
+                                  .count = shown.rest_m.size(),
+                                  .rest_m = {shown.rest_m.data()},
+                                  .pixel_m = {shown.pixel_m.data()},
+                                  .pixel_axis_m = {shown.pixel_axis_m.data()}},
+                    0);
+    renderer.upload_foam(std::make_shared<const PackedFoam>(history, grid.origin_m));
+}
+
+}  // namespace
+
 OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky) {
     const auto sea = std::make_shared<const Sea<float>>(planned.plan);
     SeaRenderer renderer;
@@ -188,10 +212,15 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky) 
         }
         renderer.upload_once(packed);
     }
-    renderer.draw(view_at(planned.scene.camera, planned.frame), planned.grid,
-                  {.lighting = render_options(planned.scene).lighting,
-                   .foam = make_foam(planned.scene),
-                   .layers = true});
+    const View view = view_at(planned.scene.camera, planned.frame);
+    const LightingChoice lighting = render_options(planned.scene).lighting;
+    const bool lives = planned.plan.foam && lighting.whitecaps;
+    if (lives) upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.grid);
+    renderer.draw(
+        view, planned.grid,
+        {.lighting = lighting,
+         .foam = make_foam(planned.scene, lives ? active_foam(planned.scene, sea->residual_coverage()) : 1.0),
+         .layers = true});
     OffscreenPicture drawn{renderer.read_layers(), renderer.device(), {}};
     if (quality_of(planned.scene.quality.level).double_precision)
         drawn.note =

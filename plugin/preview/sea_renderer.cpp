@@ -74,6 +74,9 @@ struct SeaRenderer::Implementation {
     void set_air(double height_m);
     void draw_grid(const ShaderProgram& program, const View& view, const ProjectedGrid& grid);
     void draw_over_all(const ShaderProgram& program) const;
+    void begin_picture(glm::ivec2 size, bool layers);
+    void draw_points(const View& view, const ProjectedGrid& grid);
+    void end_picture() const;
     void draw_sea(const View& view, const ProjectedGrid& grid, const DrawOptions& options);
     void draw_sky(const View& view, const DrawOptions& options);
     const ShaderProgram& program_of(const ShaderVariant& variant);
@@ -283,6 +286,35 @@ void SeaRenderer::Implementation::draw_over_all(const ShaderProgram& program) co
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+void SeaRenderer::Implementation::begin_picture(glm::ivec2 size, bool layers) {
+    make_pictures(size, layers);
+    glViewport(0, 0, size.x, size.y);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glClearDepth(reversed_depth ? 0.0 : 1.0);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    if (reversed_depth) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glDepthFunc(reversed_depth ? GL_GREATER : GL_LESS);
+}
+
+void SeaRenderer::Implementation::end_picture() const {
+    glDisable(GL_DEPTH_TEST);
+    if (reversed_depth) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+    glBindVertexArray(0);
+    glActiveTexture(GL_TEXTURE0);
+}
+
+void SeaRenderer::Implementation::draw_points(const View& view, const ProjectedGrid& grid) {
+    glBindFramebuffer(GL_FRAMEBUFFER, points_framebuffer.name());
+    draw_grid(program_of(ShaderVariant::of_points(sea.layout())), view, grid);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+}
+
 void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid& grid,
                                            const DrawOptions& options) {
     const SeaLayout& layout = sea.layout();
@@ -293,9 +325,7 @@ void SeaRenderer::Implementation::draw_sea(const View& view, const ProjectedGrid
         glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
         return;
     }
-    glBindFramebuffer(GL_FRAMEBUFFER, points_framebuffer.name());
-    draw_grid(program_of(ShaderVariant::of_points(layout)), view, grid);
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.name());
+    draw_points(view, grid);
     program.use();
     set_common(program, view);
     sea.bind(program, grid.origin_m);
@@ -370,6 +400,41 @@ bool SeaRenderer::has_frame() const {
     return !implementation_->sea.empty();
 }
 
+void SeaRenderer::upload_foam(std::shared_ptr<const PackedFoam> foam) {
+    implementation_->sea.upload_foam(std::move(foam));
+}
+
+SeaRenderer::ShownPoints SeaRenderer::shown_points(const View& view, const ProjectedGrid& grid) {
+    Implementation& of = *implementation_;
+    const KeptFramebuffer kept;
+    of.begin_picture(view.resolution, of.picture_layers);
+    // No pixel of the sea has a footprint of 0.
+    glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
+    glClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    of.draw_points(view, grid);
+    of.end_picture();
+    glBindFramebuffer(GL_FRAMEBUFFER, of.points_framebuffer.name());
+    const auto count =
+        static_cast<std::size_t>(view.resolution.x) * static_cast<std::size_t>(view.resolution.y);
+    std::array<std::vector<glm::vec4>, 2> texels;
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        texels[i].resize(count);
+        glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+        glReadPixels(0, 0, view.resolution.x, view.resolution.y, GL_RGBA, GL_FLOAT, texels[i].data());
+    }
+    ShownPoints shown;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec4 &first = texels[0][i], &second = texels[1][i];
+        if (!(first.z > 0.0f)) continue;
+        shown.rest_m.emplace_back(first);
+        shown.pixel_m.push_back(first.z);
+        shown.pixel_axis_m.emplace_back(first.w, second.x);
+    }
+    return shown;
+}
+
 void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOptions& options) {
     const auto started = std::chrono::steady_clock::now();
     Implementation& of = *implementation_;
@@ -378,21 +443,8 @@ void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOp
     drawn.lighting.air = options.lighting.air && of.air_model;
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);
-    of.make_pictures(view.resolution, options.layers);
+    of.begin_picture(view.resolution, options.layers);
     of.picture_plain = options.wireframe || options.false_colour != FalseColour::None;
-    glViewport(0, 0, view.resolution.x, view.resolution.y);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_FRAMEBUFFER_SRGB);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    glClearDepth(of.reversed_depth ? 0.0 : 1.0);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    if (of.reversed_depth) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glDepthFunc(of.reversed_depth ? GL_GREATER : GL_LESS);
-
     {
         const GlStageTimer::Measured measured(of.timer, GlStageTimer::Sea);
         if (!of.sea.empty()) of.draw_sea(view, grid, drawn);
@@ -402,10 +454,7 @@ void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOp
         of.draw_sky(view, drawn);
     }
 
-    glDisable(GL_DEPTH_TEST);
-    if (of.reversed_depth) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
-    glBindVertexArray(0);
-    glActiveTexture(GL_TEXTURE0);
+    of.end_picture();
     of.submit_ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
 }

@@ -18,6 +18,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/gpu/draw_options.h"
+#include "plugin/gpu/packed_foam.h"
 #include "plugin/gpu/packed_frame.h"
 #include "plugin/render/render.h"
 
@@ -61,6 +62,15 @@ class SeaRenderer {
     // The same for a picture that is the only one: returns when the copy is done, and holds no second one.
     void upload_once(const PackedFrame& frame);
     bool has_frame() const;
+    // What earlier breaking has left in the uploaded sea, whose foam must live; nothing is left before the first call for it.
+    void upload_foam(std::shared_ptr<const PackedFoam> foam);
+    // The points at rest that a picture's pixels of the sea show, with their footprints: for what depends on them. Waits.
+    struct ShownPoints {
+        std::vector<glm::vec2> rest_m;  // relative to the grid's origin
+        std::vector<float> pixel_m;
+        std::vector<glm::vec2> pixel_axis_m;
+    };
+    ShownPoints shown_points(const View& view, const ProjectedGrid& grid);
 
     // Draws a picture of view.resolution into the renderer's own framebuffer. `grid` must be this view's.
     // Without an uploaded frame only the sky is drawn. Throws PreviewError with the driver's messages if a

@@ -14,7 +14,17 @@
 namespace pelagic {
 namespace {
 
-enum Unit : int { kCellFields, kPixelFields, kPixelFields2, kEllipseTable, kTrainTable, kTrainCycles };
+enum Unit : int {
+    kCellFields,
+    kPixelFields,
+    kPixelFields2,
+    kEllipseTable,
+    kTrainTable,
+    kTrainCycles,
+    kFoamNodes,
+    kFoamPages,
+    kFoamLevels
+};
 
 }  // namespace
 
@@ -69,6 +79,26 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     ellipse_table_ = std::move(ellipse_table);
     train_table_ = std::move(train_table);
     train_cycles_ = std::move(train_cycles);
+    foam_textures_.reset();
+    if (layout->has_living_foam()) upload_foam(std::make_shared<const PackedFoam>());
+}
+
+void SeaTextures::upload_foam(std::shared_ptr<const PackedFoam> foam) {
+    if (!layout_ || !layout_->has_living_foam())
+        throw std::invalid_argument("the sea that is shown has no living foam");
+    if (!foam_textures_) foam_textures_.emplace();
+    foam_ = std::move(foam);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    const auto upload = [](const GlTexture& texture, glm::ivec2 size, int channels, const void* texels) {
+        edit_texture(texture);
+        texels_as_they_are();
+        const TexelFormat format = float_texels(channels);
+        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), size.x, size.y, 0, format.format,
+                     GL_FLOAT, texels);
+    };
+    upload(foam_textures_->nodes, foam_->nodes_size(), 2, foam_->nodes().data());
+    upload(foam_textures_->pages, foam_->pages_size(), 1, foam_->pages().data());
 }
 
 void SeaTextures::begin_upload(const PackedFrame& frame) {
@@ -115,6 +145,14 @@ void SeaTextures::upload_tables(glm::dvec2 origin_m) {
     glBindBuffer(GL_UNIFORM_BUFFER, tables_.name());
     glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size()), block.data(), GL_STREAM_DRAW);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, tables_.name());
+    if (foam_textures_) {
+        const std::vector<glm::vec4> levels = foam_->level_texels(origin_m);
+        edit_texture(foam_textures_->levels);
+        texels_as_they_are();
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, PackedFoam::kLevelTexels,
+                     static_cast<GLsizei>(levels.size()) / PackedFoam::kLevelTexels, 0, GL_RGBA, GL_FLOAT,
+                     levels.data());
+    }
     if (!layout_->has_trains()) return;
     const std::vector<float> cycles = layout_->train_cycles(origin_m, time_within_loop_s_);
     edit_texture(*train_cycles_);
@@ -130,7 +168,9 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
     for (const auto& [name, unit] :
          {std::pair{"cell_fields", kCellFields}, std::pair{"pixel_fields", kPixelFields},
           std::pair{"pixel_fields_2", kPixelFields2}, std::pair{"ellipse_table", kEllipseTable},
-          std::pair{"train_table", kTrainTable}, std::pair{"train_cycles", kTrainCycles}})
+          std::pair{"train_table", kTrainTable}, std::pair{"train_cycles", kTrainCycles},
+          std::pair{"foam_nodes", kFoamNodes}, std::pair{"foam_pages", kFoamPages},
+          std::pair{"foam_levels", kFoamLevels}})
         glUniform1i(program.uniform(name), unit);
     set_uniforms(program, query_uniforms(*layout_));
     for (std::size_t p = 0; p < planes_.size(); ++p)
@@ -139,6 +179,11 @@ void SeaTextures::bind(const ShaderProgram& program, glm::dvec2 origin_m) {
     if (layout_->has_trains()) {
         bind_texture(kTrainTable, *train_table_);
         bind_texture(kTrainCycles, *train_cycles_);
+    }
+    if (foam_textures_) {
+        bind_texture(kFoamNodes, foam_textures_->nodes);
+        bind_texture(kFoamPages, foam_textures_->pages);
+        bind_texture(kFoamLevels, foam_textures_->levels);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "plugin/gpu/packed_foam.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/preview/gl_objects.h"
 #include "plugin/preview/sea_renderer.h"
@@ -16,11 +17,13 @@ namespace pelagic {
 
 class SeaTextures {
   public:
-    static constexpr int kUnits = 6;  // bind() uses texture units 0 … kUnits − 1
+    static constexpr int kUnits = 9;  // bind() uses texture units 0 … kUnits − 1
 
     // As SeaRenderer::upload() and upload_once().
     void upload(const PackedFrame& frame);
     void upload_once(const PackedFrame& frame);
+    // What earlier breaking has left in that sea, for living foam; nothing before the first.
+    void upload_foam(std::shared_ptr<const PackedFoam> foam);
     bool empty() const { return layout_ == nullptr; }
     const SeaLayout& layout() const { return *layout_; }
 
@@ -36,6 +39,11 @@ class SeaTextures {
     std::shared_ptr<const SeaLayout> layout_;
     std::vector<GlTexture> planes_;
     std::optional<GlTexture> ellipse_table_, train_table_, train_cycles_;
+    struct FoamTextures {
+        GlTexture nodes, pages, levels;
+    };
+    std::shared_ptr<const PackedFoam> foam_;
+    std::optional<FoamTextures> foam_textures_;
     GlBuffer tables_;
     double time_within_loop_s_ = 0.0;
 

@@ -26,6 +26,7 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/files/files.h"
+#include "plugin/gpu/foam_worker.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
@@ -206,8 +207,7 @@ std::shared_ptr<const LiveSky> build_sky(const Scene& scene) {
 }
 
 bool same_light(const Scene& a, const Scene& b) {
-    const FeedSet light = feeds(Feed::Light, Feed::Water);
-    return canonical(a, light) == canonical(b, light);
+    return light_content(a) == light_content(b);
 }
 
 class Preview {
@@ -510,14 +510,37 @@ class Preview {
         ProjectedGridOptions grid_options = frame_->build->grid;
         // Of the drawn picture's pixels, as in `pelagic render` of that size: as many times fewer vertices.
         grid_options.cell_px = controls_.scene.surface.cell_px;
-        const ProjectedGrid grid = projected_grid(view, grid_options);
+        const auto grid = std::make_shared<const ProjectedGrid>(projected_grid(view, grid_options));
         smooth(readout_.times.grid_ms, milliseconds_since(start));
-        controls_.draw.foam = make_foam(controls_.scene);
-        renderer_.draw(view, grid, controls_.draw);
+        follow_foam(view, grid);
+        const Sea<float>& sea = *frame_->build->sea;
+        controls_.draw.foam =
+            make_foam(controls_.scene,
+                      sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
+        renderer_.draw(view, *grid, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
         renderer_.show(exposure_ * static_cast<float>(std::exp2(controls_.exposure_stops)));
         readout_.times.gpu = renderer_.times();
+    }
+
+    // Living foam comes when it is ready: until then a picture has what there is.
+    void follow_foam(const View& view, const std::shared_ptr<const ProjectedGrid>& grid) {
+        if (foam_of_ != frame_->build) {
+            foam_worker_.reset();
+            foam_of_ = frame_->build;
+            foam_view_.reset();
+            if (frame_->packed->layout()->has_living_foam()) foam_worker_.emplace(foam_of_->sea);
+        }
+        if (!foam_worker_ || !controls_.draw.lighting.whitecaps || !upload_error_.empty()) return;
+        const double time_s = frame_->packed->time_s();
+        if (foam_view_ != view || foam_time_s_ != time_s) {
+            foam_view_ = view;
+            foam_time_s_ = time_s;
+            foam_worker_->ask(time_s, {grid});
+        }
+        if (const auto foam = foam_worker_->take()) renderer_.upload_foam(foam);
+        if (readout_.message.empty()) readout_.message = foam_worker_->error();
     }
 
     void save_without_panel(glm::ivec2 size) {
@@ -568,6 +591,10 @@ class Preview {
     double shown_frame_ = 1.0;
     int pictures_ = 0;
     Clock::time_point first_picture_, asked_at_ = Clock::now();
+    std::shared_ptr<const LiveBuild> foam_of_;
+    std::optional<FoamWorker> foam_worker_;  // of foam_of_, where its foam lives
+    std::optional<View> foam_view_;          // what it was asked for last
+    double foam_time_s_ = 0.0;
     bool is_flying_ = false, save_picture_ = false, is_under_water_ = false;
     std::string upload_error_, save_error_, note_;
     LiveWorker<Scene, LiveSky> skies_;

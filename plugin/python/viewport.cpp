@@ -24,6 +24,7 @@
 #include "core/scene/text.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
+#include "plugin/gpu/foam_worker.h"
 #include "plugin/gpu/packed_frame.h"
 #include "plugin/gpu/shader_variants.h"
 #include "plugin/gpu/sky_atlas.h"
@@ -63,20 +64,15 @@ py::dict dict_of(const std::vector<Uniform>& uniforms) {
 // ---- Light
 
 struct GpuLight {
-    explicit GpuLight(const Scene& scene) : made_from(what_counts(scene)), foam(make_foam(scene)) {
+    explicit GpuLight(const Scene& scene) : made_from(light_content(scene)) {
         sky = make_sky(scene);
         map_size = sky.map.size();
         uniforms = light_uniforms(sky, make_water(scene));
         atlas = sky_atlas(sky.map);
     }
-    bool serves(const Scene& scene) const { return what_counts(scene) == made_from; }
-    // Of the sea's keys only where the wind draws foam to.
-    static std::string what_counts(const Scene& scene) {
-        return canonical(scene, feeds(Feed::Light, Feed::Water)) + number_text(scene.sea.wind_direction_deg);
-    }
+    bool serves(const Scene& scene) const { return light_content(scene) == made_from; }
 
     std::string made_from;
-    FoamLook foam;
     Sky sky;
     int map_size = 0;
     std::vector<Uniform> uniforms;
@@ -143,14 +139,13 @@ std::unique_ptr<Task> begin_making(const Scene& scene, More... more) {
 // ---- Grid
 
 struct GpuGrid {
-    ProjectedGridSize size;
-    glm::dvec2 origin_m{0.0};
-    double curvature_per_m = 0.0;
+    std::shared_ptr<const ProjectedGrid> grid;
     py::array vertices;
 };
 
 py::array triangles_of(const GpuGrid& grid) {
-    std::vector<std::uint32_t> indices = projected_grid_triangles(grid.size);
+    std::vector<std::uint32_t> indices =
+        projected_grid_triangles({.columns = grid.grid->columns, .rows = grid.grid->rows});
     const auto count = static_cast<py::ssize_t>(indices.size() / 3);
     return array_of<std::uint32_t>(std::move(indices), {count, 3});
 }
@@ -164,12 +159,14 @@ class GpuSea {
           made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(scene)),
-          sea_(std::make_shared<const Sea<float>>(
-              make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}), watch)),
+          sea_(std::make_shared<const Sea<float>>(make_plan(prepared_, {query_of(*prepared_, finest_m)},
+                                                            {.double_precision = false, .living_foam = true}),
+                                                  watch)),
           frame_(sea_),
           packed_(sea_, 0) {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
         ellipse_table_ = packed_.layout()->ellipse_texels();
+        if (packed_.layout()->has_living_foam()) foam_worker_.emplace(sea_);
     }
 
     bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
@@ -277,14 +274,48 @@ class GpuSea {
                                grid.cell_axis_m[i].x,  grid.cell_axis_m[i].y, grid.pixel_m[i],
                                grid.pixel_axis_m[i].x, grid.pixel_axis_m[i].y};
         }
-        return {{.columns = grid.columns, .rows = grid.rows},
-                grid.origin_m,
-                grid.curvature_per_m,
-                array_of<float>(std::move(vertices))};
+        return {std::make_shared<const ProjectedGrid>(std::move(grid)), array_of<float>(std::move(vertices))};
+    }
+
+    py::dict foam(const Scene& scene, std::array<double, 2> origin_m) const {
+        const double active = foam_worker_ ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
+        return dict_of(foam_uniforms(foam_pattern(make_foam(scene, active), checked_origin(origin_m))));
+    }
+
+    bool has_living_foam() const { return foam_worker_.has_value(); }
+    void ask_foam(double t_s, const std::vector<GpuGrid*>& grids) {
+        if (!(std::abs(t_s) <= Frame<float>::kLatest_s))
+            throw py::value_error("t: accepted: a time of at most 1e12 s to either side of 0");
+        FoamWorker::Grids asked;
+        for (const GpuGrid* grid : grids) asked.push_back(grid->grid);
+        if (foam_worker_) foam_worker_->ask(t_s, std::move(asked));
+    }
+    bool is_foam_busy() const { return foam_worker_ && foam_worker_->is_busy(); }
+    // Empty where there is nothing new.
+    py::dict take_foam() {
+        py::dict made;
+        if (!foam_worker_) return made;
+        auto foam = foam_worker_->take();
+        if (!foam && foam_) return made;
+        foam_ = foam ? std::move(foam) : std::make_shared<const PackedFoam>();
+        const auto picture = [](auto values, glm::ivec2 size, py::ssize_t channels) {
+            py::array_t<float> all = array_of<float>(std::move(values));
+            return all.reshape({py::ssize_t{size.y}, py::ssize_t{size.x}, channels});
+        };
+        made["foam_nodes"] = picture(std::vector(foam_->nodes()), foam_->nodes_size(), 2);
+        made["foam_pages"] = picture(std::vector(foam_->pages()), foam_->pages_size(), 1);
+        return made;
+    }
+    py::array foam_levels(std::array<double, 2> origin_m) const {
+        const glm::dvec2 origin = checked_origin(origin_m);
+        std::vector<glm::vec4> texels = (foam_ ? *foam_ : PackedFoam()).level_texels(origin);
+        const auto rows = static_cast<py::ssize_t>(texels.size()) / PackedFoam::kLevelTexels;
+        return array_of<float>(std::move(texels), {rows, PackedFoam::kLevelTexels});
     }
 
     std::size_t bytes() const {
         std::size_t sum = sea_->plan().sea_bytes() + sea_->plan().frame_bytes();
+        if (foam_) sum += foam_->bytes() + foam_->tiles() * sea_->plan().foam->tile_bytes();
         for (const SeaLayout::Plane& plane : packed_.layout()->planes())
             sum += sizeof(float) * static_cast<std::size_t>(plane.channels) * plane.size.x * plane.size.y;
         return sum;
@@ -328,6 +359,8 @@ class GpuSea {
     PackedFrame packed_;
     std::vector<glm::vec4> train_table_, ellipse_table_;
     mutable std::mutex mutex_;
+    std::shared_ptr<const PackedFoam> foam_;  // what was taken last
+    std::optional<FoamWorker> foam_worker_;   // where foam lives
 };
 
 void add_gpu_light(py::module_& module) {
@@ -352,13 +385,6 @@ void add_gpu_light(py::module_& module) {
             },
             "The texture sky_map: float32 (height, width, 4), all its levels in one picture. Read-only.")
         .def(
-            "foam",
-            [](const GpuLight& self, std::array<double, 2> origin_m) {
-                return dict_of(foam_uniforms(foam_pattern(self.foam, checked_origin(origin_m))));
-            },
-            py::arg("origin_m"),
-            "Uniforms of the sea's shader by name: the pattern of foam for a grid's origin [m].")
-        .def(
             "air", &air_of, py::arg("height_m"),
             "(uniforms, air_table) of the air before an eye so high above the sea at rest [m]: uniforms of the sea's "
             "shader by name, and the texture air_table, float32 (height, width, 4), texels as they are. None: no air "
@@ -381,13 +407,14 @@ void add_gpu_light(py::module_& module) {
 void add_gpu_grid(py::module_& module) {
     py::class_<GpuGrid>(module, "GpuGrid", "The projected grid of a view, as vertices for GpuSea's shader.")
         .def_property_readonly(
-            "size", [](const GpuGrid& self) { return py::make_tuple(self.size.columns, self.size.rows); },
+            "size", [](const GpuGrid& self) { return py::make_tuple(self.grid->columns, self.grid->rows); },
             "(columns, rows) of cells.")
         .def_property_readonly(
-            "origin_m", [](const GpuGrid& self) { return py::make_tuple(self.origin_m.x, self.origin_m.y); },
+            "origin_m",
+            [](const GpuGrid& self) { return py::make_tuple(self.grid->origin_m.x, self.grid->origin_m.y); },
             "(x, y) [m], in double precision: vertices are relative to it.")
-        .def_readonly(
-            "curvature_per_m", &GpuGrid::curvature_per_m,
+        .def_property_readonly(
+            "curvature_per_m", [](const GpuGrid& self) { return self.grid->curvature_per_m; },
             "The uniform of that name [1/m]: of the earth, round which the shader lays the grid; 0: flat.")
         .def_readonly(
             "vertices", &GpuGrid::vertices,
@@ -455,6 +482,27 @@ void add_viewport(py::module_& module) {
             "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which depend "
             "on time where there are gusts, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
             "None.")
+        .def(
+            "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"),
+            "Uniforms of the sea's shader by name: the pattern of foam, as a scene that this sea serves has it, for a grid's "
+            "origin [m].")
+        .def_property_readonly(
+            "has_living_foam", &GpuSea::has_living_foam,
+            "Whether earlier breaking leaves foam: then the shader has the textures of take_foam() and "
+            "foam_levels().")
+        .def(
+            "ask_foam", &GpuSea::ask_foam, py::arg("t"), py::arg("grids"),
+            "Wants what earlier breaking has left at a time t [s] where these GpuGrids are. It is made by a thread of its own, "
+            "the latest request first; nothing waits. ValueError for a time beyond 1e12 s.")
+        .def_property_readonly("is_foam_busy", &GpuSea::is_foam_busy,
+                               "Whether that thread has something to do.")
+        .def(
+            "take_foam", &GpuSea::take_foam,
+            "The textures foam_nodes and foam_pages, float32 (height, width, 2 or 1), of the latest request that is done: "
+            "once, {} otherwise. The first call has textures of a sea without such foam.")
+        .def(
+            "foam_levels", &GpuSea::foam_levels, py::arg("origin_m"),
+            "The texture foam_levels for what was taken last and a grid's origin [m], float32 (height, 2, 4).")
         .def(
             "grid", &GpuSea::grid, py::arg("view"), py::arg("cell_px") = py::none(),
             py::arg("on_earth") = true,

@@ -22,7 +22,6 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
-#include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/motion.h"
@@ -63,8 +62,7 @@ class RendererOf final : public Impl {
           grid_options_(projected_grid_options(*plan.from)) {
         if (!plan.foam) return;
         history_.emplace(sea_);
-        if (const double law = law_coverage(scene_); law > 0.0)
-            foam_ = make_foam(scene_, std::clamp(1.0 - sea_->residual_coverage() / law, 0.0, 1.0));
+        foam_ = make_foam(scene_, active_foam(scene_, sea_->residual_coverage()));
     }
 
     const Plan& plan() const override { return sea_->plan(); }

@@ -177,10 +177,16 @@ void run(int n) {
     Scene harbour;
     harbour.sea.wind_speed_mps = 3.0;
     harbour.sea.fetch_m = 500.0;
-    std::vector<Look> looks{
-        {"the default sea from 3 km, 10 km of it", {}, 3000.0, 10e3},
-        {"the same from 8 km, 20 km of it", {}, 8000.0, 20e3},
-        {"a harbour, 3 m/s and 500 m of fetch, from 100 m, 500 m of it", harbour, 100.0, 500.0}};
+    std::vector<Look> looks;
+    for (const Tiling tiling : {Tiling::Random, Tiling::Periodic}) {
+        const std::string of = tiling == Tiling::Random ? ", copies" : ", periodic";
+        Scene sea;
+        sea.waves.tiling = harbour.waves.tiling = tiling;
+        looks.push_back({"the default sea from 3 km, 10 km of it" + of, sea, 3000.0, 10e3});
+        looks.push_back({"the same from 8 km, 20 km of it" + of, sea, 8000.0, 20e3});
+        looks.push_back(
+            {"a harbour, 3 m/s, 500 m of fetch, from 100 m, 500 m of it" + of, harbour, 100.0, 500.0});
+    }
     for (const int trains : {60, 250, 1000, 3000}) {
         Scene scene;
         scene.waves.model = WaveModel::Trochoid;
@@ -193,7 +199,7 @@ void run(int n) {
         kOwn, n);
     for (const Look& look : looks) {
         const Worst worst = worst_of(look, n);
-        std::printf("  %-62s %5.2f at (%7.1f, %7.1f) m; target below %.2f: %s\n", look.name.c_str(),
+        std::printf("  %-70s %5.2f at (%7.1f, %7.1f) m; target below %.2f: %s\n", look.name.c_str(),
                     worst.correlation, worst.x_m, worst.y_m, kTarget,
                     worst.correlation < kTarget ? "met" : "missed");
         std::fflush(stdout);

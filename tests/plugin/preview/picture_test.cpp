@@ -3,11 +3,14 @@
 #include <array>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "plugin/gpu/foam_worker.h"
 #include "plugin/light/light.h"
 #include "plugin/preview/offscreen.h"
 #include "plugin/render/render.h"
@@ -17,9 +20,9 @@
 namespace pelagic {
 namespace {
 
-void compare_frame(const char* name, Scene scene) {
+void compare_frame(const char* name, Scene scene, glm::ivec2 size = {640, 360}) {
     gpu::need_context();
-    scene.camera.resolution = {640, 360};
+    scene.camera.resolution = size;
     RenderOptions options = render_options(scene);
     options.samples = 1;
     const Sky sky = make_sky(scene);
@@ -32,7 +35,7 @@ void compare_frame(const char* name, Scene scene) {
                 difference.median, difference.last_percent, 100.0 * difference.silhouettes);
     // The picture contains sea and sky, and each of the terms.
     const auto sea_pixels = std::count(cpu.sea.begin(), cpu.sea.end(), 1);
-    EXPECT_GT(sea_pixels, 640 * 360 / 4);
+    EXPECT_GT(sea_pixels, size.x * size.y / 4);
     EXPECT_LT(difference.silhouettes, 0.25);
     EXPECT_GT(difference.median, 0.0);  // two different implementations
     EXPECT_LE(difference.median, 1e-3);
@@ -75,6 +78,79 @@ TEST(PreviewsPicture, IsTheCpusOfTrains) {
     scene.waves.model = WaveModel::Trochoid;
     scene.waves.cascades.clear();
     compare_frame("of trains", scene);
+}
+
+TEST(PreviewsPicture, IsTheCpusOfCopiesAtRandomOffsets) {
+    Scene scene = scene_of({3e4, -60.0, 12.0}, {3e4, 0.0, 0.0});
+    scene.waves.tiling = Tiling::Random;
+    compare_frame("of copies", scene, {320, 180});
+}
+// What waves that broke before have left, near and far, in both hosts alike.
+Scene living_scene(glm::dvec3 position_m, glm::dvec3 look_at_m) {
+    Scene scene = scene_of(position_m, look_at_m);
+    scene.sea.wind_speed_mps = 14.0;
+    scene.effects.foam_decay_s = 2.0;
+    scene.effects.foam_drift = 0.02;
+    return scene;
+}
+TEST(PreviewsPicture, IsTheCpusOfLivingFoam) {
+    compare_frame("of living foam", living_scene({3e4, -60.0, 6.0}, {3e4, 0.0, 0.0}), {320, 180});
+}
+TEST(PreviewsPicture, IsTheCpusOfLivingFoamFromAPlane) {
+    compare_frame("of living foam from a plane", living_scene({1e6, -1e6, 400.0}, {1e6, -1e6 + 1500.0, 0.0}),
+                  {320, 180});
+}
+
+double mean_foam(const Picture& picture) {
+    double sum = 0.0, pixels = 0.0;
+    for (std::size_t i = 0; i < picture.layers.size(); ++i) {
+        sum += picture.sea[i] * static_cast<double>(picture.layers[i].foam.y);
+        pixels += picture.sea[i];
+    }
+    return sum / pixels;
+}
+// The tiles that a window or a viewport asks for by the grid hold what the pixels between its points read, from the ground
+// up; and a history that is gone on with has what one from nothing has.
+TEST(PreviewsPicture, OfLivingFoamByItsGridIsThatByItsPixels) {
+    gpu::need_context();
+    Scene scene = living_scene({0.0, -60.0, 6.0}, {0.0, 0.0, 0.0});
+    scene.camera.resolution = {160, 90};
+    const OffscreenPlan planned = plan_offscreen(scene, 5);
+    const Sky sky = make_sky(scene);
+    const Picture exact = render_offscreen(planned, sky).picture;
+    const auto sea = std::make_shared<const Sea<float>>(planned.plan);
+    SeaRenderer renderer;
+    renderer.set_sky(sky, make_water(scene));
+    PackedFrame packed(sea, 0);
+    Frame<float> frame(sea);
+    frame.set(scene.shot.time_s(5));
+    packed.pack(frame);
+    renderer.upload(packed);
+    const DrawOptions options{.lighting = render_options(scene).lighting,
+                              .foam = make_foam(scene, active_foam(scene, sea->residual_coverage())),
+                              .layers = true};
+    const auto drawn = [&] {
+        renderer.draw(view_at(scene.camera, 5), planned.grid, options);
+        return renderer.read_layers();
+    };
+    // Before there is any, foam is where waves break.
+    EXPECT_LT(mean_foam(drawn()), 0.7 * mean_foam(exact));
+    FoamWorker worker(sea);
+    const auto grid = std::make_shared<const ProjectedGrid>(planned.grid);
+    std::shared_ptr<const PackedFoam> foam;
+    for (const int n : {4, 5}) {
+        worker.ask(scene.shot.time_s(n), {grid});
+        while (!(foam = worker.take())) {
+            ASSERT_EQ(worker.error(), "");
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    renderer.upload_foam(foam);
+    const Difference difference = compare(exact, drawn());
+    std::printf("    median %.1e, 99th percentile %.1e\n", difference.median, difference.last_percent);
+    EXPECT_EQ(difference.median, 0.0);
+    // Where waves turn pixels towards the eye, so far that finer cells would show more, the grid has asked for coarser ones.
+    EXPECT_LE(difference.last_percent, 2e-2);
 }
 
 // A scene's sea at one second, ready to draw.

@@ -172,6 +172,45 @@ TEST(QueryOnTheGpu, OfCascadesIsEvaluates) {
 TEST(QueryOnTheGpu, OfCascadesIsEvaluatesAMillionMetresAway) {
     compare(scene_of(WaveModel::Fft), picture_query(), {.origin_m = {1e6 + 0.3, -1e6 + 0.7}, .time_s = 1e5});
 }
+// Copies at random offsets: inside their cells, where two blend, and in corners, near and far, with and without what else
+// makes a difference.
+Scene copied(WaveModel model) {
+    Scene scene = scene_of(model);
+    scene.waves.cascades = {{60.0, 128}, {11.3, 48}};  // the points lie in thousands of cells
+    scene.waves.tiling = Tiling::Random;
+    return scene;
+}
+TEST(QueryOnTheGpu, OfCopiesIsEvaluates) {
+    compare(copied(WaveModel::Fft), picture_query(), {});
+}
+TEST(QueryOnTheGpu, OfCopiesIsEvaluatesFarAway) {
+    compare(copied(WaveModel::Fft), picture_query(), {.origin_m = {1e6 + 0.3, -1e6 + 0.7}, .time_s = 1e5});
+    compare(copied(WaveModel::Fft), picture_query(), {.origin_m = {-1e8 + 0.3, 1e8 + 0.7}}, 5000);
+}
+TEST(QueryOnTheGpu, OfCopiesAndTrainsTogetherIsEvaluates) {
+    compare(copied(WaveModel::Trochoid), picture_query(), {}, 5000);
+}
+TEST(QueryOnTheGpu, OfCopiesInDraftsIsEvaluates) {
+    Scene scene = copied(WaveModel::Fft);
+    scene.quality.level = QualityLevel::Draft;
+    compare(scene, picture_query(), {}, 5000);
+}
+TEST(QueryOnTheGpu, OfCopiesWithoutChoppinessIsEvaluates) {
+    Scene scene = copied(WaveModel::Fft);
+    scene.waves.choppiness = 0.0;
+    compare(scene, picture_query(), {}, 5000);
+    Query query = picture_query();
+    query.products[index(Product::Coverage)] = false;
+    scene.effects.whitecaps = false;
+    compare(scene, query, {}, 5000);
+}
+TEST(QueryOnTheGpu, OfCopiesOfOtherWavesThatBreakIsEvaluates) {
+    for (const double breaking_from_m : {0.3, 7.0}) {
+        Scene scene = copied(WaveModel::Fft);
+        scene.effects.breaking_from_m = breaking_from_m;
+        compare(scene, picture_query(), {}, 5000);
+    }
+}
 TEST(QueryOnTheGpu, OfTrainsIsEvaluates) {
     compare(scene_of(WaveModel::Trochoid), picture_query(), {});
 }

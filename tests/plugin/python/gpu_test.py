@@ -1,6 +1,7 @@
 """What a host's GPU code draws the sea from. The pictures themselves: tests/addon/viewport.py, tests/plugin/preview."""
 
 import math
+import time
 import unittest
 
 import numpy as np
@@ -127,6 +128,70 @@ class Seas(unittest.TestCase):
         self.assertTrue(looping.serves(scene))
         scene.shot.time_scale = 1.0
         self.assertFalse(looping.serves(scene))
+
+    def test_how_foam_looks_needs_no_other_sea_and_no_other_sky(self):
+        scene = small_scene()
+        sea, light = pelagic.GpuSea(scene, finest_m=1.0), pelagic.GpuLight(scene)
+        before = sea.foam(scene, (0.0, 0.0))
+        scene.effects.foam_structure, scene.effects.foam_streaks = 0.25, 0.75
+        self.assertTrue(sea.serves(scene) and light.serves(scene))
+        self.assertNotEqual(sea.foam(scene, (0.0, 0.0)), before)
+
+
+class LivingFoam(unittest.TestCase):
+    @staticmethod
+    def wait(sea):
+        while sea.is_foam_busy:
+            time.sleep(0.002)
+
+    def test_comes_when_it_is_asked_for_and_ready(self):
+        scene = small_scene()
+        scene.sea.wind_speed_mps, scene.effects.foam_decay_s = 16.0, 1.0
+        sea, light = pelagic.GpuSea(scene, finest_m=0.5), pelagic.GpuLight(scene)
+        self.assertTrue(sea.has_living_foam)
+        self.assertIn("foam_nodes", sea.shaders(light)["sea"][1])
+        nothing = sea.take_foam()
+        self.assertEqual(set(nothing), {"foam_nodes", "foam_pages"})
+        self.assertFalse(nothing["foam_nodes"].any())
+        self.assertEqual(sea.take_foam(), {})
+        grid = sea.grid(view())
+        sea.ask_foam(3.0, [grid])
+        self.wait(sea)
+        foam = sea.take_foam()
+        nodes, pages, levels = foam["foam_nodes"], foam["foam_pages"], sea.foam_levels(grid.origin_m)
+        self.assertEqual((nodes.dtype, nodes.shape[0] % 17, nodes.shape[1] % 17, nodes.shape[2]), (np.float32, 0, 0, 2))
+        self.assertEqual((pages.dtype, pages.shape[2], levels.shape[1:]), (np.float32, 1, (2, 4)))
+        self.assertTrue((nodes >= 0.0).all() and nodes.max() > 0.05)
+        numbers = np.sort(pages[pages >= 0.0])
+        np.testing.assert_array_equal(numbers, np.arange(len(numbers)))  # each tile is in one place
+        # The same alone and after other times.
+        again = pelagic.GpuSea(scene, finest_m=0.5)
+        for t in (2.0, 3.0):
+            again.ask_foam(t, [grid])
+            self.wait(again)
+        np.testing.assert_array_equal(again.take_foam()["foam_nodes"], nodes)
+        with self.assertRaises(ValueError):
+            sea.ask_foam(math.nan, [grid])
+
+    def test_is_left_behind_when_nobody_wants_it(self):
+        scene = small_scene()
+        scene.sea.wind_speed_mps, scene.effects.foam_decay_s = 16.0, 8.0
+        sea = pelagic.GpuSea(scene, finest_m=0.5)
+        grid = sea.grid(view())
+        began = time.perf_counter()
+        sea.ask_foam(3.0, [grid])
+        self.wait(sea)
+        whole = time.perf_counter() - began
+        sea.ask_foam(500.0, [grid])
+        began = time.perf_counter()
+        del sea
+        self.assertLess(time.perf_counter() - began, 0.5 * whole)
+
+    def test_is_none_where_foam_does_not_live(self):
+        sea, light = pelagic.GpuSea(small_scene(), finest_m=0.5), pelagic.GpuLight(small_scene())
+        self.assertFalse(sea.has_living_foam)
+        self.assertNotIn("foam_nodes", sea.shaders(light)["sea"][1])
+        self.assertEqual(sea.take_foam(), {})
 
 
 class Grids(unittest.TestCase):

@@ -1,0 +1,60 @@
+// Residual foam in the layout of the textures that foam_history.glsl reads. Needs no OpenGL.
+#pragma once
+
+#include <array>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <vector>
+
+#include "core/effects/foam_history.h"
+#include "core/surface/projected_grid.h"
+
+namespace pelagic {
+
+class PackedFoam {
+  public:
+    PackedFoam() = default;  // nothing is left anywhere
+    // What was asked of the history since its time was set, around a place [m]: of views that are far from each other it has
+    // one's.
+    PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m);
+
+    static constexpr int kTilesAcross = 64;     // the texture of nodes
+    static constexpr int kFarthestTile = 1024;  // of a level, from the centre's: so far out coarser ones do
+    static constexpr int kLevelTexels = 2;      // a level's columns in level_texels()
+
+    // Nodes of tiles, kTilesAcross of them side by side: foam, and foam times its age. One texel without tiles.
+    const std::vector<glm::vec2>& nodes() const { return nodes_; }
+    glm::ivec2 nodes_size() const { return nodes_size_; }
+    // Level by level a box of tiles, as many rows as it is high: which tile of nodes() is there, −1 for none.
+    const std::vector<float>& pages() const { return pages_; }
+    glm::ivec2 pages_size() const { return pages_size_; }
+    // For points relative to an origin [m]: a row for each level and one for the sea, as foam_history.glsl has them.
+    std::vector<glm::vec4> level_texels(glm::dvec2 origin_m) const;
+
+    std::size_t tiles() const { return tiles_; }
+    std::size_t bytes() const { return nodes_.size() * sizeof(glm::vec2) + pages_.size() * sizeof(float); }
+    // Of foam that takes so much in a history, at most.
+    static std::size_t bytes_for(const FoamPlan& foam, std::size_t history_bytes);
+
+  private:
+    struct Box {
+        glm::dvec2 first{0.0};  // tile
+        glm::ivec2 size{0};     // tiles
+        int row = 0;            // of pages()
+        double cells_per_m = 0.0;
+    };
+    std::array<Box, FoamPlan::kLevels> boxes_{};
+    std::size_t tiles_ = 0;
+    std::vector<glm::vec2> nodes_{glm::vec2(0.0f)};
+    glm::ivec2 nodes_size_{1};
+    std::vector<float> pages_{-1.0f};
+    glm::ivec2 pages_size_{1};
+    glm::dvec2 drifted_m_{0.0};
+    float mean_ = 0.0f, mean_times_age_s_ = 0.0f, cells_per_m_ = 1.0f;
+};
+
+// The tiles that pixels between a grid's points read, and some of coarser levels, which they need where waves turn away.
+std::vector<FoamPlace> foam_places(const FoamPlan& foam, glm::dvec2 drifted_m, const ProjectedGrid& grid);
+
+}  // namespace pelagic

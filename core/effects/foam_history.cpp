@@ -36,31 +36,18 @@ auto order_of(const FoamPlace& place) {
     return std::tuple(place.level, place.y, place.x);
 }
 
-// The sea seen through the cells of one level.
-template <class T>
-Plan plan_of_level(const Plan& plan, double cell_m) {
-    Query query;
-    query.name = "foam";
-    query.products = products(Product::JacobianMoments);
-    query.cell_m = query.pixel_m = {cell_m};
-    query.is_view = true;
-    Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});
-    own.knobs.spline_taps = 4;  // a hundredth of a breaking is enough
-    own.trains = plan.trains;   // which there are depends on all that is asked of the sea
-    own.gusts.reset();          // the whole sea's own
-    return own;
-}
-
 }  // namespace
 
 template <class T>
 struct FoamHistory<T>::Level {
     Level(const Plan& plan, double cell)
-        : cell_m(cell), frame(std::make_shared<const Sea<T>>(plan_of_level<T>(plan, cell))) {
+        : cell_m(cell), frame(std::make_shared<const Sea<T>>(plan_of_foam_level(plan, cell))) {
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x)
                 rest_m.emplace_back(static_cast<T>(x * cell), static_cast<T>(y * cell));
     }
+
+    std::size_t bytes() const { return frame.sea().plan().sea_bytes() + frame.sea().plan().frame_bytes(); }
 
     double cell_m;
     Frame<T> frame;
@@ -85,9 +72,14 @@ struct FoamHistory<T>::Tile {
     // Shares of intervals begin … end − 1 are there; samples up to end + 2 were taken.
     std::int64_t begin = 0, end = 0, next = 0;
     double made_at = 0.0;
-    bool is_made = false;
+    bool is_begun = false, is_made = false;
     mutable std::atomic<long> used = 0;  // the last round that read it
 
+    // Whether it has what a time reads whose first interval this is, or goes on to it.
+    bool continues_at(std::int64_t first) const {
+        const auto kept = static_cast<std::int64_t>(shares.size() / kStride);
+        return begin <= first && first >= end - kept && first <= end;
+    }
     bool is_of(double time_s) const { return is_made && made_at == time_s; }
 };
 
@@ -107,27 +99,27 @@ class FoamHistory<T>::Locator {
     };
 
     Locator(const FoamHistory& history, const Points<T>& points, int query)
-        : points_(points),
-          foam_(history.foam_),
-          offset_m_(points.origin_m - foam_.drift_mps * history.time_s_) {
+        : points_(points), foam_(history.foam_) {
         const auto& asked = history.sea_->plan().queries.at(static_cast<std::size_t>(query)).query;
         whole_ = foam_rung(foam_, static_cast<float>(asked.pixel_m.front()));
         for (int level = 0; level < FoamPlan::kLevels; ++level)
-            cells_per_m_[static_cast<std::size_t>(level)] = 1.0 / std::ldexp(foam_.cell_m, level);
+            cells_[static_cast<std::size_t>(level)] = {
+                .per_m = 1.0 / foam_.cell_of(level),
+                .origin_m = points.origin_m - foam_.drift_of(level) * history.time_s_};
     }
 
     Point operator()(std::size_t i) const {
         const FoamRung rung = rung_of(i);
-        const double x_m = offset_m_.x + static_cast<double>(points_.rest_m[i].x);
-        const double y_m = offset_m_.y + static_cast<double>(points_.rest_m[i].y);
+        const glm::dvec2 rest_m(points_.rest_m[i]);
         Point point{.nodes = {}, .count = 0, .t = rung.t};
         const int last = std::min(rung.level + (rung.t > 0.0f ? 1 : 0), FoamPlan::kLevels - 1);
         for (int level = rung.level; level <= last; ++level) {
-            const double cells_per_m = cells_per_m_[static_cast<std::size_t>(level)];
+            const Cells& cells = cells_[static_cast<std::size_t>(level)];
             Node& node = point.nodes[point.count++];
             node.place.level = level;
-            const int x = inside(x_m * cells_per_m, node.place.x, node.to_x);
-            node.corner = inside(y_m * cells_per_m, node.place.y, node.to_y) * kSide + x;
+            const int x = inside((cells.origin_m.x + rest_m.x) * cells.per_m, node.place.x, node.to_x);
+            node.corner =
+                inside((cells.origin_m.y + rest_m.y) * cells.per_m, node.place.y, node.to_y) * kSide + x;
         }
         return point;
     }
@@ -155,9 +147,12 @@ class FoamHistory<T>::Locator {
 
     const Points<T>& points_;
     const FoamPlan& foam_;
-    glm::dvec2 offset_m_;
     FoamRung whole_;
-    std::array<double, FoamPlan::kLevels> cells_per_m_{};
+    struct Cells {
+        double per_m = 0.0;
+        glm::dvec2 origin_m{0.0};  // the points', where the nodes are that drift
+    };
+    std::array<Cells, FoamPlan::kLevels> cells_{};
 };
 
 template <class T>
@@ -174,7 +169,7 @@ FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
     if (!sea_->plan().foam) throw std::invalid_argument("foam that doesn't live has no history");
     foam_ = *sea_->plan().foam;
     const FoamPlan::Weight all = foam_.weight(0.0, foam_.window_s);
-    mean_ = static_cast<float>(std::min(sea_->residual_coverage(), 1.0));
+    mean_ = static_cast<float>(std::min(sea_->left_coverage(), 1.0));
     mean_age_s_ = static_cast<float>(all.age_s2 / all.foam_s);
 }
 
@@ -187,13 +182,15 @@ void FoamHistory<T>::set(double t_s, double back_s) {
         throw std::invalid_argument("the foam's time must be a number of at most 1e12 s to either side of 0");
     ++round_;
     is_renewed_ = false;
-    std::erase_if(tiles_, [&](const auto& entry) { return entry.second->used.load() + 1 < round_; });
     time_s_ = time_within_loop_s(t_s, sea_->loop_s());
     last_ = static_cast<std::int64_t>(std::floor(time_s_ / foam_.step_s));
     first_ = last_ + 1 - foam_.intervals();
     const double back =
         std::clamp(back_s / foam_.step_s, 0.0, static_cast<double>(FoamPlan::kSpareIntervals));
     begin_ = first_ - static_cast<std::int64_t>(std::ceil(back));
+    std::erase_if(tiles_, [&](const auto& entry) {
+        return entry.second->used.load() + 1 < round_ || !entry.second->continues_at(first_);
+    });
     weights_.clear();
     for (std::int64_t n = first_; n <= last_; ++n) {
         const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
@@ -206,7 +203,7 @@ void FoamHistory<T>::set(double t_s, double back_s) {
 template <class T>
 typename FoamHistory<T>::Level& FoamHistory<T>::level(int index) {
     std::unique_ptr<Level>& level = levels_[static_cast<std::size_t>(index)];
-    if (!level) level = std::make_unique<Level>(sea_->plan(), std::ldexp(foam_.cell_m, index));
+    if (!level) level = std::make_unique<Level>(sea_->plan(), foam_.cell_of(index));
     return *level;
 }
 
@@ -225,12 +222,10 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
             if (!(node.place == before[k])) {
                 before[k] = node.place;
                 const auto found = tiles_.find(node.place);
-                tile[k] =
-                    found == tiles_.end() || !found->second->is_of(time_s_) ? nullptr : found->second.get();
-                if (tile[k])
-                    tile[k]->used.store(round_, std::memory_order_relaxed);
-                else
-                    missing.push_back(node.place);
+                tile[k] = found == tiles_.end() ? nullptr : found->second.get();
+                if (tile[k]) tile[k]->used.store(round_, std::memory_order_relaxed);
+                if (tile[k] && !tile[k]->is_of(time_s_)) tile[k] = nullptr;
+                if (!tile[k]) missing.push_back(node.place);
             }
             if (!tile[k]) {
                 is_there = false;
@@ -254,9 +249,10 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
 // some are read again when those are made.
 template <class T>
 template <class Use>
-void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use) {
+void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWatch& watch, bool is_all,
+                               const Use& use) {
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
-    renew(watch);
+    if (!is_all) renew(watch);
     const Locator locate(*this, points, query);
     std::vector<std::size_t> parts, later;
     for (std::size_t first = 0; first < points.count; first += kPart) parts.push_back(first);
@@ -280,6 +276,7 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWa
             places.insert(places.end(), own.begin(), own.end()), own.clear();
         for (std::vector<std::size_t>& own : undone)
             parts.insert(parts.end(), own.begin(), own.end()), own.clear();
+        if (is_all && !is_renewed_) forget_unused();
         make(places, watch);
     }
 }
@@ -287,14 +284,18 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWa
 template <class T>
 void FoamHistory<T>::prepare(const Points<T>& points, int query, const BuildWatch& watch) {
     if (leaves_nothing()) return;
-    for_parts(points, query, watch, [](std::size_t, std::span<const float>, std::span<const float>) {});
+    for_parts(points, query, watch, true, [](std::size_t, std::span<const float>, std::span<const float>) {});
 }
 
 template <class T>
 void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& watch) {
     if (leaves_nothing()) return;
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
-    renew(watch);
+    if (!is_renewed_) {
+        for (const FoamPlace& place : places)
+            if (const auto found = tiles_.find(place); found != tiles_.end()) found->second->used = round_;
+        forget_unused();
+    }
     make(places, watch);
     for (const FoamPlace& place : places) tiles_.at(place)->used.store(round_, std::memory_order_relaxed);
 }
@@ -308,6 +309,13 @@ std::vector<FoamNodes> FoamHistory<T>::nodes() const {
     std::sort(nodes.begin(), nodes.end(),
               [](const FoamNodes& a, const FoamNodes& b) { return order_of(a.place) < order_of(b.place); });
     return nodes;
+}
+
+// Where all that is asked for is known, those that aren't are let go before others are made.
+template <class T>
+void FoamHistory<T>::forget_unused() {
+    std::erase_if(tiles_, [&](const auto& entry) { return entry.second->used.load() != round_; });
+    is_renewed_ = true;
 }
 
 // Brings the tiles of the time before to this one.
@@ -351,11 +359,10 @@ void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
 // Takes the samples that the tiles lack. The interval after sample n is known by samples n − 2 … n + 3.
 template <class T>
 void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& watch) {
-    const auto kept = static_cast<std::int64_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
     std::int64_t from = last_ + 4;
     for (Tile* tile : tiles) {
-        const bool holds_first = tile->begin <= first_ && first_ >= tile->end - kept && first_ <= tile->end;
-        if (!holds_first) {
+        if (!tile->is_begun || !tile->continues_at(first_)) {
+            tile->is_begun = true;
             tile->begin = tile->end = begin_;
             tile->next = begin_ - 2;
         }
@@ -393,7 +400,8 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
     const Level& level = *levels_[static_cast<std::size_t>(tile.place.level)];
     const double tile_m = level.cell_m * FoamPlan::kTileCells;
     const double t_s = static_cast<double>(n) * foam_.step_s;
-    const glm::dvec2 origin_m = tile_m * glm::dvec2(tile.place.x, tile.place.y) + foam_.drift_mps * t_s;
+    const glm::dvec2 origin_m =
+        tile_m * glm::dvec2(tile.place.x, tile.place.y) + foam_.drift_of(tile.place.level) * t_s;
     static thread_local std::vector<glm::vec<3, T>> moments(kStride);
     static thread_local std::vector<float> mean(kStride + 16), variance(kStride + 16), third(kStride + 16),
         threshold(kStride + 16);
@@ -437,11 +445,11 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& 
         }
         return;
     }
-    for_parts(points, query, watch,
+    for_parts(points, query, watch, false,
               [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
                   for (std::size_t i = 0; i < foam.size(); ++i) {
                       const float active = results.coverage[first + i];
-                      const float residual = std::min(foam[i], 1.0f) * (1.0f - active);
+                      const float residual = residual_foam(foam[i], active);
                       const float total = active + residual;
                       results.coverage[first + i] = total;
                       if (results.active) results.active[first + i] = active;
@@ -456,6 +464,8 @@ template <class T>
 std::size_t FoamHistory<T>::held_bytes() const {
     std::size_t bytes = 0;
     for (const auto& [place, tile] : tiles_) bytes += tile->bytes();
+    for (const auto& level : levels_)
+        if (level) bytes += level->bytes();
     return bytes;
 }
 

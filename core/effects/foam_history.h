@@ -61,18 +61,19 @@ class FoamHistory {
     // back from here the next times go, as a shutter's moments do: what is begun anew begins so much earlier.
     void set(double t_s, double back_s = 0.0);
 
-    // Makes what add() will read at these points: where add() is called for a few at a time, it needn't take the earlier
-    // times again for each. `query`: of the sea's plan, whose footprint points without their own have. Where it has to go
-    // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may
-    // be asked again.
+    // Makes what add() will read at these points, which are all that is asked for at this time: where add() is called for a
+    // few at a time, it needn't take the earlier times again for each. What only other times' points read is let go.
+    // `query`: of the sea's plan, whose footprint points without their own have. Where it has to go through many earlier
+    // times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may be asked again.
     void prepare(const Points<T>& points, int query, const BuildWatch& watch = {});
     // The same for whole tiles.
     void prepare(std::vector<FoamPlace> places, const BuildWatch& watch = {});
     // The tiles that were asked for since set(), in order. They last until the next call of anything else.
     std::vector<FoamNodes> nodes() const;
     const FoamPlan& plan() const { return foam_; }
-    // How far the foam has drifted from where it was at time 0 [m].
-    glm::dvec2 drifted_m() const { return foam_.drift_mps * time_s_; }
+    // How far a level's nodes have drifted from where they were at time 0 [m].
+    glm::dvec2 drifted_m(int level) const { return foam_.drift_of(level) * time_s_; }
+    double time_s() const { return time_s_; }
     // Beyond the last level: residual foam, and that times its age [s].
     float mean() const { return mean_; }
     float mean_times_age_s() const { return mean_ * mean_age_s_; }
@@ -81,7 +82,7 @@ class FoamHistory {
     // `watch`: as prepare()'s.
     void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
 
-    // Bytes of all tiles: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
+    // Bytes of all tiles, and of the seas that they are sampled from: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
     std::size_t held_bytes() const;
 
   private:
@@ -95,11 +96,12 @@ class FoamHistory {
 
     bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
     template <class Use>
-    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use);
+    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, bool is_all, const Use& use);
     bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
               std::vector<Place>& missing) const;
     void make(std::vector<Place>& places, const BuildWatch& watch);
     void renew(const BuildWatch& watch);
+    void forget_unused();
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n) const;
     Level& level(int index);

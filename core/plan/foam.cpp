@@ -2,11 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "core/base/constants.h"
 #include "core/spectrum/dispersion.h"
 
 namespace pelagic {
+
+double FoamPlan::cell_of(int level) const {
+    return std::ldexp(cell_m, level);
+}
+
+glm::dvec2 FoamPlan::drift_of(int level) const {
+    if (!(loop_s > 0.0)) return drift_mps;
+    const double cell_mps = cell_of(level) / loop_s;
+    return {cell_mps * std::round(drift_mps.x / cell_mps), cell_mps * std::round(drift_mps.y / cell_mps)};
+}
 
 int FoamPlan::intervals() const {
     return static_cast<int>(std::ceil(window_s / step_s)) + 1;
@@ -40,13 +52,8 @@ std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m) {
     const double towards = scene.sea.wind_direction_deg * kPi / 180.0;
     foam.drift_mps =
         effects.foam_drift * scene.sea.wind_speed_mps * glm::dvec2(std::cos(towards), std::sin(towards));
-    if (const double loop_s = scene.shot.sea_loop_s(); loop_s > 0.0) {
-        foam.step_s = loop_s / std::ceil(loop_s / foam.step_s);
-        // In a loop foam drifts by whole cells, so that the last frame's lie where the first one's do.
-        const double cell_mps = foam.cell_m / loop_s;
-        foam.drift_mps = {cell_mps * std::round(foam.drift_mps.x / cell_mps),
-                          cell_mps * std::round(foam.drift_mps.y / cell_mps)};
-    }
+    foam.loop_s = scene.shot.sea_loop_s();
+    if (foam.loop_s > 0.0) foam.step_s = foam.loop_s / std::ceil(foam.loop_s / foam.step_s);
     return foam;
 }
 
@@ -64,15 +71,24 @@ FoamRung foam_rung(const FoamPlan& foam, float footprint_m) {
 
 namespace {
 
-double tiles_over(double side_m, double cell_m) {
-    const double side = std::ceil(side_m / (FoamPlan::kTileCells * cell_m)) + 1.0;
-    return side * side;
+// How far the water that is kept from one time to another drifts between them, in tiles.
+glm::dvec2 drift_between(const FoamPlan& foam, int level) {
+    const double tile_m = FoamPlan::kTileCells * foam.cell_of(level);
+    return glm::abs(foam.drift_of(level)) * (foam.window_s + FoamPlan::kSpareIntervals * foam.step_s) /
+           tile_m;
+}
+
+double tiles_over(const FoamPlan& foam, int level, double side_m) {
+    const glm::dvec2 sides =
+        side_m / (FoamPlan::kTileCells * foam.cell_of(level)) + drift_between(foam, level);
+    return (std::ceil(sides.x) + 1.0) * (std::ceil(sides.y) + 1.0);
 }
 
 // Those whose cells a camera's pixels need, whichever way it turns. A pixel is α s wide and α s²/h long at the slant distance
 // s from an eye at the height h: its area is that of the square of a cell at s = (cell/α)^⅔ h^⅓, and further away coarser levels
 // have it.
-double tiles_in_view(const Camera& camera, double cell_m) {
+double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, bool are_pictures) {
+    const double cell_m = foam.cell_of(level);
     const auto pixel_of = [&](double fov_deg) {
         return 2.0 * std::tan(0.5 * fov_deg * kPi / 180.0) / camera.resolution.x;
     };
@@ -92,30 +108,34 @@ double tiles_in_view(const Camera& camera, double cell_m) {
     const double farthest_height_m = cell_m / pixel_of(narrowest_deg) * std::pow(3.0, -0.75);
     const double farthest_m = reach_m(std::clamp(farthest_height_m, lowest_m, highest_m), narrowest_deg);
     if (!(farthest_m > 0.0)) return 0.0;
-    const double radius = farthest_m / (FoamPlan::kTileCells * cell_m) + 1.0;
-    return kPi * radius * radius;
+    // A tile that touches a disc lies within a diagonal of it. A camera that moves looks from two places at the two times.
+    const double radius = farthest_m / (FoamPlan::kTileCells * cell_m) + std::sqrt(2.0);
+    if (are_pictures) return kPi * radius * radius;
+    if (!camera.keys.empty()) return 2.0 * kPi * radius * radius;
+    return kPi * radius * radius + 2.0 * radius * glm::length(drift_between(foam, level));
 }
 
 }  // namespace
 
-std::size_t foam_bytes(const FoamPlan& foam, const Scene& scene, const std::vector<Query>& queries) {
-    double tiles = 0.0;
+std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Scene& scene,
+                                                 const std::vector<Query>& queries, bool are_pictures) {
+    std::array<double, FoamPlan::kLevels> tiles{};
     for (const Query& query : queries) {
         if (!query.products[index(Product::Coverage)] || query.only_cascade)
-            continue;  // tiles have no history
-        if (query.lattice || !query.is_view) {
-            const double points = static_cast<double>(query.points);
-            const double spacing_m = query.lattice ? query.lattice->spacing_m : query.pixel_m.front();
-            const FoamRung rung = foam_rung(foam, static_cast<float>(query.pixel_m.front()));
-            for (int level = rung.level; level <= rung.level + (rung.t > 0.0f); ++level)
-                if (level < FoamPlan::kLevels)
-                    tiles += tiles_over(std::sqrt(points) * spacing_m, std::ldexp(foam.cell_m, level));
-            continue;
+            continue;  // a cascade's tile has no history
+        const bool is_view = query.is_view && !query.lattice;
+        const double points = static_cast<double>(query.points);
+        const double spacing_m = query.lattice ? query.lattice->spacing_m : query.pixel_m.front();
+        const FoamRung rung = foam_rung(foam, static_cast<float>(query.pixel_m.front()));
+        for (int level = 0; level < FoamPlan::kLevels; ++level) {
+            double& here = tiles[static_cast<std::size_t>(level)];
+            if (is_view)
+                here += tiles_in_view(foam, level, scene.camera, are_pictures);
+            else if (level == rung.level || (level == rung.level + 1 && rung.t > 0.0f))
+                here += tiles_over(foam, level, std::sqrt(points) * spacing_m);
         }
-        for (int level = 0; level < FoamPlan::kLevels; ++level)
-            tiles += tiles_in_view(scene.camera, std::ldexp(foam.cell_m, level));
     }
-    return static_cast<std::size_t>(tiles) * foam.tile_bytes();
+    return tiles;
 }
 
 }  // namespace pelagic

@@ -5,6 +5,7 @@
 // depends on the scene alone: a frame alone has the foam that it has in a run.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -22,12 +23,17 @@ struct FoamPlan {
     double step_s = 0.0;        // of the lattice of times; a whole number of steps makes a loop
     double window_s = 0.0;      // nothing older counts
     double cell_m = 0.0;        // of the finest level; each further one has cells twice as large
+    double loop_s = 0.0;        // of the sea; 0: none
 
     // Levels with cells; beyond the last, foam is the sea's mean.
     static constexpr int kLevels = 8;
     static constexpr int kTileCells = 16;  // a side
     static constexpr std::size_t kTileNodes = (kTileCells + 1) * (kTileCells + 1);
     static constexpr std::size_t kTileStride = (kTileNodes + 15) / 16 * 16;  // whole vectors
+
+    double cell_of(int level) const;
+    // The drift of a level's cells: in a loop by whole cells, so that the last frame's lie where the first one's do.
+    glm::dvec2 drift_of(int level) const;
 
     // Intervals that a frame reads.
     int intervals() const;
@@ -55,7 +61,9 @@ FoamRung foam_rung(const FoamPlan& foam, float footprint_m);
 // An ellipse counts as the circle of its area.
 float foam_footprint_m(float width_m, float length_m);
 
-// What the history for these queries holds at most [bytes], whichever of a camera's places they look from.
-std::size_t foam_bytes(const FoamPlan& foam, const Scene& scene, const std::vector<Query>& queries);
+// How many tiles the history for these queries holds at most, by level, whichever of a camera's places they look from: those
+// of two times, of which one goes on from the other; of pictures, which ask for all at once, those of one.
+std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Scene& scene,
+                                                 const std::vector<Query>& queries, bool are_pictures);
 
 }  // namespace pelagic

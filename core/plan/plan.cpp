@@ -361,6 +361,19 @@ Plan make_plan(const Scene& scene, const std::vector<Query>& queries, const Plan
     return make_plan(prepare(scene), queries, options);
 }
 
+Plan plan_of_foam_level(const Plan& plan, double cell_m) {
+    Query query;
+    query.name = "foam";
+    query.products = products(Product::JacobianMoments);
+    query.cell_m = query.pixel_m = {cell_m};
+    query.is_view = true;
+    Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});
+    own.knobs.spline_taps = 4;  // a hundredth of a breaking is enough
+    own.trains = plan.trains;   // which there are depends on all that is asked of the sea
+    own.gusts.reset();          // the whole sea's own
+    return own;
+}
+
 Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const int> frames) {
     const Extent& extent = prepared->extent;
     const std::shared_ptr<const RestSurface> surface =
@@ -468,7 +481,17 @@ std::size_t Plan::foam_history_bytes() const {
     if (!foam) return 0;
     std::vector<Query> asked;
     for (const PlannedQuery& planned : queries) asked.push_back(planned.query);
-    return foam_bytes(*foam, from->scene, asked);
+    const std::array<double, FoamPlan::kLevels> tiles =
+        foam_tiles(*foam, from->scene, asked, outputs.empty());
+    std::size_t bytes = 0;
+    for (int level = 0; level < FoamPlan::kLevels; ++level) {
+        const double count = tiles[static_cast<std::size_t>(level)];
+        if (!(count > 0.0)) continue;
+        const Plan own = plan_of_foam_level(*this, foam->cell_of(level));
+        bytes += static_cast<std::size_t>(std::ceil(count)) * foam->tile_bytes() + own.sea_bytes() +
+                 own.frame_bytes();
+    }
+    return bytes;
 }
 
 std::size_t Plan::output_bytes() const {

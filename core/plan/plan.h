@@ -167,6 +167,9 @@ struct PlanOptions {
 Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&, const PlanOptions& = {});
 Plan make_plan(const Scene&, const std::vector<Query>&, const PlanOptions& = {});
 
+// Of a plan whose foam lives: the sea seen through the cells of one level of its history.
+Plan plan_of_foam_level(const Plan&, double cell_m);
+
 // The plan of a bake of these frames: its outputs, in the order of the table, each with its query. Which
 // frames they are decides how fine a ladder the camera's own surfaces need, and nothing about any frame's
 // bits.

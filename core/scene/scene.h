@@ -175,7 +175,7 @@ struct Water {
 // [effects]
 struct Effects {
     bool whitecaps = true;
-    double foam_decay_s = 0.0;  // e-folding time of what breaking leaves; 0: foam is only where waves break
+    double foam_decay_s = 4.0;  // e-folding time of what breaking leaves; 0: foam is only where waves break
     double foam_drift = 0.02;   // of the wind's speed, along the wind
     WhitecapLaw whitecap_law = WhitecapLaw::Monahan1980;
     double sea_minus_air_c = 0.0;  // temperature of the sea less the air's, with Monahan1986

@@ -133,7 +133,8 @@ void Sea<T>::calibrate_whitecaps() {
         const double deviate = breaking_deviate(j, whitecap_threshold_, third);
         foam_left_per_s_ = life.left_per_s(deviate);
         left = foam_left_per_s_ * life.lasting_s;
-        residual_coverage_ = pelagic::residual_coverage(deviate, left);
+        left_coverage_ = pelagic::left_coverage(deviate, left);
+        residual_coverage_ = residual_foam(left_coverage_, coverage(j, whitecap_threshold_, third));
     }
     if (plan_.gusts)
         gusts_ = make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third}, whitecap_threshold_);

@@ -93,7 +93,8 @@ class Sea {
     const std::optional<Gusts>& gusts() const { return gusts_; }
     // What breaking leaves in a second where it goes on; 0 unless plan().foam.
     double foam_left_per_s() const { return foam_left_per_s_; }
-    // The mean coverage of what is left of what broke.
+    // The mean of what is left of what broke, and what of it isn't under what breaks now: the coverage of residual foam.
+    double left_coverage() const { return left_coverage_; }
     double residual_coverage() const { return residual_coverage_; }
     // Σ over this cascade's modes within the plan's mode_radius of E|h|² [m²]: its band's m0 where that
     // reaches the band's end.
@@ -107,7 +108,7 @@ class Sea {
     Plan plan_;
     double loop_s_;
     SpectralMoments total_;
-    double whitecap_threshold_, foam_left_per_s_ = 0.0, residual_coverage_ = 0.0;
+    double whitecap_threshold_, foam_left_per_s_ = 0.0, left_coverage_ = 0.0, residual_coverage_ = 0.0;
     std::optional<Gusts> gusts_;
     std::vector<Cascade<T>> cascades_;
     Trains<T> trains_;

@@ -86,7 +86,7 @@ inline double breaking_deviate(const JacobianMoments<double>& j, double threshol
 
 // What is left of what broke, over the whole sea and before it is limited to 1. `left`: of a share that broke, what it leaves
 // in a second times how long that lasts.
-inline double residual_coverage(double deviate, double left) {
+inline double left_coverage(double deviate, double left) {
     return left * 0.5 * std::erfc(-deviate / std::sqrt(2.0));
 }
 

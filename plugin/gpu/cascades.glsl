@@ -145,12 +145,13 @@ FieldSums add_copies(sampler2D first, sampler2D second, bool both, int tile, int
     CopyAxis x = copy_axis(tile, at.node.x, at.rest.x, cascades[cascade].z);
     CopyAxis y = copy_axis(tile, at.node.y, at.rest.y, cascades[cascade].z);
     float nodes = float(tile_first[tile].z);
-    for (int copy = 0; copy < 4; ++copy) {
-        bool next_x = (copy & 1) != 0;
-        bool next_y = (copy & 2) != 0;
+    int columns = x.weights.next > 0.0 ? 2 : 1;
+    int rows = y.weights.next > 0.0 ? 2 : 1;
+    for (int copy = 0; copy < columns * rows; ++copy) {
+        bool next_x = copy % columns == 1;
+        bool next_y = copy / columns == 1;
         float weight_x = next_x ? x.weights.next : x.weights.own;
         float weight_y = next_y ? y.weights.next : y.weights.own;
-        if (!(weight_x > 0.0 && weight_y > 0.0)) continue;
         ivec2 cell = tile_origin[tile].zw + ivec2(x.cell + (next_x ? x.side : 0), y.cell + (next_y ? y.side : 0));
         CopyOffset offset = copy_offset(uint(cascades[cascade].y), uint(cell.x), uint(cell.y));
         vec2 moved = nodes * vec2(offset.x, offset.y);

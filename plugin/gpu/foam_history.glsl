@@ -51,5 +51,5 @@ vec2 foam_left(vec2 rest_m, vec3 pixel) {
 
 AllFoam all_foam(vec2 rest_m, vec3 pixel, float breaking) {
     vec2 left = foam_left(rest_m, pixel);
-    return AllFoam(breaking + min(left.x, 1.0) * (1.0 - breaking), breaking, left.x > 0.0 ? left.y / left.x : 0.0);
+    return AllFoam(breaking + residual_foam(left.x, breaking), breaking, left.x > 0.0 ? left.y / left.x : 0.0);
 }

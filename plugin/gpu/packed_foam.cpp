@@ -15,15 +15,14 @@ constexpr int kSide = FoamPlan::kTileCells + 1;
 }  // namespace
 
 PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
-    : drifted_m_(history.drifted_m()),
-      mean_(history.mean()),
+    : mean_(history.mean()),
       mean_times_age_s_(history.mean_times_age_s()),
       cells_per_m_(static_cast<float>(1.0 / history.plan().cell_m)) {
     std::vector<FoamNodes> tiles = history.nodes();
     std::erase_if(tiles, [&](const FoamNodes& tile) {
         const glm::dvec2 at = glm::dvec2(tile.place.x, tile.place.y) -
-                              (centre_m - drifted_m_) /
-                                  std::ldexp(history.plan().cell_m * FoamPlan::kTileCells, tile.place.level);
+                              (centre_m - history.drifted_m(tile.place.level)) /
+                                  (history.plan().cell_of(tile.place.level) * FoamPlan::kTileCells);
         return !(std::max(std::abs(at.x), std::abs(at.y)) < kFarthestTile);
     });
     tiles_ = tiles.size();
@@ -31,6 +30,7 @@ PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
     for (int level = 0; level < FoamPlan::kLevels; ++level) {
         Box& box = boxes_[static_cast<std::size_t>(level)];
         box.cells_per_m = std::ldexp(1.0 / history.plan().cell_m, -level);
+        box.drifted_m = history.drifted_m(level);
         box.row = pages_size_.y;
         glm::i64vec2 low(0), high(-1);
         for (const FoamNodes& tile : tiles) {
@@ -68,7 +68,7 @@ std::vector<glm::vec4> PackedFoam::level_texels(glm::dvec2 origin_m) const {
     std::vector<glm::vec4> texels;
     for (const Box& box : boxes_) {
         const glm::dvec2 first =
-            (origin_m - drifted_m_) * box.cells_per_m - box.first * double{FoamPlan::kTileCells};
+            (origin_m - box.drifted_m) * box.cells_per_m - box.first * double{FoamPlan::kTileCells};
         texels.emplace_back(glm::vec2(first), static_cast<float>(box.cells_per_m), 0.0f);
         texels.emplace_back(glm::vec2(box.size), static_cast<float>(box.row), 0.0f);
     }
@@ -82,12 +82,12 @@ std::size_t PackedFoam::bytes_for(const FoamPlan& foam, std::size_t history_byte
     return (tiles + kTilesAcross) * FoamPlan::kTileNodes * sizeof(glm::vec2);
 }
 
-std::vector<FoamPlace> foam_places(const FoamPlan& foam, glm::dvec2 drifted_m, const ProjectedGrid& grid) {
+std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid) {
     std::vector<FoamPlace> places;
     std::array<FoamPlace, FoamPlan::kLevels> before;
     before.fill({.level = -1});
-    const glm::dvec2 offset_m = grid.origin_m - drifted_m;
     const auto take = [&](int level, glm::dvec2 low, glm::dvec2 high) {
+        const glm::dvec2 offset_m = grid.origin_m - foam.drift_of(level) * time_s;
         const double tiles_per_m = 1.0 / std::ldexp(foam.cell_m * FoamPlan::kTileCells, level);
         const glm::i64vec2 first(glm::floor((offset_m + low) * tiles_per_m)),
             last(glm::floor((offset_m + high) * tiles_per_m));

@@ -43,6 +43,7 @@ class PackedFoam {
         glm::ivec2 size{0};     // tiles
         int row = 0;            // of pages()
         double cells_per_m = 0.0;
+        glm::dvec2 drifted_m{0.0};
     };
     std::array<Box, FoamPlan::kLevels> boxes_{};
     std::size_t tiles_ = 0;
@@ -50,11 +51,10 @@ class PackedFoam {
     glm::ivec2 nodes_size_{1};
     std::vector<float> pages_{-1.0f};
     glm::ivec2 pages_size_{1};
-    glm::dvec2 drifted_m_{0.0};
     float mean_ = 0.0f, mean_times_age_s_ = 0.0f, cells_per_m_ = 1.0f;
 };
 
-// The tiles that pixels between a grid's points read, and some of coarser levels, which they need where waves turn away.
-std::vector<FoamPlace> foam_places(const FoamPlan& foam, glm::dvec2 drifted_m, const ProjectedGrid& grid);
+// The tiles that pixels between a grid's points read at the history's time, and some of coarser levels, which they need where waves turn away.
+std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid);
 
 }  // namespace pelagic

@@ -243,24 +243,29 @@ TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
     EXPECT_EQ(total, whole.total);
 }
 
+// Between a frame and the next where the loop begins again foam changes as between any two, near and far: on all levels
+// nodes are where they were.
 TEST(LivingFoam, OfALoopCloses) {
-    Scene scene = scene_of(2.0);
-    scene.shot.loop_s = 4.0;
-    Shown<> shown(sea_of(scene, 0.5));
-    const auto points = square(50, 0.7);
-    const Foam first = shown.at(0.0, points), later = shown.at(4.0, points);
-    EXPECT_EQ(first.total, later.total);
-    // No jump: from the last frame to the first foam changes as from any to the next.
-    const auto change = [&](double from_s, double to_s) {
-        const std::vector<float> a = shown.at(from_s, points).residual(),
-                                 b = shown.at(to_s, points).residual();
-        double sum = 0.0;
-        for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
-        return sum;
-    };
-    double any = 0.0;
-    for (double t_s = 0.5; t_s < 4.0; t_s += 0.5) any = std::max(any, change(t_s, t_s + 1.0 / 48.0));
-    EXPECT_LT(change(4.0 - 1.0 / 48.0, 0.0), 1.5 * any);
+    for (const double footprint_m : {0.5, 4.0, 20.0}) {
+        Scene scene = scene_of(2.0);
+        scene.effects.foam_drift = 0.1;
+        scene.shot.loop_s = 4.0;
+        Shown<> shown(sea_of(scene, footprint_m));
+        const auto points = square(50, std::max(0.7, 0.7 * footprint_m));
+        const Foam first = shown.at(0.0, points), later = shown.at(4.0, points);
+        EXPECT_EQ(first.total, later.total);
+        // No jump: from the last frame to the first foam changes as from any to the next.
+        const auto change = [&](double from_s, double to_s) {
+            const std::vector<float> a = shown.at(from_s, points).residual(),
+                                     b = shown.at(to_s, points).residual();
+            double sum = 0.0;
+            for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(a[i] - b[i]);
+            return sum;
+        };
+        double any = 0.0;
+        for (double t_s = 0.5; t_s < 4.0; t_s += 0.5) any = std::max(any, change(t_s, t_s + 1.0 / 48.0));
+        EXPECT_LT(change(4.0 - 1.0 / 48.0, 0.0), 1.5 * any) << footprint_m;
+    }
 }
 
 // Foam goes with the wind: what is seen τ later is where it was, displaced by the drift.
@@ -283,8 +288,8 @@ TEST(LivingFoam, Drifts) {
 }
 
 // Total coverage over area, of the law's.
-double share_of_law(double footprint_m, int per_side, double spacing_m) {
-    Shown<> shown(sea_of(scene_of(4.0), footprint_m));
+double share_of_law(double footprint_m, int per_side, double spacing_m, double decay_s = 4.0) {
+    Shown<> shown(sea_of(scene_of(decay_s), footprint_m));
     double foam = 0.0, sea = 0.0;
     const Foam now = shown.at(11.0, square(per_side, spacing_m));
     for (std::size_t i = 0; i < now.total.size(); ++i) {
@@ -302,7 +307,7 @@ TEST(LivingFoam, HasTheLawsCoverage) {
     for (const double footprint_m : {8.0, 60.0, 200.0}) {
         const double share = share_of_law(footprint_m, 200, 8.0);
         std::printf("footprint %5.2f m: %.3f of the law\n", footprint_m, share);
-        EXPECT_NEAR(share, 1.0, 0.06) << footprint_m;
+        EXPECT_NEAR(share, 1.0, 0.03) << footprint_m;
         if (footprint_m == 8.0) of_8m = share;
     }
     // A smaller piece of the sea, whose own mean isn't the whole sea's.
@@ -310,8 +315,17 @@ TEST(LivingFoam, HasTheLawsCoverage) {
     for (const double footprint_m : {0.02, 0.5, 2.0}) {
         const double share = share_of_law(footprint_m, 400, 0.6) / far;
         std::printf("footprint %5.2f m: %.3f of that at 8 m\n", footprint_m, share);
-        // Breaking lies on what it leaves where it is resolved: the calibration is between both (core/waves/whitecaps.cpp).
+        // One sea of random waves, and one moment: from seed to seed it varies by 4 %.
         EXPECT_NEAR(share * of_8m, 1.0, 0.06) << footprint_m;
+    }
+    // Whatever the decay, though the shorter it is the more of the foam lies under the breaking that leaves it.
+    for (const double decay_s : {0.5, 2.0, 8.0}) {
+        const double all = share_of_law(60.0, 60, 8.0, decay_s);
+        const double fine = share_of_law(0.02, 300, 0.8, decay_s) / share_of_law(8.0, 40, 6.0, decay_s);
+        std::printf("decay %g s: %.3f of the law at 60 m, at 0.02 m %.3f of that at 8 m\n", decay_s, all,
+                    fine);
+        EXPECT_NEAR(all, 1.0, 0.03) << decay_s;
+        EXPECT_NEAR(fine, 1.0, 0.06) << decay_s;
     }
 }
 
@@ -342,16 +356,19 @@ TEST(LivingFoam, OfGustsIsAsMuchAndWhereTheyBlew) {
 }
 
 TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {
-    const Scene scene = scene_of(4.0);
+    Scene scene = scene_of(4.0);
+    scene.effects.foam_drift = 0.1;
+    scene.sea.wind_direction_deg = 30.0;
     Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.5);
     query.points = 120 * 120;
     query.lattice = Lattice{0.0, 0.5};
     const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}, {.living_foam = true}));
     Shown<> shown(sea);
-    for (double t_s = 2.0; t_s < 4.0; t_s += 0.25) {
+    // A run, and jumps as far as anything is kept.
+    for (const double t_s : {2.0, 2.25, 2.5, 9.0, 13.9, 60.0, 71.0, 59.9}) {
         shown.at(t_s, rest_points<float>({.per_side = 120, .spacing_m = 0.5, .first_m = 0.0}));
         EXPECT_LE(shown.history().held_bytes(), sea->plan().foam_history_bytes());
-        EXPECT_GT(shown.history().held_bytes(), sea->plan().foam_history_bytes() / 3);
+        EXPECT_GT(shown.history().held_bytes(), sea->plan().foam_history_bytes() / 4);
     }
 }
 
@@ -378,15 +395,17 @@ TEST(LivingFoam, OfACameraHoldsNoMoreThanItsPlanSays) {
         const auto sea =
             std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.living_foam = true}));
         FoamHistory<float> history(sea);
-        history.set(3.0);
-        history.prepare({.origin_m = grid.origin_m,
-                         .count = grid.rest_m.size(),
-                         .rest_m = {grid.rest_m.data()},
-                         .pixel_m = {grid.pixel_m.data()},
-                         .pixel_axis_m = {grid.pixel_axis_m.data()}},
-                        0);
-        EXPECT_GT(history.held_bytes(), 0u) << height_m;
-        EXPECT_LE(history.held_bytes(), sea->plan().foam_history_bytes()) << height_m;
+        for (const double t_s : {3.0, 5.5}) {
+            history.set(t_s);
+            history.prepare({.origin_m = grid.origin_m,
+                             .count = grid.rest_m.size(),
+                             .rest_m = {grid.rest_m.data()},
+                             .pixel_m = {grid.pixel_m.data()},
+                             .pixel_axis_m = {grid.pixel_axis_m.data()}},
+                            0);
+            EXPECT_GT(history.held_bytes(), 0u) << height_m;
+            EXPECT_LE(history.held_bytes(), sea->plan().foam_history_bytes()) << height_m;
+        }
         EXPECT_LT(sea->plan().foam_history_bytes(), std::size_t(1) << 30) << height_m;
     }
 }
@@ -400,6 +419,30 @@ TEST(LivingFoam, OfASeaWithoutFoamCostsNothing) {
     Shown<> shown(sea);
     shown.at(2.0, rest_points<float>({.per_side = 20, .spacing_m = 0.5, .first_m = 0.0}));
     EXPECT_EQ(shown.history().held_bytes(), 0u);
+}
+
+// A sea of wave trains has the law's coverage as well, and its frame alone is that of a run.
+TEST(LivingFoam, OfTrainsHasTheLawsCoverage) {
+    Scene scene = scene_of(4.0);
+    scene.waves.model = WaveModel::Trochoid;
+    scene.waves.trains = 200;
+    const auto sea = sea_of(scene, 3.0);
+    const auto points = square(200, 9.0);
+    double foam = 0.0, area_sum = 0.0;
+    Shown<> run(sea);
+    for (const double t_s : {11.0, 60.0, 61.0}) {
+        const Foam now = run.at(t_s, points);
+        for (std::size_t i = 0; i < now.total.size(); ++i) {
+            const glm::vec3 j = now.jacobian[i];
+            const double area = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
+            foam += area * now.total[i];
+            area_sum += area;
+        }
+    }
+    std::printf("trains: %.3f of the law\n", foam / area_sum / law_coverage(scene));
+    EXPECT_NEAR(foam / area_sum / law_coverage(scene), 1.0, 0.1);
+    Shown<> alone(sea);
+    EXPECT_EQ(alone.at(61.0, points).total, run.at(61.0, points).total);
 }
 
 TEST(LivingFoam, NeedsATime) {

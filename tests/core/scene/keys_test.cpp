@@ -235,7 +235,7 @@ TEST(Keys, TheCanonicalTextHasALineAKey) {
               "surface.cell_px = 8\nsurface.earth_curvature = true\neffects.whitecaps = true\n"
               "effects.whitecap_law = \"monahan-1980\"\neffects.sea_minus_air_c = 0\n"
               "effects.whitecap_amount = 1\neffects.breaking_from_m = 1\n"
-              "effects.foam_decay_s = 0\neffects.foam_drift = 0.02\n");
+              "effects.foam_decay_s = 4\neffects.foam_drift = 0.02\n");
     EXPECT_NE(canonical(scene).find(
                   "\nsea.swell = [{ height_m = 1, period_s = 9, direction_deg = 0 }, { height_m = 2, "),
               std::string::npos);

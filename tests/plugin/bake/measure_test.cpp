@@ -19,6 +19,7 @@ std::size_t bytes_of(const Values& values) {
 Scene small() {
     Scene scene;
     scene.waves.cascades = {{40.0, 32}};
+    scene.effects.foam_decay_s = 0.0;  // an item of its own
     scene.surface.size_m = 40.0;
     scene.surface.resolution = 32;
     scene.output.maps = {MapKind::Displacement, MapKind::Whitecaps};

@@ -141,6 +141,6 @@ inline constexpr double kUnderBreaking = 0.42;
 // The share of a footprint that is residual foam: what earlier breaking has left (core/effects/foam_history.h), beside what
 // breaks now.
 template <class T>
-inline T residual_foam(T left, T active) {
-    return minimum(maximum(left - T(kUnderBreaking) * active, T(0)), T(1)) * (T(1) - active);
+inline T residual_foam(T left, T breaking) {
+    return minimum(maximum(left - T(kUnderBreaking) * breaking, T(0)), T(1)) * (T(1) - breaking);
 }

@@ -289,7 +289,10 @@ TEST(LivingFoam, Drifts) {
 
 // Total coverage over area, of the law's.
 double share_of_law(double footprint_m, int per_side, double spacing_m, double decay_s = 4.0) {
-    Shown<> shown(sea_of(scene_of(decay_s), footprint_m));
+    Scene scene = scene_of(decay_s);
+    // So that the small piece below is whole tiles of the waves that break.
+    scene.waves.tiling = Tiling::Periodic;
+    Shown<> shown(sea_of(scene, footprint_m));
     double foam = 0.0, sea = 0.0;
     const Foam now = shown.at(11.0, square(per_side, spacing_m));
     for (std::size_t i = 0; i < now.total.size(); ++i) {

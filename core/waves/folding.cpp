@@ -61,6 +61,26 @@ std::vector<std::string> folding_warning(const PreparedScene& prepared) {
             " leaves 5 %"};
 }
 
+// Explicit tiles that repeat, where a patch shows that or a tile has few waves of the peak.
+std::vector<std::string> repeats_warning(const PreparedScene& prepared) {
+    constexpr double kFewWaves = 10.0;
+    const Scene& scene = prepared.scene;
+    if (scene.waves.tiling != Tiling::Periodic || scene.waves.model != WaveModel::Fft ||
+        scene.waves.cascades.empty() || prepared.spectrum.empty())
+        return {};
+    const double size_m = scene.waves.cascades.front().size_m;
+    const double peak_m = kTwoPi / prepared.spectrum.longest_peak_wavenumber();
+    const bool has_few = size_m < kFewWaves * peak_m;
+    const bool is_seen = scene.surface.kind == SurfaceKind::Patch && scene.surface.size_m > size_m;
+    if (!has_few && !is_seen) return {};
+    const std::string why =
+        is_seen ? "the patch of " + number_text(scene.surface.size_m) + " m shows it more than once"
+                : "that is fewer than " + number_text(kFewWaves) + " of its " +
+                      number_text(std::round(10.0 * peak_m) / 10.0) + " m waves";
+    return {"the largest cascade repeats after " + number_text(size_m) + " m, which is seen from the air: " +
+            why + "; waves.tiling = \"random\" shows copies at random offsets"};
+}
+
 }  // namespace
 
 double folded_share(const DirectionalSpectrum& spectrum, double choppiness) {
@@ -69,7 +89,8 @@ double folded_share(const DirectionalSpectrum& spectrum, double choppiness) {
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
-    for (std::string& warning : trough_warning(prepared)) warnings.push_back(std::move(warning));
+    for (auto* more : {&trough_warning, &repeats_warning})
+        for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     return warnings;
 }
 

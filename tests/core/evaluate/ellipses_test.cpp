@@ -111,6 +111,7 @@ TEST(Ellipses, RoundOnesAreRoundToTheBit) {
 TEST(Ellipses, ShowTheClosedFormOfTheirTaps) {
     Scene scene;
     scene.waves.cascades = {{100.0, 96}};
+    scene.waves.tiling = Tiling::Periodic;  // one sum of modes
     const auto frame = frame_of<double>(scene, {ladder(products(Product::Displacement))}, 2.0);
     const Plan& plan = frame.sea().plan();
     const auto modes = modes_of(frame.sea(), 0, 2.0);

@@ -53,6 +53,7 @@ TEST(Mesh, HoldsNothingBeyondItsNyquist) {
     Scene scene;
     scene.sea.wind_speed_mps = 12.0;
     scene.waves.cascades = {{200.0, 96}, {50.0, 96}, {12.5, 128}};
+    scene.waves.tiling = Tiling::Periodic;  // the patch is a period
     const double spacing_m = kPatch_m / kQuads;
     const ProductSet wanted = products(Product::Displacement);
     // The mesh's own lattice (its nodes are read where that is cheaper), and the same footprint four times as
@@ -88,6 +89,7 @@ TEST(Mesh, HasNoSlopesBeyondItsNyquist) {
     scene.sea.wind_speed_mps = 12.0;
     scene.waves.choppiness = 0.0;
     scene.waves.cascades = {{200.0, 96}, {50.0, 96}, {12.5, 128}};
+    scene.waves.tiling = Tiling::Periodic;  // the patch is a period
     const auto frame = frame_of<double>(scene, {filtered(products(Product::Normal), kPatch_m / kQuads)}, 1.0);
     const auto normals = sample(frame, 0, tile_points<double>(kPatch_m, kDense)).vectors(Normal);
     for (int axis = 0; axis < 2; ++axis)

@@ -65,7 +65,8 @@ TEST(TwoModels, TrainsAloneAreTheirSumAndTakeNoTransform) {
 // The same frame's cascades alone, by way of their tiles, and the trains by hand: nothing else is in the sum.
 // The spline's images are 1e-5 of the shortest waves' 3 cm.
 TEST(TwoModels, TogetherAreTheSumOfBoth) {
-    const Scene scene = trains_and_cascades();
+    Scene scene = trains_and_cascades();
+    scene.waves.tiling = Tiling::Periodic;
     Query both = unfiltered(kEverything);
     std::vector<Query> queries{both};
     for (int c = 0; c < 2; ++c) {

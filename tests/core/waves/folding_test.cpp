@@ -64,5 +64,27 @@ TEST(Folding, GrowsWithChoppinessFromNothing) {
     EXPECT_EQ(folded_share(prepare(calm)->spectrum, 10.0), 0.0);
 }
 
+// Of explicit periodic tiles alone: where the patch is larger, or the tile holds few waves of the peak.
+TEST(Repeats, OfExplicitTilesAreToldOf) {
+    Scene scene;
+    scene.waves.tiling = Tiling::Periodic;
+    const auto tells = [&] {
+        for (const std::string& warning : sea_warnings(*prepare(scene)))
+            if (warning.find("repeats after") != std::string::npos) return true;
+        return false;
+    };
+    EXPECT_FALSE(tells());
+    scene.waves.cascades = {{1000.0, 128}, {200.0, 128}};
+    EXPECT_FALSE(tells());
+    scene.surface.size_m = 1001.0;
+    EXPECT_TRUE(tells());
+    scene.waves.tiling = Tiling::Random;
+    EXPECT_FALSE(tells());
+    scene.waves.tiling = Tiling::Periodic;
+    scene.surface.size_m = 100.0;
+    scene.waves.cascades = {{200.0, 128}};
+    EXPECT_TRUE(tells());
+}
+
 }  // namespace
 }  // namespace pelagic

@@ -274,6 +274,7 @@ TEST(LateTimes, AreAsExactAsEarlyOnes) {
 TEST(FarFromTheOrigin, NothingIsLost) {
     Scene scene;
     scene.waves.cascades = {{125.0, 72}, {31.25, 48}};  // both divide 1e6 m exactly
+    scene.waves.tiling = Tiling::Periodic;
     const auto frame = frame_of<float>(
         scene,
         {unfiltered(products(Product::Displacement, Product::Normal, Product::Velocity, Product::Coverage))},

@@ -60,6 +60,7 @@ TEST(SplineSampling, HasTheErrorOfItsImages) {
         Scene scene;
         scene.quality.level = c.level;
         scene.waves.cascades = {{150.0, 48}};
+        scene.waves.tiling = Tiling::Periodic;
         const auto frame = frame_of<double>(scene, {unfiltered(products(Product::Displacement))}, 1.0);
         const Plan& plan = frame.sea().plan();
         const Grid& grid = plan.cascades[0].grids[0];
@@ -96,6 +97,7 @@ TEST(SplineSampling, HasTheErrorOfItsImages) {
 TEST(SplineSampling, KeepsTheVarianceOfTheRealisation) {
     Scene scene;
     scene.waves.cascades = {{150.0, 48}};
+    scene.waves.tiling = Tiling::Periodic;
     const auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});
     auto points = tile_points<float>(150.0, 64);
     for (auto& point : points) point += glm::vec2(0.71f, 1.13f);
@@ -110,6 +112,7 @@ TEST(SplineSampling, KeepsTheVarianceOfTheRealisation) {
 TEST(SplineSampling, IsPeriodicAndContinuousAcrossTheSeam) {
     Scene scene;
     scene.waves.cascades = {{150.0, 48}};
+    scene.waves.tiling = Tiling::Periodic;
     const auto frame = frame_of<float>(scene, {unfiltered(products(Product::Displacement))});
     const std::vector<glm::vec2> points{
         {-1e-4f, 20.0f}, {0.0f, 20.0f}, {1e-4f, 20.0f}, {150.0f, 20.0f}, {-300.0f, 170.0f}};

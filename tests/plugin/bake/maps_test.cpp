@@ -2,6 +2,8 @@
 
 #include "plugin/bake/maps.h"
 
+#include <ImfDoubleAttribute.h>
+#include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -13,7 +15,9 @@
 #include <string>
 
 #include <glm/geometric.hpp>
+#include "core/base/constants.h"
 #include "core/evaluate/evaluate.h"
+#include "core/plan/copies.h"
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
 #include "tests/plugin/bake/read_exr.h"
@@ -29,6 +33,7 @@ class BakedMaps : public ::testing::Test {
         scene_.shot.last_frame = 1;
         scene_.sea.wind_speed_mps = 12.0;
         scene_.waves.cascades = {{.size_m = 600.0, .resolution = 128}};
+        scene_.waves.tiling = Tiling::Periodic;  // the patch is a period
         scene_.surface = {.size_m = 600.0, .resolution = 4};
         scene_.output.mesh = MeshFormat::None;
         scene_.output.map_resolution = 128;
@@ -203,6 +208,60 @@ TEST_F(BakedMaps, SlopeVarianceOfATileIsAtRest) {
         EXPECT_EQ(std::vector<float>(texels.size(), texels.front()),
                   std::vector<float>(texels.begin(), texels.end()));
     }
+}
+
+// The value of a band-limited periodic tile [n × n texels over L] at x, y in texels: exact.
+double between_texels(const test::Plane& tile, double x, double y) {
+    const auto weights = [&](double at) {
+        std::vector<double> w;
+        for (int i = 0; i < tile.n; ++i) {
+            const double u = kPi * (at - i), tangent = std::tan(u / tile.n);
+            w.push_back(std::abs(tangent) < 1e-12 ? std::cos(u) : std::sin(u) / tangent / tile.n);
+        }
+        return w;
+    };
+    const std::vector<double> along_x = weights(x), along_y = weights(y);
+    double sum = 0.0;
+    for (int j = 0; j < tile.n; ++j)
+        for (int i = 0; i < tile.n; ++i) sum += along_x[i] * along_y[j] * static_cast<double>(tile.at(i, j));
+    return sum;
+}
+
+// What a file says of itself is enough to lay its copies: by the rule of core/plan/copies.h the tiles add up to the sea.
+TEST_F(BakedMaps, TilesOfRandomCopiesAddUpToTheSeaByTheirHeaders) {
+    scene_.waves.cascades = {{.size_m = 64.0, .resolution = 64}};
+    scene_.waves.tiling = Tiling::Random;
+    scene_.surface.size_m = 128.0;
+    scene_.output.map_resolution = 512;  // fine enough to filter nothing
+    scene_.output.cascade_tiles = true;
+    const fs::path file = bake_map(MapKind::Displacement, "tiles/sea.displacement.0.0001.exr");
+    const auto tile = test::read_scanlines(file, "B");
+    const auto sea = test::read_scanlines(folder_ / "maps/sea.displacement.0001.exr", "B");
+    const Imf::InputFile input(file.c_str());
+    const double size_m = input.header().typedAttribute<Imf::DoubleAttribute>("size").value();
+    const double ramp = input.header().typedAttribute<Imf::DoubleAttribute>("copiesRamp").value();
+    const auto key = static_cast<uint>(input.header().typedAttribute<Imf::IntAttribute>("copiesKey").value());
+    ASSERT_EQ(ramp, kCopyRamp);
+    for (const int row : {7, 128, 250, 383, 386})
+        for (const int column : {3, 120, 131, 256, 380, 389}) {
+            const glm::dvec2 at(-64.0 + 0.25 * column, -64.0 + 0.25 * row);
+            double sum = 0.0;
+            for (int j = -1; j <= 1; ++j)
+                for (int i = -1; i <= 1; ++i) {
+                    const auto weight = [&](double distance) {
+                        return distance <= 0.5 ? copy_weights(distance).own
+                                               : copy_weights(std::max(1.0 - distance, 0.0)).next;
+                    };
+                    const double share =
+                        weight(std::abs(at.x / size_m - i)) * weight(std::abs(at.y / size_m - j));
+                    if (share == 0.0) continue;
+                    const auto offset = copy_offset<double>(key, static_cast<uint>(i), static_cast<uint>(j));
+                    const glm::dvec2 texel =
+                        ((at / size_m) + glm::dvec2(offset.x, offset.y) + 0.5) * double(tile.n);
+                    sum += share * between_texels(tile, texel.x, texel.y);
+                }
+            EXPECT_NEAR(sum, static_cast<double>(sea.at(column, row)), 2e-5) << column << ", " << row;
+        }
 }
 
 TEST(TentWeights, SumToOneAndKeepCornersOnCorners) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/base/buffer.h"
+#include "core/evaluate/gusts.h"
 #include "core/waves/loop.h"
 #include "core/waves/whitecaps.h"
 
@@ -402,14 +403,18 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
     const glm::dvec2 origin_m =
         tile_m * glm::dvec2(tile.place.x, tile.place.y) + foam_.drift_of(tile.place.level) * t_s;
     static thread_local std::vector<glm::vec<3, T>> moments(kStride);
-    static thread_local std::vector<float> mean(kStride + 16), variance(kStride + 16), third(kStride + 16);
+    static thread_local std::vector<float> mean(kStride + 16), variance(kStride + 16), third(kStride + 16),
+        threshold(kStride + 16);
     Results<T> results;
     results.set(Product::JacobianMoments, {moments.data()});
     // Where it waits for its parts, this thread takes up no other tile: the arrays are its own.
-    tbb::this_task_arena::isolate([&] {
-        evaluate(level.frame, 0,
-                 Points<T>{.origin_m = origin_m, .count = kNodes, .rest_m = {level.rest_m.data()}}, results);
-    });
+    const Points<T> points{.origin_m = origin_m, .count = kNodes, .rest_m = {level.rest_m.data()}};
+    tbb::this_task_arena::isolate([&] { evaluate(level.frame, 0, points, results); });
+    if (sea_->gusts())
+        whitecap_thresholds<T>(*sea_->gusts(), level.frame.time_within_loop_s(), points, level.cell_m,
+                               threshold);
+    else
+        std::fill(threshold.begin(), threshold.end(), static_cast<float>(sea_->whitecap_threshold()));
     for (std::size_t i = 0; i < kNodes; ++i) {
         mean[i] = static_cast<float>(moments[i].x);
         variance[i] = static_cast<float>(moments[i].y);
@@ -418,9 +423,8 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
     const auto deviates = [&](std::int64_t sample) {
         return tile.deviates.data() + modulo(sample, kSamples) * kStride;
     };
-    kernels_.deviates(mean.data(), variance.data(), third.data(),
-                      static_cast<float>(sea_->whitecap_threshold()), sea_->plan().knobs.third_moment,
-                      {deviates(n), kNodes});
+    kernels_.deviates(mean.data(), variance.data(), third.data(), threshold.data(),
+                      sea_->plan().knobs.third_moment, {deviates(n), kNodes});
     tile.next = n + 1;
     const std::int64_t interval = n - 3;
     if (interval < tile.end) return;

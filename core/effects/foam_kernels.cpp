@@ -21,13 +21,13 @@ using N = Pack<D>;
 using Half = hn::Rebind<std::uint16_t, D>;
 using Whole = hn::RebindToUnsigned<D>;
 
-void Deviates(const float* mean, const float* variance, const float* third, float threshold,
+void Deviates(const float* mean, const float* variance, const float* third, const float* threshold,
               bool third_moment, std::span<float> y) {
     const D d;
     constexpr float kLeastVariance = 1e-10f;  // where no breaking wave is hidden, Φ is a step
     for (std::size_t i = 0; i < y.size(); i += hn::Lanes(d)) {
         const N v = maximum(N(hn::LoadU(d, variance + i)), N(kLeastVariance)), sigma = square_root(v);
-        N z = (N(threshold) - N(hn::LoadU(d, mean + i))) / sigma;
+        N z = (N(hn::LoadU(d, threshold + i)) - N(hn::LoadU(d, mean + i))) / sigma;
         z = minimum(maximum(z, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));
         if (third_moment) z = whitecaps_detail::to_normal(z, N(hn::LoadU(d, third + i)) / v / sigma).y;
         z = minimum(maximum(z, N(-kFarthestFoamDeviate)), N(kFarthestFoamDeviate));

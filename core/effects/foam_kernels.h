@@ -16,7 +16,7 @@ struct FoamShares {
 
 struct FoamKernels {
     // y of Φ(y) = P(J < threshold), by node, limited to ± kFarthestFoamDeviate. Arrays as long as y's, or Buffers.
-    void (*deviates)(const float* mean, const float* variance, const float* third, float threshold,
+    void (*deviates)(const float* mean, const float* variance, const float* third, const float* threshold,
                      bool third_moment, std::span<float> y);
     // The mean of Φ(y) over the interval between the third of six deviates, a step apart, and the fourth.
     void (*share)(const float* const y[6], std::span<std::uint16_t> share);

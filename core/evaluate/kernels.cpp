@@ -369,11 +369,17 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
         hn::StoreU(j.third.v, d, third.data() + i);
     }
     if (!foam) return;
-    for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
-        const JacobianMoments<N> j{N(hn::LoadU(d, mean.data() + i)), N(hn::LoadU(d, variance.data() + i)),
-                                   N(hn::LoadU(d, third.data() + i))};
-        Put(d, foam, i, chunk.count, coverage(j, N(args.whitecap_threshold), args.third_moment));
-    }
+    const auto cover = [&](const auto& threshold_at) HWY_ATTR {
+        for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
+            const JacobianMoments<N> j{N(hn::LoadU(d, mean.data() + i)), N(hn::LoadU(d, variance.data() + i)),
+                                       N(hn::LoadU(d, third.data() + i))};
+            Put(d, foam, i, chunk.count, coverage(j, threshold_at(i), args.third_moment));
+        }
+    };
+    if (const T* of = args.whitecap_threshold_of)
+        cover([&](std::size_t i) HWY_ATTR { return N(hn::LoadU(d, of + i)); });
+    else
+        cover([&](std::size_t) HWY_ATTR { return N(args.whitecap_threshold); });
 }
 
 template <class T>

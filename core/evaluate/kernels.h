@@ -70,6 +70,7 @@ struct DeriveArgs {
     HiddenMoments<T> hidden{};           // of all points' pixels, where there is no array
     const HiddenChunk<T>* hidden_of = nullptr;
     T whitecap_threshold = T(0);
+    const T* whitecap_threshold_of = nullptr;  // by point, where gusts make them differ
     bool third_moment = true;
 };
 

@@ -66,6 +66,7 @@ struct PreparedQuery<T>::Work {
     Chunk<T> chunk, breaking;
     HiddenChunk<T> hidden_of;
     ChunkFootprints<T> cells, pixels, breaking_pixels;
+    GustChunk<T> gusts;
     FieldSet needed;
     bool apart;  // the strain of the waves that break is in `breaking`, not in `chunk`
     std::array<CopyPlaces<T>, limits::kCascades> copies;  // of the chunk's points, by cascade
@@ -92,6 +93,9 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
         !query.only_cascade && std::any_of(plan.cascades.begin(), plan.cascades.end(),
                                            [](const CascadePlan& cascade) { return cascade.has_copies; });
     breaks_ = (wanted & breaking_products()).any();
+    // A cascade's own tile is periodic, and a part of the sea.
+    if (frame.sea().gusts() && !query.only_cascade && (wanted & gusty_products()).any())
+        gusts_ = &*frame.sea().gusts();
     if ((wanted & hidden_products()).any())
         hidden_ = hidden_at<T>(*statistics_, {0, T(0)},
                                hidden_moments<double>(has_trains_ ? hidden(frame.sea().trains(), plan.filter,
@@ -148,7 +152,7 @@ void PreparedQuery<T>::refresh() {
 
 template <class T>
 typename PreparedQuery<T>::Place PreparedQuery<T>::place_of(glm::dvec2 origin_m) const {
-    Place place{origin_m, {}, {}, {}};
+    Place place{origin_m, {}, {}, {}, {}};
     const Plan& plan = frame_->sea().plan();
     for (std::size_t c = 0; has_copies_ && c < plan.cascades.size(); ++c)
         place.copies.emplace_back(copies_key(plan.from->scene.shot.seed, static_cast<int>(c)),
@@ -166,6 +170,7 @@ typename PreparedQuery<T>::Place PreparedQuery<T>::place_of(glm::dvec2 origin_m)
     }
     if (has_trains_)
         place.start_cycles = phases_at(frame_->sea().trains(), origin_m, frame_->time_within_loop_s());
+    if (gusts_) place.gusts = gusts_->plan.cycles_at(origin_m, frame_->time_within_loop_s());
     return place;
 }
 
@@ -265,13 +270,31 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
         add_only_footprint(call, work);
     }
     add_own_footprints(call, first, work);
+    const bool has_gusts = gusts_ && (call.results.given() & gusty_products()).any();
+    if (has_gusts) take_gusts(call, first, work);
     kernels_.derive({.chunk = &chunk,
                      .breaking = work.apart ? &work.breaking : &chunk,
                      .results = call.results.from_point(first),
                      .hidden = hidden_,
                      .hidden_of = call.wants_hidden && call.differ_in_hidden ? &work.hidden_of : nullptr,
                      .whitecap_threshold = static_cast<T>(frame_->sea().whitecap_threshold()),
+                     .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
                      .third_moment = plan.knobs.third_moment});
+    const auto hidden = call.results.vectors(Product::SlopeVariance);
+    if (has_gusts && hidden)
+        for (std::size_t i = 0; i < chunk.count; ++i) hidden[first + i] *= work.gusts.factor[i];
+}
+
+template <class T>
+void PreparedQuery<T>::take_gusts(const Call& call, std::size_t first, Work& work) const {
+    const Chunk<T>& chunk = work.chunk;
+    work.gusts.take(call.points, static_cast<T>(planned_->query.pixel_m.front()), first, chunk.count);
+    gusts_at<T>({.gusts = gusts_,
+                 .phases = &call.place.gusts,
+                 .rest_x = chunk.rest_x.data(),
+                 .rest_y = chunk.rest_y.data(),
+                 .padded = chunk.padded()},
+                work.gusts);
 }
 
 // Where pixels are finer than the waves that break ask for; where trains differ for the same pixel; and where the
@@ -350,8 +373,8 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
 // it. Ellipses: see add_ellipses().
 template <class T>
 void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
-    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, needed, apart, copies, copy_chunk] =
-        work;
+    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
+           copy_chunk] = work;
     FieldSet round;
     if (cells.any_round) round |= cell_fields();
     if (pixels.any_round) round |= ~cell_fields();
@@ -463,8 +486,8 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
 template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
-    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, needed, apart, copies, copy_chunk] =
-        work;
+    auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
+           copy_chunk] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     struct Own {

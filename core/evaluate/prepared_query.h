@@ -7,6 +7,7 @@
 #include "core/evaluate/copies.h"
 #include "core/evaluate/evaluate.h"
 #include "core/evaluate/footprints.h"
+#include "core/evaluate/gusts.h"
 #include "core/evaluate/kernels.h"
 
 namespace pelagic {
@@ -48,6 +49,7 @@ class PreparedQuery {
         std::vector<std::vector<glm::dvec2>> nodes;  // in each of a level's grids, 0 … n
         std::vector<CopyOrigin> copies;              // in each cascade; empty: no copies
         std::vector<double> start_cycles;            // of each train
+        GustPhases gusts{};
     };
     // What one call has in common for all its points.
     struct Call;
@@ -77,6 +79,8 @@ class PreparedQuery {
     void add_ellipses(const Call& call, const std::vector<int>& levels, FieldSet fields,
                       const ChunkFootprints<T>& footprints, Chunk<T>& chunk) const;
     void add_own_footprints(const Call& call, std::size_t first, Work& work) const;
+    // What gusts do to the chunk's points.
+    void take_gusts(const Call& call, std::size_t first, Work& work) const;
     // What an ellipse hides of the cascades' waves beyond a round footprint of its width.
     HiddenMoments<double> beside_round(const Footprint<T>& pixel) const;
 
@@ -88,7 +92,8 @@ class PreparedQuery {
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
     bool has_trains_ = false, has_copies_ = false, breaks_ = false;
-    HiddenMoments<T> hidden_{};  // of pixels that are all the query's first
+    const Gusts* gusts_ = nullptr;  // none, or nothing that they change is wanted
+    HiddenMoments<T> hidden_{};     // of pixels that are all the query's first
     std::vector<LevelGrids> levels_;
     Place place_;
     long times_set_ = -1;

@@ -26,6 +26,10 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      "effects.foam_decay_s is 0, or there are no whitecaps",
      [](Scene& scene) { scene.effects.foam_decay_s = 0.0; }, [] { return FieldSet(); },
      [] { return ProductSet(); }, kNothing},
+    {"gusts",
+     [](const Scene& scene) { return scene.sea.gust_strength > 0.0 && scene.sea.wind_speed_mps > 0.0; },
+     "sea.gust_strength is 0, or there is no wind", [](Scene& scene) { scene.sea.gust_strength = 0.0; },
+     [] { return FieldSet(); }, [] { return ProductSet(); }, kNothing},
 });
 
 }  // namespace

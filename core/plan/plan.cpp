@@ -315,6 +315,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.breaking = breaking_of(scene, plan.filter);
     for (const Query& query : queries) add_query(plan, query);
     add_effects(plan, options.effects);
+    plan.gusts = plan_gusts(scene);
     const bool has_coverage = std::any_of(queries.begin(), queries.end(), [](const Query& query) {
         return query.products[index(Product::Coverage)];
     });
@@ -369,6 +370,7 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
     Plan own = make_plan(plan.from, {query}, {.double_precision = plan.knobs.double_precision});
     own.knobs.spline_taps = 4;  // a hundredth of a breaking is enough
     own.trains = plan.trains;   // which there are depends on all that is asked of the sea
+    own.gusts.reset();          // the whole sea's own
     return own;
 }
 
@@ -395,6 +397,8 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
         if (output.has_surface) output.feeds |= surface->feeds();
         if ((request.query.products & products(Product::JacobianMoments, Product::Coverage)).any())
             output.feeds |= feeds(Feed::Foam);
+        if (!request.cascade && (request.query.products & gusty_products()).any())
+            output.feeds |= feeds(Feed::Gusts);
         outputs.push_back(std::move(output));
         queries.push_back(request.query);
     }

@@ -16,6 +16,7 @@
 #include "core/plan/effects.h"
 #include "core/plan/filter.h"
 #include "core/plan/foam.h"
+#include "core/plan/gusts.h"
 #include "core/plan/outputs.h"
 #include "core/plan/prepared_scene.h"
 #include "core/plan/products.h"
@@ -114,6 +115,7 @@ struct Plan {
     std::vector<CascadePlan> cascades;
     std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
     std::optional<FoamPlan> foam;      // where foam lives, and a query asks for coverage
+    std::optional<GustsPlan> gusts;    // where the wind varies over the surface
     FieldSet dropped;                  // fields that are zero in this scene, whoever asks: never computed
     std::vector<Reason> closure;
     std::vector<PlannedEffect> effects;          // those that are on and ask for something

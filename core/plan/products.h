@@ -105,6 +105,11 @@ inline ProductSet hidden_products() {
     return hidden;
 }
 
+// The products that gusts change.
+inline constexpr ProductSet gusty_products() {
+    return products(Product::SlopeVariance, Product::Coverage);
+}
+
 // A product whose values have this many components. Of a constant, the compiler checks it.
 template <std::size_t kComponents>
 class ProductWith {

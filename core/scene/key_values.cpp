@@ -10,9 +10,9 @@ namespace pelagic {
 
 namespace {
 
-constexpr std::array<std::string_view, kFeeds> kFeedWords{"name",    "range", "clock", "waves",   "foam",
-                                                          "surface", "grid",  "view",  "light",   "water",
-                                                          "quality", "mesh",  "maps",  "volumes", "choice"};
+constexpr std::array<std::string_view, kFeeds> kFeedWords{
+    "name", "range", "clock", "waves",   "foam", "gusts", "surface", "grid",
+    "view", "light", "water", "quality", "mesh", "maps",  "volumes", "choice"};
 
 constexpr std::array<std::string_view, 11> kTypeWords{"truth",   "integer",   "number",   "text",
                                                       "word",    "point",     "pair",     "words",

@@ -149,6 +149,19 @@ void add_sea(Built& out) {
              .range = limits::kDirectionality,
              .soft = SoftRange{0.1, 10.0, true},
              .feeds = kWaves}),
+        row<&SeaState::gust_strength>(
+            {.name = "gust_strength",
+             .help =
+                 "how much the wind varies over the surface, in patches that drift with it: 0, not at all; 1, from calm "
+                 "to twice its speed. Ripples too small to be shown and foam follow; over area both stay as much",
+             .range = limits::kGustStrength,
+             .feeds = feeds(Feed::Gusts)}),
+        row<&SeaState::gust_size_m>({.name = "gust_size_m",
+                                     .help = "of those patches; along the wind they are longer",
+                                     .unit = "m",
+                                     .range = limits::kGustSize_m,
+                                     .soft = SoftRange{10.0, 3000.0, true},
+                                     .feeds = feeds(Feed::Gusts)}),
         entries<&SeaState::swell>(
             {.name = "swell",
              .help = "waves of far storms, each a narrow spectrum of its own",

@@ -33,6 +33,7 @@ enum class Feed {
     Clock,    // the time that a frame shows
     Waves,    // the sea's motion
     Foam,     // whitecaps
+    Gusts,    // how the wind varies over the surface: hidden slopes and whitecaps
     Surface,  // the points of the baked surface, where they don't follow the camera
     Grid,     // the cells of projected grids, baked and in pictures
     View,     // the camera: pictures, and grids that are projected from it
@@ -44,7 +45,7 @@ enum class Feed {
     Volumes,  // spray and level sets
     Choice,   // whether an output exists; what is in it does not depend on the key
 };
-inline constexpr std::size_t kFeeds = 15;
+inline constexpr std::size_t kFeeds = 16;
 using FeedSet = std::bitset<kFeeds>;
 
 template <class... Feeds>

@@ -42,8 +42,10 @@ inline constexpr Range kAngle_deg{-1e6, 1e6};  // any number of turns that leave
 inline constexpr Range kFetch_m{1.0, 1e8};
 inline constexpr Range kSignificantHeight_m{0.0, 50.0};
 inline constexpr Range kDirectionality{0.01, 20.0};  // from all directions alike to needles
-inline constexpr Range kDepth_m{0.01, 1e6};          // or infinite
-inline constexpr int kSwells = 64;                   // each is a spectrum of its own in every integral
+inline constexpr Range kGustStrength{0.0, 1.0};
+inline constexpr Range kGustSize_m{1.0, 1e5};
+inline constexpr Range kDepth_m{0.01, 1e6};  // or infinite
+inline constexpr int kSwells = 64;           // each is a spectrum of its own in every integral
 inline constexpr Range kSwellHeight_m{0.0, 50.0};
 inline constexpr Range kSwellPeriod_s{0.1, 100.0};  // 1.6 cm … 16 km long in deep water
 inline constexpr Range kMeasuredFrequency_hz{1e-4, 100.0};

@@ -96,6 +96,8 @@ struct SeaState {
     ShortWaves short_waves = ShortWaves::Elfouhaily;
     std::optional<double> significant_height_m;  // of the wind sea or the measured one, instead of its own
     double directionality = 1.0;                 // > 0: more than 1 is narrower than the spreadings' own
+    double gust_strength = 0.0;                  // 0 … 1: how much the wind varies over the surface
+    double gust_size_m = 300.0;                  // > 0
     SpreadingKind spreading = SpreadingKind::Hasselmann;
     std::vector<Swell> swell;
     std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File

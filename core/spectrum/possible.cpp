@@ -54,7 +54,15 @@ std::vector<Problem> impossible_waves(const SeaState& sea) {
     }
     if (sea.significant_height_m) {
         const std::vector<WaveSystem> systems = WaveSystem::sea(sea, dispersion);
-        if (!systems.empty())
+        const bool has_waves = !systems.empty() && systems.front().m0() > 0.0;
+        if (!has_waves && *sea.significant_height_m > 0.0)
+            problems.push_back({"sea.significant_height_m", number_text(*sea.significant_height_m),
+                                sea.measured ? "the measured spectrum has no waves to be that high"
+                                             : "without wind there are no waves to be that high",
+                                sea.measured
+                                    ? "0, or another spectrum_time"
+                                    : "0, or more sea.wind_speed_mps; a swell has its own height_m"});
+        if (has_waves && *sea.significant_height_m > 0.0)
             check(problems, "sea.significant_height_m", *sea.significant_height_m,
                   systems.front().peak_wavenumber(), dispersion,
                   ", or more wind or fetch, which make longer waves");

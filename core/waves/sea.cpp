@@ -124,14 +124,20 @@ void Sea<T>::calibrate_whitecaps() {
     if (plan_.foam)
         life = {.rate_per_s = breaking_rate(plan_.from->spectrum, plan_.breaking.k_end()),
                 .lasting_s = plan_.foam->weight(0.0, plan_.foam->window_s).foam_s};
-    whitecap_threshold_ =
-        calibrated_threshold(total_, law_coverage(plan_.from->scene), plan_.breaking.choppiness, third, life);
-    if (!plan_.foam || !std::isfinite(whitecap_threshold_)) return;
+    const double law = law_coverage(plan_.from->scene);
+    whitecap_threshold_ = calibrated_threshold(total_, law, plan_.breaking.choppiness, third, life);
     const auto j = jacobian_moments<double>(
         0.0, 0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
-    foam_left_per_s_ = life.left_per_s(breaking_deviate(j, whitecap_threshold_, third));
-    left_coverage_ = pelagic::left_coverage(j, whitecap_threshold_, third, life);
-    residual_coverage_ = residual_foam(left_coverage_, coverage(j, whitecap_threshold_, third));
+    double left = 0.0;
+    if (plan_.foam && std::isfinite(whitecap_threshold_)) {
+        const double deviate = breaking_deviate(j, whitecap_threshold_, third);
+        foam_left_per_s_ = life.left_per_s(deviate);
+        left = foam_left_per_s_ * life.lasting_s;
+        left_coverage_ = pelagic::left_coverage(deviate, left);
+        residual_coverage_ = residual_foam(left_coverage_, coverage(j, whitecap_threshold_, third));
+    }
+    if (plan_.gusts)
+        gusts_ = make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third}, whitecap_threshold_);
 }
 
 template <class T>

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "core/spectrum/spectral_moments.h"
 #include "core/spectrum/spectrum_table.h"
 #include "core/waves/ellipse_moments.h"
+#include "core/waves/gusts.h"
 #include "core/waves/trains.h"
 
 namespace pelagic {
@@ -85,8 +87,10 @@ class Sea {
     const Extent& extent() const { return plan_.from->extent; }
     // What a query's finest pixels show of total(), cascades and trains.
     SpectralMoments shown(int query) const;
-    // J below this is foam (core/waves/whitecaps.h).
+    // J below this is foam (core/waves/whitecaps.h), in the mean wind.
     double whitecap_threshold() const { return whitecap_threshold_; }
+    // What a varying wind does; nothing unless plan().gusts.
+    const std::optional<Gusts>& gusts() const { return gusts_; }
     // What breaking leaves in a second where it goes on; 0 unless plan().foam.
     double foam_left_per_s() const { return foam_left_per_s_; }
     // The mean of what is left of what broke, and what of it isn't under what breaks now: the coverage of residual foam.
@@ -105,6 +109,7 @@ class Sea {
     double loop_s_;
     SpectralMoments total_;
     double whitecap_threshold_, foam_left_per_s_ = 0.0, left_coverage_ = 0.0, residual_coverage_ = 0.0;
+    std::optional<Gusts> gusts_;
     std::vector<Cascade<T>> cascades_;
     Trains<T> trains_;
     std::vector<QueryStatistics> statistics_;

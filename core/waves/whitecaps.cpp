@@ -5,7 +5,7 @@
 namespace pelagic {
 
 double law_coverage(const Scene& scene) {
-    constexpr double kMost = 0.6, kFastestSeen_mps = 23.09;
+    constexpr double kFastestSeen_mps = 23.09;
     const Effects& effects = scene.effects;
     const double wind_mps = std::max(scene.sea.wind_speed_mps, 0.0);
     const auto cube = [](double x) { return std::max(x * x * x, 0.0); };
@@ -23,7 +23,16 @@ double law_coverage(const Scene& scene) {
         }
         return 0.0;
     }();
-    return std::min(effects.whitecap_amount * law, kMost);
+    return std::min(effects.whitecap_amount * law, kMostCoverage);
+}
+
+double whole_coverage(const JacobianMoments<double>& j, double threshold, bool third_moment, double left) {
+    const double active = coverage(j, threshold, third_moment);
+    if (!(left > 0.0)) return active;
+    // Cells that resolve the breaking see 1.7 % less of it than J's three moments say: the law lies between.
+    constexpr double kSeen = 0.99;
+    const double residual = left_coverage(breaking_deviate(j, threshold, third_moment), left);
+    return active + residual_foam(kSeen * residual, active);
 }
 
 double calibrated_threshold(const SpectralMoments& breaking, double law_coverage, double choppiness,
@@ -36,11 +45,10 @@ double calibrated_threshold(const SpectralMoments& breaking, double law_coverage
     double low = 0.0, high = 1.0 - kLeastPressed * std::min(choppiness, 1.0);
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        const double active = coverage(j, middle, third_moment);
-        const double residual = life.lasting_s > 0.0 ? left_coverage(j, middle, third_moment, life) : 0.0;
-        // Cells that resolve the breaking see 1.7 % less of it than J's three moments say: the law lies between.
-        constexpr double kSeen = 0.99;
-        (active + residual_foam(kSeen * residual, active) < law_coverage ? low : high) = middle;
+        const double left = life.lasting_s > 0.0
+                                ? life.left_per_s(breaking_deviate(j, middle, third_moment)) * life.lasting_s
+                                : 0.0;
+        (whole_coverage(j, middle, third_moment, left) < law_coverage ? low : high) = middle;
     }
     return high;
 }

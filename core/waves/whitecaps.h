@@ -48,8 +48,10 @@ class MomentSum {
     T weight_ = T(0), origin_ = T(0), first_ = T(0), second_ = T(0), third_ = T(0);
 };
 
-// The share of the sea that is foam, by the scene's law and amount. 0 without wind. Never above 0.6: the laws were seen up
-// to some 23 m/s, and none knows a sea that is white all over.
+// The laws were seen up to some 23 m/s, and none knows a sea that is white all over.
+inline constexpr double kMostCoverage = 0.6;
+
+// The share of the sea that is foam, by the scene's law and amount. 0 without wind, never above kMostCoverage.
 //   monahan-1980    Monahan and O'Muircheartaigh 1980: 2.95e-6 U10^3.52, U10 in m/s
 //   monahan-1986    Monahan and O'Muircheartaigh 1986: 1.95e-5 U10^2.55 exp(0.0861 ΔT), ΔT the sea's temperature less the
 //                   air's (Darles et al. 2007, Eq. 3, prints 1.59e-5)
@@ -82,12 +84,25 @@ inline double breaking_deviate(const JacobianMoments<double>& j, double threshol
     return third_moment ? whitecaps_detail::to_normal(z, j.third / (j.variance * sigma)).y : z;
 }
 
-// What is left of what broke, over the whole sea and before it is limited to 1.
-inline double left_coverage(const JacobianMoments<double>& j, double threshold, bool third_moment,
-                            const FoamLife& life) {
-    const double y = breaking_deviate(j, threshold, third_moment);
-    return life.left_per_s(y) * life.lasting_s * 0.5 * std::erfc(-y / std::sqrt(2.0));
+// What is left of what broke, over the whole sea and before it is limited to 1. `left`: of a share that broke, what it leaves
+// in a second times how long that lasts.
+inline double left_coverage(double deviate, double left) {
+    return left * 0.5 * std::erfc(-deviate / std::sqrt(2.0));
 }
+
+// All foam of the sea at a threshold: what breaks now, and what is left on the rest.
+double whole_coverage(const JacobianMoments<double>& j, double threshold, bool third_moment, double left);
+
+// The whole sea's, to ask for at any threshold.
+struct FoamBalance {
+    JacobianMoments<double> j{};
+    double left = 0.0;  // as whole_coverage() has it
+    bool third_moment = true;
+    double coverage_at(double threshold) const { return whole_coverage(j, threshold, third_moment, left); }
+};
+
+// Below 1: water that isn't pressed together has no foam.
+inline constexpr double kHighestThreshold = 0.99;
 
 // The threshold ε, below 1, at which the waves that break have that coverage, where the law is within reach: a trochoid
 // pressed together to J = 0.9 has a steepness of 0.1, and none breaks below that (more choppiness than the trochoid's own

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/evaluate/gusts.h"
 #include "core/plan/copies.h"
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
@@ -23,7 +24,9 @@ namespace {
 struct MapSlot final : OutputSlot {
     // Of slope variance: the mip levels below the map; of a tile, where a level is alike everywhere, one value each.
     std::vector<std::vector<glm::vec3>> hidden;
+    // Of whitecaps: what the moments of J are compared with, one value, or by mip level and texel where gusts make it differ.
     float whitecap_threshold = 0.0f;
+    std::vector<std::vector<float>> whitecap_thresholds;
     std::string file;  // encoded
 };
 
@@ -76,7 +79,8 @@ class MapPart final : public OutputPart {
             throw std::logic_error("a map of no kind");
         }();
         return {.once = texels * 2 * scalar,
-                .slot = texels * (file + levels + (has_foam_history() ? 2 * sizeof(float) : 0)),
+                .slot = texels * (file + levels + (has_foam_history() ? 2 * sizeof(float) : 0) +
+                                  (has_gusts() ? sizeof(float) * 4 / 3 : 0)),
                 .encoding = texels * (file + work),  // the file once more, in blocks
                 .remedy = output_.cascade
                               ? "lower the resolutions in waves.cascades, or leave cascade_tiles out"
@@ -130,12 +134,46 @@ class MapPart final : public OutputPart {
         if (!output_.cascade) add_foam(foam, points, slot, watch);
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
         if (kind_ == MapKind::SlopeVariance) find_hidden(state, sea, slot);
+        if (has_gusts()) find_thresholds(state, sea, slot);
     }
+
+    bool has_gusts() const { return plan_.gusts && !output_.cascade && kind_ == MapKind::Whitecaps; }
 
     // A tile's slopes are at rest: what carries them is the whole sea.
     VectorProduct hidden_product() const {
         return VectorProduct::checked(output_.cascade ? Product::SlopeVarianceAtRest
                                                       : Product::SlopeVariance);
+    }
+
+    // Those of the map's texels that lie nearest to a mip level's.
+    template <class T>
+    void take_level(State<T>& state, int level) const {
+        const int n = exr::mip_level_size(n_, n_, level).first;
+        const auto nearest = [&](int i) { return static_cast<std::size_t>((2l * i * n_ + n) / (2l * n)); };
+        state.level_rest.clear();
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x)
+                state.level_rest.push_back(
+                    (*state.rest)[nearest(y) * static_cast<std::size_t>(n_) + nearest(x)]);
+    }
+
+    // A level's texel sees of the gusts what its own size lets it see.
+    template <class T>
+    void find_thresholds(State<T>& state, const Frame<T>& sea, MapSlot& slot) const {
+        slot.whitecap_thresholds.clear();
+        for (int level = 0, n = n_ + 1; n > 1; ++level) {
+            n = exr::mip_level_size(n_, n_, level).first;
+            if (level > 0) take_level(state, level);
+            const glm::vec<2, T>* const rest = level > 0 ? state.level_rest.data() : state.rest->data();
+            const auto row = static_cast<std::size_t>(n);
+            std::vector<float>& thresholds = slot.whitecap_thresholds.emplace_back(row * row);
+            tbb::parallel_for(std::size_t(0), row, [&](std::size_t y) {
+                whitecap_thresholds<T>(*sea.sea().gusts(), sea.time_within_loop_s(),
+                                       {.count = row, .rest_m = {rest + y * row}},
+                                       std::max(query().pixel_m.front(), size_m_ / n),
+                                       std::span(thresholds).subspan(y * row, row));
+            });
+        }
     }
 
     // Each level hides what its own texels are too coarse for, and shows the waves that carry it: the query's ladder, asked
@@ -145,16 +183,8 @@ class MapPart final : public OutputPart {
         const std::vector<double>& footprints_m = query().pixel_m;
         slot.hidden.resize(footprints_m.size() - 1);
         for (std::size_t level = 1; level < footprints_m.size(); ++level) {
-            const int n = exr::mip_level_size(n_, n_, static_cast<int>(level)).first;
-            const auto nearest = [&](int i) {
-                return static_cast<std::size_t>((2l * i * n_ + n) / (2l * n));
-            };
-            const int side = output_.cascade ? 1 : n;
-            state.level_rest.clear();
-            for (int y = 0; y < side; ++y)
-                for (int x = 0; x < side; ++x)
-                    state.level_rest.push_back(
-                        (*state.rest)[nearest(y) * static_cast<std::size_t>(n_) + nearest(x)]);
+            take_level(state, static_cast<int>(level));
+            if (output_.cascade) state.level_rest.resize(1);
             const T footprint = static_cast<T>(footprints_m[level]);
             Points<T> points{.count = state.level_rest.size(), .rest_m = {state.level_rest.data()}};
             points.pixel_m = {&footprint, 0};
@@ -240,12 +270,14 @@ class MapPart final : public OutputPart {
         const std::string made_of = fingerprint(frame);
         using Moments = JacobianMoments<float>;
         const bool third = plan_.knobs.third_moment;
-        const auto threshold = slot.whitecap_threshold;
+        const auto& thresholds = slot.whitecap_thresholds;
         std::vector<std::vector<glm::vec3>> texels;
         const auto add_level = [&](const std::vector<Moments>& moments) {
+            const std::size_t l = texels.size();
             std::vector<glm::vec3>& level = texels.emplace_back(moments.size());
             tbb::parallel_for(std::size_t(0), moments.size(), [&](std::size_t i) {
                 const Moments& j = moments[i];
+                const float threshold = thresholds.empty() ? slot.whitecap_threshold : thresholds[l][i];
                 level[i] = {coverage(j, threshold, third), j.mean, j.variance};
             });
         };

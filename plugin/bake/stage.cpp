@@ -187,7 +187,7 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
         {"sky_unit", radiance_unit(scene)},
         {"significant_height_m", 4.0 * std::sqrt(plan.from->spectrum.m0())},
     };
-    for (const DescribedKey& key : described(scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam)))
+    for (const DescribedKey& key : described(scene, feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts)))
         stage.custom_data.push_back({key.identifier(), custom_value(key)});
     return stage;
 }

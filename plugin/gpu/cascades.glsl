@@ -14,8 +14,10 @@ layout(std140) uniform SeaTables {
     // the same eight mixed with the next rung.
     vec4 hidden_rungs[4 * kPixelRungs];
     vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]; .y: its copies' key; .z: tiles per metre
+    vec4 gusts[kGustRows];         // gusts.glsl
 };
 
+uniform vec2 finest_m;             // the finest footprints of cells and pixels; trains and gusts are filtered no finer
 uniform sampler2D cell_fields;     // Height, Dx, Dy
 uniform sampler2D pixel_fields;    // ηx, ηy, Dxx, Dyy
 uniform sampler2D pixel_fields_2;  // Dxy; where copies blend also Height, Dx, Dy

@@ -9,6 +9,9 @@ float minus_product(float c, float a, float b) { return c - a * b; }
 float square_root(float x) { return sqrt(x); }
 float exponential(float x) { return exp(x); }
 
+float sine_of_cycles(float x) { return sin(6.28318530717958647692 * (x - floor(x + 0.5))); }
+float cosine_of_cycles(float x) { return cos(6.28318530717958647692 * (x - floor(x + 0.5))); }
+
 // One step of Newton's method corrects the hardware's pow(), which has no guaranteed precision.
 float cube_root(float x) {
     float size = max(abs(x), 1e-30);

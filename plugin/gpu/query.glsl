@@ -1,7 +1,6 @@
 // The query at one point: the GPU's evaluate().
 
 uniform float whitecap_threshold;
-uniform vec2 finest_m;  // the finest footprints of cells and pixels; trains are filtered no finer
 
 // Footprints are given as width and long axis [m]. Trains follow them however long they are: (width, stretch) as
 // TrainArgs has it.
@@ -53,12 +52,14 @@ PixelAnswer query_pixel(vec2 rest_m, vec3 pixel) {
     SlopeVariances carried =
         carried_slopes(SlopeVariances(hidden.xx, hidden.yy, hidden.xy), f.dxx, f.dyy, f.dxy, f.dyx);
     vec4 strain = apart ? sums.breaking : vec4(f.dxx, f.dyy, f.dxy, f.dyx);
+    GustAnswer gust = GustAnswer(1.0, whitecap_threshold);
+    if (kGusts) gust = gusts_at(rest_m, pixel);
     float foam = 0.0;
     if (kCoverage)
         foam = coverage(jacobian_moments(strain.x, strain.y, strain.z, strain.w,
                                          HiddenStrain(hidden.xxxx, hidden.xxxy, hidden.xxyy, hidden.xyyy,
                                                       hidden.yyyy)),
-                        whitecap_threshold, kThirdMoment);
-    return PixelAnswer(vec3(n.x, n.y, n.z), vec3(carried.xx, carried.yy, carried.xy),
+                        gust.whitecap_threshold, kThirdMoment);
+    return PixelAnswer(vec3(n.x, n.y, n.z), gust.factor * vec3(carried.xx, carried.yy, carried.xy),
                        vec3(hidden.xx, hidden.yy, hidden.xy), foam, float(footprint.rung.lower) + footprint.rung.t);
 }

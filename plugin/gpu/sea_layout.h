@@ -33,6 +33,7 @@ class SeaLayout {
     // What earlier breaking has left is part of the picture (PackedFoam).
     bool has_living_foam() const { return has_coverage_ && sea_->plan().foam.has_value(); }
     bool has_trains() const { return sea_->plan().trains.has_value(); }
+    bool has_gusts() const { return sea_->gusts().has_value(); }
     int cascades() const { return static_cast<int>(sea_->plan().cascades.size()); }
 
     // A texture: rows of `width` texels, fields interleaved, zeros up to `channels`.
@@ -79,9 +80,13 @@ class SeaLayout {
     std::vector<glm::vec4> ellipse_texels() const;
     int ellipse_columns() const;
 
-    // For points relative to an origin [m]: the uniform block of cascades.glsl, as large for each; and, where
-    // the sea has trains, their phases there [cycles], one float a train.
-    std::vector<std::byte> tables(glm::dvec2 origin_m) const;
+    // Of gusts.glsl.
+    static constexpr int kGustRows =
+        2 * GustsPlan::kWaves + (Gusts::kLevelTerms + Gusts::kKeptTerms + 1 + 3) / 4;
+
+    // For points relative to an origin [m]: the uniform block of cascades.glsl, as large for each, in which the time counts
+    // only for gusts; and, where the sea has trains, their phases there [cycles], one float a train.
+    std::vector<std::byte> tables(glm::dvec2 origin_m, double time_within_loop_s) const;
     std::vector<float> train_cycles(glm::dvec2 origin_m, double time_within_loop_s) const;
 
   private:

@@ -41,9 +41,36 @@ TileRow tile_row(const SeaLayout& layout, const SeaLayout::Tile& tile, glm::dvec
     return row;
 }
 
+// Those of gusts.glsl.
+std::vector<std::array<float, 4>> rows_of(const Gusts& gusts, glm::dvec2 origin_m,
+                                          double time_within_loop_s) {
+    const auto cycles = gusts.plan.cycles_at(origin_m, time_within_loop_s);
+    const auto number = [](double value) { return static_cast<float>(value); };
+    std::vector<std::array<float, 4>> rows;
+    for (std::size_t i = 0; i < cycles.size(); ++i) {
+        const GustsPlan::Wave& wave = gusts.plan.waves[i];
+        rows.push_back({number(wave.cycles_per_m.x), number(wave.cycles_per_m.y), number(cycles[i]),
+                        number(wave.amplitude)});
+    }
+    for (const GustsPlan::Wave& wave : gusts.plan.waves) {
+        const double per_m = 1.0 / std::hypot(wave.cycles_per_m.x, wave.cycles_per_m.y);
+        rows.push_back({number(wave.shortest_m), number(wave.cycles_per_m.x * per_m),
+                        number(wave.cycles_per_m.y * per_m), 0.0f});
+    }
+    std::vector<float> terms;
+    for (const double term : gusts.of_level) terms.push_back(number(term));
+    for (const double term : gusts.of_kept) terms.push_back(number(term));
+    terms.push_back(number(gusts.plan.strength));
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+        if (i % 4 == 0) rows.emplace_back();
+        rows.back()[i % 4] = terms[i];
+    }
+    return rows;
+}
+
 }  // namespace
 
-std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m) const {
+std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m, double time_within_loop_s) const {
     const std::size_t rungs =
         cells_.footprints_m.size() + pixels_.footprints_m.size() + breaking_.footprints_m.size();
     const std::size_t tiles = rungs * static_cast<std::size_t>(std::max(cascades(), 1));
@@ -86,6 +113,8 @@ std::vector<std::byte> SeaLayout::tables(glm::dvec2 origin_m) const {
     }
     cascades.resize(std::max<std::size_t>(cascades.size(), 1));
     append(cascades);
+    append(sea_->gusts() ? rows_of(*sea_->gusts(), origin_m, time_within_loop_s)
+                         : std::vector<std::array<float, 4>>(SeaLayout::kGustRows));
     return block;
 }
 

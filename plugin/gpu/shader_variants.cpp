@@ -65,13 +65,24 @@ const std::vector<std::string_view>& lighting_files() {
 }
 
 const std::vector<std::string_view>& query_files() {
-    static const std::vector<std::string_view> files{
-        "core/lighting/special.glsl", "plugin/gpu/prelude.glsl",   "core/plan/filter.inl",
-        "core/plan/taps.inl",         "core/plan/copies.inl",      "core/waves/spline.inl",
-        "core/waves/whitecaps.inl",   "core/evaluate/surface.inl", "core/waves/trains.inl",
-        "core/evaluate/hidden.inl",   "core/surface/earth.inl",    "core/surface/pixel_footprint.inl",
-        "plugin/gpu/places.glsl",     "plugin/gpu/cascades.glsl",  "plugin/gpu/trains.glsl",
-        "plugin/gpu/query.glsl"};
+    static const std::vector<std::string_view> files{"core/lighting/special.glsl",
+                                                     "plugin/gpu/prelude.glsl",
+                                                     "core/plan/filter.inl",
+                                                     "core/plan/taps.inl",
+                                                     "core/plan/copies.inl",
+                                                     "core/waves/spline.inl",
+                                                     "core/waves/whitecaps.inl",
+                                                     "core/waves/gusts.inl",
+                                                     "core/evaluate/surface.inl",
+                                                     "core/waves/trains.inl",
+                                                     "core/evaluate/hidden.inl",
+                                                     "core/surface/earth.inl",
+                                                     "core/surface/pixel_footprint.inl",
+                                                     "plugin/gpu/places.glsl",
+                                                     "plugin/gpu/cascades.glsl",
+                                                     "plugin/gpu/trains.glsl",
+                                                     "plugin/gpu/gusts.glsl",
+                                                     "plugin/gpu/query.glsl"};
     return files;
 }
 
@@ -84,7 +95,10 @@ std::string query_constants(const SeaLayout& layout, bool coverage) {
            constant("P", layout.sea().plan().knobs.spline_taps) + constant("kChoppy", layout.is_choppy()) +
            constant("kCopies", layout.has_copies()) + constant("kCoverage", coverage) +
            constant("kThirdMoment", layout.sea().plan().knobs.third_moment) +
-           constant("kTrains", layout.has_trains()) + constant("kNodesARung", EllipseTable::kNodesARung) +
+           constant("kTrains", layout.has_trains()) + constant("kGusts", layout.has_gusts()) +
+           constant("kGustRows", SeaLayout::kGustRows) + constant("kGustWaves", GustsPlan::kWaves) +
+           constant("kGustLevelTerms", Gusts::kLevelTerms) + constant("kGustKeptTerms", Gusts::kKeptTerms) +
+           constant("kNodesARung", EllipseTable::kNodesARung) +
            constant("kNodesAnOctave", EllipseTable::kNodesAnOctave) +
            constant("kRatios", EllipseTable::kRatios) + constant("kDirections", EllipseTable::kDirections) +
            "const float kLongestEllipse = " + std::to_string(kLongestEllipse) + ";\n";

@@ -21,8 +21,12 @@ std::vector<Uniform> query_uniforms(const SeaLayout& layout) {
         {"finest_m", 2,
          glm::vec4(static_cast<float>(layout.cells().footprints_m.front()),
                    static_cast<float>(layout.pixels().footprints_m.front()), 0.0f, 0.0f)}};
-    if (!layout.has_trains()) return uniforms;
     const FootprintFilter& filter = layout.sea().plan().filter;
+    if (layout.has_gusts())
+        uniforms.push_back({"gust_filter", 2,
+                            glm::vec4(static_cast<float>(filter.n_min),
+                                      static_cast<float>(1.0 / (filter.n_max - filter.n_min)), 0.0f, 0.0f)});
+    if (!layout.has_trains()) return uniforms;
     uniforms.push_back({.name = "train_count",
                         .value = glm::vec4(static_cast<float>(layout.sea().trains().count())),
                         .is_integer = true});

@@ -89,7 +89,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
 }
 
 bool same_sea(const Scene& a, const Scene& b) {
-    const FeedSet sea = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Quality);
+    const FeedSet sea = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Gusts, Feed::Quality);
     return canonical(a, sea) == canonical(b, sea);
 }
 

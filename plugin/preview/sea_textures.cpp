@@ -38,7 +38,7 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
                                std::to_string(plane.size.y) + ", and the driver's largest is " +
                                std::to_string(largest_texture) +
                                ": lower the cascades' resolutions, or use --quality draft");
-    const std::size_t block_bytes = layout->tables(glm::dvec2(0.0)).size();
+    const std::size_t block_bytes = layout->tables(glm::dvec2(0.0), 0.0).size();
     if (block_bytes > static_cast<std::size_t>(largest_block))
         throw PreviewError("the sea's tables need " + std::to_string(block_bytes) +
                            " bytes of uniforms, and the driver has " + std::to_string(largest_block) +
@@ -141,7 +141,7 @@ void SeaTextures::upload(const PackedFrame& frame) {
 
 // Uploads what depends on the grid's origin.
 void SeaTextures::upload_tables(glm::dvec2 origin_m) {
-    const std::vector<std::byte> block = layout_->tables(origin_m);
+    const std::vector<std::byte> block = layout_->tables(origin_m, time_within_loop_s_);
     glBindBuffer(GL_UNIFORM_BUFFER, tables_.name());
     glBufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.size()), block.data(), GL_STREAM_DRAW);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, tables_.name());

@@ -247,7 +247,8 @@ class GpuSea {
             const auto count = static_cast<py::ssize_t>(values.size());
             cycles = array_of<float>(std::move(values), {1, count, 1});
         }
-        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin)), cycles);
+        return py::make_tuple(array_of<std::uint8_t>(layout.tables(origin, packed_.time_within_loop_s())),
+                              cycles);
     }
 
     GpuGrid grid(const View& view, std::optional<double> cell_px, bool on_earth) const {
@@ -345,7 +346,7 @@ class GpuSea {
         return view;
     }
 
-    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Foam, Feed::Quality, Feed::Grid);
+    static constexpr FeedSet kFeeds = feeds(Feed::Waves, Feed::Foam, Feed::Gusts, Feed::Quality, Feed::Grid);
     // A side of a grid. Views along the surface from far behind, as orthographic ones are, would need millions.
     static constexpr int kMostCells = 1024;
     static constexpr double kLeast_m = 1e-4;  // no wave is shorter than some millimetres
@@ -478,8 +479,8 @@ void add_viewport(py::module_& module) {
             "Read-only views of memory that the next set() overwrites; only train_table stays.")
         .def(
             "at_origin", &GpuSea::at_origin, py::arg("origin_m"),
-            "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which don't "
-            "depend on time, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
+            "(tables, train_cycles) for a grid's origin: the bytes of the uniform block SeaTables, which depend "
+            "on time where there are gusts, as uint8; and the texture train_cycles, float32 (1, trains, 1), which does, or "
             "None.")
         .def(
             "foam", &GpuSea::foam, py::arg("scene"), py::arg("origin_m"),

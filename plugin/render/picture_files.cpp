@@ -64,7 +64,7 @@ Ranges ranges_of(const Scene& scene, const Sky& sky) {
 
 // What a picture depends on, besides the camera at its frame.
 constexpr FeedSet kFeedsBesideTheView =
-    feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Grid, Feed::Light, Feed::Water);
+    feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts, Feed::Grid, Feed::Light, Feed::Water);
 
 std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "core/surface/projected_grid.h"
@@ -329,6 +330,32 @@ TEST(LivingFoam, HasTheLawsCoverage) {
         EXPECT_NEAR(all, 1.0, 0.03) << decay_s;
         EXPECT_NEAR(fine, 1.0, 0.06) << decay_s;
     }
+}
+
+// Gusts change where waves break, and not how much foam there is.
+TEST(LivingFoam, OfGustsIsAsMuchAndWhereTheyBlew) {
+    Scene scene = scene_of(4.0);
+    scene.sea.gust_size_m = 120.0;
+    const auto points = square(150, 16.0);
+    const auto residual_of = [&](double strength) {
+        scene.sea.gust_strength = strength;
+        Shown<> shown(sea_of(scene, 12.0));
+        const std::vector<float> left = shown.at(11.0, points).residual();
+        return std::vector<double>(left.begin(), left.end());
+    };
+    const std::vector<double> even = residual_of(0.0), gusty = residual_of(0.8);
+    const auto mean = [](const std::vector<double>& of) {
+        return std::accumulate(of.begin(), of.end(), 0.0) / static_cast<double>(of.size());
+    };
+    const auto spread = [&](const std::vector<double>& of) {
+        double sum = 0.0;
+        for (const double v : of) sum += (v - mean(of)) * (v - mean(of)) / static_cast<double>(of.size());
+        return std::sqrt(sum) / mean(of);
+    };
+    std::printf("residual of gusts %.3f of that without; spread %.2f and %.2f\n", mean(gusty) / mean(even),
+                spread(gusty), spread(even));
+    EXPECT_NEAR(mean(gusty) / mean(even), 1.0, 0.05);
+    EXPECT_GT(spread(gusty), 1.5 * spread(even));
 }
 
 TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {

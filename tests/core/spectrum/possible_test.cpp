@@ -41,8 +41,26 @@ TEST(ImpossibleWaves, AreHeightsBeyondTheWindsWaves) {
     sea.wind_speed_mps = 20.0;
     sea.depth_m = 3.0;
     expect_refused(sea, "sea.significant_height_m", "accepted: 0 … 1.8");
-    sea.wind_speed_mps = 0.0;  // no sea to have a height
+}
+
+// It would be left out in silence.
+TEST(ImpossibleWaves, AreHeightsOfNoWaves) {
+    SeaState sea;
+    sea.wind_speed_mps = 0.0;
+    sea.significant_height_m = 1.0;
+    sea.swell = {{2.0, 12.0, 0.0}};
+    const std::vector<Problem> problems = impossible_waves(sea);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_NE(text_of(problems.front()).find("without wind there are no waves"), std::string::npos);
+    sea.significant_height_m = 0.0;
     EXPECT_TRUE(impossible_waves(sea).empty());
+    sea.significant_height_m = 1.0;
+    sea.spectrum = SpectrumKind::File;
+    sea.measured =
+        MeasuredSpectrum{.bins = {{0.1, 0.0, 1.0, 0.0, 1.0, 0.0, true}, {0.2, 0.0, 1.0, 0.0, 1.0, 0.0, true}},
+                         .station = "41010",
+                         .time = "2019-02-06T00:40:00Z"};
+    EXPECT_EQ(impossible_waves(sea).size(), 1u);
 }
 
 TEST(ImpossibleWaves, AreNoPresets) {

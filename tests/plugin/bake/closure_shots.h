@@ -54,10 +54,12 @@ inline BaseShot patch_shot() {
     return base;
 }
 
-// Foam that lives, by the law that knows the air's temperature.
+// Foam that lives, by the law that knows the air's temperature, and gusts.
 inline BaseShot foam_shot() {
     BaseShot base{.name = "living foam", .scene = small_shot()};
     base.scene.effects.foam_decay_s = 0.5;
+    base.scene.sea.gust_strength = 0.5;
+    base.scene.sea.gust_size_m = 40.0;
     base.scene.effects.whitecap_law = WhitecapLaw::Monahan1986;
     base.scene.output.maps = {MapKind::Whitecaps};
     base.tables = {"shot", "sea", "effects"};

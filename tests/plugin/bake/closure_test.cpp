@@ -146,6 +146,9 @@ struct Excuse {
 constexpr auto kExcuses = std::to_array<Excuse>({
     {"sea.wind_direction_deg", "mesh", "a measured spectrum has directions of its own"},
     {"sea.fetch_m", "mesh", "a measured spectrum has grown already"},
+    {"sea.gust_size_m", "mesh", "there are no gusts"},
+    {"sea.gust_size_m", "slope-variance", "there are no gusts"},
+    {"sea.gust_size_m", "whitecaps", "there are no gusts"},
     {"sea.spreading", "mesh", "a measured spectrum has directions of its own"},
     {"sea.depth_m", "mesh", "400 m are as deep as can be for these waves"},
     {"sea.spectrum", "mesh", "TMA is JONSWAP where the water is deep"},

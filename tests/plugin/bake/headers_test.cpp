@@ -42,7 +42,7 @@ TEST(Headers, NameTheKeysThatTheFilesDependOn) {
         // OpenEXR ends names with a zero.
         EXPECT_EQ(map.find("pelagic." + key.path + '\0') != std::string::npos, is_given && is_in_map)
             << key.path;
-        const bool is_in_stage = (key.feeds & feeds(Feed::Clock, Feed::Waves, Feed::Foam)).any();
+        const bool is_in_stage = (key.feeds & feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts)).any();
         std::string identifier = key.path;
         identifier.replace(identifier.find('.'), 1, "_");
         EXPECT_EQ(stage.find(' ' + identifier + " = ") != std::string::npos, is_given && is_in_stage)

@@ -197,6 +197,7 @@ class Meshes(InFolder):
 class Maps(unittest.TestCase):
     def test_maps_are_the_query_on_their_squares(self):
         scene = shot()
+        scene.effects.foam_decay_s = 0.0
         maps = pelagic.Maps(scene)
         patch, tiles = maps.at(1.5)
         self.assertEqual(sorted(patch), ["coverage", "displacement", "jacobian", "normal", "slope_variance"])

@@ -188,7 +188,9 @@ class LivingFoam(unittest.TestCase):
         self.assertLess(time.perf_counter() - began, 0.5 * whole)
 
     def test_is_none_where_foam_does_not_live(self):
-        sea, light = pelagic.GpuSea(small_scene(), finest_m=0.5), pelagic.GpuLight(small_scene())
+        scene = small_scene()
+        scene.effects.foam_decay_s = 0.0
+        sea, light = pelagic.GpuSea(scene, finest_m=0.5), pelagic.GpuLight(scene)
         self.assertFalse(sea.has_living_foam)
         self.assertNotIn("foam_nodes", sea.shaders(light)["sea"][1])
         self.assertEqual(sea.take_foam(), {})

@@ -280,9 +280,9 @@ TEST(PictureFiles, NameTheKeysThatTheyDependOn) {
     for (const Key& key : keys()) {
         if (!key.has_value()) continue;
         const bool is_given = !std::holds_alternative<std::monostate>(value_of(scene, key));
-        const bool is_said =
-            (key.feeds & feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Grid, Feed::Light, Feed::Water))
-                .any();
+        const bool is_said = (key.feeds & feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts, Feed::Grid,
+                                                Feed::Light, Feed::Water))
+                                 .any();
         // OpenEXR ends names with a zero.
         EXPECT_EQ(bytes.find("pelagic." + key.path + '\0') != std::string::npos, is_given && is_said)
             << key.path;

@@ -1,0 +1,157 @@
+#include "core/evaluate/gusts.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/evaluate/gusts.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target first: it includes this file once for each instruction set.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/pack-inl.h"
+#include "core/base/sincos-inl.h"
+#include "core/plan/filter.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelagic {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+namespace {  // names are this file's own
+
+template <class D>
+HWY_INLINE Pack<D> sine_of_cycles(Pack<D> cycles) {
+    hn::Vec<D> sine, cosine;
+    SinCosCycles(D(), cycles.v, sine, cosine);
+    return sine;
+}
+template <class D>
+HWY_INLINE Pack<D> cosine_of_cycles(Pack<D> cycles) {
+    hn::Vec<D> sine, cosine;
+    SinCosCycles(D(), cycles.v, sine, cosine);
+    return cosine;
+}
+
+#include "core/plan/filter.inl"
+#include "core/waves/gusts.inl"
+
+template <class N, class Terms>
+HWY_INLINE N ValueOf(const Terms& terms, N x) {
+    N sum(0);
+    for (std::size_t n = terms.size(); n-- > 0;) sum = sum * x + N(terms[n]);
+    return sum;
+}
+
+template <class T>
+void GustsAt(const GustArgs<T>& args, GustChunk<T>& chunk) {
+    using D = hn::ScalableTag<T>;
+    using N = Pack<D>;
+    const D d;
+    const FootprintFilter filter;
+    const N n_min(filter.n_min), per_range(1.0 / (filter.n_max - filter.n_min));
+    for (std::size_t i = 0; i < args.padded; i += hn::Lanes(d)) {
+        const N x(hn::Load(d, args.rest_x + i)), y(hn::Load(d, args.rest_y + i));
+        const N width(hn::Load(d, chunk.width_m.data() + i));
+        N axis_x(0), axis_y(0);
+        if (chunk.has_ellipses) {
+            axis_x = hn::Load(d, chunk.axis_x.data() + i);
+            axis_y = hn::Load(d, chunk.axis_y.data() + i);
+        }
+        GustSum<N> sum{};
+        for (std::size_t w = 0; w < GustsPlan::kWaves; ++w) {
+            const GustsPlan::Wave& wave = args.gusts->plan.waves[w];
+            const double per_m = 1.0 / std::hypot(wave.cycles_per_m.x, wave.cycles_per_m.y);
+            const N cycles = x * N(wave.cycles_per_m.x) + y * N(wave.cycles_per_m.y) + N((*args.phases)[w]);
+            const N length = square_root(length2_along(width, axis_x, axis_y, N(wave.cycles_per_m.x * per_m),
+                                                       N(wave.cycles_per_m.y * per_m)));
+            const N weight = footprint_weight(N(wave.shortest_m) / length, n_min, per_range);
+            sum = with_gust(sum, N(wave.amplitude), cycles, weight);
+        }
+        const N level = gust_level(sum.shown);
+        hn::Store((N(1) + N(args.gusts->plan.strength) * level).v, d, chunk.factor.data() + i);
+        hn::Store((ValueOf(args.gusts->of_level, level) + ValueOf(args.gusts->of_kept, sum.kept)).v, d,
+                  chunk.whitecap_threshold.data() + i);
+    }
+}
+
+void GustsOfFloat(const GustArgs<float>& args, GustChunk<float>& chunk) {
+    GustsAt(args, chunk);
+}
+void GustsOfDouble(const GustArgs<double>& args, GustChunk<double>& chunk) {
+    GustsAt(args, chunk);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace pelagic
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pelagic {
+HWY_EXPORT(GustsOfFloat);
+HWY_EXPORT(GustsOfDouble);
+
+template <>
+void gusts_at(const GustArgs<float>& args, GustChunk<float>& chunk) {
+    HWY_DYNAMIC_DISPATCH(GustsOfFloat)(args, chunk);
+}
+template <>
+void gusts_at(const GustArgs<double>& args, GustChunk<double>& chunk) {
+    HWY_DYNAMIC_DISPATCH(GustsOfDouble)(args, chunk);
+}
+
+template <class T>
+void GustChunk<T>::take(const Points<T>& points, T only_m, std::size_t first, std::size_t count) {
+    constexpr std::size_t kLongest = Chunk<T>::kLongestVector;
+    const std::size_t padded = (count + kLongest - 1) / kLongest * kLongest;
+    std::fill_n(width_m.begin(), padded, only_m);
+    if (points.pixel_m)
+        for (std::size_t i = 0; i < count; ++i) {
+            const T width = points.pixel_m[first + i];
+            width_m[i] = width > only_m ? width : only_m;  // also where it is no number
+        }
+    has_ellipses = static_cast<bool>(points.pixel_axis_m);
+    if (!has_ellipses) return;
+    std::fill_n(axis_x.begin(), padded, T(0));
+    std::fill_n(axis_y.begin(), padded, T(0));
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec<2, T> axis = points.pixel_axis_m[first + i];
+        if (!std::isfinite(axis.x * axis.x + axis.y * axis.y)) continue;
+        axis_x[i] = axis.x;
+        axis_y[i] = axis.y;
+    }
+}
+
+template <class T>
+void whitecap_thresholds(const Gusts& gusts, double time_within_loop_s, const Points<T>& points,
+                         double pixel_m, std::span<float> thresholds) {
+    const GustPhases phases = gusts.plan.cycles_at(points.origin_m, time_within_loop_s);
+    Chunk<T> chunk;
+    GustChunk<T> of;
+    for (std::size_t first = 0; first < points.count; first += Chunk<T>::kPoints) {
+        chunk.count = std::min(Chunk<T>::kPoints, points.count - first);
+        std::fill_n(chunk.rest_x.begin(), chunk.padded(), T(0));
+        std::fill_n(chunk.rest_y.begin(), chunk.padded(), T(0));
+        for (std::size_t i = 0; i < chunk.count; ++i) {
+            chunk.rest_x[i] = points.rest_m[first + i].x;
+            chunk.rest_y[i] = points.rest_m[first + i].y;
+        }
+        of.take(points, static_cast<T>(pixel_m), first, chunk.count);
+        gusts_at<T>({.gusts = &gusts,
+                     .phases = &phases,
+                     .rest_x = chunk.rest_x.data(),
+                     .rest_y = chunk.rest_y.data(),
+                     .padded = chunk.padded()},
+                    of);
+        for (std::size_t i = 0; i < chunk.count; ++i)
+            thresholds[first + i] = static_cast<float>(of.whitecap_threshold[i]);
+    }
+}
+
+template struct GustChunk<float>;
+template struct GustChunk<double>;
+template void whitecap_thresholds(const Gusts&, double, const Points<float>&, double, std::span<float>);
+template void whitecap_thresholds(const Gusts&, double, const Points<double>&, double, std::span<float>);
+
+}  // namespace pelagic
+#endif

@@ -1,0 +1,131 @@
+#include "core/waves/gusts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/plan/filter.h"
+#include "core/waves/whitecaps.h"
+
+namespace pelagic {
+namespace {
+
+// What a round footprint leaves of each wave.
+std::array<double, GustsPlan::kWaves> shown_amplitudes(const GustsPlan& plan, double footprint_m) {
+    const FootprintFilter filter;
+    std::array<double, GustsPlan::kWaves> shown{};
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        shown[i] = plan.waves[i].amplitude * filter.weight(kTwoPi / plan.waves[i].shortest_m, footprint_m);
+    return shown;
+}
+
+// Values of a sum of waves whose phases are independent, each as likely as the others: the means of as many parts of its
+// distribution.
+std::vector<double> likely_values(const std::array<double, GustsPlan::kWaves>& amplitudes) {
+    constexpr std::size_t kSamples = 4096, kParts = 128;
+    // Phases on a lattice that fills the eight dimensions evenly (Roberts 2018): powers of the root of x⁹ = x + 1.
+    double root = 1.0;
+    for (int i = 0; i < 60; ++i) root = std::pow(1.0 + root, 1.0 / (GustsPlan::kWaves + 1));
+    std::vector<double> samples(kSamples, 0.0);
+    for (std::size_t s = 0; s < kSamples; ++s) {
+        double step = 1.0;
+        for (const double amplitude : amplitudes) {
+            step /= root;
+            samples[s] += amplitude * std::cos(kTwoPi * step * static_cast<double>(s));
+        }
+    }
+    std::sort(samples.begin(), samples.end());
+    std::vector<double> values(kParts, 0.0);
+    for (std::size_t s = 0; s < kSamples; ++s) values[s * kParts / kSamples] += samples[s];
+    for (double& value : values) value *= static_cast<double>(kParts) / kSamples;
+    return values;
+}
+
+template <class Function>
+double mean_of(std::span<const double> values, const Function& function) {
+    double sum = 0.0;
+    for (const double value : values) sum += function(value);
+    return sum / static_cast<double>(values.size());
+}
+
+double level_of(double value) {
+    return value / std::sqrt(1.0 + value * value);
+}
+
+// Where a rising function reaches a value.
+template <class Function>
+double solve(double low, double high, double value, const Function& function) {
+    for (int i = 0; i < 40; ++i) {
+        const double middle = 0.5 * (low + high);
+        (function(middle) < value ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
+// The coefficients of the polynomial that has these values at x_i, by Newton's divided differences.
+template <std::size_t N>
+std::array<double, N> polynomial(const std::array<double, N>& x, std::array<double, N> y) {
+    for (std::size_t order = 1; order < N; ++order)
+        for (std::size_t i = N - 1; i >= order; --i) y[i] = (y[i] - y[i - 1]) / (x[i] - x[i - order]);
+    std::array<double, N> terms{};
+    for (std::size_t i = N; i-- > 0;) {
+        for (std::size_t n = N - 1; n > 0; --n) terms[n] = terms[n - 1] - x[i] * terms[n];
+        terms[0] = y[i] - x[i] * terms[0];
+    }
+    return terms;
+}
+
+double value_of(std::span<const double> terms, double x) {
+    double sum = 0.0;
+    for (std::size_t n = terms.size(); n-- > 0;) sum = sum * x + terms[n];
+    return sum;
+}
+
+}  // namespace
+
+Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold) {
+    Gusts gusts{.plan = plan};
+    gusts.of_level[0] = threshold;
+    if (!std::isfinite(threshold)) return gusts;
+    const double mean = balance.coverage_at(threshold);
+    const auto coverage_at = [&](double at) { return balance.coverage_at(at); };
+    // Scaled so that the mean over the whole pattern is the sea's; nowhere more than there may be.
+    const auto cubed = [&](double level) { return std::pow(1.0 + plan.strength * level, 3.0); };
+    const auto whole = likely_values(shown_amplitudes(plan, 0.0));
+    constexpr double kMostScale = 100.0;
+    const double scale = solve(0.0, kMostScale, mean, [&](double by) {
+        return mean_of(whole,
+                       [&](double value) { return std::min(by * cubed(level_of(value)), kMostCoverage); });
+    });
+
+    std::array<double, Gusts::kLevelTerms> level{}, at_level{};
+    for (std::size_t i = 0; i < level.size(); ++i) {
+        level[i] = std::cos(kPi * (static_cast<double>(i) + 0.5) / Gusts::kLevelTerms);  // Chebyshev's nodes
+        at_level[i] =
+            solve(0.0, kHighestThreshold, std::min(scale * cubed(level[i]), kMostCoverage), coverage_at);
+    }
+    gusts.of_level = polynomial(level, at_level);
+
+    std::array<double, Gusts::kKeptTerms> kept{}, at_kept{};
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+        kept[i] = static_cast<double>(i) / (Gusts::kKeptTerms - 1);
+        const double octave = solve(-40.0, 40.0, -kept[i], [&](double at) {
+            double variance = 0.0;
+            for (const double shown : shown_amplitudes(plan, std::exp2(at))) variance += 0.5 * shown * shown;
+            return -variance;
+        });
+        const auto values = likely_values(shown_amplitudes(plan, std::exp2(octave)));
+        at_kept[i] = solve(-0.5, 0.5, mean, [&](double more) {
+            return mean_of(values, [&](double value) {
+                return coverage_at(value_of(gusts.of_level, level_of(value)) + more);
+            });
+        });
+    }
+    gusts.of_kept = polynomial(kept, at_kept);
+    return gusts;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,29 @@
+// What gusts do to the sea. Short waves follow the wind within seconds: the slope variance that a footprint hides is
+// multiplied by f = 1 + strength · level, since it is linear in the wind (Cox and Munk 1954). Whitecaps go with its cube: J is
+// compared with a threshold at which the whole sea would have a coverage in proportion to f³. Of both the mean over area is
+// what it is without gusts.
+//
+// Waves that are shown are those of the mean wind, and so are the moments of J.
+#pragma once
+
+#include <array>
+
+#include "core/plan/gusts.h"
+
+namespace pelagic {
+
+struct Gusts {
+    GustsPlan plan;
+    // ε = Σ of_level[n] · level^n + Σ of_kept[n] · kept^n: the second sum is what a footprint adds that hides a part of the
+    // pattern, 1 − kept of its variance.
+    static constexpr int kLevelTerms = 9, kKeptTerms = 6;
+    std::array<double, kLevelTerms> of_level{};
+    std::array<double, kKeptTerms> of_kept{};
+};
+
+struct FoamBalance;
+
+// `threshold`: without gusts.
+Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold);
+
+}  // namespace pelagic

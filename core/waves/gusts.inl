@@ -1,0 +1,35 @@
+// The pattern of gusts (core/plan/gusts.h) and what it does, for vectors and for GLSL: see core/base/number.h. The includer has
+// sine_of_cycles() and cosine_of_cycles() as well.
+
+// How far the waves before shift a wave: cycles for each unit of their sum.
+inline constexpr double kGustShift = 0.238732414637843;
+
+// Waves so far, the longest first: the pattern that a footprint shows, what shifts the next one, and the variance shown.
+template <class T>
+struct GustSum {
+    T shown, shift, kept;
+};
+
+// cycles: of this wave at the point; weight: of it in the footprint.
+template <class T>
+inline GustSum<T> with_gust(GustSum<T> sum, T amplitude, T cycles, T weight) {
+    T shifted = cycles + T(kGustShift) * sum.shift;
+    T shown = weight * amplitude;
+    return GustSum<T>(sum.shown + shown * cosine_of_cycles(shifted),
+                      sum.shift + amplitude * sine_of_cycles(shifted), sum.kept + T(0.5) * shown * shown);
+}
+
+// The square of a footprint's length along a direction: its width, and its long axis [m] or nothing.
+template <class T>
+inline T length2_along(T width, T axis_x, T axis_y, T unit_x, T unit_y) {
+    T length2 = axis_x * axis_x + axis_y * axis_y;
+    T beyond = maximum(length2 - width * width, T(0)) / maximum(length2, T(1e-12));
+    T along = axis_x * unit_x + axis_y * unit_y;
+    return width * width + beyond * along * along;
+}
+
+// −1 … 1, its mean over area 0, however much of the pattern a footprint shows.
+template <class T>
+inline T gust_level(T shown) {
+    return shown / square_root(T(1) + shown * shown);
+}

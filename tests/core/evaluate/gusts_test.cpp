@@ -1,0 +1,202 @@
+// Gusts: a varying wind roughens the sea and breaks its waves in patches, and changes neither on the whole.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "tests/core/waves/samples.h"
+
+namespace pelagic {
+namespace {
+
+using namespace test;
+
+const ProductSet kGusty = products(Product::SlopeVariance, Product::Coverage);
+
+Scene scene_of(double strength, double wind_mps = 14.0) {
+    Scene scene;
+    scene.sea.wind_speed_mps = wind_mps;
+    scene.sea.gust_strength = strength;
+    return scene;
+}
+
+double mean_variance(const ProductArrays<float>& values) {
+    double sum = 0.0;
+    for (const glm::vec3& v : values.vectors(SlopeVariance)) sum += static_cast<double>(v.x + v.y);
+    return sum;
+}
+double mean_foam(const ProductArrays<float>& values) {
+    double sum = 0.0;
+    for (const float w : values.numbers(Coverage)) sum += static_cast<double>(w);
+    return sum;
+}
+
+// Over area as much as without, whatever a footprint shows of the pattern: of the slopes by symmetry, of the foam by
+// calibration. The farthest footprints show no patches.
+TEST(Gusts, ChangeNoMean) {
+    const auto points = random_points<float>(60000.0, 100000);
+    const double footprints_m[] = {20.0, 40.0, 70.0, 120.0, 200.0, 400.0, 3000.0};
+    std::vector<Query> queries;
+    for (const double footprint_m : footprints_m) queries.push_back(filtered(kGusty, footprint_m));
+    for (const double wind_mps : {5.0, 14.0, 30.0})
+        for (const WhitecapLaw law : {WhitecapLaw::Monahan1980, WhitecapLaw::Callaghan2008}) {
+            Scene calm = scene_of(0.0, wind_mps);
+            calm.effects.whitecap_law = law;
+            const auto even = frame_of<float>(calm, queries, 3.0);
+            for (const double strength : {0.6, 1.0}) {
+                Scene scene = calm;
+                scene.sea.gust_strength = strength;
+                const auto gusty = frame_of<float>(scene, queries, 3.0);
+                for (int q = 0; q < static_cast<int>(queries.size()); ++q) {
+                    SCOPED_TRACE(testing::Message() << wind_mps << " m/s, strength " << strength
+                                                    << ", footprint " << footprints_m[q] << " m");
+                    const auto with = sample(gusty, q, points), without = sample(even, q, points);
+                    EXPECT_NEAR(mean_variance(with) / mean_variance(without), 1.0, 0.01);
+                    EXPECT_NEAR(mean_foam(with) / mean_foam(without), 1.0, 0.02);
+                    const auto [least, most] =
+                        std::ranges::minmax(with.vectors(SlopeVariance), {}, &glm::vec3::x);
+                    const auto [even_least, even_most] =
+                        std::ranges::minmax(without.vectors(SlopeVariance), {}, &glm::vec3::x);
+                    EXPECT_GE(least.x, 0.0f);
+                    if (footprints_m[q] > 1000.0) {
+                        EXPECT_EQ(most.x, even_most.x);
+                        EXPECT_EQ(least.x, even_least.x);
+                    } else if (footprints_m[q] < 50.0) {
+                        EXPECT_GT(static_cast<double>(most.x),
+                                  (1.0 + 0.7 * strength) * static_cast<double>(even_least.x));
+                        EXPECT_LT(static_cast<double>(least.x),
+                                  (1.0 - 0.7 * strength) * static_cast<double>(even_most.x));
+                    }
+                }
+            }
+        }
+}
+
+// Where waves are resolved, fewer of them break in a lull: the mean is the same, but for what a finite number of points
+// sees of it.
+TEST(Gusts, BreakMoreWavesAndNoLessFoamOnEach) {
+    const auto points = random_points<float>(20000.0, 200000);
+    for (const double footprint_m : {0.5, 4.0}) {
+        const auto even =
+            sample(frame_of<float>(scene_of(0.0), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
+        const auto gusty =
+            sample(frame_of<float>(scene_of(0.8), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
+        EXPECT_NEAR(mean_foam(gusty) / mean_foam(even), 1.0, 0.05) << footprint_m;
+        EXPECT_NEAR(std::ranges::max(gusty.numbers(Coverage)), std::ranges::max(even.numbers(Coverage)),
+                    0.1f);
+    }
+}
+
+// Along the wind, at the speed that the wind has a little above the water.
+TEST(Gusts, DriftWithTheWind) {
+    Scene scene = scene_of(1.0, 10.0);
+    scene.sea.wind_direction_deg = 60.0;
+    const Query query = filtered(products(Product::SlopeVariance), 40.0);
+    auto frame = frame_of<double>(scene, {query}, 100.0);
+    const auto points = random_points<double>(1000.0, 2000);
+    const auto before = sample(frame, 0, points);
+    const glm::dvec2 way_m = 20.0 * 8.5 * glm::dvec2(0.5, std::sqrt(0.75));
+    std::vector<glm::dvec2> moved;
+    for (const glm::dvec2& at : points) moved.push_back(at + way_m);
+    frame.set(120.0);
+    const auto after = sample(frame, 0, moved), stayed = sample(frame, 0, points);
+    double differs = 0.0, stays = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double was = before.vectors(SlopeVariance)[i].x;
+        differs = std::max(differs, std::abs(after.vectors(SlopeVariance)[i].x / was - 1.0));
+        stays = std::max(stays, std::abs(stayed.vectors(SlopeVariance)[i].x / was - 1.0));
+    }
+    EXPECT_LT(differs, 0.05);  // long waves, which are shown, carry the hidden slopes
+    EXPECT_GT(stays, 0.5);
+}
+
+TEST(Gusts, LoopWithTheShotToTheBit) {
+    Scene scene = scene_of(1.0, 20.0);
+    scene.shot.loop_s = 48.0;
+    scene.sea.gust_size_m = 60.0;
+    auto frame = frame_of<float>(scene, {filtered(kGusty, 1.0)}, 5.0);
+    const auto points = random_points<float>(2000.0, 500);
+    const auto first = sample(frame, 0, points);
+    frame.set(5.0 + 48.0);
+    const auto again = sample(frame, 0, points);
+    frame.set(30.0);
+    const auto between = sample(frame, 0, points);
+    EXPECT_EQ(first.vectors(SlopeVariance), again.vectors(SlopeVariance));
+    EXPECT_EQ(first.numbers(Coverage), again.numbers(Coverage));
+    EXPECT_NE(first.vectors(SlopeVariance), between.vectors(SlopeVariance));
+}
+
+// Far out and late the pattern is as smooth as here.
+TEST(Gusts, AreSmoothAnywhereAndAtAnyTime) {
+    for (const auto& [far_m, t_s] : {std::pair(0.0, 0.0), std::pair(1e8, 1e9), std::pair(-3e8, -1e9)}) {
+        auto frame = frame_of<float>(scene_of(1.0), {filtered(kGusty, 200.0), filtered(kGusty, 20.0)}, t_s);
+        std::vector<glm::vec2> line;
+        for (int i = 0; i < 3000; ++i)
+            line.emplace_back(static_cast<float>(i), 0.25f * static_cast<float>(i));
+        const auto along =
+            sample<float>(frame, 1, line, {.origin_m = {far_m, 0.5 * far_m}, .cell_m = {}, .pixel_m = {}});
+        float least = 1e9f, most = 0.0f, step = 0.0f;
+        for (std::size_t i = 0; i < line.size(); ++i) {
+            const float at = along.vectors(SlopeVariance)[i].x;
+            ASSERT_TRUE(std::isfinite(at));
+            ASSERT_TRUE(std::isfinite(along.numbers(Coverage)[i]));
+            least = std::min(least, at);
+            most = std::max(most, at);
+            if (i > 0) step = std::max(step, std::abs(at - along.vectors(SlopeVariance)[i - 1].x));
+        }
+        EXPECT_GT(most, 3.0f * least);
+        EXPECT_LT(step, 0.15f * most);
+    }
+}
+
+// A point has them whoever is beside it and from whichever origin it is asked; ellipses see less of them along their axis.
+TEST(Gusts, DependOnNothingButThePoint) {
+    Query query = filtered(kGusty | products(Position, Normal), 0.0);
+    query.pixel_m = {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
+    const auto frame = frame_of<float>(scene_of(1.0), {query}, 4.0);
+    const auto points = random_points<float>(400.0, 300);
+    Where<float> where;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        where.pixel_m.push_back(0.4f * std::exp2(static_cast<float>(i % 7)));
+    const auto together = sample(frame, 0, points, where);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto alone = sample<float>(frame, 0, {points[i]},
+                                         {.origin_m = {}, .cell_m = {}, .pixel_m = {where.pixel_m[i]}});
+        ASSERT_EQ(alone.vectors(SlopeVariance)[0], together.vectors(SlopeVariance)[i]) << i;
+        ASSERT_EQ(alone.numbers(Coverage)[0], together.numbers(Coverage)[i]) << i;
+    }
+    const auto range_of = [&](glm::vec2 axis_m) {
+        const std::vector<float> widths(points.size(), 8.0f);
+        const std::vector<glm::vec2> axes(points.size(), axis_m);
+        ProductArrays<float> values;
+        values.resize(kGusty, points.size());
+        Points<float> asked{.count = points.size(), .rest_m = {points.data()}};
+        asked.pixel_m = {widths.data()};
+        asked.pixel_axis_m = {axes.data()};
+        evaluate(frame, 0, asked, values.results());
+        const auto [least, most] = std::ranges::minmax(values.vectors(SlopeVariance), {}, &glm::vec3::x);
+        return most.x / least.x;
+    };
+    EXPECT_GT(range_of({9.0f, 0.0f}), 4.0f);
+    EXPECT_GT(range_of({0.0f, 900.0f}), 1.2f);  // what varies along x alone
+    EXPECT_LT(range_of({0.0f, 900.0f}), 0.7f * range_of({9.0f, 0.0f}));
+}
+
+// Without strength, without wind, and in a cascade's own tile there are none.
+TEST(Gusts, AreNotWhereNobodyAsksForThem) {
+    Scene scene = scene_of(0.0);
+    scene.sea.gust_size_m = 17.0;
+    EXPECT_FALSE(frame_of<float>(scene, {filtered(kGusty, 1.0)}, 0.0).sea().gusts());
+    EXPECT_FALSE(frame_of<float>(scene_of(1.0, 0.0), {filtered(kGusty, 1.0)}, 0.0).sea().gusts());
+    Query tile = filtered(kGusty, 1.0);
+    tile.only_cascade = 1;
+    const auto points = random_points<float>(400.0, 300);
+    const auto gusty = sample(frame_of<float>(scene_of(1.0), {tile}, 2.0), 0, points),
+               even = sample(frame_of<float>(scene_of(0.0), {tile}, 2.0), 0, points);
+    EXPECT_EQ(gusty.vectors(SlopeVariance), even.vectors(SlopeVariance));
+    EXPECT_EQ(gusty.numbers(Coverage), even.numbers(Coverage));
+}
+
+}  // namespace
+}  // namespace pelagic

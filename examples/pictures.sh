@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Renders the five pictures of the README from their shots in examples/pictures, on the CPU. Takes some
-# minutes.
+# Renders the gallery's pictures from their shots in examples/pictures, on the CPU: the README's five, a sheet of foam near
+# and far, and a strip of eight frames a second apart. Takes some minutes.
 #   examples/pictures.sh [DIR]      DIR: the folder for the JPEGs, default examples/gallery
 set -euo pipefail
 if [ "${1:-}" = "--help" ] || [ "${1:-}" = "-h" ]; then
-    sed -n '2,3s/^# //p' "$0"
+    sed -n '2,4s/^# //p' "$0"
     exit 0
 fi
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -16,9 +16,19 @@ build release pelagic >/dev/null
 mkdir -p "$out"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-for shot in noon low-sun overcast storm from-8-km; do
-    "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$shot.toml" --frames 12 --samples 2 --out "$scratch"
+sheet() {  # COLUMNS JPEG PICTURE…
     blender -b --factory-startup --python-exit-code 1 --python "$here/contact-sheet.py" -- \
-        --columns 1 --out "$out/$shot.jpg" "$scratch/$shot.0012.png" >/dev/null
+        --columns "$1" --out "$out/$2" "${@:3}" >/dev/null
+}
+render() {  # SHOT FRAMES
+    "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$1.toml" --frames "$2" --samples 2 --out "$scratch"
+}
+for shot in noon low-sun overcast storm from-8-km; do
+    render $shot 12
+    sheet 1 $shot.jpg "$scratch/$shot.0012.png"
 done
-ls -l "$out"/{noon,low-sun,overcast,storm,from-8-km}.jpg
+for shot in foam-breeze foam-gale foam-storm; do render $shot 1-2; done
+sheet 2 foam.jpg "$scratch"/foam-{breeze,gale,storm}.000{1,2}.png
+render foam-strip 25-193x24
+sheet 4 foam-strip.jpg "$scratch"/foam-strip.*.png
+ls -l "$out"/{noon,low-sun,overcast,storm,from-8-km,foam,foam-strip}.jpg

@@ -98,6 +98,7 @@ int main(int argc, char** argv) {
     const double decay_s = argc > 1 ? std::atof(argv[1]) : 4.0;
     Scene scene;
     scene.sea.wind_speed_mps = 14.0;
+    scene.effects.foam_decay_s = 0.0;
     std::printf("Foam that lives for %g s; wind 14 m/s\n", decay_s);
     bench::mesh(scene, decay_s);
     bench::picture(scene, decay_s);

@@ -23,7 +23,7 @@ from .properties import FIELDS
 from .sea import BuiltSea, Moment
 
 # A change of a key that feeds these is another sea. The rest only looks different; the clock matters to loops.
-SEA_FEEDS = {"waves", "foam", "quality", "surface", "grid"}
+SEA_FEEDS = {"waves", "gusts", "foam", "quality", "surface", "grid"}
 SEA_FIELDS = tuple(place for place, field in enumerate(FIELDS) if SEA_FEEDS & set(field.key["feeds"]))
 CLOCK_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "clock" in field.key["feeds"])
 PLACE = {field.path: place for place, field in enumerate(FIELDS)}
@@ -211,6 +211,11 @@ def _simulation(obj):
     return _simulations.setdefault(obj.name_full, Simulation())
 
 
+def _is_shared(simulation):
+    """Whether another ocean plays the same sea."""
+    return any(other is not simulation and other.sea is simulation.sea for other in _simulations.values())
+
+
 def _driver_of(obj):
     """Of linked duplicates, the ocean that drives their mesh."""
     mesh = obj.original.data
@@ -243,7 +248,8 @@ def _show(obj, bpy_scene, depsgraph, again, wait=False):
     shown = (obj.data.name_full, id(simulation.sea), moment, obj.pelagic.uv_map)
     if shown == simulation.shown and not again:
         return
-    buffers = simulation.buffers(moment, None if wait else PATIENCE_S)
+    # Oceans that share a sea and show different moments of it would take its frame from each other, and none be done.
+    buffers = simulation.buffers(moment, None if wait or _is_shared(simulation) else PATIENCE_S)
     simulation.is_behind = buffers is None
     if simulation.is_behind:
         _look_later()

@@ -244,6 +244,7 @@ def _tend():
         turn_off()
         return None
     if preview.poll() or preview.drawing.has_foam():
+        preview.drawing.awaits_foam = False  # the next picture takes it, whenever a view shows the sea
         _redraw()
     if preview.wants_mesh():
         if preview.hidden_in:

@@ -336,9 +336,9 @@ void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
     std::vector<Tile*> old;
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
     for (const Place& place : places) {
-        std::unique_ptr<Tile>& tile = tiles_[place];
-        if (!tile) tile = std::make_unique<Tile>(place, kept);
-        if (!tile->is_of(time_s_)) old.push_back(tile.get());
+        auto tile = tiles_.find(place);  // made before it is entered: memory may be refused
+        if (tile == tiles_.end()) tile = tiles_.emplace(place, std::make_unique<Tile>(place, kept)).first;
+        if (!tile->second->is_of(time_s_)) old.push_back(tile->second.get());
     }
     if (old.empty()) return;
     advance(old, watch);

@@ -191,7 +191,7 @@ void add_waves(Built& out) {
     add_table<&Scene::waves>(
         out.tables, out.keys, {"waves", "how waves are made from it", {}, {}},
         row<&Waves::model>({.name = "model",
-                            .help = "fft: periodic tiles; trochoid: a sum of wave trains",
+                            .help = "fft: tiles of waves; trochoid: a sum of wave trains",
                             .feeds = kWaves}),
         row<&Waves::choppiness>(
             {.name = "choppiness",
@@ -201,7 +201,7 @@ void add_waves(Built& out) {
              .feeds = kWaves}),
         entries<&Waves::cascades>(
             {.name = "cascades",
-             .help = "the periodic tiles; auto: four, from the spectrum's peak down, and none with trochoid. "
+             .help = "the tiles; auto: four, from the spectrum's peak down, and none with trochoid. "
                      "Their bands depend on the sizes alone; a resolution that leaves a gap is refused",
              .feeds = kWaves,
              .empty_word = "auto",
@@ -209,7 +209,7 @@ void add_waves(Built& out) {
              .are_entries_independent = false,
              .entry_name = "CascadeSize"},
             required<&CascadeSize::size_m>({.name = "size_m",
-                                            .help = "the tile's period; all sizes differ",
+                                            .help = "of the tile; all sizes differ",
                                             .unit = "m",
                                             .range = limits::kCascadeSize_m,
                                             .soft = SoftRange{1.0, 4000.0, true}}),

@@ -19,7 +19,7 @@ class PackedFoam {
     // one's.
     PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m);
 
-    static constexpr int kTilesAcross = 64;     // the texture of nodes
+    static constexpr int kTilesAcross = 256;    // the texture of nodes
     static constexpr int kFarthestTile = 1024;  // of a level, from the centre's: so far out coarser ones do
     static constexpr int kLevelTexels = 2;      // a level's columns in level_texels()
 

@@ -500,10 +500,11 @@ const std::vector<PanelSection>& panel_sections() {
         {"Wind and waves",
          {"sea.wind_speed_mps", "sea.wind_direction_deg", "sea.fetch_m", "sea.depth_m", "sea.spectrum",
           "sea.spreading", "sea.directionality", "sea.gust_strength", "sea.gust_size_m", "waves.choppiness",
-          "shot.seed", "sea.swell"}},
+          "waves.tiling", "shot.seed", "sea.swell"}},
         {"Foam",
          {"effects.whitecaps", "effects.whitecap_law", "effects.sea_minus_air_c", "effects.whitecap_amount",
-          "effects.breaking_from_m", "effects.foam_structure", "effects.foam_streaks"}},
+          "effects.breaking_from_m", "effects.foam_decay_s", "effects.foam_drift", "effects.foam_structure",
+          "effects.foam_streaks"}},
         {"Sun and sky", {"light.sun_elevation_deg", "light.sun_azimuth_deg", "light.turbidity"}},
         {"Water", {"water.type", "water.chlorophyll_mg_m3"}},
         {"Picture", {"surface.cell_px"}}};

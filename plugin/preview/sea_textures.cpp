@@ -86,6 +86,13 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
 void SeaTextures::upload_foam(std::shared_ptr<const PackedFoam> foam) {
     if (!layout_ || !layout_->has_living_foam())
         throw std::invalid_argument("the sea that is shown has no living foam");
+    GLint largest_texture = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest_texture);
+    if (const glm::ivec2 size = foam->nodes_size(); std::max(size.x, size.y) > largest_texture)
+        throw PreviewError("the foam's past needs a texture of " + std::to_string(size.x) + " x " +
+                           std::to_string(size.y) + ", and the driver's largest is " +
+                           std::to_string(largest_texture) +
+                           ": take a smaller picture, or set effects.foam_decay_s to 0");
     if (!foam_textures_) foam_textures_.emplace();
     foam_ = std::move(foam);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);

@@ -532,7 +532,9 @@ class Preview {
             foam_view_.reset();
             if (frame_->packed->layout()->has_living_foam()) foam_worker_.emplace(foam_of_->sea);
         }
-        if (!foam_worker_ || !controls_.draw.lighting.whitecaps || !upload_error_.empty()) return;
+        const bool is_seen =
+            controls_.draw.lighting.whitecaps || controls_.draw.false_colour == FalseColour::Coverage;
+        if (!foam_worker_ || !is_seen || !upload_error_.empty()) return;
         const double time_s = frame_->packed->time_s();
         if (foam_view_ != view || foam_time_s_ != time_s) {
             foam_view_ = view;
@@ -554,6 +556,7 @@ class Preview {
 
     bool is_screenshot_due() {
         if (!options_.screenshot || frame_ == nullptr) return false;
+        if (foam_worker_ && foam_worker_->is_busy()) return false;
         if (pictures_++ == 0) first_picture_ = Clock::now();
         return pictures_ >= options_.screenshot_after;
     }

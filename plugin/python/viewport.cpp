@@ -287,7 +287,10 @@ class GpuSea {
         if (!(std::abs(t_s) <= Frame<float>::kLatest_s))
             throw py::value_error("t: accepted: a time of at most 1e12 s to either side of 0");
         FoamWorker::Grids asked;
-        for (const GpuGrid* grid : grids) asked.push_back(grid->grid);
+        for (const GpuGrid* grid : grids) {
+            if (!grid) throw py::type_error("grids: accepted: a list of GpuGrid");
+            asked.push_back(grid->grid);
+        }
         if (foam_worker_) foam_worker_->ask(t_s, std::move(asked));
     }
     bool is_foam_busy() const { return foam_worker_ && foam_worker_->is_busy(); }
@@ -295,6 +298,8 @@ class GpuSea {
     py::dict take_foam() {
         py::dict made;
         if (!foam_worker_) return made;
+        if (const std::string problem = foam_worker_->error(); !problem.empty())
+            throw std::runtime_error(problem);
         auto foam = foam_worker_->take();
         if (!foam && foam_) return made;
         foam_ = foam ? std::move(foam) : std::make_shared<const PackedFoam>();

@@ -55,6 +55,12 @@ with checking("the defaults are the core's"):
         now, core = (getattr(getattr(each, field.table), field.name) for each in (fresh, default))
         assert now == core, f"{field.path}: {now!r}, {core!r}"
 
+# A property that feeds none of these must be one that the sea takes: otherwise moving it would show nothing.
+ONLY_SHOWN = {"name", "range", "clock", "view", "light", "water", "mesh", "maps", "volumes", "choice"}
+with checking("what feeds the sea makes another one"):
+    for place, field in enumerate(properties.FIELDS):
+        assert set(field.key["feeds"]) <= ONLY_SHOWN or place in play.SEA_FIELDS, field.path
+
 with checking("every property at both ends"):
     tried, refusals = 0, []
     for field in properties.FIELDS:

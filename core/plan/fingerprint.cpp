@@ -38,6 +38,9 @@ std::string plan_text(const Plan& plan, int query_index) {
                        '\n';
     if (query.products[index(Product::Coverage)])
         text += "third " + std::to_string(plan.knobs.third_moment) + '\n';
+    // The history has grids of its own, which aren't in this plan.
+    if (query.products[index(Product::Coverage)] && plan.foam && !query.only_cascade)
+        text += "history, oversampling " + number_text(plan.knobs.oversampling) + '\n';
     const std::string spline = " spline of " + std::to_string(plan.knobs.spline_taps) + '\n';
     if (plan.trains && !query.only_cascade)
         text += "trains " + std::to_string(plan.trains->count) + ' ' + number_text(plan.trains->longest_m) +

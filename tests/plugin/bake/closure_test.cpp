@@ -156,6 +156,8 @@ constexpr auto kExcuses = std::to_array<Excuse>({
     {"waves.cascades", "mesh", "modes that are finer than the mesh"},
     {"effects.foam_drift", "mesh", "foam that doesn't live doesn't drift"},
     {"effects.sea_minus_air_c", "mesh", "Monahan's law of 1980 doesn't know it"},
+    {"quality.level", "mesh", "foam's history that sees trains alone"},
+    {"quality.level", "whitecaps", "foam's history that sees trains alone"},
     {"quality.level", "slope-variance", "double precision, rounded to single"},
     {"output.attributes", "mesh", "a list in another order is another value"},
 });

@@ -41,8 +41,11 @@ class CopyPlaces {
         if (is_known_) return;
         is_known_ = true;
         const ChunkSpan<T> span = kernels.span_of(chunk);
+        bool is_known_place = span.is_finite;
         const auto place = [&](const CopyPlace& from, T rest_m) {
-            return copy_place(from.from_middle + static_cast<double>(rest_m) * origin.cells_per_m);
+            const double cells = from.from_middle + static_cast<double>(rest_m) * origin.cells_per_m;
+            is_known_place = is_known_place && std::abs(cells) < kFarthestCell;
+            return copy_place(cells);
         };
         const CopyPlace x0 = place(origin.x, span.low_x), x1 = place(origin.x, span.high_x);
         const CopyPlace y0 = place(origin.y, span.low_y), y1 = place(origin.y, span.high_y);
@@ -50,7 +53,7 @@ class CopyPlaces {
         const auto plain = [&](const CopyPlace& low, const CopyPlace& high) {
             return low.cell == high.cell && low.from_middle > -kInside && high.from_middle < kInside;
         };
-        is_one_ = plain(x0, x1) && plain(y0, y1);
+        is_one_ = is_known_place && plain(x0, x1) && plain(y0, y1);
         if (is_one_) {
             offset_ = origin.offset(x0.cell, y0.cell);
             return;

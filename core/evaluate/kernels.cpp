@@ -95,7 +95,7 @@ void PlaceCopies(const CopyAxisArgs& args, const T* rest_m, std::size_t count, C
     const hn::Rebind<T, Wide> narrow;
     const hn::Rebind<hwy::MakeSigned<T>, Wide> index;
     const auto scale = hn::Set(dd, args.cells_per_m), origin = hn::Set(dd, args.origin_from_middle);
-    const auto half = hn::Set(dd, 0.5), most = hn::Set(dd, 0x1p28);
+    const auto half = hn::Set(dd, 0.5), most = hn::Set(dd, kFarthestCell);
     for (std::size_t i = 0; i < count; i += hn::Lanes(dd)) {
         auto cells = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
         cells = hn::IfThenElseZero(hn::Lt(hn::Abs(cells), most), cells);  // no number, or no place
@@ -125,25 +125,30 @@ template <class T>
 ChunkSpan<T> SpanOf(const Chunk<T>& chunk) {
     const hn::ScalableTag<T> d;
     const std::size_t lanes = hn::Lanes(d);
+    ChunkSpan<T> span;
     const auto along = [&](const T* at, T& low, T& high) HWY_ATTR {
         low = high = at[0];
+        T none = T(0);  // no number as soon as one isn't, or is infinite
         std::size_t i = 0;
         if (chunk.count >= lanes) {
-            auto least = hn::LoadU(d, at), most = least;
+            auto least = hn::LoadU(d, at), most = least, nones = hn::Mul(least, hn::Zero(d));
             for (i = lanes; i + lanes <= chunk.count; i += lanes) {
                 const auto here = hn::LoadU(d, at + i);
                 least = hn::Min(least, here);
                 most = hn::Max(most, here);
+                nones = hn::MulAdd(here, hn::Zero(d), nones);
             }
+            none = hn::GetLane(hn::SumOfLanes(d, nones));
             low = hn::GetLane(hn::MinOfLanes(d, least));
             high = hn::GetLane(hn::MaxOfLanes(d, most));
         }
         for (; i < chunk.count; ++i) {
             low = std::min(low, at[i]);
             high = std::max(high, at[i]);
+            none += at[i] * T(0);
         }
+        span.is_finite = span.is_finite && none == T(0);
     };
-    ChunkSpan<T> span;
     along(chunk.rest_x.data(), span.low_x, span.high_x);
     along(chunk.rest_y.data(), span.low_y, span.high_y);
     return span;

@@ -37,10 +37,11 @@ const T* weight_of(const GridArgs<T>& args, std::size_t field) {
     return args.cell_group[field] ? args.cell_weight : args.pixel_weight;
 }
 
-// The least and the greatest of a chunk's coordinates.
+// The least and the greatest of a chunk's coordinates, where all of them are finite.
 template <class T>
 struct ChunkSpan {
     T low_x, high_x, low_y, high_y;
+    bool is_finite = true;
 };
 
 // Along an axis, which of a cascade's copies a chunk's points show (core/plan/copies.h), and their CopyWeights.

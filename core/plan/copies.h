@@ -10,7 +10,7 @@
 // out to 0.5 − 0.5 kCopyRamp of L, is the tile as it is.
 //
 // The weights' gradient belongs to what is derived from the sum: ηx = Σ w ηx_c + wx η_c, and likewise Dxx; Dxy = Σ w Dxy_c + wy Dx_c and
-// Dyx = Σ w Dxy_c + wx Dy_c differ. It adds the variance E[|∇w|²] Var η to the slopes', kCopySlope Var η/L² along each
+// Dyx = Σ w Dxy_c + wx Dy_c differ. It adds the variance E[|∇w|²] Var η to the slopes', kCopySlopes Var η/L² along each
 // axis.
 #pragma once
 
@@ -32,6 +32,9 @@ inline constexpr double kPlainHalf = 0.5 - 0.5 * kCopyRamp;
 inline constexpr double kCopySlopes = 3.0383937607 / kCopyRamp;
 
 // Below 2²⁰.
+// Along an axis from the points' origin, in cells: what lies further, or is no number, is shown the origin's cell.
+inline constexpr double kFarthestCell = 0x1p28;
+
 inline uint copies_key(std::uint64_t seed, int cascade) {
     const CopyBits low =
         copy_bits(static_cast<uint>(seed), static_cast<uint>(seed >> 32), static_cast<uint>(cascade));

@@ -10,6 +10,9 @@ inline constexpr double kEighthTurnTangent = 0.41421356237309504880;  // tan(π/
 // sums are modulo 2³².
 struct CopyBits {
     uint x, y;
+#ifdef __cplusplus  // GLSL has them by itself, and clang 14 not yet
+    CopyBits(uint x_, uint y_) : x(x_), y(y_) {}
+#endif
 };
 inline CopyBits copy_bits(uint key, uint i, uint j) {
     uint x = key * 1664525u + 1013904223u;
@@ -31,6 +34,9 @@ inline CopyBits copy_bits(uint key, uint i, uint j) {
 template <class T>
 struct CopyOffset {
     T x, y;
+#ifdef __cplusplus
+    CopyOffset(T x_, T y_) : x(x_), y(y_) {}
+#endif
 };
 template <class T>
 inline CopyOffset<T> copy_offset(uint key, uint i, uint j) {
@@ -44,6 +50,9 @@ inline CopyOffset<T> copy_offset(uint key, uint i, uint j) {
 template <class T>
 struct CopyWeights {
     T own, next, rate;
+#ifdef __cplusplus
+    CopyWeights(T own_, T next_, T rate_) : own(own_), next(next_), rate(rate_) {}
+#endif
 };
 
 // `middle`: the distance from the middle of the point's own cell, in cells, 0 … ½. The weights are (cos θ, sin θ), θ from 0 to

@@ -53,7 +53,10 @@ std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m) {
     foam.drift_mps =
         effects.foam_drift * scene.sea.wind_speed_mps * glm::dvec2(std::cos(towards), std::sin(towards));
     foam.loop_s = scene.shot.sea_loop_s();
-    if (foam.loop_s > 0.0) foam.step_s = foam.loop_s / std::ceil(foam.loop_s / foam.step_s);
+    if (foam.loop_s > foam.step_s)
+        foam.step_s = foam.loop_s / std::ceil(foam.loop_s / foam.step_s);
+    else if (foam.loop_s > 0.0)  // whole loops: each interval sees the same of them
+        foam.step_s = foam.loop_s * std::round(foam.step_s / foam.loop_s);
     return foam;
 }
 

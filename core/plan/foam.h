@@ -20,10 +20,11 @@ namespace pelagic {
 struct FoamPlan {
     double decay_s = 0.0;       // e-folding time
     glm::dvec2 drift_mps{0.0};  // of the foam over the water at rest
-    double step_s = 0.0;        // of the lattice of times; a whole number of steps makes a loop
-    double window_s = 0.0;      // nothing older counts
-    double cell_m = 0.0;        // of the finest level; each further one has cells twice as large
-    double loop_s = 0.0;        // of the sea; 0: none
+    double step_s =
+        0.0;  // of the lattice of times; a whole number of steps makes a loop, or of very short loops a step
+    double window_s = 0.0;  // nothing older counts
+    double cell_m = 0.0;    // of the finest level; each further one has cells twice as large
+    double loop_s = 0.0;    // of the sea; 0: none
 
     // Levels with cells; beyond the last, foam is the sea's mean.
     static constexpr int kLevels = 8;

@@ -92,20 +92,19 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
     if (!std::isfinite(threshold)) return gusts;
     const double mean = balance.coverage_at(threshold);
     const auto coverage_at = [&](double at) { return balance.coverage_at(at); };
+    const double highest = balance.highest_threshold(), most = std::min(kMostCoverage, coverage_at(highest));
     // Scaled so that the mean over the whole pattern is the sea's; nowhere more than there may be.
     const auto cubed = [&](double level) { return std::pow(1.0 + plan.strength * level, 3.0); };
     const auto whole = likely_values(shown_amplitudes(plan, 0.0));
     constexpr double kMostScale = 100.0;
     const double scale = solve(0.0, kMostScale, mean, [&](double by) {
-        return mean_of(whole,
-                       [&](double value) { return std::min(by * cubed(level_of(value)), kMostCoverage); });
+        return mean_of(whole, [&](double value) { return std::min(by * cubed(level_of(value)), most); });
     });
 
     std::array<double, Gusts::kLevelTerms> level{}, at_level{};
     for (std::size_t i = 0; i < level.size(); ++i) {
         level[i] = std::cos(kPi * (static_cast<double>(i) + 0.5) / Gusts::kLevelTerms);  // Chebyshev's nodes
-        at_level[i] =
-            solve(0.0, kHighestThreshold, std::min(scale * cubed(level[i]), kMostCoverage), coverage_at);
+        at_level[i] = solve(0.0, highest, std::min(scale * cubed(level[i]), most), coverage_at);
     }
     gusts.of_level = polynomial(level, at_level);
 

@@ -137,7 +137,10 @@ void Sea<T>::calibrate_whitecaps() {
         residual_coverage_ = residual_foam(left_coverage_, coverage(j, whitecap_threshold_, third));
     }
     if (plan_.gusts)
-        gusts_ = make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third}, whitecap_threshold_);
+        gusts_ =
+            make_gusts(*plan_.gusts,
+                       {.j = j, .left = left, .third_moment = third, .choppiness = plan_.breaking.choppiness},
+                       whitecap_threshold_);
 }
 
 template <class T>

@@ -98,11 +98,11 @@ struct FoamBalance {
     JacobianMoments<double> j{};
     double left = 0.0;  // as whole_coverage() has it
     bool third_moment = true;
+    double choppiness = 1.0;  // of the waves that break (Breaking)
+    // Below 1: water that isn't pressed together has no foam.
+    double highest_threshold() const { return 1.0 - 0.01 * std::min(choppiness, 1.0); }
     double coverage_at(double threshold) const { return whole_coverage(j, threshold, third_moment, left); }
 };
-
-// Below 1: water that isn't pressed together has no foam.
-inline constexpr double kHighestThreshold = 0.99;
 
 // The threshold ε, below 1, at which the waves that break have that coverage, where the law is within reach: a trochoid
 // pressed together to J = 0.9 has a steepness of 0.1, and none breaks below that (more choppiness than the trochoid's own

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 
 #include "core/evaluate/bounds.h"
 #include "tests/core/waves/samples.h"
@@ -198,6 +199,28 @@ TEST(CopiesOfTiles, AnswerEachPointAloneToTheBit) {
                 << i;
         ASSERT_EQ(one.numbers(Coverage)[0], all.numbers(Coverage)[i]) << i;
     }
+}
+
+// A place that is no number, or infinite, leaves the points beside it alone, wherever among them it stands.
+TEST(CopiesOfTiles, AnswerBesideWhatIsNoNumber) {
+    const auto frame = frame_of<float>(copied_sea(), {unfiltered(products(Position))}, 2.5);
+    const auto heights_of = [&](const std::vector<glm::vec2>& rest) {
+        return sample(frame, 0, rest, {.origin_m = {}, .cell_m = {}, .pixel_m = {}}).vectors(Position);
+    };
+    std::vector<glm::vec2> good(40, glm::vec2(100.0f, -140.0f));
+    for (std::size_t i = 0; i < good.size(); ++i) good[i].x += 0.05f * static_cast<float>(i);
+    const auto expected = heights_of(good);
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                    kInf = std::numeric_limits<float>::infinity();
+    for (const float odd : {kNan, kInf, -kInf})
+        for (const std::size_t at : {std::size_t(0), good.size() / 2, good.size()}) {
+            auto rest = good;
+            rest.insert(rest.begin() + static_cast<std::ptrdiff_t>(at), glm::vec2(odd));
+            auto heights = heights_of(rest);
+            heights.erase(heights.begin() + static_cast<std::ptrdiff_t>(at));
+            for (std::size_t i = 0; i < good.size(); ++i)
+                ASSERT_EQ(heights[i], expected[i]) << odd << ' ' << at;
+        }
 }
 
 // An ellipse is the mean of its taps, each of which shows the copies of its own place.

@@ -154,6 +154,7 @@ constexpr auto kExcuses = std::to_array<Excuse>({
     {"sea.spectrum", "mesh", "TMA is JONSWAP where the water is deep"},
     {"sea.swell", "mesh", "a swell without height"},
     {"waves.cascades", "mesh", "modes that are finer than the mesh"},
+    {"waves.tiling", "mesh", "cascades that are finer than the mesh"},
     {"effects.foam_drift", "mesh", "foam that doesn't live doesn't drift"},
     {"effects.sea_minus_air_c", "mesh", "Monahan's law of 1980 doesn't know it"},
     {"quality.level", "mesh", "foam's history that sees trains alone"},

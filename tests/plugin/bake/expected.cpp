@@ -6,9 +6,11 @@
 #include <exception>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <span>
 #include <stdexcept>
 
+#include "core/effects/foam_history.h"
 #include "core/evaluate/evaluate.h"
 #include "core/surface/patch.h"
 #include "plugin/light/light.h"
@@ -32,7 +34,8 @@ std::string json_array(const float* values, std::size_t count) {
 
 void write_expected(const std::string& shot_file, const std::string& file) {
     const Scene scene = load_shot(shot_file, check_scene);
-    Frame<float> frame(std::make_shared<const Sea<float>>(plan_bake(scene)));
+    const auto sea = std::make_shared<const Sea<float>>(plan_bake(scene));
+    Frame<float> frame(sea);
     const int quads = scene.surface.resolution;
     const auto rest = rest_points<float>({.per_side = quads + 1,
                                           .spacing_m = scene.surface.size_m / quads,
@@ -40,6 +43,8 @@ void write_expected(const std::string& shot_file, const std::string& file) {
     std::vector<glm::vec3> position(rest.size()), normal(rest.size()), velocity(rest.size()),
         variance(rest.size());
     std::vector<float> whitecaps(rest.size());
+    std::optional<FoamHistory<float>> history;
+    if (sea->plan().foam) history.emplace(sea);
     std::string frames;
     for (int f = scene.shot.first_frame; f <= scene.shot.last_frame; ++f) {
         frame.set(scene.shot.time_s(f));
@@ -49,7 +54,12 @@ void write_expected(const std::string& shot_file, const std::string& file) {
         results.set(Product::Velocity, {velocity.data()});
         results.set(Product::SlopeVariance, {variance.data()});
         results.set(Product::Coverage, {whitecaps.data()});
-        evaluate(frame, 0, Points<float>{.count = rest.size(), .rest_m = {rest.data()}}, results);
+        const Points<float> points{.count = rest.size(), .rest_m = {rest.data()}};
+        evaluate(frame, 0, points, results);
+        if (history) {
+            history->set(frame.time_s());
+            history->add(points, 0, {.coverage = {whitecaps.data()}});
+        }
         const auto vectors = [&](const std::vector<glm::vec3>& v) {
             return json_array(&v[0].x, 3 * v.size());
         };

@@ -68,7 +68,7 @@ class Explain : public ::testing::Test {
 };
 
 const char* const kOneCascade =
-    "[waves]\ncascades = [ { size_m = 40.0, resolution = 32 } ]\n[surface]\nsize_m = 40\nresolution = 32\n";
+    "[effects]\nfoam_decay_s = 0\n[waves]\ntiling = \"periodic\"\ncascades = [ { size_m = 40.0, resolution = 32 } ]\n[surface]\nsize_m = 40\nresolution = 32\n";
 
 TEST_F(Explain, GivesEachOutputAndEffectAPrice) {
     const auto rows = prices(std::string(kOneCascade) +

@@ -169,7 +169,9 @@ TEST_F(Memory, APreviewOfAStormIsBounded) {
     const Peak peak =
         peak_of({"preview", shot, "--offscreen", folder() / "out.png", "--frame", "1", "--size", "640x360"});
     EXPECT_EQ(peak.status, 0);
-    EXPECT_LT(peak.kib, 2300000);
+    // Copies at random offsets take a first tile of sixteen waves instead of ten, and heights and displacements beside the
+    // slopes: 2.2 GB without them. In software, textures are in the program's memory.
+    EXPECT_LT(peak.kib, 3600000);
 }
 
 }  // namespace

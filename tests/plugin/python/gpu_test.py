@@ -32,7 +32,7 @@ class Seas(unittest.TestCase):
         sea.set(1.5)
         textures = {name: texels.copy() for name, texels in sea.textures.items()}
         self.assertEqual({name: texels.shape[2] for name, texels in textures.items()},
-                         {"cell_fields": 4, "pixel_fields": 4, "pixel_fields_2": 1, "ellipse_table": 4})
+                         {"cell_fields": 4, "pixel_fields": 4, "pixel_fields_2": 4, "ellipse_table": 4})
         sea.set(2.5)
         self.assertFalse(np.array_equal(sea.textures["cell_fields"], textures["cell_fields"]))
         sea.set(1.5)

@@ -53,7 +53,8 @@ TEST(Gusts, ChangeNoMean) {
                                                     << ", footprint " << footprints_m[q] << " m");
                     const auto with = sample(gusty, q, points), without = sample(even, q, points);
                     EXPECT_NEAR(mean_variance(with) / mean_variance(without), 1.0, 0.01);
-                    EXPECT_NEAR(mean_foam(with) / mean_foam(without), 1.0, 0.02);
+                    // In a hurricane gusts reach the most foam that there can be: a kink, which the polynomial rounds.
+                    EXPECT_NEAR(mean_foam(with) / mean_foam(without), 1.0, wind_mps < 30.0 ? 0.02 : 0.03);
                     const auto [least, most] =
                         std::ranges::minmax(with.vectors(SlopeVariance), {}, &glm::vec3::x);
                     const auto [even_least, even_most] =

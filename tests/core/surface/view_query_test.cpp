@@ -128,6 +128,7 @@ TEST(ViewQuery, OnARungAnswersAsAPlanOfThatFootprintAlone) {
 // A camera shifted by whole periods of every tile sees the same sea, up to rounding, even 1e6 m away.
 TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
     Scene scene = scene_of_two_tiles();
+    scene.waves.tiling = Tiling::Periodic;
     const auto seen = [&](glm::dvec3 shift_m) {
         Scene moved = scene;
         moved.camera.position_m += shift_m;

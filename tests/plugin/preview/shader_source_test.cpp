@@ -50,7 +50,7 @@ TEST(GlslOfInl, KeepsEachLineOfEachFile) {
             << file.path;
         EXPECT_TRUE(std::all_of(glsl.begin(), glsl.end(), [](char c) { return c >= 0; })) << file.path;
     }
-    EXPECT_EQ(found, 10);
+    EXPECT_EQ(found, 11);
 }
 
 TEST(ShaderFiles, AreFoundByPathOrMissedByName) {

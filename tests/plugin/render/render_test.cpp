@@ -189,6 +189,8 @@ TEST(Render, AgitatedSeaHasNoHoles) {
 TEST(Render, FarFromTheOriginThePictureIsTheSame) {
     Scene scene = small_scene();
     scene.waves.cascades = {{.size_m = 200.0, .resolution = 128}, {.size_m = 50.0, .resolution = 128}};
+    scene.waves.tiling = Tiling::Periodic;
+    scene.effects.foam_decay_s = 0.0;  // its cells don't repeat with the tiles
     scene.effects.foam_structure =
         0.0;  // a pattern that doesn't repeat with the tiles; FoamStructure.StaysWithTheWater
     for (const double height_m : {1.5, 40.0}) {

@@ -31,8 +31,9 @@ BareFftw::BareFftw(int n, int fields)
     : n_(n),
       fields_(fields),
       slot_(2 * static_cast<std::size_t>(n) * (static_cast<std::size_t>(n) + 3 * kPadding)),
-      from_(slot_ * fields / 2),
-      to_(slot_ * fields / 2) {
+      // Of an odd number of fields the last has a complex transform to itself.
+      from_(slot_ * static_cast<std::size_t>((fields + 1) / 2)),
+      to_(slot_ * static_cast<std::size_t>((fields + 1) / 2)) {
     static const Initialised once;
 }
 
@@ -76,7 +77,7 @@ void BareFftw::run(const Planned& p) {
         for (int field = 0; field < fields_; field += step) transform(field);
     } else {
         tbb::parallel_for(
-            tbb::blocked_range<int>(0, fields_ / step, 1),
+            tbb::blocked_range<int>(0, (fields_ + step - 1) / step, 1),
             [&](const tbb::blocked_range<int>& range) {
                 for (int i = range.begin(); i < range.end(); ++i) transform(i * step);
             },

@@ -33,13 +33,6 @@ struct CopyOrigin {
     }
 };
 
-// Points one after another that show the same copies.
-struct CopyStretch {
-    std::size_t first, end;
-    std::int64_t cell_x, cell_y;  // counted from the origin's
-    int side_x, side_y;           // as CopyAxis's
-};
-
 // Which copies a chunk's points show. Found when it is first asked for.
 template <class T>
 class CopyPlaces {
@@ -79,7 +72,11 @@ class CopyPlaces {
     // Each point's, otherwise.
     const CopyAxis<T>& x() const { return x_; }
     const CopyAxis<T>& y() const { return y_; }
-    std::span<const CopyStretch> stretches() const { return {stretches_.data(), stretch_count_}; }
+    // Points one after another that show the same copies.
+    struct Stretch {
+        std::uint16_t first, end;
+    };
+    std::span<const Stretch> stretches() const { return {stretches_.data(), stretch_count_}; }
 
   private:
     void find_stretches(std::size_t count) {
@@ -88,19 +85,15 @@ class CopyPlaces {
             const auto code_x = x_.code[first], code_y = y_.code[first];
             end = first + 1;
             while (end < count && x_.code[end] == code_x && y_.code[end] == code_y) ++end;
-            stretches_[stretch_count_++] = {first,
-                                            end,
-                                            CopyAxis<T>::cell_of(code_x),
-                                            CopyAxis<T>::cell_of(code_y),
-                                            CopyAxis<T>::side_of(code_x),
-                                            CopyAxis<T>::side_of(code_y)};
+            stretches_[stretch_count_++] = {static_cast<std::uint16_t>(first),
+                                            static_cast<std::uint16_t>(end)};
         }
     }
 
     bool is_known_ = false, is_one_ = false;
     CopyOffset<double> offset_{0.0, 0.0};
     CopyAxis<T> x_, y_;
-    std::array<CopyStretch, Chunk<T>::kPoints> stretches_;
+    std::array<Stretch, Chunk<T>::kPoints> stretches_;
     std::size_t stretch_count_ = 0;
 };
 
@@ -143,19 +136,22 @@ class CopyReader {
     void find(const GridArgs<T>& grid, const CopyOrigin& origin, const CopyPlaces<T>& places, bool next_x,
               bool next_y) {
         range_count_ = 0;
-        for (const CopyStretch& stretch : places.stretches()) {
-            if ((next_x && stretch.side_x == 0) || (next_y && stretch.side_y == 0)) continue;
-            const CopyOffset<double> offset = origin.offset(stretch.cell_x + (next_x ? stretch.side_x : 0),
-                                                            stretch.cell_y + (next_y ? stretch.side_y : 0));
-            std::fill(nodes_x_.begin() + stretch.first, nodes_x_.begin() + stretch.end,
+        for (const auto [first, end] : places.stretches()) {
+            const auto code_x = places.x().code[first], code_y = places.y().code[first];
+            const int side_x = CopyAxis<T>::side_of(code_x), side_y = CopyAxis<T>::side_of(code_y);
+            if ((next_x && side_x == 0) || (next_y && side_y == 0)) continue;
+            const CopyOffset<double> offset =
+                origin.offset(CopyAxis<T>::cell_of(code_x) + (next_x ? side_x : 0),
+                              CopyAxis<T>::cell_of(code_y) + (next_y ? side_y : 0));
+            std::fill(nodes_x_.begin() + first, nodes_x_.begin() + end,
                       grid.origin_nodes_x + offset.x * grid.n);
-            std::fill(nodes_y_.begin() + stretch.first, nodes_y_.begin() + stretch.end,
+            std::fill(nodes_y_.begin() + first, nodes_y_.begin() + end,
                       grid.origin_nodes_y + offset.y * grid.n);
             if (!of_cells_ && !of_pixels_) {
-                take({stretch.first, stretch.end});
+                take({first, end});
                 continue;
             }
-            for (std::size_t i = stretch.first; i < stretch.end; ++i)
+            for (std::size_t i = first; i < end; ++i)
                 if (counts(i)) take({i, i + 1});
         }
     }
@@ -173,7 +169,7 @@ class CopyReader {
     }
 
     const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
-    alignas(64) std::array<double, Chunk<T>::kPoints + Chunk<T>::kLongestVector> nodes_x_{}, nodes_y_{};
+    alignas(64) std::array<double, Chunk<T>::kPoints + Chunk<T>::kLongestVector> nodes_x_, nodes_y_;
     std::array<PointRange, Chunk<T>::kPoints> ranges_;
     std::size_t range_count_ = 0;
 };

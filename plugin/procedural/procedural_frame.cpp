@@ -1,0 +1,193 @@
+#include "plugin/procedural/procedural_frame.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "core/plan/grid_layout.h"
+#include "core/scene/text.h"
+#include "core/surface/rungs.h"
+#include "core/surface/view.h"
+
+namespace pelagic::procedural {
+namespace {
+
+constexpr ProductSet kProducts = products(Product::Position, Product::Normal, Product::Velocity,
+                                          Product::SlopeVariance, Product::Coverage);
+
+Plan plan_of(const Scene& scene, const SeaOptions& options) {
+    auto prepared = prepare(scene);
+    double cell_m = options.finest_cell_m, pixel_m = options.finest_pixel_m;
+    if (!(cell_m > 0.0) || !(pixel_m > 0.0)) {
+        const ProjectedGridOptions grid = projected_grid_options(*prepared);
+        ProjectedGridNeeds needs;
+        bool is_first = true;
+        for (const int frame : representative_frames(scene, 16)) {
+            const ProjectedGridNeeds own = projected_grid_needs(view_at(scene.camera, frame), grid);
+            needs = is_first ? own : together(needs, own);
+            is_first = false;
+        }
+        if (!(cell_m > 0.0)) cell_m = needs.finest_cell_m;
+        if (!(pixel_m > 0.0)) pixel_m = needs.finest_pixel_m;
+    }
+    Query query = view_query(*prepared, {.products = kProducts,
+                                         .finest_cell_m = cell_m,
+                                         .finest_pixel_m = std::min(cell_m, pixel_m),
+                                         .points = Chunk<float>::kPoints});
+    return make_plan(std::move(prepared), {query}, {.double_precision = false});
+}
+
+// The most that a field's sum can be, everywhere: splines stay within their coefficients, and the weights of the copies at a
+// point add up to 2 at most (core/plan/copies.h).
+double most_of(const Frame<float>& frame, Field field) {
+    const Plan& plan = frame.sea().plan();
+    double most = 0.0;
+    for (std::size_t c = 0; c < plan.cascades.size(); ++c) {
+        double of_cascade = 0.0;
+        for (std::size_t g = 0; g < plan.cascades[c].grids.size(); ++g) {
+            const int n = plan.cascades[c].grids[g].resolution;
+            const float* samples = frame.samples(static_cast<int>(c), static_cast<int>(g), field);
+            if (!samples) continue;
+            for (int y = 0; y < n; ++y)
+                for (int x = 0; x < n; ++x)
+                    of_cascade = std::max(
+                        of_cascade, std::abs(static_cast<double>(
+                                        samples[static_cast<std::size_t>(y) * line_stride<float>(n) +
+                                                static_cast<std::size_t>(x)])));
+        }
+        most += (plan.cascades[c].has_copies ? 2.0 : 1.0) * of_cascade;
+    }
+    if (plan.trains)
+        for (const float amplitude : frame.sea().trains().amplitude[index(field)])
+            most += std::abs(static_cast<double>(amplitude));
+    constexpr double kRounding = 1e-4;  // of hundreds of sums in single precision
+    return (1.0 + kRounding) * most;
+}
+
+constexpr double kFinestRung_m = 0x1p-20;  // of a query that filters nothing
+
+}  // namespace
+
+ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
+    : scene(std::move(from)),
+      arena(options.threads > 0 ? std::make_unique<tbb::task_arena>(options.threads)
+                                : std::make_unique<tbb::task_arena>()) {
+    arena->execute(
+        [&] { sea = std::make_shared<const Sea<float>>(plan_of(scene, options), watch); });
+}
+
+ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
+    : of_(std::move(of)), frame_(of_->sea) {
+    set(open_s, close_s);
+}
+
+void ShotFrame::set(double open_s, double close_s) {
+    const auto accepts = [](double t_s) { return std::abs(t_s) <= Frame<float>::kLatest_s; };
+    if (!accepts(open_s) || !accepts(close_s) || !(open_s <= close_s))
+        throw std::invalid_argument("a shutter from " + number_text(open_s) + " s to " + number_text(close_s) +
+                                    " s: accepted: times within " + number_text(Frame<float>::kLatest_s) +
+                                    " s, in order");
+    of_->arena->execute([&] {
+        frame_.set(0.5 * (open_s + close_s));
+        if (query_)
+            query_->refresh();
+        else
+            query_.emplace(frame_, 0, kProducts);
+        half_open_s_ = 0.5 * (close_s - open_s);
+        fastest_mps_ = glm::dvec3(0.0);
+        bounds_.clear();
+        if (half_open_s_ == 0.0) return;
+        constexpr std::array kVelocities{Field::VelocityX, Field::VelocityY, Field::VelocityZ};
+        tbb::parallel_for(0, 3, [&](int axis) { fastest_mps_[axis] = most_of(frame_, kVelocities[axis]); });
+    });
+}
+
+const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
+    const std::lock_guard<std::mutex> lock(bounds_lock_);
+    auto& bounds = bounds_[rung_m];
+    // A thread that waits for its own loop takes up none of another caller's work, which might want the lock.
+    if (!bounds)
+        tbb::this_task_arena::isolate([&] {
+            bounds = std::make_unique<const FrameBounds<float>>(
+                frame_, 0, FootprintRange{.finest_m = rung_m, .coarsest_m = 2.0 * rung_m});
+        });
+    return *bounds;
+}
+
+// Rung by rung: what all footprints of a wide range have in common is a loose bound of each.
+template <class Bound>
+DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& bound) const {
+    const double finest_m = std::max(cells.finest_m, of_->query().cell_m.front());
+    double rung_m = rung_below_m(finest_m > 0.0 ? finest_m : kFinestRung_m);
+    DisplacementBounds all = bound(bounds_from(rung_m));
+    // Where a footprint hides all waves, nothing moves, and larger ones change nothing.
+    const auto moves = [](const DisplacementBounds& b) { return b.z.hi > b.z.lo; };
+    for (bool goes_on = moves(all); goes_on && 2.0 * rung_m < cells.coarsest_m;) {
+        const DisplacementBounds here = bound(bounds_from(rung_m *= 2.0));
+        goes_on = moves(here);
+        for (const auto axis : {&DisplacementBounds::z, &DisplacementBounds::dx, &DisplacementBounds::dy}) {
+            (all.*axis).lo = std::min((all.*axis).lo, (here.*axis).lo);
+            (all.*axis).hi = std::max((all.*axis).hi, (here.*axis).hi);
+        }
+    }
+    return all;
+}
+
+std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, FootprintRange cells) const {
+    constexpr int kBlocks = 64;
+    if (!(cells.finest_m >= 0.0) || !(cells.coarsest_m >= cells.finest_m))
+        throw std::invalid_argument("region.finest_cell_m, coarsest_cell_m: accepted: 0 or more, in order");
+    const DisplacementBounds moved =
+        over_rungs(cells, [&](const FrameBounds<float>& of) { return of.region(region, kBlocks); });
+    const glm::dvec3 by_m = half_open_s_ * fastest_mps_;
+    return {glm::dvec3(region.min_m, 0.0) + glm::dvec3(moved.dx.lo, moved.dy.lo, moved.z.lo) - by_m,
+            glm::dvec3(region.max_m, 0.0) + glm::dvec3(moved.dx.hi, moved.dy.hi, moved.z.hi) + by_m};
+}
+
+SurfaceBounds ShotFrame::everywhere() const {
+    const DisplacementBounds moved =
+        over_rungs({.finest_m = 0.0, .coarsest_m = std::numeric_limits<double>::infinity()},
+                   [](const FrameBounds<float>& of) { return of.everywhere(); });
+    const glm::dvec3 by_m = half_open_s_ * fastest_mps_;
+    const glm::dvec2 reach_m = moved.reach_m() + glm::dvec2(by_m);
+    return {.height_m = std::max(-moved.z.lo, moved.z.hi) + by_m.z, .reach_m = glm::length(reach_m)};
+}
+
+void ShotFrame::evaluate(const TimedPoints& timed, const Results<float>& results) const {
+    constexpr std::size_t kPoints = Chunk<float>::kPoints;
+    const bool moves = timed.time_s && results.holds(Product::Position);
+    std::array<glm::vec3, kPoints> velocity;
+    for (std::size_t first = 0; first < timed.points.count; first += kPoints) {
+        Points<float> points = timed.points;
+        points.count = std::min(kPoints, points.count - first);
+        points.rest_m.data = &points.rest_m[first];
+        if (points.cell_m) points.cell_m.data = &points.cell_m[first];
+        if (points.pixel_m) points.pixel_m.data = &points.pixel_m[first];
+        Results<float> here = results.from_point(first);
+        const bool has_velocity = results.holds(Product::Velocity);
+        if (moves && !has_velocity) here.set(Product::Velocity, {velocity.data()});
+        query_->evaluate(points, here);
+        if (!moves) continue;
+        const auto position = here.vectors(Product::Position), fast = here.vectors(Product::Velocity);
+        for (std::size_t i = 0; i < points.count; ++i)
+            position[i] += static_cast<float>(timed.time_s[first + i] - half_open_s_) * fast[i];
+    }
+}
+
+void ShotFrame::evaluate_by_all(const Points<float>& points, const Results<float>& results) const {
+    query_->evaluate(points, results);
+}
+
+ProjectedGridOptions grid_options(const ShotFrame& frame, double cell_px) {
+    ProjectedGridOptions options = projected_grid_options(*frame.shot().sea->plan().from);
+    options.cell_px = cell_px;
+    options.bounds = frame.everywhere();
+    return options;
+}
+
+}  // namespace pelagic::procedural

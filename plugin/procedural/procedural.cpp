@@ -95,14 +95,14 @@ void give(S from, S* to, const char* name) {
 
 Scene scene_of(const pelagic_source& source) {
     if (source.text)
-        return parse_shot(std::string_view(source.text, source.text_length), source.path ? source.path : "shot.toml",
-                          check_scene);
+        return parse_shot(std::string_view(source.text, source.text_length),
+                          source.path ? source.path : "shot.toml", check_scene);
     return load_shot(&required(source.path, "source.path"), check_scene);
 }
 
 View view_of(const pelagic_camera& camera) {
     constexpr double kAxisTolerance = 1e-3;  // as hosts round them
-    const auto vector = [](const double (&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
+    const auto vector = [](const double(&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
     View view;
     view.position_m = vector(camera.position_m);
     for (int axis = 0; axis < 3; ++axis)
@@ -121,8 +121,9 @@ View view_of(const pelagic_camera& camera) {
     const auto tangent = [](double fov_deg) { return std::tan(fov_deg * (kPi / 360.0)); };
     if (!(camera.tan_half_width >= tangent(limits::kFov_deg.low) &&
           camera.tan_half_width <= tangent(limits::kFov_deg.high)))
-        throw std::invalid_argument("camera.tan_half_width is outside the range; accepted: that of a field of view of " +
-                                    text_of(limits::kFov_deg) + " degrees");
+        throw std::invalid_argument(
+            "camera.tan_half_width is outside the range; accepted: that of a field of view of " +
+            text_of(limits::kFov_deg) + " degrees");
     view.tan_half_width = camera.tan_half_width;
     for (const int pixels : {camera.width, camera.height})
         if (!limits::kImageResolution.holds(pixels))
@@ -169,7 +170,8 @@ Expansion expansion_of(const ShotFrame& frame, const pelagic_camera* camera,
     const auto asked = taken_or_zeros(options, "options");
     const double cell_px = asked.cell_px == 0.0 ? 2.0 : asked.cell_px;
     if (!(cell_px >= 0.25 && cell_px <= 1000.0))
-        throw std::invalid_argument("options.cell_px is outside the range; accepted: 0.25 to 1000 pixels, or 0");
+        throw std::invalid_argument(
+            "options.cell_px is outside the range; accepted: 0.25 to 1000 pixels, or 0");
     Expansion expansion{view_of(taken(camera, "camera")), grid_options(frame, cell_px), asked.triangles != 0};
     if (frame.shot().scene.surface.earth_curvature) expansion.options.curvature_per_m = kEarthCurvature_per_m;
     expansion.options.size = projected_grid_needs(expansion.view, expansion.options).size;
@@ -203,7 +205,8 @@ void expand(const ShotFrame& frame, const Expansion& expansion, pelagic_mesh_buf
     for (int axis = 0; axis < 2; ++axis) buffers.origin_m[axis] = grid.origin_m[axis];
     buffers.origin_m[2] = 0.0;
     if (buffers.corner) fill_corners(expansion, buffers.corner);
-    if (buffers.rest_m) std::memcpy(buffers.rest_m, grid.rest_m.data(), grid.rest_m.size() * sizeof(glm::vec2));
+    if (buffers.rest_m)
+        std::memcpy(buffers.rest_m, grid.rest_m.data(), grid.rest_m.size() * sizeof(glm::vec2));
     if (!buffers.values) return;
     const Results<float> results = results_in(taken(buffers.values, "buffers.values"));
     frame.evaluate_by_all({.origin_m = grid.origin_m,
@@ -220,7 +223,8 @@ void expand(const ShotFrame& frame, const Expansion& expansion, pelagic_mesh_buf
         if (const auto at = results.vectors(Product::Position))
             at[i] = glm::vec3(on_earth(glm::dvec3(at[i]), grid.curvature_per_m));
         for (const VectorProduct product : {VectorProduct(Product::Normal), VectorProduct(Product::Velocity)})
-            if (const auto at = results.vectors(product)) at[i] = glm::vec3(from_level(glm::dvec3(at[i]), up));
+            if (const auto at = results.vectors(product))
+                at[i] = glm::vec3(from_level(glm::dvec3(at[i]), up));
     }
 }
 
@@ -254,8 +258,8 @@ const char* pelagic_status_text(pelagic_status status) {
     return "unknown status";
 }
 
-pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_options* options, pelagic_sea** sea,
-                            pelagic_error* error) {
+pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_options* options,
+                            pelagic_sea** sea, pelagic_error* error) {
     return guarded(error, [&] {
         pelagic_sea*& out = required(sea, "sea");
         const auto asked = taken_or_zeros(options, "options");
@@ -263,7 +267,8 @@ pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_opt
             if (!(metres >= 0.0 && metres <= 1e6))
                 throw std::invalid_argument(
                     "options.finest_cell_m, finest_pixel_m are outside the range; accepted: 0 to 1e6 m");
-        if (asked.threads < 0) throw std::invalid_argument("options.threads is negative; accepted: 0 or more");
+        if (asked.threads < 0)
+            throw std::invalid_argument("options.threads is negative; accepted: 0 or more");
         Scene scene = scene_of(taken(source, "source"));
         std::atomic<bool> cancel = false;
         BuildWatch watch;
@@ -274,8 +279,7 @@ pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_opt
             };
         }
         out = new pelagic_sea{std::make_shared<const ShotSea>(
-            std::move(scene),
-            SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads}, watch)};
+            std::move(scene), SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads}, watch)};
         return PELAGIC_OK;
     });
 }
@@ -303,7 +307,8 @@ pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pela
     });
 }
 
-pelagic_status pelagic_time_of_frame(const pelagic_sea* sea, double frame, double* time_s, pelagic_error* error) {
+pelagic_status pelagic_time_of_frame(const pelagic_sea* sea, double frame, double* time_s,
+                                     pelagic_error* error) {
     return guarded(error, [&] {
         const Scene& scene = required(sea, "sea").shot->scene;
         if (!limits::kFrame.holds(frame))
@@ -324,8 +329,8 @@ pelagic_status pelagic_shot_camera(const pelagic_sea* sea, double frame, pelagic
     });
 }
 
-pelagic_status pelagic_frame_create(const pelagic_sea* sea, double open_s, double close_s, pelagic_frame** frame,
-                                    pelagic_error* error) {
+pelagic_status pelagic_frame_create(const pelagic_sea* sea, double open_s, double close_s,
+                                    pelagic_frame** frame, pelagic_error* error) {
     return guarded(error, [&] {
         pelagic_frame*& out = required(frame, "frame");
         out = new pelagic_frame{ShotFrame(required(sea, "sea").shot, open_s, close_s)};
@@ -349,9 +354,11 @@ pelagic_status pelagic_bounds(const pelagic_frame* frame, const pelagic_region* 
     return guarded(error, [&] {
         const auto asked = taken(region, "region");
         const double any = std::numeric_limits<double>::infinity();
-        const auto [least, greatest] = required(frame, "frame").frame.bounds(
-            {{asked.min_m[0], asked.min_m[1]}, {asked.max_m[0], asked.max_m[1]}},
-            {.finest_m = asked.finest_cell_m, .coarsest_m = asked.coarsest_cell_m == 0.0 ? any : asked.coarsest_cell_m});
+        const auto [least, greatest] =
+            required(frame, "frame")
+                .frame.bounds({{asked.min_m[0], asked.min_m[1]}, {asked.max_m[0], asked.max_m[1]}},
+                              {.finest_m = asked.finest_cell_m,
+                               .coarsest_m = asked.coarsest_cell_m == 0.0 ? any : asked.coarsest_cell_m});
         pelagic_box found{};
         for (int axis = 0; axis < 3; ++axis) {
             found.min_m[axis] = least[axis];
@@ -362,8 +369,8 @@ pelagic_status pelagic_bounds(const pelagic_frame* frame, const pelagic_region* 
     });
 }
 
-pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points, const pelagic_values* values,
-                                pelagic_error* error) {
+pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points,
+                                const pelagic_values* values, pelagic_error* error) {
     return guarded(error, [&] {
         const auto asked = taken(points, "points");
         const Results<float> results = results_in(taken(values, "values"));

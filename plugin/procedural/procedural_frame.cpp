@@ -55,10 +55,10 @@ double most_of(const Frame<float>& frame, Field field) {
             if (!samples) continue;
             for (int y = 0; y < n; ++y)
                 for (int x = 0; x < n; ++x)
-                    of_cascade = std::max(
-                        of_cascade, std::abs(static_cast<double>(
-                                        samples[static_cast<std::size_t>(y) * line_stride<float>(n) +
-                                                static_cast<std::size_t>(x)])));
+                    of_cascade =
+                        std::max(of_cascade, std::abs(static_cast<double>(
+                                                 samples[static_cast<std::size_t>(y) * line_stride<float>(n) +
+                                                         static_cast<std::size_t>(x)])));
         }
         most += (plan.cascades[c].has_copies ? 2.0 : 1.0) * of_cascade;
     }
@@ -77,8 +77,7 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
     : scene(std::move(from)),
       arena(options.threads > 0 ? std::make_unique<tbb::task_arena>(options.threads)
                                 : std::make_unique<tbb::task_arena>()) {
-    arena->execute(
-        [&] { sea = std::make_shared<const Sea<float>>(plan_of(scene, options), watch); });
+    arena->execute([&] { sea = std::make_shared<const Sea<float>>(plan_of(scene, options), watch); });
 }
 
 ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
@@ -89,9 +88,9 @@ ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double cl
 void ShotFrame::set(double open_s, double close_s) {
     const auto accepts = [](double t_s) { return std::abs(t_s) <= Frame<float>::kLatest_s; };
     if (!accepts(open_s) || !accepts(close_s) || !(open_s <= close_s))
-        throw std::invalid_argument("a shutter from " + number_text(open_s) + " s to " + number_text(close_s) +
-                                    " s: accepted: times within " + number_text(Frame<float>::kLatest_s) +
-                                    " s, in order");
+        throw std::invalid_argument("a shutter from " + number_text(open_s) + " s to " +
+                                    number_text(close_s) + " s: accepted: times within " +
+                                    number_text(Frame<float>::kLatest_s) + " s, in order");
     of_->arena->execute([&] {
         frame_.set(0.5 * (open_s + close_s));
         if (query_)
@@ -139,7 +138,7 @@ DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& boun
 }
 
 std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, FootprintRange cells) const {
-    constexpr int kBlocks = 64;
+    constexpr int kBlocks = 4096;
     if (!(cells.finest_m >= 0.0) || !(cells.coarsest_m >= cells.finest_m))
         throw std::invalid_argument("region.finest_cell_m, coarsest_cell_m: accepted: 0 or more, in order");
     const DisplacementBounds moved =

@@ -71,10 +71,11 @@ class ShotFrame {
     std::shared_ptr<const ShotSea> of_;
     Frame<float> frame_;
     std::optional<PreparedQuery<float>> query_;
-    double half_open_s_ = 0.0;    // half of the time for which the shutter is open
+    double half_open_s_ = 0.0;     // half of the time for which the shutter is open
     glm::dvec3 fastest_mps_{0.0};  // no point moves faster along the axes
     mutable std::mutex bounds_lock_;
-    mutable std::map<double, std::unique_ptr<const FrameBounds<float>>> bounds_;  // by rung, made when asked for
+    mutable std::map<double, std::unique_ptr<const FrameBounds<float>>>
+        bounds_;  // by rung, made when asked for
 };
 
 // All of the sea that may be in view from there while the shutter is open.

@@ -54,11 +54,11 @@ extern "C" {
 
 /* A structure with its size, and zeros in the rest: pelagic_camera camera = PELAGIC_INIT(pelagic_camera); */
 #ifdef __cplusplus
-#define PELAGIC_INIT(type)  \
-    [] {                    \
-        type of_zeros{};    \
+#define PELAGIC_INIT(type)               \
+    [] {                                 \
+        type of_zeros{};                 \
         of_zeros.size = sizeof of_zeros; \
-        return of_zeros;    \
+        return of_zeros;                 \
     }()
 #else
 #define PELAGIC_INIT(type) \
@@ -84,35 +84,37 @@ typedef struct pelagic_sea pelagic_sea;
 typedef struct pelagic_frame pelagic_frame;
 
 /* "0.1.0" */
-PELAGIC_API const char *pelagic_version(void);
+PELAGIC_API const char* pelagic_version(void);
 /* "invalid argument", … */
-PELAGIC_API const char *pelagic_status_text(pelagic_status status);
+PELAGIC_API const char* pelagic_status_text(pelagic_status status);
 
 /* ---- A sea */
 
 /* A shot: a file, or a text that is already in memory. */
 typedef struct pelagic_source {
     size_t size;
-    const char *path; /* UTF-8. With `text`: the name that messages use; files that the shot names are relative to its folder */
-    const char *text; /* null: the file is read */
+    const char*
+        path; /* UTF-8. With `text`: the name that messages use; files that the shot names are relative to its folder */
+    const char* text; /* null: the file is read */
     size_t text_length;
 } pelagic_source;
 
 typedef struct pelagic_open_options {
     size_t size;
-    double finest_cell_m;  /* no finer cells and pixels will be asked for; those that are count as this. 0: as fine as the */
+    double
+        finest_cell_m; /* no finer cells and pixels will be asked for; those that are count as this. 0: as fine as the */
     double finest_pixel_m; /* shot's own camera sees the sea. What a frame holds and takes rises with them. */
     int threads;           /* at most so many; 0: all */
     /* Called now and then while the sea is built, 0 … 1, from any thread; not 0 ends pelagic_open() with PELAGIC_CANCELLED. */
-    int (*progress)(double done, void *user);
-    void *user;
+    int (*progress)(double done, void* user);
+    void* user;
 } pelagic_open_options;
 
 /* Reads, validates and builds: from milliseconds to seconds. `options` may be null. */
-PELAGIC_API pelagic_status pelagic_open(const pelagic_source *source, const pelagic_open_options *options, pelagic_sea **sea,
-                                        pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_options* options,
+                                        pelagic_sea** sea, pelagic_error* error);
 /* Frames keep what they need of it: they may be released later. Null is nothing to close. */
-PELAGIC_API void pelagic_close(pelagic_sea *sea);
+PELAGIC_API void pelagic_close(pelagic_sea* sea);
 
 /* What a shot says, for hosts that want to know. */
 typedef struct pelagic_info {
@@ -125,10 +127,11 @@ typedef struct pelagic_info {
     double finest_cell_m, finest_pixel_m; /* what is asked for finer counts as this */
     size_t frame_bytes;                   /* what a frame holds */
 } pelagic_info;
-PELAGIC_API pelagic_status pelagic_get_info(const pelagic_sea *sea, pelagic_info *info, pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pelagic_error* error);
 
 /* The time of a frame of the shot [s]; frames may lie between frames. */
-PELAGIC_API pelagic_status pelagic_time_of_frame(const pelagic_sea *sea, double frame, double *time_s, pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_time_of_frame(const pelagic_sea* sea, double frame, double* time_s,
+                                                 pelagic_error* error);
 
 /* A pinhole whose pixels are square. */
 typedef struct pelagic_camera {
@@ -139,17 +142,19 @@ typedef struct pelagic_camera {
     int width, height;                  /* pixels */
 } pelagic_camera;
 /* The shot's own at a frame. */
-PELAGIC_API pelagic_status pelagic_shot_camera(const pelagic_sea *sea, double frame, pelagic_camera *camera, pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_shot_camera(const pelagic_sea* sea, double frame, pelagic_camera* camera,
+                                               pelagic_error* error);
 
 /* ---- A frame */
 
 /* The sea from open_s to close_s; the same twice: a moment. Runs the frame's transforms: pelagic_frame_set() again into the
  * same memory. */
-PELAGIC_API pelagic_status pelagic_frame_create(const pelagic_sea *sea, double open_s, double close_s, pelagic_frame **frame,
-                                                pelagic_error *error);
-PELAGIC_API pelagic_status pelagic_frame_set(pelagic_frame *frame, double open_s, double close_s, pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_frame_create(const pelagic_sea* sea, double open_s, double close_s,
+                                                pelagic_frame** frame, pelagic_error* error);
+PELAGIC_API pelagic_status pelagic_frame_set(pelagic_frame* frame, double open_s, double close_s,
+                                             pelagic_error* error);
 /* Null is nothing to release. */
-PELAGIC_API void pelagic_frame_release(pelagic_frame *frame);
+PELAGIC_API void pelagic_frame_release(pelagic_frame* frame);
 
 /* ---- Bounds */
 
@@ -165,8 +170,8 @@ typedef struct pelagic_box {
 } pelagic_box;
 /* A box in the world that all displaced points of the region stay in while the shutter is open. It is never left, and at most some 1.5 times
  * as large as needed, for regions of two peak waves and more. Some 0.1 ms. */
-PELAGIC_API pelagic_status pelagic_bounds(const pelagic_frame *frame, const pelagic_region *region, pelagic_box *box,
-                                          pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_bounds(const pelagic_frame* frame, const pelagic_region* region,
+                                          pelagic_box* box, pelagic_error* error);
 
 /* ---- Points */
 
@@ -174,25 +179,25 @@ typedef struct pelagic_points {
     size_t size;
     double origin_m[2]; /* of the points, in the world */
     size_t count;
-    const float *rest_m;   /* x, y of each, relative to the origin */
-    const float *cell_m;   /* of each; null: the finest there is */
-    const float *pixel_m;  /* of each; null: the finest there is */
-    const float *time_s;   /* of each, from the shutter's opening on; null: its middle */
+    const float* rest_m;  /* x, y of each, relative to the origin */
+    const float* cell_m;  /* of each; null: the finest there is */
+    const float* pixel_m; /* of each; null: the finest there is */
+    const float* time_s;  /* of each, from the shutter's opening on; null: its middle */
 } pelagic_points;
 
 /* Buffers of the caller, as long as there are points; null: not wanted, and not computed. */
 typedef struct pelagic_values {
     size_t size;
-    float *position_m;     /* x, y, z, relative to the origin at z = 0 */
-    float *normal;         /* x, y, z: unit; z is negative where the surface has folded over */
-    float *velocity_mps;   /* x, y, z */
-    float *slope_variance; /* xx, yy, xy of the slopes that a pixel hides */
-    float *coverage;       /* of whitecaps that break now, 0 … 1 */
+    float* position_m;     /* x, y, z, relative to the origin at z = 0 */
+    float* normal;         /* x, y, z: unit; z is negative where the surface has folded over */
+    float* velocity_mps;   /* x, y, z */
+    float* slope_variance; /* xx, yy, xy of the slopes that a pixel hides */
+    float* coverage;       /* of whitecaps that break now, 0 … 1 */
 } pelagic_values;
 
 /* Each value depends on its point alone, and is finite where the point is. */
-PELAGIC_API pelagic_status pelagic_evaluate(const pelagic_frame *frame, const pelagic_points *points, const pelagic_values *values,
-                                            pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points,
+                                            const pelagic_values* values, pelagic_error* error);
 
 /* ---- A mesh for a camera */
 
@@ -205,23 +210,24 @@ typedef struct pelagic_mesh_size {
     size_t size;
     size_t points, faces, corners; /* corners of all faces: 4 or 3 of each */
 } pelagic_mesh_size;
-PELAGIC_API pelagic_status pelagic_expand_size(const pelagic_frame *frame, const pelagic_camera *camera,
-                                               const pelagic_expand_options *options, pelagic_mesh_size *mesh_size,
-                                               pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_expand_size(const pelagic_frame* frame, const pelagic_camera* camera,
+                                               const pelagic_expand_options* options,
+                                               pelagic_mesh_size* mesh_size, pelagic_error* error);
 
 typedef struct pelagic_mesh_buffers {
     size_t size;
     size_t points, corners; /* how many the buffers have room for */
-    uint32_t *corner;       /* indices of points, face after face, counter-clockwise seen from above; null: not wanted */
-    float *rest_m;          /* x, y of each point, relative to origin_m, on a flat sea; null: not wanted */
-    const pelagic_values *values; /* of each point, in the middle of the shutter; null: not wanted */
+    uint32_t*
+        corner; /* indices of points, face after face, counter-clockwise seen from above; null: not wanted */
+    float* rest_m; /* x, y of each point, relative to origin_m, on a flat sea; null: not wanted */
+    const pelagic_values* values; /* of each point, in the middle of the shutter; null: not wanted */
     double origin_m[3];           /* out: what positions are relative to: below the camera, at z = 0 */
 } pelagic_mesh_buffers;
 /* All of the sea that may be in view while the shutter is open, with cells that are as large on the screen as `options` say: they
  * grow with distance, and each point shows the waves that its cells can. `options` may be null. */
-PELAGIC_API pelagic_status pelagic_expand(const pelagic_frame *frame, const pelagic_camera *camera,
-                                          const pelagic_expand_options *options, pelagic_mesh_buffers *buffers,
-                                          pelagic_error *error);
+PELAGIC_API pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* camera,
+                                          const pelagic_expand_options* options,
+                                          pelagic_mesh_buffers* buffers, pelagic_error* error);
 
 #ifdef __cplusplus
 }

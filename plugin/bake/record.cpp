@@ -282,6 +282,7 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
                         {"whitecap_law", word_of(scene.effects.whitecap_law)},
                         {"whitecap_law_coverage", law_coverage(scene)}};
     shot["whitecap_threshold"] = number(whitecap_threshold);
+    if (plan.gusts) shot["whitecap_threshold_is"] = "without gusts, which move it from place to place";
 
     Json& planned = shot["plan"];
     planned["transforms_per_frame"] = plan.transforms_per_frame();

@@ -197,7 +197,8 @@ void add_sea(py::module_& module) {
             "Mean square slope of the whole spectrum, capillary tail included.")
         .def_property_readonly(
             "whitecap_threshold", [](const PythonSea& self) { return self.sea->whitecap_threshold(); },
-            "The Jacobian below which there is foam; -inf: there never is.")
+            "The Jacobian below which there is foam, without gusts, which move it from place to place; -inf: there "
+            "never is.")
         .def_property_readonly(
             "products",
             [](const PythonSea& self) {

@@ -72,9 +72,10 @@ TEST(Record, SaysThatTheThresholdIsWithoutGusts) {
         std::filesystem::remove(file);
         EXPECT_EQ(shot.at("whitecap_threshold"), 0.5);
         EXPECT_EQ(shot.contains("whitecap_threshold_is"), strength > 0.0);
-        if (strength > 0.0)
+        if (strength > 0.0) {
             EXPECT_NE(shot.at("whitecap_threshold_is").get<std::string>().find("without gusts"),
                       std::string::npos);
+        }
     }
 }
 

@@ -40,8 +40,11 @@ auto order_of(const FoamPlace& place) {
 
 template <class T>
 struct FoamHistory<T>::Level {
-    Level(const Plan& plan, double cell)
-        : cell_m(cell), frame(std::make_shared<const Sea<T>>(plan_of_foam_level(plan, cell))) {
+    // Throws BuildCancelled.
+    Level(const Plan& plan, double cell, const std::atomic<bool>* cancel)
+        : cell_m(cell),
+          frame(std::make_shared<const Sea<T>>(plan_of_foam_level(plan, cell),
+                                               BuildWatch{.progress = {}, .cancel = cancel})) {
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x)
                 rest_m.emplace_back(static_cast<T>(x * cell), static_cast<T>(y * cell));
@@ -201,9 +204,9 @@ void FoamHistory<T>::set(double t_s, double back_s) {
 }
 
 template <class T>
-typename FoamHistory<T>::Level& FoamHistory<T>::level(int index) {
+typename FoamHistory<T>::Level& FoamHistory<T>::level(int index, const std::atomic<bool>* cancel) {
     std::unique_ptr<Level>& level = levels_[static_cast<std::size_t>(index)];
-    if (!level) level = std::make_unique<Level>(sea_->plan(), foam_.cell_of(index));
+    if (!level) level = std::make_unique<Level>(sea_->plan(), foam_.cell_of(index), cancel);
     return *level;
 }
 
@@ -368,12 +371,19 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& 
         }
         from = std::min(from, tile->next);
     }
-    const auto is_cancelled = [&] { return watch.cancel && watch.cancel->load(std::memory_order_relaxed); };
-    const auto stop_if_cancelled = [&] {
-        if (!is_cancelled()) return;
+    try {
+        sample_from(from, tiles, watch);
+    } catch (const BuildCancelled&) {
         for (Tile* tile : tiles) tile->used = round_;  // what they have is kept for the next time
-        throw BuildCancelled();
-    };
+        throw;
+    }
+}
+
+// Samples `from` on, of the tiles whose next one it is.
+template <class T>
+void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& tiles,
+                                 const BuildWatch& watch) {
+    const auto is_cancelled = [&] { return watch.cancel && watch.cancel->load(std::memory_order_relaxed); };
     std::vector<Tile*> due;
     const std::int64_t end = last_ + 4;
     const bool is_long = end - from > kLong;
@@ -383,12 +393,12 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& 
             for (Tile* tile : tiles)
                 if (tile->place.level == l && tile->next == n) due.push_back(tile);
             if (due.empty()) continue;
-            stop_if_cancelled();
-            level(l).frame.set(static_cast<double>(n) * foam_.step_s);
+            if (is_cancelled()) throw BuildCancelled();
+            level(l, watch.cancel).frame.set(static_cast<double>(n) * foam_.step_s);
             tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) {
                 if (!is_cancelled()) sample(*due[i], n);
             });
-            stop_if_cancelled();
+            if (is_cancelled()) throw BuildCancelled();
         }
         if (is_long && watch.progress)
             watch.progress(static_cast<double>(n + 1 - from) / static_cast<double>(end - from));

@@ -103,8 +103,9 @@ class FoamHistory {
     void renew(const BuildWatch& watch);
     void forget_unused();
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
+    void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n) const;
-    Level& level(int index);
+    Level& level(int index, const std::atomic<bool>* cancel);
 
     std::shared_ptr<const Sea<T>> sea_;
     FoamPlan foam_;

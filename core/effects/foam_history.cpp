@@ -180,7 +180,7 @@ template <class T>
 FoamHistory<T>::~FoamHistory() = default;
 
 template <class T>
-void FoamHistory<T>::set(double t_s, double back_s) {
+void FoamHistory<T>::set(double t_s) {
     if (!(std::abs(t_s) <= Frame<T>::kLatest_s))
         throw std::invalid_argument("the foam's time must be a number of at most 1e12 s to either side of 0");
     ++round_;
@@ -188,9 +188,6 @@ void FoamHistory<T>::set(double t_s, double back_s) {
     time_s_ = time_within_loop_s(t_s, sea_->loop_s());
     last_ = static_cast<std::int64_t>(std::floor(time_s_ / foam_.step_s));
     first_ = last_ + 1 - foam_.intervals();
-    const double back =
-        std::clamp(back_s / foam_.step_s, 0.0, static_cast<double>(FoamPlan::kSpareIntervals));
-    begin_ = first_ - static_cast<std::int64_t>(std::ceil(back));
     std::erase_if(tiles_, [&](const auto& entry) {
         return entry.second->used.load() + 1 < round_ || !entry.second->continues_at(first_);
     });
@@ -366,8 +363,8 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& 
     for (Tile* tile : tiles) {
         if (!tile->is_begun || !tile->continues_at(first_)) {
             tile->is_begun = true;
-            tile->begin = tile->end = begin_;
-            tile->next = begin_ - 2;
+            tile->begin = tile->end = first_;
+            tile->next = first_ - 2;
         }
         from = std::min(from, tile->next);
     }

@@ -25,9 +25,8 @@ Work& work() {
 }
 
 bool is_at_work() {
-    return work().running > 0 ||
-           !std::all_of(work().native.begin(), work().native.end(),
-                        [](NativeWork* each) { return each->is_done(); });
+    return work().running > 0 || !std::all_of(work().native.begin(), work().native.end(),
+                                              [](NativeWork* each) { return each->is_done(); });
 }
 
 void end_all_work() {
@@ -111,7 +110,8 @@ void add_watch(py::module_& module) {
     // A child has this thread alone.
     py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] {
                                                            work().running = 0;
-                                                           for (NativeWork* each : work().native) each->abandon();
+                                                           for (NativeWork* each : work().native)
+                                                               each->abandon();
                                                        }));
 }
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <span>
 
 #include "core/evaluate/chunk.h"
 #include "core/evaluate/kernels.h"
@@ -30,6 +31,13 @@ struct CopyOrigin {
     CopyOffset<double> offset(std::int64_t i, std::int64_t j) const {
         return copy_offset<double>(key, static_cast<uint>(x.cell + i), static_cast<uint>(y.cell + j));
     }
+};
+
+// Points one after another that show the same copies.
+struct CopyStretch {
+    std::size_t first, end;
+    std::int64_t cell_x, cell_y;  // counted from the origin's
+    int side_x, side_y;           // as CopyAxis's
 };
 
 // Which copies a chunk's points show. Found when it is first asked for.
@@ -62,6 +70,7 @@ class CopyPlaces {
                              x_);
         kernels.place_copies({origin.cells_per_m, origin.y.from_middle}, chunk.rest_y.data(), chunk.padded(),
                              y_);
+        find_stretches(chunk.count);
     }
 
     // Whether all of the chunk's points show one and the same copy, and its offset.
@@ -70,121 +79,92 @@ class CopyPlaces {
     // Each point's, otherwise.
     const CopyAxis<T>& x() const { return x_; }
     const CopyAxis<T>& y() const { return y_; }
+    std::span<const CopyStretch> stretches() const { return {stretches_.data(), stretch_count_}; }
 
   private:
+    void find_stretches(std::size_t count) {
+        stretch_count_ = 0;
+        for (std::size_t first = 0, end; first < count; first = end) {
+            const auto code_x = x_.code[first], code_y = y_.code[first];
+            end = first + 1;
+            while (end < count && x_.code[end] == code_x && y_.code[end] == code_y) ++end;
+            stretches_[stretch_count_++] = {first,
+                                            end,
+                                            CopyAxis<T>::cell_of(code_x),
+                                            CopyAxis<T>::cell_of(code_y),
+                                            CopyAxis<T>::side_of(code_x),
+                                            CopyAxis<T>::side_of(code_y)};
+        }
+    }
+
     bool is_known_ = false, is_one_ = false;
     CopyOffset<double> offset_{0.0, 0.0};
     CopyAxis<T> x_, y_;
+    std::array<CopyStretch, Chunk<T>::kPoints> stretches_;
+    std::size_t stretch_count_ = 0;
 };
 
-// Reads a grid at the copies of a chunk's points, which are gathered to chunks of their own.
+// Reads a grid at the copies of a chunk's points.
 template <class T>
-class CopyChunk {
+class CopyReader {
   public:
     // `grid`: with the samples of all its fields, its origin and its weights by point. Adds `wanted`.
-    void add(const GridArgs<T>& grid, FieldSet wanted, const CopyOrigin& origin, const CopyPlaces<T>& places,
+    void add(GridArgs<T> grid, FieldSet wanted, const CopyOrigin& origin, const CopyPlaces<T>& places,
              Chunk<T>& to, const EvaluateKernels<T>& kernels) {
-        begin(grid, wanted);
-        const CopyAxis<T>&x = places.x(), &y = places.y();
-        for (std::size_t first = 0, end; first < to.count; first = end) {
-            end = first + 1;
-            if (has_shares_ && !counts(first)) continue;
-            // Points that show the same copies, one after another.
-            const auto code_x = x.code[first], code_y = y.code[first];
-            while (end < to.count && x.code[end] == code_x && y.code[end] == code_y &&
-                   !(has_shares_ && !counts(end)))
-                ++end;
-            const std::int64_t cell_x = CopyAxis<T>::cell_of(code_x), cell_y = CopyAxis<T>::cell_of(code_y);
-            const int side_x = CopyAxis<T>::side_of(code_x), side_y = CopyAxis<T>::side_of(code_y);
-            // A call of its own for these, without the way by way of copies_.
-            constexpr std::size_t kLong = 16;
-            if (side_x == 0 && side_y == 0 && end - first >= kLong && grid.sampling == Sampling::Spline) {
-                const CopyOffset<double> offset = origin.offset(cell_x, cell_y);
-                GridArgs<T> part = plain_;
-                part.origin_nodes_x += offset.x * grid.n;
-                part.origin_nodes_y += offset.y * grid.n;
-                part.first = first;
-                part.count = end - first;
-                kernels.add_grid(part, to);
-                continue;
+        const FieldSet read = wanted | gradient_fields(wanted);
+        for (std::size_t f = 0; f < kFieldCount; ++f)
+            if (!read[f]) grid.samples[f] = nullptr;
+        of_cells_ = (wanted & cell_fields()).any() ? grid.cell_weight : nullptr;
+        of_pixels_ = (wanted & ~cell_fields()).any() ? grid.pixel_weight : nullptr;
+        CopyArgs<T> copies;
+        copies.nodes_x = nodes_x_.data();
+        copies.nodes_y = nodes_y_.data();
+        copies.ranges = ranges_.data();
+        copies.wanted = wanted;
+        grid.copies = &copies;
+        for (const bool next_y : {false, true})
+            for (const bool next_x : {false, true}) {
+                find(grid, origin, places, next_x, next_y);
+                if (range_count_ == 0) continue;
+                copies.range_count = range_count_;
+                copies.x = axis(places.x(), next_x);
+                copies.y = axis(places.y(), next_y);
+                kernels.add_grid(grid, to);
             }
-            for (const bool next_y : {false, true})
-                for (const bool next_x : {false, true}) {
-                    if ((next_x && side_x == 0) || (next_y && side_y == 0)) continue;
-                    const CopyOffset<double> offset =
-                        origin.offset(cell_x + (next_x ? side_x : 0), cell_y + (next_y ? side_y : 0));
-                    const glm::dvec2 nodes(grid.origin_nodes_x + offset.x * grid.n,
-                                           grid.origin_nodes_y + offset.y * grid.n);
-                    for (std::size_t i = first; i < end;) {
-                        const std::size_t room = Chunk<T>::kPoints - copies_.count,
-                                          count = std::min(end - i, room);
-                        take({static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(copies_.count),
-                              static_cast<std::uint16_t>(count)},
-                             nodes, next_x, next_y, places, to);
-                        i += count;
-                        if (copies_.count == Chunk<T>::kPoints) flush(grid, to, kernels);
-                    }
-                }
-        }
-        flush(grid, to, kernels);
     }
 
   private:
-    // Points of a chunk one after another, and where the copy that they show stands.
-    struct Stretch {
-        std::uint16_t point, at, count;
-    };
+    static typename CopyArgs<T>::Axis axis(const CopyAxis<T>& of, bool next) {
+        return next ? typename CopyArgs<T>::Axis{of.next.data(), of.own.data(), of.rate.data(), T(1)}
+                    : typename CopyArgs<T>::Axis{of.own.data(), of.next.data(), of.rate.data(), T(-1)};
+    }
 
-    void take(const Stretch& stretch, glm::dvec2 nodes, bool next_x, bool next_y, const CopyPlaces<T>& places,
-              const Chunk<T>& to) {
-        const std::size_t at = copies_.count, from = stretch.point, count = stretch.count;
-        stretches_[stretch_count_++] = stretch;
-        copies_.count += count;
-        std::copy_n(to.rest_x.begin() + from, count, copies_.rest_x.begin() + at);
-        std::copy_n(to.rest_y.begin() + from, count, copies_.rest_y.begin() + at);
-        std::fill_n(nodes_x_.begin() + at, count, nodes.x);
-        std::fill_n(nodes_y_.begin() + at, count, nodes.y);
-        const CopyAxis<T>&x = places.x(), &y = places.y();
-        const T *weight_x = (next_x ? x.next : x.own).data() + from,
-                *weight_y = (next_y ? y.next : y.own).data() + from;
-        const T *other_x = (next_x ? x.own : x.next).data() + from,
-                *other_y = (next_y ? y.own : y.next).data() + from;
-        const T *rate_x = x.rate.data() + from, *rate_y = y.rate.data() + from;
-        const T sign_x = next_x ? T(1) : T(-1), sign_y = next_y ? T(1) : T(-1);
-        T *__restrict weight = weight_.data() + at, *__restrict slope_x = slope_x_.data() + at,
-                      *__restrict slope_y = slope_y_.data() + at;
-        for (std::size_t i = 0; i < count; ++i) weight[i] = weight_x[i] * weight_y[i];
-        if (!has_gradient_) return;
-        for (std::size_t i = 0; i < count; ++i) {
-            slope_x[i] = sign_x * other_x[i] * rate_x[i] * weight_y[i];
-            slope_y[i] = sign_y * other_y[i] * rate_y[i] * weight_x[i];
+    // The points that see the copy in their own cell or in the next one, along each axis, and where it lies.
+    void find(const GridArgs<T>& grid, const CopyOrigin& origin, const CopyPlaces<T>& places, bool next_x,
+              bool next_y) {
+        range_count_ = 0;
+        for (const CopyStretch& stretch : places.stretches()) {
+            if ((next_x && stretch.side_x == 0) || (next_y && stretch.side_y == 0)) continue;
+            const CopyOffset<double> offset = origin.offset(stretch.cell_x + (next_x ? stretch.side_x : 0),
+                                                            stretch.cell_y + (next_y ? stretch.side_y : 0));
+            std::fill(nodes_x_.begin() + stretch.first, nodes_x_.begin() + stretch.end,
+                      grid.origin_nodes_x + offset.x * grid.n);
+            std::fill(nodes_y_.begin() + stretch.first, nodes_y_.begin() + stretch.end,
+                      grid.origin_nodes_y + offset.y * grid.n);
+            if (!of_cells_ && !of_pixels_) {
+                take({stretch.first, stretch.end});
+                continue;
+            }
+            for (std::size_t i = stretch.first; i < stretch.end; ++i)
+                if (counts(i)) take({i, i + 1});
         }
     }
 
-    // Adds Σ a·b over the copies to the points' sums, times their shares.
-    struct Term {
-        const T *a, *b;
-    };
-    void add_up(Term first, Term second, T sign, const T* share, T* sums) const {
-        for (std::size_t s = 0; s < stretch_count_; ++s) {
-            const auto [point, at, count] = stretches_[s];
-            const T *a = first.a + at, *b = first.b + at;
-            T* __restrict to = sums + point;
-            alignas(64) typename Chunk<T>::Values sum;
-            T* __restrict of = sum.data();
-            if (second.a) {
-                const T *c = second.a + at, *d = second.b + at;
-                for (std::size_t i = 0; i < count; ++i) of[i] = a[i] * b[i] + sign * (c[i] * d[i]);
-            } else {
-                for (std::size_t i = 0; i < count; ++i) of[i] = a[i] * b[i];
-            }
-            if (share) {
-                const T* by = share + point;
-                for (std::size_t i = 0; i < count; ++i) to[i] += by[i] * of[i];
-            } else {
-                for (std::size_t i = 0; i < count; ++i) to[i] += of[i];
-            }
-        }
+    void take(PointRange range) {
+        if (range_count_ > 0 && ranges_[range_count_ - 1].end == range.first)
+            ranges_[range_count_ - 1].end = range.end;
+        else
+            ranges_[range_count_++] = range;
     }
 
     // Whether a point has a share in the grid: where it has a weight, that of what is read.
@@ -192,68 +172,17 @@ class CopyChunk {
         return (of_cells_ && of_cells_[i] > T(0)) || (of_pixels_ && of_pixels_[i] > T(0));
     }
 
-    void begin(const GridArgs<T>& grid, FieldSet wanted) {
-        args_ = grid;
-        of_cells_ = (wanted & cell_fields()).any() ? grid.cell_weight : nullptr;
-        of_pixels_ = (wanted & ~cell_fields()).any() ? grid.pixel_weight : nullptr;
-        has_shares_ = of_cells_ || of_pixels_;
-        const FieldSet read = wanted | gradient_fields(wanted);
-        for (std::size_t f = 0; f < kFieldCount; ++f) {
-            if (!read[f]) args_.samples[f] = nullptr;
-            wanted_[f] = wanted[f] && args_.samples[f];
-            read_[f] = args_.samples[f] != nullptr;
-        }
-        plain_ = args_;
-        for (std::size_t f = 0; f < kFieldCount; ++f)
-            if (!wanted_[f]) plain_.samples[f] = nullptr;
-        args_.cell_weight = args_.pixel_weight = nullptr;
-        args_.nodes_x = nodes_x_.data();
-        args_.nodes_y = nodes_y_.data();
-        has_gradient_ = gradient_fields(wanted).any();
-        copies_.count = stretch_count_ = 0;
-    }
-
-    void flush(const GridArgs<T>& grid, Chunk<T>& to, const EvaluateKernels<T>& kernels) {
-        const std::size_t count = copies_.count, padded = copies_.padded();
-        if (count == 0) return;
-        for (std::size_t at = count; at < padded; ++at) copies_.rest_x[at] = copies_.rest_y[at] = T(0);
-        for (std::size_t at = count; at < padded; ++at) nodes_x_[at] = nodes_y_[at] = 0.0;
-        for (std::size_t f = 0; f < kFieldCount; ++f)
-            if (read_[f]) std::fill(copies_.sums[f].begin(), copies_.sums[f].begin() + padded, T(0));
-        kernels.add_grid(args_, copies_);
-        for (std::size_t f = 0; f < kFieldCount; ++f) {
-            if (!wanted_[f]) continue;
-            Term gradient{nullptr, nullptr};
-            for (const Gradient& row : kGradients)
-                if (index(row.derivative) == f && read_[index(row.of)])
-                    gradient = {row.along_y ? slope_y_.data() : slope_x_.data(),
-                                copies_.sums[index(row.of)].data()};
-            add_up({weight_.data(), copies_.sums[f].data()}, gradient, T(1), weight_of(grid, f),
-                   to.sums[f].data());
-        }
-        if (wanted_[index(Field::Dxy)] && read_[index(Field::Dx)])
-            add_up({slope_x_.data(), copies_.sums[index(Field::Dy)].data()},
-                   {slope_y_.data(), copies_.sums[index(Field::Dx)].data()}, T(-1),
-                   weight_of(grid, index(Field::Dxy)), to.turn.data());
-        copies_.count = stretch_count_ = 0;
-    }
-
-    GridArgs<T> args_, plain_;  // to read copies, and where there is but one
-    FieldSet wanted_, read_;
     const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
-    Chunk<T> copies_;
-    alignas(64) std::array<double, Chunk<T>::kPoints> nodes_x_, nodes_y_;
-    typename Chunk<T>::Values weight_, slope_x_, slope_y_;
-    bool has_gradient_ = false, has_shares_ = false;
-    std::array<Stretch, Chunk<T>::kPoints> stretches_;
-    std::size_t stretch_count_ = 0;
+    alignas(64) std::array<double, Chunk<T>::kPoints + Chunk<T>::kLongestVector> nodes_x_{}, nodes_y_{};
+    std::array<PointRange, Chunk<T>::kPoints> ranges_;
+    std::size_t range_count_ = 0;
 };
 
 // Adds the wanted fields of a grid at the chunk's points. `args`: the grid with those fields' samples alone, and where the origin
 // lies in the tile; `grid`: with all samples.
 template <class T>
 void add_copies(const GridArgs<T>& grid, GridArgs<T> args, FieldSet wanted, const CopyOrigin& origin,
-                CopyPlaces<T>& places, CopyChunk<T>& copies, Chunk<T>& chunk,
+                CopyPlaces<T>& places, CopyReader<T>& copies, Chunk<T>& chunk,
                 const EvaluateKernels<T>& kernels) {
     places.find(origin, chunk, kernels);
     if (places.is_one()) {

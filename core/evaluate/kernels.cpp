@@ -10,8 +10,8 @@
 #include <cmath>
 
 #include "core/base/pack-inl.h"
+#include "core/evaluate/grids-inl.h"
 #include "core/plan/copies.h"
-#include "core/plan/grid_layout.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pelagic {
@@ -21,73 +21,11 @@ namespace {  // names are this file's own
 
 #include "core/evaluate/surface.inl"
 #include "core/plan/filter.inl"
-#include "core/waves/spline.inl"
 #include "core/waves/whitecaps.inl"
 // After filter.inl, of which it is made.
 #include "core/plan/copies.inl"
 
-// A point's place in a grid: the node at or below it, and the rest, 0 … 1.
-template <class T>
-struct Places {
-    using Index = hwy::MakeSigned<T>;
-    alignas(64) std::array<Index, Chunk<T>::kPoints> node;
-    alignas(64) std::array<T, Chunk<T>::kPoints> rest;
-};
-
-// A few doubles as numbers of T's own width.
-template <class DD, class V>
-HWY_INLINE auto Index(DD, V v, float /*width*/) {
-    return hn::DemoteTo(hn::Rebind<std::int32_t, DD>(), v);
-}
-template <class DD, class V>
-HWY_INLINE auto Index(DD, V v, double /*width*/) {
-    return hn::ConvertTo(hn::RebindToSigned<DD>(), v);
-}
-template <class DD, class V>
-HWY_INLINE auto Narrow(DD, V v, float /*width*/) {
-    return hn::DemoteTo(hn::Rebind<float, DD>(), v);
-}
-template <class DD, class V>
-HWY_INLINE V Narrow(DD, V v, double /*width*/) {
-    return v;
-}
-template <class DD>
-HWY_INLINE auto Widen(DD dd, const float* from) {
-    return hn::PromoteTo(dd, hn::LoadU(hn::Rebind<float, DD>(), from));
-}
-template <class DD>
-HWY_INLINE auto Widen(DD dd, const double* from) {
-    return hn::LoadU(dd, from);
-}
-
-// Along one axis, in double: exact wherever in the world the origin is. A place that is no number, or so far
-// that nothing of it is left, becomes 0.
-template <class T>
-void Locate(const GridArgs<T>& args, double origin_nodes, const double* nodes_of, const T* rest_m,
-            std::size_t count, Places<T>& places) {
-    const hn::ScalableTag<double> dd;
-    using Wide = decltype(dd);
-    const hn::Rebind<T, Wide> narrow;
-    const hn::Rebind<hwy::MakeSigned<T>, Wide> index;
-    const auto n = hn::Set(dd, args.n), per_n = hn::Set(dd, 1.0 / args.n);
-    const auto scale = hn::Set(dd, args.nodes_per_m), origin = hn::Set(dd, origin_nodes);
-    for (std::size_t i = 0; i < count; i += hn::Lanes(dd)) {
-        const auto nodes =
-            hn::MulAdd(Widen(dd, rest_m + i), scale, nodes_of ? hn::LoadU(dd, nodes_of + i) : origin);
-        auto inside = hn::NegMulAdd(hn::Floor(hn::Mul(nodes, per_n)), n, nodes);
-        // −1e-20 is rounded up to n itself, and the quotient may be off by a unit in its last place.
-        inside = hn::IfThenElse(hn::Lt(inside, hn::Zero(dd)), hn::Add(inside, n), inside);
-        inside = hn::IfThenElse(hn::Ge(inside, n), hn::Sub(inside, n), inside);
-        inside = hn::IfThenElseZero(hn::And(hn::Ge(inside, hn::Zero(dd)), hn::Lt(inside, n)), inside);
-        auto node = args.sampling == Sampling::Nodes ? hn::Round(inside) : hn::Floor(inside);
-        const auto rest = hn::Sub(inside, node);
-        node = hn::IfThenElse(hn::Lt(node, n), node, hn::Zero(dd));
-        hn::StoreU(Index(dd, node, T()), index, places.node.data() + i);
-        hn::StoreU(Narrow(dd, rest, T()), narrow, places.rest.data() + i);
-    }
-}
-
-// Along one axis, in double as well.
+// Along one axis, in double.
 template <class T>
 void PlaceCopies(const CopyAxisArgs& args, const T* rest_m, std::size_t count, CopyAxis<T>& axis) {
     const hn::ScalableTag<double> dd;
@@ -97,11 +35,11 @@ void PlaceCopies(const CopyAxisArgs& args, const T* rest_m, std::size_t count, C
     const auto scale = hn::Set(dd, args.cells_per_m), origin = hn::Set(dd, args.origin_from_middle);
     const auto half = hn::Set(dd, 0.5), most = hn::Set(dd, kFarthestCell);
     for (std::size_t i = 0; i < count; i += hn::Lanes(dd)) {
-        auto cells = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
+        auto cells = hn::MulAdd(grids_detail::Widen(dd, rest_m + i), scale, origin);
         cells = hn::IfThenElseZero(hn::Lt(hn::Abs(cells), most), cells);  // no number, or no place
         const auto cell = hn::Floor(hn::Add(cells, half));
-        hn::StoreU(Index(dd, cell, T()), index, axis.code.data() + i);
-        hn::StoreU(Narrow(dd, hn::Sub(cells, cell), T()), narrow, axis.rate.data() + i);
+        hn::StoreU(grids_detail::Index(dd, cell, T()), index, axis.code.data() + i);
+        hn::StoreU(grids_detail::Narrow(dd, hn::Sub(cells, cell), T()), narrow, axis.rate.data() + i);
     }
     const hn::ScalableTag<T> d;
     using N = Pack<decltype(d)>;
@@ -152,142 +90,6 @@ ChunkSpan<T> SpanOf(const Chunk<T>& chunk) {
     along(chunk.rest_x.data(), span.low_x, span.high_x);
     along(chunk.rest_y.data(), span.low_y, span.high_y);
     return span;
-}
-
-template <class T>
-void AddNodes(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, const Places<T>& y) {
-    const hn::ScalableTag<T> d;
-    const hn::RebindToSigned<decltype(d)> di;
-    const auto stride = hn::Set(di, static_cast<hwy::MakeSigned<T>>(line_stride<T>(args.n)));
-    const std::size_t lanes = hn::Lanes(d);
-    for (std::size_t i = 0; i < chunk.count; i += lanes) {
-        const auto first = hn::LoadU(di, x.node.data() + i);
-        // Points that cross the tile's seam are read one by one: that is rare, although the row's extra
-        // columns would allow a run.
-        const auto at = hn::Add(hn::Mul(hn::LoadU(di, y.node.data() + i), stride), first);
-        const auto begin = hn::GetLane(at);
-        const bool run = hn::AllTrue(di, hn::Eq(at, hn::Add(hn::Set(di, begin), hn::Iota(di, 0))));
-        for (std::size_t f = 0; f < kFieldCount; ++f) {
-            if (!args.samples[f]) continue;
-            auto value =
-                run ? hn::LoadU(d, args.samples[f] + begin) : hn::GatherIndex(d, args.samples[f], at);
-            if (const T* weight = weight_of(args, f)) value = hn::Mul(value, hn::LoadU(d, weight + i));
-            T* sum = chunk.sums[f].data() + i;
-            hn::StoreU(hn::Add(hn::LoadU(d, sum), value), d, sum);
-        }
-    }
-}
-
-// Points of one run have the same y and lie close together in x, as those of a patch do: the rows that they
-// need are added up once, and what is left is a sum along x. A run may be a single point.
-template <int P, class T>
-void AddSpline(const GridArgs<T>& args, Chunk<T>& chunk, const Places<T>& x, const Places<T>& y) {
-    constexpr std::size_t kTaps = P <= 4 ? 4 : 8;  // with zeros behind the last
-    const hn::CappedTag<T, kTaps> taps;
-    const hn::ScalableTag<T> d;
-    const hn::CappedTag<T, 1> one;
-    const std::size_t lanes = hn::Lanes(d), stride = line_stride<T>(args.n);
-    const int n = args.n;
-    const std::size_t count = args.count > 0 ? args.count : chunk.count;
-
-    // Each point's weights along x, side by side.
-    alignas(64) T weights[Chunk<T>::kPoints][kTaps];
-    for (std::size_t i = 0; i < count; i += lanes) {
-        Pack<decltype(d)> w[P];
-        bspline_weights<P>(Pack<decltype(d)>(hn::LoadU(d, x.rest.data() + i)), w);
-        alignas(64) T column[P][64 / sizeof(T)];
-        for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, column[p]);
-        for (std::size_t j = 0; j < std::min(lanes, Chunk<T>::kPoints - i); ++j)
-            for (std::size_t p = 0; p < kTaps; ++p) weights[i + j][p] = p < P ? column[p][j] : T(0);
-    }
-    const auto first_column = [&](std::size_t i) {
-        const int column = static_cast<int>(x.node[i]) - P / 2 + 1;
-        return column < 0 ? column + n : column;
-    };
-
-    // A run pays for the columns that it spans, and saves P − 1 rows of its points: beyond a few columns a
-    // point, or across the seam of the period, the next one begins.
-    constexpr int kColumnsPerPoint = 4;
-    constexpr std::size_t kColumns = kColumnsPerPoint * Chunk<T>::kPoints + 2 * kTaps + 64 / sizeof(T);
-    alignas(64) T columns[kColumns];
-    for (std::size_t begin = 0, end; begin < count; begin = end) {
-        int low = first_column(begin), high = low;
-        for (end = begin + 1; end < count; ++end) {
-            if (y.node[end] != y.node[begin] || y.rest[end] != y.rest[begin]) break;
-            const int column = first_column(end);
-            const int lower = std::min(low, column), upper = std::max(high, column);
-            if (upper - lower > kColumnsPerPoint * static_cast<int>(end - begin + 1)) break;
-            low = lower;
-            high = upper;
-        }
-        Pack<decltype(one)> row_weight[P];
-        bspline_weights<P>(Pack<decltype(one)>(hn::Set(one, y.rest[begin])), row_weight);
-        std::size_t row[P];
-        for (int p = 0; p < P; ++p) {
-            int at = static_cast<int>(y.node[begin]) - P / 2 + 1 + p;
-            // n may be smaller than the number of taps; a division for each row would cost more than the sums.
-            while (at < 0) at += n;
-            while (at >= n) at -= n;
-            row[p] = static_cast<std::size_t>(at) * stride + low;
-        }
-        if (end == begin + 1) {  // scattered: rows and columns at once, nothing kept between
-            for (std::size_t f = 0; f < kFieldCount; ++f) {
-                const T* samples = args.samples[f];
-                if (!samples) continue;
-                auto sum = hn::Zero(taps);
-                for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps)) {
-                    auto column = hn::Mul(hn::Set(taps, hn::GetLane(row_weight[0].v)),
-                                          hn::LoadU(taps, samples + row[0] + k));
-                    for (int p = 1; p < P; ++p)
-                        column = hn::MulAdd(hn::Set(taps, hn::GetLane(row_weight[p].v)),
-                                            hn::LoadU(taps, samples + row[p] + k), column);
-                    sum = hn::MulAdd(column, hn::Load(taps, weights[begin] + k), sum);
-                }
-                const T value = hn::GetLane(hn::SumOfLanes(taps, sum));
-                const T* weight = weight_of(args, f);
-                const std::size_t to = args.first + begin;
-                chunk.sums[f][to] += weight ? weight[to] * value : value;
-            }
-            continue;
-        }
-        const std::size_t span = static_cast<std::size_t>(high - low) + kTaps;
-        for (std::size_t f = 0; f < kFieldCount; ++f) {
-            const T* samples = args.samples[f];
-            if (!samples) continue;
-            for (std::size_t k = 0; k < span; k += lanes) {
-                auto sum =
-                    hn::Mul(hn::Set(d, hn::GetLane(row_weight[0].v)), hn::LoadU(d, samples + row[0] + k));
-                for (int p = 1; p < P; ++p)
-                    sum = hn::MulAdd(hn::Set(d, hn::GetLane(row_weight[p].v)),
-                                     hn::LoadU(d, samples + row[p] + k), sum);
-                hn::StoreU(sum, d, columns + k);
-            }
-            const T* weight = weight_of(args, f);
-            for (std::size_t i = begin; i < end; ++i) {
-                const T* from = columns + (first_column(i) - low);
-                auto sum = hn::Zero(taps);
-                for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps))
-                    sum = hn::MulAdd(hn::LoadU(taps, from + k), hn::Load(taps, weights[i] + k), sum);
-                const T value = hn::GetLane(hn::SumOfLanes(taps, sum));
-                const std::size_t to = args.first + i;
-                chunk.sums[f][to] += weight ? weight[to] * value : value;
-            }
-        }
-    }
-}
-
-template <class T>
-void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
-    Places<T> x, y;  // a vector's last lanes are somewhere in the grid, too
-    const std::size_t count = args.count > 0 ? Chunk<T>::padded(args.count) : chunk.padded();
-    Locate(args, args.origin_nodes_x, args.nodes_x, chunk.rest_x.data() + args.first, count, x);
-    Locate(args, args.origin_nodes_y, args.nodes_y, chunk.rest_y.data() + args.first, count, y);
-    if (args.sampling == Sampling::Nodes)
-        AddNodes(args, chunk, x, y);
-    else if (args.taps == 6)
-        AddSpline<6>(args, chunk, x, y);
-    else
-        AddSpline<4>(args, chunk, x, y);
 }
 
 // Of a vector of points, those that there are.
@@ -437,10 +239,10 @@ void Derive(const DeriveArgs<T>& args) {
 }
 
 EvaluateKernels<float> TableOfFloat() {
-    return {&AddGrid<float>, &Derive<float>, &SpanOf<float>, &PlaceCopies<float>};
+    return {&grids_detail::AddGrid<float>, &Derive<float>, &SpanOf<float>, &PlaceCopies<float>};
 }
 EvaluateKernels<double> TableOfDouble() {
-    return {&AddGrid<double>, &Derive<double>, &SpanOf<double>, &PlaceCopies<double>};
+    return {&grids_detail::AddGrid<double>, &Derive<double>, &SpanOf<double>, &PlaceCopies<double>};
 }
 
 }  // namespace

@@ -14,6 +14,29 @@
 
 namespace pelagic {
 
+// Of a chunk's points.
+struct PointRange {
+    std::size_t first, end;  // `end` isn't one of them
+};
+
+// One copy of a grid's tile for each of a chunk's points, which sees it with a weight (core/plan/copies.h). All arrays are by
+// point, and those of T as long as a chunk's padded().
+template <class T>
+struct CopyArgs {
+    // Along an axis: the copy's weight, and that of the other one beside it; how they change with the place [1/m]; and the
+    // sign of this copy's change.
+    struct Axis {
+        const T *weight, *other, *rate;
+        T sign;
+    };
+    Axis x, y;
+    // Where the chunk's origin lies in the copy [nodes]; with room for a vector that begins at the last point.
+    const double *nodes_x, *nodes_y;
+    const PointRange* ranges;  // in order: the points that have this copy
+    std::size_t range_count;
+    FieldSet wanted;  // fields that are added; samples hold what their gradients need as well
+};
+
 // A cascade's grid, to be read at a chunk's points.
 template <class T>
 struct GridArgs {
@@ -21,14 +44,11 @@ struct GridArgs {
     int taps = 6, n = 1;
     double size_m = 1.0;  // of the tile
     double nodes_per_m = 1.0, origin_nodes_x = 0.0,
-           origin_nodes_y = 0.0;  // where the chunk's origin lies, 0 … 2n
-    const double *nodes_x = nullptr,
-                 *nodes_y = nullptr;              // the same by point, where each sees a copy of its own
+           origin_nodes_y = 0.0;                  // where the chunk's origin lies, 0 … 2n
     std::array<const T*, kFieldCount> samples{};  // as Frame::samples(); null: not wanted
     FieldSet cell_group;                          // fields that cell_weight weighs; pixel_weight the others
     const T *cell_weight = nullptr, *pixel_weight = nullptr;  // by point; null: 1
-    // A part of the chunk's points, of a grid that is read by spline; count 0: all of them.
-    std::size_t first = 0, count = 0;
+    const CopyArgs<T>* copies = nullptr;                      // null: all points see the tile itself
 };
 
 // The points' weight in a field; null: 1.

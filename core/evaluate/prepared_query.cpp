@@ -70,7 +70,7 @@ struct PreparedQuery<T>::Work {
     FieldSet needed;
     bool apart;  // the strain of the waves that break is in `breaking`, not in `chunk`
     std::array<CopyPlaces<T>, limits::kCascades> copies;  // of the chunk's points, by cascade
-    CopyChunk<T> copy_chunk;
+    CopyReader<T> copy_reader;
 };
 
 template <class T>
@@ -364,8 +364,8 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
             continue;
         }
         const auto c = static_cast<std::size_t>(levels_[level].cascades[g]);
-        add_copies(grids[g], args, share.fields, call.place.copies[c], work.copies[c], work.copy_chunk, chunk,
-                   kernels_);
+        add_copies(grids[g], args, share.fields, call.place.copies[c], work.copies[c], work.copy_reader,
+                   chunk, kernels_);
     }
 }
 
@@ -374,7 +374,7 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
 template <class T>
 void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
     auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
-           copy_chunk] = work;
+           copy_reader] = work;
     FieldSet round;
     if (cells.any_round) round |= cell_fields();
     if (pixels.any_round) round |= ~cell_fields();
@@ -487,7 +487,7 @@ template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
     auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
-           copy_chunk] = work;
+           copy_reader] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     struct Own {

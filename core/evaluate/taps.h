@@ -58,7 +58,7 @@ class TapChunk {
         if (turns_) std::fill(taps_.turn.begin(), taps_.turn.begin() + padded, T(0));
         if (copies_) {
             places_.forget();
-            add_copies(whole_, args_, fields_, *copies_, places_, copy_chunk_, taps_, *kernels_);
+            add_copies(whole_, args_, fields_, *copies_, places_, copy_reader_, taps_, *kernels_);
         } else {
             kernels_->add_grid(args_, taps_);
         }
@@ -78,7 +78,7 @@ class TapChunk {
     const CopyOrigin* copies_ = nullptr;
     bool turns_ = false;
     CopyPlaces<T> places_;
-    CopyChunk<T> copy_chunk_;
+    CopyReader<T> copy_reader_;
     FieldSet fields_;
     Chunk<T> taps_;
     typename Chunk<T>::Values weight_;

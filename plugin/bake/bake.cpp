@@ -279,7 +279,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
                                .cancel = options.cancel};
         const std::unique_ptr<Sequence> sequence = make_sequence(plan, watch);
         report_progress(BakeStage::Frames);
-        record.describe(plan, sequence->total(), sequence->whitecap_threshold());
+        record.describe(plan, sequence->total(), sequence->whitecap_threshold(),
+                        sequence->residual_coverage());
         record.mark_stale(
             [&](int frame, const FrameRecord& recorded) { return is_stale(frame, recorded, parts); });
         sequence->write_static(write_static);

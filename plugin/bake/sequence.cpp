@@ -84,6 +84,7 @@ class SequenceOf final : public Sequence {
 
     const SpectralMoments& total() const override { return sea_->total(); }
     double whitecap_threshold() const override { return sea_->whitecap_threshold(); }
+    double residual_coverage() const override { return sea_->residual_coverage(); }
     long executed_transforms() const override { return frame_.executed_transforms(); }
 
   private:

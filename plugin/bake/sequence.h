@@ -36,6 +36,7 @@ class Sequence {
     virtual void write_static(const FileSink& sink) const = 0;
     virtual const SpectralMoments& total() const = 0;
     virtual double whitecap_threshold() const = 0;
+    virtual double residual_coverage() const = 0;  // of the sea, over all of it; 0 where foam doesn't live
     virtual long executed_transforms() const = 0;
 };
 

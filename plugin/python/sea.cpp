@@ -12,6 +12,7 @@
 
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
+#include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/task.h"
 #include "plugin/python/watch.h"
@@ -143,6 +144,12 @@ PythonSea build_sea(const SeaOrder& order, Watch& watch) {
     return *sea;
 }
 
+std::pair<float, float> dense_foam(const PythonSea& self) {
+    const Scene& scene = self.plan().from->scene;
+    const FoamLook look = make_foam(scene, active_foam(scene, self.sea->residual_coverage()));
+    return {look.dense_active, look.dense_left};
+}
+
 const std::string kSeaDoc =
     "A sea, built once from a scene, for one kind of question: immutable, shared by threads and frames. "
     "Single precision.\n\n"
@@ -209,6 +216,11 @@ void add_sea(py::module_& module) {
         .def_property_readonly(
             "whitecap_threshold", [](const PythonSea& self) { return self.sea->whitecap_threshold(); },
             "The Jacobian below which there is foam; -inf: there never is.")
+        .def_property_readonly(
+            "dense_foam", &dense_foam,
+            "(active, left): the part of its foam that is dense, of reflectance 0.55, where waves break now, "
+            "and in what they left; the rest is bubbles over water. The mean over a law's foam is 0.4, and "
+            "both are where foam doesn't live (Koepke 1984; Darles et al. 2007).")
         .def_property_readonly(
             "products",
             [](const PythonSea& self) {

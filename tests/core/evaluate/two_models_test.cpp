@@ -1,11 +1,13 @@
 // Trains and cascades behind one query: alone and together, every instruction set alike.
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
+#include "core/surface/patch.h"
 
 #include <algorithm>
 
 #include "core/base/instruction_set.h"
 #include "core/spectrum/directional_spectrum.h"
+#include "core/surface/patch.h"
 #include "core/waves/loop.h"
 #include "tests/core/waves/samples.h"
 
@@ -129,7 +131,10 @@ TEST(TwoModels, ShownAndHiddenAddUpToTheWholeAtEveryFootprint) {
 TEST(TwoModels, AgreeOnEveryInstructionSet) {
     for (const Scene& scene : {Scene{}, trains_alone(), trains_and_cascades()}) {
         const Query between = filtered(kEverything, 0.5);
-        const auto rest = random_points<float>(150.0, 700);
+        auto rest = random_points<float>(150.0, 700);
+        // Rows of a patch as well, which grids are read at in another way. They cross copies of tiles.
+        const auto rows = rest_points<float>({.per_side = 60, .spacing_m = 2.5, .first_m = -75.0});
+        rest.insert(rest.end(), rows.begin(), rows.end());
         std::vector<ProductArrays<float>> answers;
         std::vector<std::string> names;
         double height_m = 0.0;

@@ -34,7 +34,7 @@ TEST(Record, HasEveryKeyAsAValue) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("pelagic-record-" + std::to_string(getpid()) + ".json");
     Record record;
-    record.describe(plan_bake(scene), SpectralMoments{}, 0.0);
+    record.describe(plan_bake(scene), SpectralMoments{}, 0.0, 0.0);
     record.save(file);
     std::ifstream stream(file);
     const auto settings = nlohmann::json::parse(stream).at("settings");

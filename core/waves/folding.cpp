@@ -98,11 +98,21 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.05;
     const Waves& waves = prepared.scene.waves;
     if (waves.tiling != Tiling::Random || waves.model != WaveModel::Fft || waves.cascades.empty()) return {};
-    const double given_m = waves.cascades.front().size_m;
+    const auto [given_m, given_resolution] = waves.cascades.front();
+    // A larger tile must have all waves down to the next cascade's, or down to those that it has now.
+    const double k_last = kPi * given_resolution / given_m;
+    const auto resolution_of = [&](double size_m) {
+        const int needed =
+            waves.cascades.size() > 1
+                ? sufficient_resolution(size_m, lower_edges(std::array{size_m, waves.cascades[1].size_m})[1])
+                : static_cast<int>(std::min(2.0 * std::ceil(0.5 * size_m * k_last / kPi), 1e9));
+        return std::max(given_resolution, needed);
+    };
     const auto share_with = [&](double size_m) {
-        double k_end = kPi * waves.cascades.front().resolution / size_m;
+        double k_end = k_last;
         if (waves.cascades.size() > 1)
-            k_end = std::min(k_end, lower_edges(std::array{size_m, waves.cascades[1].size_m})[1]);
+            k_end = std::min(kPi * resolution_of(size_m) / size_m,
+                             lower_edges(std::array{size_m, waves.cascades[1].size_m})[1]);
         return gained_by_copies(prepared.spectrum, size_m, k_end);
     };
     const double share = share_with(given_m);
@@ -111,11 +121,15 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
     for (double left = share; left > kMuch; left = share_with(enough_m))
         enough_m *= std::max(std::sqrt(left / kMuch), 1.01);
     const double digit_m = std::pow(10.0, std::floor(std::log10(enough_m)) - 1.0);
+    const double size_m = std::ceil(enough_m / digit_m) * digit_m;
+    const int resolution = resolution_of(size_m);
+    std::string larger = "with size_m = " + number_text(size_m);
+    if (resolution > given_resolution) larger += " and resolution = " + std::to_string(resolution);
+    larger = resolution <= kMaxCascadeResolution ? larger + " it adds 5 %, " : std::string();
     return {"the largest cascade, of " + number_text(given_m) +
             " m, holds few of its waves: where its copies blend they are steeper, which adds " +
-            percent_text(share) + " % to its mean square slope; with size_m = " +
-            number_text(std::ceil(enough_m / digit_m) * digit_m) +
-            " it adds 5 %, with waves.tiling = \"periodic\" nothing"};
+            percent_text(share) + " % to its mean square slope; " + larger +
+            "with waves.tiling = \"periodic\" nothing"};
 }
 
 }  // namespace

@@ -48,11 +48,14 @@ class SequenceOf final : public Sequence {
         while (slot.outputs.size() < parts_.size())
             slot.outputs.push_back(parts_[slot.outputs.size()]->make_slot());
         BuildWatch watch{.progress = {}, .cancel = cancel_};
+        std::size_t of_foam = 0, before = 0;
+        for (std::size_t p = 0; p < parts_.size(); ++p)
+            of_foam += wants(slot, p) && parts_[p]->has_foam_history();
         for (std::size_t p = 0; p < parts_.size(); ++p) {
             if (!wants(slot, p)) continue;
-            if (foam_past)
-                watch.progress = [&, p](double done) {
-                    foam_past((static_cast<double>(p) + done) / static_cast<double>(parts_.size()));
+            if (foam_past && parts_[p]->has_foam_history())
+                watch.progress = [&, of_foam, done_before = before++](double done) {
+                    foam_past((static_cast<double>(done_before) + done) / static_cast<double>(of_foam));
                 };
             parts_[p]->compute(frame_, foam_ ? &*foam_ : nullptr, frame, *slot.outputs[p], watch);
         }

@@ -76,7 +76,9 @@ void print(const std::string& text) {
 
 std::string progress_line(const BakeProgress& progress) {
     const std::string count = std::to_string(finished(progress)) + " of " + std::to_string(progress.total);
-    if (progress.done == 0) return joined({count + " frames are whole already", past_text(progress)}, ", ");
+    if (progress.done == 0)
+        return joined({progress.kept > 0 ? count + " frames are whole already" : "", past_text(progress)},
+                      ", ");
     return "frame " + std::to_string(progress.frame) + ": " +
            joined({count, rate_text(progress), left_text(progress), past_text(progress)}, ", ");
 }

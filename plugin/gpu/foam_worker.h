@@ -20,7 +20,7 @@ class FoamWorker {
 
     // Of a sea with living foam.
     explicit FoamWorker(std::shared_ptr<const Sea<float>> sea);
-    // Waits for no more than a step of a history that isn't done: for as long as cancel() takes.
+    // Cancels a history that isn't done, and waits for the step of it that is being made.
     ~FoamWorker();
 
     // Wants the foam at a time that these grids show, above all the last of them. The latest request wins, but what is being made is finished: it is most

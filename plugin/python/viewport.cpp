@@ -163,6 +163,8 @@ class FoamThread final : public NativeWork {
         return *worker_;
     }
 
+    FoamWorker* made() { return worker_.get(); }  // null until it was asked, and again in a forked process
+
     void cancel() override {
         if (worker_) worker_->cancel();
     }
@@ -325,10 +327,10 @@ class GpuSea {
         py::dict made;
         if (!has_living_foam()) return made;
         std::shared_ptr<const PackedFoam> foam;
-        if (foam_thread_) {
-            if (const std::string problem = foam_thread_->worker().error(); !problem.empty())
+        if (FoamWorker* const worker = foam_thread_ ? foam_thread_->made() : nullptr) {
+            if (const std::string problem = worker->error(); !problem.empty())
                 throw std::runtime_error(problem);
-            foam = foam_thread_->worker().take();
+            foam = worker->take();
         }
         if (!foam && foam_) return made;
         foam_ = foam ? std::move(foam) : std::make_shared<const PackedFoam>();

@@ -160,8 +160,8 @@ TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
     }
 }
 
-// However little choppiness there is. Where copies of tiles blend,
-// the strain that a level sea breaks by has no gradient of the weights.
+// However little choppiness there is. Where copies of tiles blend, the strain that a level sea breaks by has no gradient of the
+// weights: from choppiness 0 to the least that counts, some of the foam moves there, and the bound is wider.
 TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
     const auto points = random_points<float>(3000.0, 20000);
     Scene scene;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/plan/copies.h"
+#include "core/scene/validate.h"
 #include "core/waves/frame.h"
 #include "core/waves/sea.h"
 #include "tests/core/waves/samples.h"
@@ -134,9 +135,14 @@ TEST(CopiesGain, IsToldOfWithWhatHelps) {
                 EXPECT_NEAR(std::stod(warnings[0].substr(share + of_share.size())), 100.0 * gain,
                             25.0 * gain);
                 scene.waves.cascades[0].size_m = std::stod(warnings[0].substr(size + of_size.size()));
+                const std::string of_resolution = "resolution = ";
+                if (const std::size_t more = warnings[0].find(of_resolution); more != std::string::npos)
+                    scene.waves.cascades[0].resolution =
+                        std::stoi(warnings[0].substr(more + of_resolution.size()));
+                EXPECT_TRUE(validate(scene).empty()) << warnings[0];
                 EXPECT_TRUE(sea_warnings(*prepare(scene)).empty());
                 EXPECT_LT(gain_of(scene), 0.055);
-                scene.waves.cascades[0].size_m = waves * peak_m;
+                scene.waves.cascades[0] = {waves * peak_m, 128};
                 scene.waves.tiling = Tiling::Periodic;
                 for (const std::string& warning : sea_warnings(*prepare(scene)))
                     EXPECT_EQ(warning.find(of_share), std::string::npos);

@@ -93,7 +93,7 @@ TEST(BakedFoam, IsCancelledInItsPast) {
 // And it says how far it is, over all of its parts; a run's next frame has nothing long to go through.
 TEST(BakedFoam, SaysHowFarItsPastIs) {
     Scene scene = scene_of(SurfaceKind::Patch);
-    scene.output.maps = {MapKind::Whitecaps};
+    scene.output.maps = {MapKind::Whitecaps, MapKind::Displacement, MapKind::Normal};
     scene.output.map_resolution = 32;
     const auto sequence = make_sequence(plan_bake(scene));
     FrameSlot slot;
@@ -103,7 +103,7 @@ TEST(BakedFoam, SaysHowFarItsPastIs) {
     EXPECT_GT(told.size(), 5u);
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_GT(told.front(), 0.0);
-    EXPECT_LE(told.back(), 1.0);
+    EXPECT_NEAR(told.back(), 1.0, 0.05);  // though there are maps that have no foam
     told.clear();
     sequence->compute(2, slot, tell);
     EXPECT_TRUE(told.empty());

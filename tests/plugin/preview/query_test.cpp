@@ -293,6 +293,7 @@ TEST(SeaTables, ThatTheDriverCannotHoldAreRefused) {
     Scene scene;
     for (int i = 0; i < limits::kCascades; ++i)
         scene.waves.cascades.push_back({1000.0 * std::pow(0.6, i), 64});
+    bool refused = false;
     for (const int rungs : {4, 100}) {
         Query query = picture_query();
         query.cell_m.clear();
@@ -312,11 +313,13 @@ TEST(SeaTables, ThatTheDriverCannotHoldAreRefused) {
             textures.upload_once(packed);
             EXPECT_FALSE(is_too_large) << rungs;
         } catch (const PreviewError& error) {
+            refused = true;
             EXPECT_TRUE(is_too_large) << rungs;
             EXPECT_NE(std::string(error.what()).find("ask for fewer cascades"), std::string::npos)
                 << error.what();
         }
     }
+    if (!refused) GTEST_SKIP() << "this driver holds the tables of every shot";
 }
 
 }  // namespace

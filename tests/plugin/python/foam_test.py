@@ -121,7 +121,7 @@ class LivingFoam(unittest.TestCase):
         # Begun with its first step, of many: it can't be done before it is cancelled.
         far, _ = pelagic.patch(300.0, 100)
         task = frame.begin(500.0, far)
-        while task.progress is None:
+        while task.progress is None and not task.is_done:
             time.sleep(0.001)
         task.cancel()
         with self.assertRaises(pelagic.Cancelled):

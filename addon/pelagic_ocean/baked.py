@@ -47,6 +47,8 @@ class Bake:
         try:
             told = json.loads(self.record.read_text(encoding="utf-8"))
             self.scene = _scene_of(told["settings"])
+            dense = told.get("dense_foam")  # since records tell it
+            self.dense_foam = (float(dense["active"]), float(dense["left"])) if dense else None
         except FileNotFoundError:
             raise ValueError(f"{self.record}: is not there; {ACCEPTED}") from None
         except (KeyError, TypeError, AttributeError, ValueError) as error:
@@ -233,7 +235,7 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
                                      f"{ocean.frame_rate(context.scene):g}")
         try:
             if self.light:
-                material.ensure_material(obj, bake.scene)
+                material.ensure_material(obj, bake.scene, bake.dense_foam)
             if self.light and first_ocean(context.scene) is None:
                 light.ensure_light(context.scene, bake.scene)
         except ValueError as error:

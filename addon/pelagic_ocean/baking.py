@@ -36,13 +36,14 @@ class Baking:
     @property
     def text(self):
         """How far it is."""
-        stage, _frame, done, kept, total, built = self.task.progress or ("planning", 0, 0, 0, 0, 0.0)
+        stage, _frame, done, kept, total, share = self.task.progress or ("planning", 0, 0, 0, 0, 0.0)
         if stage == "frames":
-            return f"Bake: {done + kept} of {total} frames"
+            past = f", the foam's past: {100 * share:.0f} %" if share else ""
+            return f"Bake: {done + kept} of {total} frames{past}"
         if stage == "building":
-            return f"Bake: the sea, {100 * built:.0f} %"
+            return f"Bake: the sea, {100 * share:.0f} %"
         if stage == "checking":
-            return f"Bake: reading what is there, {100 * built:.0f} %"
+            return f"Bake: reading what is there, {100 * share:.0f} %"
         if stage == "waiting":
             return "Bake: waiting for another one in this folder"
         return "Bake: planning"

@@ -214,7 +214,8 @@ class Drawing:
 
     def _follow_foam(self):
         """Living foam comes when it is ready: until then a picture has what there is."""
-        asked = self._time_s, tuple(grid.key for grid in self._grids.values())
+        # By region, whichever was drawn last: or two views would ask for ever.
+        asked = self._time_s, {region: grid.key for region, grid in self._grids.items()}
         if asked != self._foam_asked:
             self._foam_asked, self.awaits_foam = asked, True
             self.sea.ask_foam(self._time_s, [grid.grid for grid in self._grids.values()])

@@ -45,15 +45,15 @@ def _follow(bpy_scene, depsgraph):
             continue
         settings = ocean.settings_of(obj.evaluated_get(depsgraph))
         sea = play.simulation_of(obj).sea
-        height_m = sea and sea.significant_height_m
+        of_sea = (sea.significant_height_m, sea.dense_foam) if sea else (None, None)
         key = obj.name_full, bpy_scene.name
-        wanted = [height_m, ocean.frame_rate(bpy_scene), obj.pelagic.see_through] + [settings[place] for place in PLACES]
+        wanted = [of_sea, ocean.frame_rate(bpy_scene), obj.pelagic.see_through] + [settings[place] for place in PLACES]
         if _shown.get(key) == wanted:
             continue
         _shown[key] = wanted
         try:
             scene = ocean.scene_of(obj, bpy_scene, settings=settings)
-            material.update_material(obj, scene, height_m)
+            material.update_material(obj, scene, *of_sea)
             if first_ocean(bpy_scene) == obj:
                 light.update_light(bpy_scene, scene)
         except (ValueError, pelagic.ShotError) as error:

@@ -7,26 +7,28 @@ import bpy
 
 from . import depths
 from .facets import WATER_INDEX, add_facets, transformed
-from .foam import add_foam
+from .foam import DENSE, add_foam
 from .light import sky_of
 from .module import pelagic
 from .nodes import Tree
 
 MARK = "pelagic_water"  # on a material of the add-on: the version of its tree
-VERSION = 2
+VERSION = 3
 
 
-def ensure_material(obj, scene):
-    """Gives an object without a material the ocean's; somebody else's stays. Returns the ocean's material, or None."""
+def ensure_material(obj, scene, dense_foam=None):
+    """Gives an object without a material the ocean's; somebody else's stays. Returns the ocean's material, or None.
+    dense_foam: as update_material()."""
     if not any(obj.data.materials):
         obj.data.materials.clear()
         obj.data.materials.append(new_material())
-    return update_material(obj, scene)
+    return update_material(obj, scene, dense_foam=dense_foam)
 
 
-def update_material(obj, scene, significant_height_m=None):
-    """Brings the ocean's material to the scene's water, light and wind, and to the height of its waves where that is known;
-    returns it, or None where there is none. What an artist changed stays until the scene's own value changes."""
+def update_material(obj, scene, significant_height_m=None, dense_foam=None):
+    """Brings the ocean's material to the scene's water, light and wind, and to the height of its waves and Sea.dense_foam
+    where they are known; returns it, or None where there is none. What an artist changed stays until the scene's own value
+    changes."""
     material = next((m for m in obj.data.materials if m and MARK in m), None)
     if material is not None:
         _set(material, "Water Color", tuple(upwelling_albedo(scene)) + (1.0,))
@@ -39,6 +41,9 @@ def update_material(obj, scene, significant_height_m=None):
         depths.connect(obj, material)
         if significant_height_m is not None:
             _set(material, "Wave Height", max(significant_height_m, 1e-3))
+        if dense_foam is not None:
+            for name, part in zip(("Active Foam Density", "Residual Foam Density"), dense_foam):
+                _set(material, name, part)
     return material
 
 
@@ -97,10 +102,12 @@ def new_material():
         return tree.value(node, 0)
 
     water = labelled("ShaderNodeRGB", "Water Color", (0.0, 0.03, 0.05, 1.0))
-    dense = labelled("ShaderNodeRGB", "Foam Color", (0.55, 0.55, 0.55, 1.0))
+    white_foam = labelled("ShaderNodeRGB", "Foam Color", (0.55, 0.55, 0.55, 1.0))
     wind = labelled("ShaderNodeValue", "Wind Angle", 0.0)
     structure = labelled("ShaderNodeValue", "Foam Structure", 1.0)
     streaks = labelled("ShaderNodeValue", "Foam Streaks", 0.5)
+    dense_active = labelled("ShaderNodeValue", "Active Foam Density", DENSE)
+    dense_left = labelled("ShaderNodeValue", "Residual Foam Density", DENSE)
     crest_light = labelled("ShaderNodeValue", "Crest Light", 2.0)
     wave_height = labelled("ShaderNodeValue", "Wave Height", 1e6)
     clock = tree.node("ShaderNodeCombineXYZ")
@@ -109,8 +116,8 @@ def new_material():
 
     part = add_facets(tree, ripples=0.4, ripple_length_m=0.35, detail_distance_m=60.0, wind_angle=wind, time=time)
     coverage = tree.attribute("whitecap_coverage", "Fac")
-    foam = add_foam(tree, coverage, tree.attribute("foam_age", "Fac"), structure, streaks, size=1.0,
-                    detail_distance_m=400.0, wind_angle=wind)
+    foam = add_foam(tree, coverage, tree.attribute("foam_active", "Fac"), tree.attribute("foam_age", "Fac"), dense_active,
+                    dense_left, structure, streaks, size=1.0, detail_distance_m=400.0, wind_angle=wind)
 
     mirror = tree.add("ShaderNodeBsdfAnisotropic", {"Color": part["Reflection"], "Roughness": part["Roughness"],
                                                     "Anisotropy": 0.0, "Normal": part["Normal"]},
@@ -124,7 +131,7 @@ def new_material():
     lit = water * (tree.vector(1.5, 1.2, 1.0) * thin + (1.0, 1.0, 1.0))
     body = tree.add("ShaderNodeBsdfDiffuse", {"Color": lit * (1.0 - part["Fresnel"]), "Normal": upwards})
     under_foam = water * WATER_INDEX**2  # bubbles are in the water: what they scatter needn't leave it through its surface
-    white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], under_foam, dense),
+    white = tree.add("ShaderNodeBsdfDiffuse", {"Color": tree.mix(foam["Density"], under_foam, white_foam),
                                                 "Normal": part["Foam Normal"]})
     tree.node("ShaderNodeOutputMaterial", {"Surface": tree.add("ShaderNodeMixShader", {
         0: foam["Foam"], 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: body}), 2: white})})

@@ -23,7 +23,7 @@ class Surface:
     such, cell_m then being the short ones, or None. faces: a function that gives (corners, starts), int32: the faces'
     vertices one after another, and where each face begins; None for a mesh that has its own. height_m: float32 (n,),
     what is added to z, or None. uv_m: the length that is 1 in the UV map. moves: whether the next frame has other points.
-    lattice: (first_m, spacing_m) where all points lie at first + i·spacing in x and in y.
+    lattice: (first_m, spacing_m, last_m) where all points lie at first + i·spacing in x and in y, up to last.
     """
 
     signature: str
@@ -72,7 +72,7 @@ def patch(size_m, resolution, horizon):
         return rest, quads, size_m / resolution
 
     rest, quads, cell_m = points()
-    lattice = (-0.5 * size_m, cell_m) if len(quads) == resolution**2 else None
+    lattice = (-0.5 * size_m, cell_m, 0.5 * size_m) if len(quads) == resolution**2 else None
     return Surface(f"patch {size_m!r} {resolution} {horizon}", rest, cell_m, lambda: _quads(points()[1]), uv_m=size_m,
                    lattice=lattice)
 

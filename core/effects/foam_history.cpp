@@ -40,8 +40,11 @@ auto order_of(const FoamPlace& place) {
 
 template <class T>
 struct FoamHistory<T>::Level {
-    Level(const Plan& plan, double cell)
-        : cell_m(cell), frame(std::make_shared<const Sea<T>>(plan_of_foam_level(plan, cell))) {
+    // Throws BuildCancelled.
+    Level(const Plan& plan, double cell, const std::atomic<bool>* cancel)
+        : cell_m(cell),
+          frame(std::make_shared<const Sea<T>>(plan_of_foam_level(plan, cell),
+                                               BuildWatch{.progress = {}, .cancel = cancel})) {
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x)
                 rest_m.emplace_back(static_cast<T>(x * cell), static_cast<T>(y * cell));
@@ -177,7 +180,7 @@ template <class T>
 FoamHistory<T>::~FoamHistory() = default;
 
 template <class T>
-void FoamHistory<T>::set(double t_s, double back_s) {
+void FoamHistory<T>::set(double t_s) {
     if (!(std::abs(t_s) <= Frame<T>::kLatest_s))
         throw std::invalid_argument("the foam's time must be a number of at most 1e12 s to either side of 0");
     ++round_;
@@ -185,9 +188,6 @@ void FoamHistory<T>::set(double t_s, double back_s) {
     time_s_ = time_within_loop_s(t_s, sea_->loop_s());
     last_ = static_cast<std::int64_t>(std::floor(time_s_ / foam_.step_s));
     first_ = last_ + 1 - foam_.intervals();
-    const double back =
-        std::clamp(back_s / foam_.step_s, 0.0, static_cast<double>(FoamPlan::kSpareIntervals));
-    begin_ = first_ - static_cast<std::int64_t>(std::ceil(back));
     std::erase_if(tiles_, [&](const auto& entry) {
         return entry.second->used.load() + 1 < round_ || !entry.second->continues_at(first_);
     });
@@ -201,9 +201,9 @@ void FoamHistory<T>::set(double t_s, double back_s) {
 }
 
 template <class T>
-typename FoamHistory<T>::Level& FoamHistory<T>::level(int index) {
+typename FoamHistory<T>::Level& FoamHistory<T>::level(int index, const std::atomic<bool>* cancel) {
     std::unique_ptr<Level>& level = levels_[static_cast<std::size_t>(index)];
-    if (!level) level = std::make_unique<Level>(sea_->plan(), foam_.cell_of(index));
+    if (!level) level = std::make_unique<Level>(sea_->plan(), foam_.cell_of(index), cancel);
     return *level;
 }
 
@@ -363,17 +363,24 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& 
     for (Tile* tile : tiles) {
         if (!tile->is_begun || !tile->continues_at(first_)) {
             tile->is_begun = true;
-            tile->begin = tile->end = begin_;
-            tile->next = begin_ - 2;
+            tile->begin = tile->end = first_;
+            tile->next = first_ - 2;
         }
         from = std::min(from, tile->next);
     }
-    const auto is_cancelled = [&] { return watch.cancel && watch.cancel->load(std::memory_order_relaxed); };
-    const auto stop_if_cancelled = [&] {
-        if (!is_cancelled()) return;
+    try {
+        sample_from(from, tiles, watch);
+    } catch (const BuildCancelled&) {
         for (Tile* tile : tiles) tile->used = round_;  // what they have is kept for the next time
-        throw BuildCancelled();
-    };
+        throw;
+    }
+}
+
+// Samples `from` on, of the tiles whose next one it is.
+template <class T>
+void FoamHistory<T>::sample_from(std::int64_t from, const std::vector<Tile*>& tiles,
+                                 const BuildWatch& watch) {
+    const auto is_cancelled = [&] { return watch.cancel && watch.cancel->load(std::memory_order_relaxed); };
     std::vector<Tile*> due;
     const std::int64_t end = last_ + 4;
     const bool is_long = end - from > kLong;
@@ -383,12 +390,12 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& 
             for (Tile* tile : tiles)
                 if (tile->place.level == l && tile->next == n) due.push_back(tile);
             if (due.empty()) continue;
-            stop_if_cancelled();
-            level(l).frame.set(static_cast<double>(n) * foam_.step_s);
+            if (is_cancelled()) throw BuildCancelled();
+            level(l, watch.cancel).frame.set(static_cast<double>(n) * foam_.step_s);
             tbb::parallel_for(std::size_t(0), due.size(), [&](std::size_t i) {
                 if (!is_cancelled()) sample(*due[i], n);
             });
-            stop_if_cancelled();
+            if (is_cancelled()) throw BuildCancelled();
         }
         if (is_long && watch.progress)
             watch.progress(static_cast<double>(n + 1 - from) / static_cast<double>(end - from));

@@ -57,9 +57,9 @@ class FoamHistory {
     explicit FoamHistory(std::shared_ptr<const Sea<T>> sea);
     ~FoamHistory();
 
-    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what the times before have in common with it. `back_s`: how far
-    // back from here the next times go, as a shutter's moments do: what is begun anew begins so much earlier.
-    void set(double t_s, double back_s = 0.0);
+    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what the times before have in common with it: of rising times the
+    // most.
+    void set(double t_s);
 
     // Makes what add() will read at these points, which are all that is asked for at this time: where add() is called for a
     // few at a time, it needn't take the earlier times again for each. What only other times' points read is let go.
@@ -103,8 +103,9 @@ class FoamHistory {
     void renew(const BuildWatch& watch);
     void forget_unused();
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
+    void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n) const;
-    Level& level(int index);
+    Level& level(int index, const std::atomic<bool>* cancel);
 
     std::shared_ptr<const Sea<T>> sea_;
     FoamPlan foam_;
@@ -114,7 +115,6 @@ class FoamHistory {
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea
     double time_s_ = 0.0;
     std::int64_t first_ = 0, last_ = -1;  // the intervals that count now
-    std::int64_t begin_ = 0;              // the first of a tile that is begun now
     struct IntervalWeight {
         float foam, age;
     };

@@ -60,10 +60,9 @@ void GustsAt(const GustArgs<T>& args, GustChunk<T>& chunk) {
         GustSum<N> sum{};
         for (std::size_t w = 0; w < GustsPlan::kWaves; ++w) {
             const GustsPlan::Wave& wave = args.gusts->plan.waves[w];
-            const double per_m = 1.0 / std::hypot(wave.cycles_per_m.x, wave.cycles_per_m.y);
             const N cycles = x * N(wave.cycles_per_m.x) + y * N(wave.cycles_per_m.y) + N((*args.phases)[w]);
-            const N length = square_root(length2_along(width, axis_x, axis_y, N(wave.cycles_per_m.x * per_m),
-                                                       N(wave.cycles_per_m.y * per_m)));
+            const N length =
+                square_root(length2_along(width, axis_x, axis_y, N(wave.along.x), N(wave.along.y)));
             const N weight = footprint_weight(N(wave.shortest_m) / length, n_min, per_range);
             sum = with_gust(sum, N(wave.amplitude), cycles, weight);
         }

@@ -7,7 +7,6 @@
 namespace pelagic {
 namespace {
 
-constexpr double kCell_m = 32.0;                           // kFoamCell_m
 constexpr double kRepeat = 65536.0;                        // cells
 constexpr double kNetStretch = 1.0, kStreakStretch = 8.0;  // along the wind, at the strongest
 
@@ -16,8 +15,8 @@ constexpr double kNetStretch = 1.0, kStreakStretch = 8.0;  // along the wind, at
 FoamPattern foam_pattern(const FoamLook& look, glm::dvec2 origin_m) {
     const double angle = glm::radians(look.wind_direction_deg);
     const glm::dvec2 wind(std::cos(angle), std::sin(angle));
-    const glm::dvec3 per_m(1.0 / (kCell_m * (1.0 + kNetStretch * look.streaks)),
-                           1.0 / (kCell_m * (1.0 + kStreakStretch * look.streaks)), 1.0 / kCell_m);
+    const glm::dvec3 per_m(1.0 / (kFoamCell_m * (1.0 + kNetStretch * look.streaks)),
+                           1.0 / (kFoamCell_m * (1.0 + kStreakStretch * look.streaks)), 1.0 / kFoamCell_m);
     const double along = glm::dot(wind, origin_m);
     const double across = wind.x * origin_m.y - wind.y * origin_m.x;
     FoamPattern pattern;

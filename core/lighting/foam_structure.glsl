@@ -8,7 +8,7 @@
 // over the sea is Φ(−q) = c: at any distance, for any age, and for any strength of the pattern, which only scales w.
 //
 // Layers are fixed to the water at rest, on grids of integer cells whose sizes are halves of one another. Age moves weight
-// from one to the next.
+// from one to the next. kFoamCell_m (foam_structure.h) is the largest cell's size across the wind.
 
 struct FoamPattern {
     vec3 cell;  // the largest cell that the origin of the points is in: along the wind, along it in streaks, across; whole, modulo 65536
@@ -23,7 +23,6 @@ struct SeenFoam {
     float dense;
 };
 
-const float kFoamCell_m = 32.0f;   // across the wind
 const float kFoamGrain = 0.1f;     // the part of the pattern's variance that is finer than anything shown: its edges' softness
 const float kThinFoam = 0.15f;     // dense foam in what looks thin
 const float kFaintFoam = 1.0e-3f;  // less coverage than this begins to lose its pattern, which nobody would see
@@ -136,7 +135,7 @@ struct FoamNoise {
 FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float age_s) {
     float along = pattern.axes.x * rest_m.x + pattern.axes.y * rest_m.y;
     float across = pattern.axes.x * rest_m.y - pattern.axes.y * rest_m.x;
-    vec3 place = pattern.rest + vec3(pattern.axes.z * along, pattern.axes.w * along, across / kFoamCell_m);
+    vec3 place = pattern.rest + vec3(pattern.axes.z * along, pattern.axes.w * along, across / float(kFoamCell_m));
     vec3 whole = floor(place);
     place -= whole;
     vec3 cell = pattern.cell + whole;

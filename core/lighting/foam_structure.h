@@ -7,6 +7,9 @@
 
 namespace pelagic {
 
+// The largest cells of the pattern, across the wind [m].
+inline constexpr int kFoamCell_m = 32;
+
 // What a shot asks for.
 struct FoamLook {
     double structure = 0.0;           // 0: smooth coverage … 1: lace

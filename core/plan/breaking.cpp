@@ -11,8 +11,12 @@ double Breaking::k_end() const {
     return from_m > 0.0 ? kTwoPi / from_m : std::numeric_limits<double>::infinity();
 }
 
+double built_choppiness(const Scene& scene) {
+    return scene.waves.choppiness < kLeastShownChoppiness ? 0.0 : scene.waves.choppiness;
+}
+
 Breaking breaking_of(const Scene& scene, const FootprintFilter& filter) {
-    const double from_m = scene.effects.breaking_from_m, choppiness = scene.waves.choppiness;
+    const double from_m = scene.effects.breaking_from_m, choppiness = built_choppiness(scene);
     return {.from_m = from_m,
             .footprint_m = from_m / filter.n_min,
             .choppiness = choppiness > 0.0 ? choppiness : Breaking::kLeastChoppiness};

@@ -12,6 +12,12 @@
 
 namespace pelagic {
 
+// The choppiness that a sea is built with: the scene's, or none where it is less than this. Such a sea is displaced by less
+// than a ten-thousandth of its waves' height, and in single precision J, next to 1, keeps too few digits of its strain to
+// tell where it breaks: half a step is 0.2 % of J's deviation here, and more of less.
+inline constexpr double kLeastShownChoppiness = 1e-4;
+double built_choppiness(const Scene& scene);
+
 struct Breaking {
     double from_m = 0.0;       // the shortest waves that break; 0: all do
     double footprint_m = 0.0;  // the finest footprint of their strain

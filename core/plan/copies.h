@@ -31,10 +31,10 @@ inline constexpr double kPlainHalf = 0.5 - 0.5 * kCopyRamp;
 // E[w_x²] L², summed over the copies: the mean of θ′² over the plane, 3.0384 / kCopyRamp.
 inline constexpr double kCopySlopes = 3.0383937607 / kCopyRamp;
 
-// Below 2²⁰.
 // Along an axis from the points' origin, in cells: what lies further, or is no number, is shown the origin's cell.
 inline constexpr double kFarthestCell = 0x1p28;
 
+// Below 2²⁰.
 inline uint copies_key(std::uint64_t seed, int cascade) {
     const CopyBits low =
         copy_bits(static_cast<uint>(seed), static_cast<uint>(seed >> 32), static_cast<uint>(cascade));

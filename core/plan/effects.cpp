@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/plan/breaking.h"
 #include "core/plan/plan.h"
 
 namespace pelagic {
@@ -11,9 +12,9 @@ namespace {
 constexpr auto kNothing = [](const Scene&) { return EffectNeeds{}; };
 
 const std::array kEffectTable = std::to_array<EffectRow>({
-    {"horizontal displacement", [](const Scene& scene) { return scene.waves.choppiness > 0.0; },
-     "waves.choppiness is 0", [](Scene& scene) { scene.waves.choppiness = 0.0; }, horizontal_fields,
-     [] { return ProductSet(); }, kNothing},
+    {"horizontal displacement", [](const Scene& scene) { return built_choppiness(scene) > 0.0; },
+     "waves.choppiness is 0, or too little to be seen", [](Scene& scene) { scene.waves.choppiness = 0.0; },
+     horizontal_fields, [] { return ProductSet(); }, kNothing},
     {"whitecaps", [](const Scene& scene) { return scene.effects.whitecaps; }, "effects.whitecaps is false",
      [](Scene& scene) {
          scene.effects.whitecaps = false;

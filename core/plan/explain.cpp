@@ -101,10 +101,12 @@ std::string explain(const Plan& plan) {
     for (const PlannedQuery& planned : plan.queries) {
         page += "  " + planned.query.name + ": " + footprint_text(planned.query.pixel_m, plan.filter.n_min) +
                 "\n";
-        for (const ProductRow& row : kProductTable)
-            if (planned.query.products[index(row.product)])
-                page += format("    %-18s ← %s (%s)\n", row.name,
-                               field_list(fields_of(products(row.product)) & ~plan.dropped).c_str(), row.why);
+        for (const ProductRow& row : kProductTable) {
+            if (!planned.query.products[index(row.product)]) continue;
+            // Waves break by a strain of their own, also where nothing is displaced.
+            const FieldSet needed = row.is_of_breaking ? row.needs : row.needs & ~plan.dropped;
+            page += format("    %-18s ← %s (%s)\n", row.name, field_list(needed).c_str(), row.why);
+        }
         if (planned.query.products[index(Product::SlopeVariance)])
             page += format(
                 "    %-18s   %.3g times that at rest, by area of sea\n", "",
@@ -129,8 +131,12 @@ std::string explain(const Plan& plan) {
     for (const PlannedQuery& planned : plan.queries)
         has_coverage |= planned.query.products[index(Product::Coverage)];
     if (has_coverage)
-        page += format("  whitecaps: coverage from %d moments of the Jacobian, of waves above %g m\n",
-                       plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m);
+        page += format(
+            "  whitecaps: coverage from %d moments of the Jacobian, of waves above %g m%s\n",
+            plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m,
+            plan.choppiness > 0.0
+                ? ""
+                : format(", as a choppiness of %g would press them", plan.breaking.choppiness).c_str());
     else if (!products_gone(scene)[index(Product::Coverage)])
         page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
     if (plan.foam)

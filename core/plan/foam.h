@@ -38,7 +38,7 @@ struct FoamPlan {
 
     // Intervals that a frame reads.
     int intervals() const;
-    // Bytes of a tile's history: half a float for each interval and a few that a camera's moments go back, six deviates, and
+    // Bytes of a tile's history: half a float for each interval and a few more, for a picture that begins before the one before it ends, six deviates, and
     // what a frame adds up.
     static constexpr int kSpareIntervals = 3;
     std::size_t tile_bytes() const;

@@ -54,6 +54,7 @@ std::optional<GustsPlan> plan_gusts(const Scene& scene) {
                      k_across = k * std::sin(angle) * std::sqrt(kLonger);
         GustsPlan::Wave& wave = plan.waves[static_cast<std::size_t>(i)];
         wave.cycles_per_m = k_along * along + k_across * across;
+        wave.along = wave.cycles_per_m * (1.0 / std::hypot(wave.cycles_per_m.x, wave.cycles_per_m.y));
         wave.cycles_per_s = kCarried * sea.wind_speed_mps * k_along;
         // A slow gust stands still in a short loop: one round in it would be faster than any wind.
         if (loop_s > 0.0) wave.cycles_per_s = std::round(wave.cycles_per_s * loop_s) / loop_s;

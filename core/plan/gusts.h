@@ -16,7 +16,7 @@ namespace pelagic {
 struct GustsPlan {
     static constexpr int kWaves = 8;
     struct Wave {
-        glm::dvec2 cycles_per_m{0.0};
+        glm::dvec2 cycles_per_m{0.0}, along{1.0, 0.0};  // along: its direction, of length 1
         double cycles_per_s = 0.0;  // in a loop a whole number of cycles, which may be none
         double start_cycles = 0.0;  // at the origin, at t = 0
         double amplitude = 0.0;

@@ -109,9 +109,9 @@ void add_tiles(const OutputRow& row, const OutputContext& context, std::vector<O
 }
 
 const std::array kOutputTable = std::to_array<OutputRow>({
-    {OutputKind::Mesh, feeds(Feed::Clock, Feed::Waves, Feed::Mesh), 8, add_mesh},
-    {OutputKind::Map, feeds(Feed::Clock, Feed::Waves, Feed::Maps), 6, add_patch_maps},
-    {OutputKind::Tile, feeds(Feed::Clock, Feed::Waves), 7, add_tiles},
+    {OutputKind::Mesh, feeds(Feed::Clock, Feed::Waves, Feed::Mesh), 9, add_mesh},
+    {OutputKind::Map, feeds(Feed::Clock, Feed::Waves, Feed::Maps), 7, add_patch_maps},
+    {OutputKind::Tile, feeds(Feed::Clock, Feed::Waves), 8, add_tiles},
 });
 
 }  // namespace

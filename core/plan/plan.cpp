@@ -311,7 +311,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     const Scene& scene = prepared.scene;
     plan.knobs = knobs_of(scene.quality.level);
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
-    plan.choppiness = scene.waves.choppiness;
+    plan.choppiness = built_choppiness(scene);
     plan.breaking = breaking_of(scene, plan.filter);
     for (const Query& query : queries) add_query(plan, query);
     add_effects(plan, options.effects);

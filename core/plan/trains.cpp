@@ -43,21 +43,13 @@ double shortest_for_m(const TrainsPlan& plan, int below, double nyquist_m) {
 
 // The wavelength of the bin's mean wavenumber; of a bin without energy the geometric middle.
 double mean_wavelength_m(const DirectionalSpectrum& spectrum, double longer_m, double shorter_m) {
-    const double middle_m = std::sqrt(longer_m * shorter_m);
-    const auto panels = spectrum.panels();
-    if (panels.empty()) return middle_m;
-    const double first = std::max(kTwoPi / longer_m, panels.front());
-    const double last = std::min(kTwoPi / shorter_m, panels.back());
     double energy = 0.0, mean = 0.0;
-    auto next = std::upper_bound(panels.begin(), panels.end(), first);
-    for (double from = first; from < last;) {
-        const double to = next != panels.end() ? std::min(*next++, last) : last;
+    spectrum.for_panels(kTwoPi / longer_m, kTwoPi / shorter_m, [&](double from, double to) {
         const auto sum = [&](auto&& of) { return GaussLegendre<8>::rule().integrate(from, to, of); };
         energy += sum([&](double k) { return spectrum.omnidirectional(k); });
         mean += sum([&](double k) { return k * spectrum.omnidirectional(k); });
-        from = to;
-    }
-    if (!(energy > 0.0) || !(mean > 0.0)) return middle_m;
+    });
+    if (!(energy > 0.0) || !(mean > 0.0)) return std::sqrt(longer_m * shorter_m);
     return std::clamp(kTwoPi * energy / mean, shorter_m, longer_m);
 }
 

@@ -195,7 +195,8 @@ void add_waves(Built& out) {
                             .feeds = kWaves}),
         row<&Waves::choppiness>(
             {.name = "choppiness",
-             .help = "sharpness of the crests; 1 is the trochoid's own, 0 leaves them round",
+             .help =
+                 "sharpness of the crests; 1 is the trochoid's own, 0 leaves them round, as does less than 0.0001",
              .range = limits::kChoppiness,
              .soft = SoftRange{0.0, 2.0},
              .feeds = kWaves}),

@@ -107,6 +107,18 @@ class MaximumEntropy {
     std::complex<double> c1_;
 };
 
+// ∫ D e^{inθ} dθ for the n that moments of slopes and strains ask for.
+struct Harmonics {
+    std::complex<double> first{}, second{}, fourth{};
+
+    Harmonics scaled(double by) const { return {by * first, by * second, by * fourth}; }
+    // Of the shape turned by that angle.
+    Harmonics turned(double by) const {
+        return {first * std::polar(1.0, by), second * std::polar(1.0, 2.0 * by),
+                fourth * std::polar(1.0, 4.0 * by)};
+    }
+};
+
 using AngularShape = std::variant<CosinePower, SechSquared, CosineSquared, SecondHarmonic, MaximumEntropy>;
 
 }  // namespace pelagic

@@ -10,6 +10,14 @@
 
 namespace pelagic {
 
+template <class Shape>
+Harmonics harmonics_of(const Shape& shape) {
+    if constexpr (requires { shape.harmonics(); })
+        return shape.harmonics();
+    else
+        return {shape.harmonic(1), shape.harmonic(2), shape.harmonic(4)};
+}
+
 // Where a shape is centred [rad]: 0, but for a buoy's, whose directions are absolute.
 template <class Shape>
 double centre_of(const Shape& shape) {
@@ -39,23 +47,35 @@ class Directed {
         return shape_.cumulative(centre() + turned(theta - centre(), kappa_));
     }
     // ∫ D(φ) e^{inθ(φ)} dφ by the midpoint rule, which is made for what is periodic. In φ = u + sin u, because an almost
-    // isotropic CosinePower has a cusp at π.
-    std::complex<double> harmonic(int n) const {
-        if (n == 0) return 1.0;
-        if (kappa_ < 1.0) return kappa_ * shape_.harmonic(n);
-        constexpr int kLeastSteps = 256;
+    // isotropic CosinePower has a cusp at π. All in one pass over half of the circle: e^{iθ} = (e^{iφ} + r)/(1 + r e^{iφ}), and
+    // −φ goes to −θ.
+    Harmonics harmonics() const {
+        if (kappa_ < 1.0) return harmonics_of(shape_).scaled(kappa_);
+        constexpr int kLeastSteps = 128;
         const int steps =
-            std::max(kLeastSteps, static_cast<int>(kTwoPi / (0.1 * std::min(shape_.scale(), 2.0 / kappa_))));
-        std::complex<double> sum;
+            std::max(kLeastSteps, static_cast<int>(kPi / (0.1 * std::min(shape_.scale(), 2.0 / kappa_))));
+        const double r = (kappa_ - 1.0) / (kappa_ + 1.0);
+        Harmonics sum;
         for (int i = 0; i < steps; ++i) {
-            const double u = kTwoPi * (i + 0.5) / steps - kPi, phi = u + std::sin(u);
-            sum += (1.0 + std::cos(u)) * shape_.density(centre() + phi) *
-                   std::polar(1.0, n * (centre() + turned(phi, 1.0 / kappa_)));
+            const double u = kPi * (i + 0.5) / steps, phi = u + std::sin(u), c = std::cos(phi);
+            const double weight = (1.0 + std::cos(u)) * (kPi / steps);
+            const double left = weight * shape_.density(centre() + phi);
+            const double right = kIsEven ? left : weight * shape_.density(centre() - phi);
+            const double per = 1.0 / (1.0 + r * (r + 2.0 * c));
+            double real = per * (c * (1.0 + r * r) + 2.0 * r),
+                   imaginary = per * (1.0 - r * r) * std::sin(phi);
+            for (std::complex<double>* n : {&sum.first, &sum.second, &sum.fourth}) {
+                *n += std::complex((left + right) * real, (left - right) * imaginary);
+                imaginary *= 2.0 * real;  // of twice the angle
+                real = 2.0 * real * real - 1.0;
+            }
         }
-        return sum * (kTwoPi / steps);
+        return sum.turned(centre());
     }
 
   private:
+    static constexpr bool kIsEven = !requires(const Shape& shape) { shape.centre(); };
+
     double centre() const { return centre_of(shape_); }
     // 2 atan(factor tan(θ/2)), and whole turns stay turns.
     static double turned(double theta, double factor) {

@@ -9,6 +9,7 @@
 // every call and safe to call from any number of threads.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,19 @@ class DirectionalSpectrum {
     // integrate to 1e-7 of m0. Outside the first and last there is less than 1e-12 of m0. Empty for an empty
     // sea.
     std::span<const double> panels() const { return panels_; }
+
+    // use(from, to) for each panel, or part of one, between k_lo and k_hi, rising.
+    template <class Use>
+    void for_panels(double k_lo, double k_hi, Use&& use) const {
+        if (panels_.empty()) return;
+        const double first = std::max(k_lo, panels_.front()), last = std::min(k_hi, panels_.back());
+        auto next = std::upper_bound(panels_.begin(), panels_.end(), first);
+        for (double from = first; from < last;) {
+            const double to = next != panels_.end() ? std::min(*next++, last) : last;
+            use(from, to);
+            from = to;
+        }
+    }
 
     // The wavenumbers among panels() where S_k or the spreading has a kink or a jump.
     std::span<const double> kinks() const { return kinks_; }

@@ -44,21 +44,10 @@ SpectralMoments moments_of(const Wave& wave) {
 
 SpectralMoments moments(const DirectionalSpectrum& spectrum, double k_lo, double k_hi) {
     SpectralMoments out;
-    const auto panels = spectrum.panels();
-    if (panels.empty()) return out;
-    const double lo = std::max(k_lo, panels.front()), hi = std::min(k_hi, panels.back());
-    if (!(hi > lo)) return out;
-
-    std::vector<double> edges{lo};
-    std::copy_if(panels.begin(), panels.end(), std::back_inserter(edges),
-                 [&](double k) { return k > lo && k < hi; });
-    edges.push_back(hi);
-
     std::complex<double> first{};
     const auto& rule = GaussLegendre<8>::rule();
-    for (std::size_t panel = 1; panel < edges.size(); ++panel) {
-        const double half = 0.5 * (edges[panel] - edges[panel - 1]);
-        const double middle = 0.5 * (edges[panel] + edges[panel - 1]);
+    spectrum.for_panels(k_lo, k_hi, [&](double from, double to) {
+        const double half = 0.5 * (to - from), middle = 0.5 * (to + from);
         for (std::size_t node = 0; node < rule.node.size(); ++node) {
             const double k = middle + half * rule.node[node];
             const WavePoint point = wave_point(spectrum.dispersion(), k);
@@ -66,10 +55,10 @@ SpectralMoments moments(const DirectionalSpectrum& spectrum, double k_lo, double
             for (const WaveSystem& system : spectrum.systems()) {
                 const double energy = half * rule.weight[node] * system.energy(point);
                 if (!(energy > 0.0)) continue;
-                const std::complex<double> c2 = system.harmonic(point, 2), c4 = system.harmonic(point, 4);
+                const auto [c1, c2, c4] = system.harmonics(point);
                 out.m0 += energy;
                 out.m_minus1 += energy / point.omega;
-                first += energy * system.harmonic(point, 1);
+                first += energy * c1;
 
                 // cos²θ = (1 + cos 2θ)/2, …
                 const double slope = k * k * energy;
@@ -86,7 +75,7 @@ SpectralMoments moments(const DirectionalSpectrum& spectrum, double k_lo, double
                 out.yyyy += eighth * (3.0 - 4.0 * c2.real() + c4.real());
             }
         }
-    }
+    });
     out.east = first.real();
     out.north = first.imag();
     return out;

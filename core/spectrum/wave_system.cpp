@@ -251,10 +251,10 @@ double WaveSystem::share(const WavePoint& point, double theta0, double theta1) c
     });
 }
 
-std::complex<double> WaveSystem::harmonic(const WavePoint& point, int n) const {
-    const auto own = with_directed(spreading_, point, directionality_,
-                                   [&](const auto& shape) { return shape.harmonic(n); });
-    return own * std::polar(1.0, n * direction_);
+Harmonics WaveSystem::harmonics(const WavePoint& point) const {
+    return with_directed(spreading_, point, directionality_,
+                         [](const auto& shape) { return harmonics_of(shape); })
+        .turned(direction_);
 }
 
 AngularShape WaveSystem::shape(const WavePoint& point) const {

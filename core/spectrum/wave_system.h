@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "core/spectrum/angular.h"
 #include "core/spectrum/band_gains.h"
 #include "core/spectrum/cosine.h"
 #include "core/spectrum/donelan_banner.h"
@@ -69,8 +70,8 @@ class WaveSystem {
     double density(const WavePoint& point, double theta) const;
     double share(const WavePoint& point, double theta0, double theta1) const;
 
-    // ∫ D e^{inθ} dθ, n ≥ 0.
-    std::complex<double> harmonic(const WavePoint& point, int n) const;
+    // ∫ D e^{inθ} dθ for n of 1, 2 and 4.
+    Harmonics harmonics(const WavePoint& point) const;
 
     // D's shape at this wavenumber, about direction() [rad], before directionality() counts (directed.h).
     AngularShape shape(const WavePoint& point) const;

@@ -1,9 +1,13 @@
 #include "core/waves/folding.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "core/plan/copies.h"
+#include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
 #include "core/spectrum/spectral_moments.h"
 #include "core/waves/whitecaps.h"
@@ -28,8 +32,8 @@ SpectralMoments all_of(const DirectionalSpectrum& spectrum) {
 // Two digits: "8.2".
 std::string percent_text(double share) {
     const double percent = 100.0 * share;
-    const double unit = percent < 10.0 ? 0.1 : 1.0;
-    return number_text(std::round(percent / unit) * unit);
+    const double parts = percent < 10.0 ? 10.0 : 1.0;
+    return number_text(std::round(percent * parts) / parts);
 }
 
 // Linear waves know no bed. Of so many troughs the deepest is √(2 ln n) deviations deep (Rayleigh).
@@ -80,6 +84,54 @@ std::vector<std::string> repeats_warning(const PreparedScene& prepared) {
             why + "; waves.tiling = \"random\" shows copies at random offsets"};
 }
 
+// What the gradient of the copies' weights adds to the slopes of a cascade's waves, as a share of their own. Waves of more
+// than two tiles are none of its modes, and no mode is longer than the tile.
+double gained_by_copies(const DirectionalSpectrum& spectrum, double size_m, double k_end) {
+    const SpectralMoments own = moments(spectrum, kPi / size_m, k_end);
+    const double mss = std::max(own.mss(), own.m0 * std::pow(kTwoPi / size_m, 2.0));
+    return mss > 0.0 ? 2.0 * kCopySlopes * own.m0 / (size_m * size_m * mss) : 0.0;
+}
+
+// The largest cascade alone: at least kBandModes of the others' waves fit into their tiles, which gain 1.6 % at most. Sizes
+// chosen for the scene hold enough waves.
+std::vector<std::string> copies_warning(const PreparedScene& prepared) {
+    constexpr double kMuch = 0.05;
+    const Waves& waves = prepared.scene.waves;
+    if (waves.tiling != Tiling::Random || waves.model != WaveModel::Fft || waves.cascades.empty()) return {};
+    const auto [given_m, given_resolution] = waves.cascades.front();
+    // A larger tile must have all waves down to the next cascade's, or down to those that it has now.
+    const double k_last = kPi * given_resolution / given_m;
+    const auto resolution_of = [&](double size_m) {
+        const int needed =
+            waves.cascades.size() > 1
+                ? sufficient_resolution(size_m, lower_edges(std::array{size_m, waves.cascades[1].size_m})[1])
+                : static_cast<int>(std::min(2.0 * std::ceil(0.5 * size_m * k_last / kPi), 1e9));
+        return std::max(given_resolution, needed);
+    };
+    const auto share_with = [&](double size_m) {
+        double k_end = k_last;
+        if (waves.cascades.size() > 1)
+            k_end = std::min(kPi * resolution_of(size_m) / size_m,
+                             lower_edges(std::array{size_m, waves.cascades[1].size_m})[1]);
+        return gained_by_copies(prepared.spectrum, size_m, k_end);
+    };
+    const double share = share_with(given_m);
+    if (!(share > kMuch)) return {};
+    double enough_m = given_m;
+    for (double left = share; left > kMuch; left = share_with(enough_m))
+        enough_m *= std::max(std::sqrt(left / kMuch), 1.01);
+    const double digit_m = std::pow(10.0, std::floor(std::log10(enough_m)) - 1.0);
+    const double size_m = std::ceil(enough_m / digit_m) * digit_m;
+    const int resolution = resolution_of(size_m);
+    std::string larger = "with size_m = " + number_text(size_m);
+    if (resolution > given_resolution) larger += " and resolution = " + std::to_string(resolution);
+    larger = resolution <= kMaxCascadeResolution ? larger + " it adds 5 %, " : std::string();
+    return {"the largest cascade, of " + number_text(given_m) +
+            " m, holds few of its waves: where its copies blend they are steeper, which adds " +
+            percent_text(share) + " % to its mean square slope; " + larger +
+            "with waves.tiling = \"periodic\" nothing"};
+}
+
 }  // namespace
 
 double folded_share(const DirectionalSpectrum& spectrum, double choppiness) {
@@ -88,7 +140,7 @@ double folded_share(const DirectionalSpectrum& spectrum, double choppiness) {
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
-    for (auto* more : {&trough_warning, &repeats_warning})
+    for (auto* more : {&trough_warning, &repeats_warning, &copies_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     return warnings;
 }

@@ -81,7 +81,7 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
     : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
     if (plan_.trains) {
-        trains_ = make_trains<T>(*plan_.from, *plan_.trains);
+        trains_ = make_trains<T>(*plan_.from, *plan_.trains, plan_.filter);
         total_ = pelagic::total(trains_);
     } else {
         total_ =

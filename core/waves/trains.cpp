@@ -26,22 +26,15 @@ constexpr std::uint32_t kTrainStream = 0x5452414Eu;
 class Bin {
   public:
     Bin(const DirectionalSpectrum& spectrum, double k_lo, double k_hi) {
-        const auto panels = spectrum.panels();
-        if (panels.empty()) return;
-        const double first = std::max(k_lo, panels.front()), last = std::min(k_hi, panels.back());
-        if (!(last > first)) return;
         const auto& rule = GaussLegendre<8>::rule();
-        auto next = std::upper_bound(panels.begin(), panels.end(), first);
-        for (double from = first; from < last;) {
-            const double to = next != panels.end() ? std::min(*next++, last) : last;
+        spectrum.for_panels(k_lo, k_hi, [&](double from, double to) {
             const double half = 0.5 * (to - from), middle = 0.5 * (to + from);
             for (std::size_t i = 0; i < rule.node.size(); ++i) {
                 const double k = middle + half * rule.node[i];
                 energy_ += half * rule.weight[i] * spectrum.omnidirectional(k);
                 nodes_.push_back({k, energy_});
             }
-            from = to;
-        }
+        });
     }
     double energy() const { return energy_; }
     // The quadrature node at which the cumulated energy reaches `share`, in [0, 1). Requires energy > 0.
@@ -149,10 +142,9 @@ double fraction_of_product(double a, double b) {
 }  // namespace
 
 template <class T>
-Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan) {
+Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, const FootprintFilter& filter) {
     const auto& [scene, spectrum, extent] = prepared;
-    const double choppiness = scene.waves.choppiness, loop_s = scene.shot.sea_loop_s();
-    const FootprintFilter filter;
+    const double choppiness = built_choppiness(scene), loop_s = scene.shot.sea_loop_s();
     const Breaking breaking = breaking_of(scene, filter);
     Breaking unscaled = breaking;
     unscaled.choppiness = 1.0;
@@ -292,8 +284,8 @@ std::vector<double> phases_at(const Trains<T>& trains, glm::dvec2 origin_m, doub
     return cycles;
 }
 
-template Trains<float> make_trains(const PreparedScene&, const TrainsPlan&);
-template Trains<double> make_trains(const PreparedScene&, const TrainsPlan&);
+template Trains<float> make_trains(const PreparedScene&, const TrainsPlan&, const FootprintFilter&);
+template Trains<double> make_trains(const PreparedScene&, const TrainsPlan&, const FootprintFilter&);
 template SpectralMoments total(const Trains<float>&);
 template SpectralMoments total(const Trains<double>&);
 template SpectralMoments resolved(const Trains<float>&, const FootprintFilter&, double);

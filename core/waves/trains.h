@@ -70,7 +70,8 @@ struct Trains {
 // The plan must be made from the same scene (resolve_trains). Σh²/2 equals m0 of the range to 1e-6. The same scene
 // gives the same trains, bit for bit.
 template <class T>
-Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan);
+Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan,
+                      const FootprintFilter& filter = {});
 
 // The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and include
 // choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's: what a trochoid's own crest

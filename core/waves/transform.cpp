@@ -1,6 +1,7 @@
 #include "core/waves/transform.h"
 
 #include <fftw3.h>
+#include <pthread.h>
 
 #include <mutex>
 #include <stdexcept>
@@ -13,9 +14,18 @@ namespace pelagic {
 namespace {
 
 // FFTW's planner is not thread-safe (its execution is).
-std::mutex& planner() {
+std::mutex& planner_of_process() {
     static std::mutex mutex;
     return mutex;
+}
+// A forked process has one thread, and needs a planner that no other one is at work in.
+std::mutex& planner() {
+    static std::once_flag once;
+    std::call_once(once, [] {
+        pthread_atfork([] { planner_of_process().lock(); }, [] { planner_of_process().unlock(); },
+                       [] { planner_of_process().unlock(); });
+    });
+    return planner_of_process();
 }
 
 template <class T>

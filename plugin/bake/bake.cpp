@@ -279,7 +279,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
                                .cancel = options.cancel};
         const std::unique_ptr<Sequence> sequence = make_sequence(plan, watch);
         report_progress(BakeStage::Frames);
-        record.describe(plan, sequence->total(), sequence->whitecap_threshold());
+        record.describe(plan, sequence->total(), sequence->whitecap_threshold(),
+                        sequence->residual_coverage());
         record.mark_stale(
             [&](int frame, const FrameRecord& recorded) { return is_stale(frame, recorded, parts); });
         sequence->write_static(write_static);
@@ -298,7 +299,15 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         stages.compute = [&](int item, int place) {
             stop_if_cancelled();
             slots[place].wanted = jobs[item].wanted;
-            sequence->compute(jobs[item].frame, slots[place]);
+            const auto tell = [&](double foam_past) {
+                {
+                    const std::lock_guard lock(telling);
+                    progress.foam_past = foam_past;
+                }
+                if (foam_past > 0.0) report_progress(BakeStage::Frames);
+            };
+            sequence->compute(jobs[item].frame, slots[place], tell);
+            tell(0.0);
             report.executed_transforms = sequence->executed_transforms();
         };
         stages.encode = [&](int, int place) {

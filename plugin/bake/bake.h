@@ -38,6 +38,8 @@ struct BakeProgress {
     double seconds = 0.0;  // since the first frame was begun
     double built = 0.0;    // share of the sea, while it is built
     double checked = 0.0;  // share of the files that are there, while they are read
+    // Share of the earlier times that the foam of the frame at hand comes from, while it goes through many; otherwise 0.
+    double foam_past = 0.0;
 };
 
 struct BakeOptions {

@@ -72,6 +72,9 @@ class OutputPart {
     std::string fingerprint(int frame) const { return frame_fingerprint(plan_, output_, base_, frame); }
     const std::string& fingerprint() const { return base_; }
 
+    // Whether its coverage has a past.
+    bool has_foam_history() const { return plan_.foam && query().products[index(Product::Coverage)]; }
+
     virtual std::unique_ptr<OutputSlot> make_slot() const { return std::make_unique<OutputSlot>(); }
     // The frame's values. One frame at a time. `foam`: at the frame's time; null where foam doesn't live. Throws
     // BuildCancelled where `watch` ends it.
@@ -91,7 +94,6 @@ class OutputPart {
 
   protected:
     const Scene& scene() const { return plan_.from->scene; }
-    bool has_foam_history() const { return plan_.foam && query().products[index(Product::Coverage)]; }
     // Adds to the slot's coverage what earlier breaking has left.
     template <class T>
     void add_foam(FoamHistory<T>* foam, const Points<T>& points, OutputSlot& slot,

@@ -23,6 +23,7 @@
 #include "core/waves/whitecaps.h"
 #include "plugin/files/checksum.h"
 #include "plugin/files/read.h"
+#include "plugin/light/light.h"
 
 namespace pelagic {
 namespace {
@@ -244,7 +245,8 @@ RecordReading read_record(const std::filesystem::path& file,
     return reading;
 }
 
-void Record::describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold) {
+void Record::describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold,
+                      double residual_coverage) {
     const Scene& scene = plan.from->scene;
     first_frame_ = scene.shot.first_frame;
     last_frame_ = scene.shot.last_frame;
@@ -282,6 +284,9 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
                         {"whitecap_law", word_of(scene.effects.whitecap_law)},
                         {"whitecap_law_coverage", law_coverage(scene)}};
     shot["whitecap_threshold"] = number(whitecap_threshold);
+    if (plan.gusts) shot["whitecap_threshold_is"] = "without gusts, which move it from place to place";
+    const FoamLook foam = make_foam(scene, active_foam(scene, residual_coverage));
+    shot["dense_foam"] = {{"active", foam.dense_active}, {"left", foam.dense_left}};
 
     Json& planned = shot["plan"];
     planned["transforms_per_frame"] = plan.transforms_per_frame();

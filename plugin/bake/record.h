@@ -80,8 +80,9 @@ RecordReading read_record(const std::filesystem::path& file,
 class Record {
   public:
     // The part that belongs to the shot and not to a frame. Frames outside the shot's range are left out of
-    // the record from now on.
-    void describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold);
+    // the record from now on. whitecap_threshold: without gusts.
+    void describe(const Plan& plan, const SpectralMoments& total, double whitecap_threshold,
+                  double residual_coverage);
     // Whether a frame that an earlier run recorded is of another version of the shot; may be empty.
     void mark_stale(std::function<bool(int, const FrameRecord&)> is_stale) {
         is_stale_ = std::move(is_stale);

@@ -33,11 +33,11 @@ class SequenceOf final : public Sequence {
         : sea_(std::make_shared<const Sea<T>>(plan, watch)),
           frame_(sea_),
           parts_(make_parts(sea_->plan())),
-          watch_{.progress = {}, .cancel = watch.cancel} {
+          cancel_(watch.cancel) {
         if (sea_->plan().foam) foam_.emplace(sea_);
     }
 
-    void compute(int frame, FrameSlot& slot) override {
+    void compute(int frame, FrameSlot& slot, const std::function<void(double)>& foam_past) override {
         slot.frame = frame;
         slot.record = {};
         slot.record.fingerprint = statistics_fingerprint(parts_, frame);
@@ -47,9 +47,18 @@ class SequenceOf final : public Sequence {
         describe_waves(frame, slot.record);
         while (slot.outputs.size() < parts_.size())
             slot.outputs.push_back(parts_[slot.outputs.size()]->make_slot());
+        BuildWatch watch{.progress = {}, .cancel = cancel_};
+        std::size_t of_foam = 0, before = 0;
         for (std::size_t p = 0; p < parts_.size(); ++p)
-            if (wants(slot, p))
-                parts_[p]->compute(frame_, foam_ ? &*foam_ : nullptr, frame, *slot.outputs[p], watch_);
+            of_foam += wants(slot, p) && parts_[p]->has_foam_history();
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
+            if (!wants(slot, p)) continue;
+            if (foam_past && parts_[p]->has_foam_history())
+                watch.progress = [&, of_foam, done_before = before++](double done) {
+                    foam_past((static_cast<double>(done_before) + done) / static_cast<double>(of_foam));
+                };
+            parts_[p]->compute(frame_, foam_ ? &*foam_ : nullptr, frame, *slot.outputs[p], watch);
+        }
     }
 
     void encode(FrameSlot& slot) const override {
@@ -78,6 +87,7 @@ class SequenceOf final : public Sequence {
 
     const SpectralMoments& total() const override { return sea_->total(); }
     double whitecap_threshold() const override { return sea_->whitecap_threshold(); }
+    double residual_coverage() const override { return sea_->residual_coverage(); }
     long executed_transforms() const override { return frame_.executed_transforms(); }
 
   private:
@@ -115,7 +125,7 @@ class SequenceOf final : public Sequence {
     Frame<T> frame_;
     std::optional<FoamHistory<T>> foam_;
     std::vector<std::unique_ptr<OutputPart>> parts_;
-    BuildWatch watch_;
+    const std::atomic<bool>* cancel_;
 };
 
 }  // namespace

@@ -25,8 +25,9 @@ class Sequence {
   public:
     virtual ~Sequence() = default;
     // The frame's values, of the parts that the slot wants. One frame at a time. Throws BuildCancelled: a frame alone goes
-    // through its foam's past.
-    virtual void compute(int frame, FrameSlot& slot) = 0;
+    // through its foam's past. `foam_past`: called with the share of that, 0 … 1, rising, where it is long; may be empty.
+    virtual void compute(int frame, FrameSlot& slot,
+                         const std::function<void(double done)>& foam_past = {}) = 0;
     // Their bytes. Different slots side by side, also while another frame is computed.
     virtual void encode(FrameSlot& slot) const = 0;
     // Hands each wanted file of the frame to `sink`; what that throws passes through. As encode().
@@ -35,6 +36,7 @@ class Sequence {
     virtual void write_static(const FileSink& sink) const = 0;
     virtual const SpectralMoments& total() const = 0;
     virtual double whitecap_threshold() const = 0;
+    virtual double residual_coverage() const = 0;  // of the sea, over all of it; 0 where foam doesn't live
     virtual long executed_transforms() const = 0;
 };
 

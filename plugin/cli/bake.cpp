@@ -96,8 +96,8 @@ int run(const Arguments& arguments) {
     options.max_memory_bytes = memory_of(arguments.max_memory);
     options.trust_times = arguments.trust_times;
 
+    StopSignals stop;  // from here on nobody's closing of a log ends the bake
     print_warnings(arguments.shot, scene);
-    StopSignals stop;
     Progress progress;
     options.cancel = &stop.cancelled();
     options.progress = [&](const BakeProgress& now) {

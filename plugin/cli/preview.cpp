@@ -1,5 +1,6 @@
 // pelagic preview SHOT.toml
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/memory.h"
+#include "plugin/cli/progress.h"
 #include "plugin/cli/size.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
@@ -68,7 +70,18 @@ int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments
     files::check_folder(file.parent_path());
     const OffscreenPlan planned = plan_offscreen(scene, frame, {}, memory_of(arguments.max_memory));
     const Sky sky = make_sky(scene);
-    const OffscreenPicture drawn = render_offscreen(planned, sky);
+    Progress progress;  // signals end it at once: no file is begun
+    const auto tell = [&](const std::string& what) {
+        return BuildWatch{
+            .progress =
+                [&progress, what](double done) {
+                    progress.show(what + ": " + std::to_string(std::lround(100.0 * done)) + " %");
+                },
+            .cancel = nullptr};
+    };
+    const OffscreenPicture drawn = render_offscreen(
+        planned, sky, {.sea = tell("building the sea"), .foam_past = tell("the foam's past")});
+    progress.clear();
     files::ensure_folder(file.parent_path());  // an error before has left none behind
     files::remove_stale_temporaries(file.has_parent_path() ? file.parent_path() : ".");
     RenderOptions options = render_options(scene);

@@ -52,6 +52,11 @@ std::string left_text(const BakeProgress& progress) {
     return duration_text(progress.seconds / progress.done * left) + " left";
 }
 
+std::string past_text(const BakeProgress& progress) {
+    if (!(progress.foam_past > 0.0)) return {};
+    return "the foam's past: " + std::to_string(std::lround(100.0 * progress.foam_past)) + " %";
+}
+
 std::string joined(std::initializer_list<std::string> parts, std::string_view between) {
     std::string text;
     for (const std::string& part : parts) {
@@ -71,15 +76,18 @@ void print(const std::string& text) {
 
 std::string progress_line(const BakeProgress& progress) {
     const std::string count = std::to_string(finished(progress)) + " of " + std::to_string(progress.total);
-    if (progress.done == 0) return count + " frames are whole already";
+    if (progress.done == 0)
+        return joined({progress.kept > 0 ? count + " frames are whole already" : "", past_text(progress)},
+                      ", ");
     return "frame " + std::to_string(progress.frame) + ": " +
-           joined({count, rate_text(progress), left_text(progress)}, ", ");
+           joined({count, rate_text(progress), left_text(progress), past_text(progress)}, ", ");
 }
 
 std::string progress_bar(const BakeProgress& progress, int columns) {
     const std::string count = std::to_string(finished(progress)) + '/' + std::to_string(progress.total);
     const std::string frame = progress.done > 0 ? "frame " + std::to_string(progress.frame) : std::string();
-    const std::string text = joined({frame, count, rate_text(progress), left_text(progress)}, "  ");
+    const std::string text =
+        joined({frame, count, rate_text(progress), left_text(progress), past_text(progress)}, "  ");
     // The last column stays empty, because many terminals wrap there. 3: brackets and a space.
     const int room = std::min(columns - 1 - static_cast<int>(text.size()) - 3, kLongestBar);
     if (room < kShortestBar) return text.substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
@@ -111,7 +119,9 @@ void Progress::show(const BakeProgress& progress) {
     const Clock::time_point now = Clock::now();
     if (frame_said_ && !last && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery))
         return;
-    if (!terminal_ && progress.done == 0 && progress.kept == 0) return;  // nothing to report yet
+    if (!terminal_ && progress.done == 0 && progress.kept == 0 &&
+        (!(progress.foam_past > 0.0) || now - last_ < kLineEvery))
+        return;  // nothing to report yet
     frame_said_ = true;
     last_ = now;
     if (terminal_) return write_over(progress_bar(progress, terminal_columns()));

@@ -15,7 +15,7 @@ FoamWorker::FoamWorker(std::shared_ptr<const Sea<float>> sea)
       })) {}
 
 FoamWorker::~FoamWorker() {
-    cancel_ = true;
+    cancel();
     worker_.reset();
 }
 
@@ -27,7 +27,7 @@ std::shared_ptr<const PackedFoam> FoamWorker::make(const Asked& asked) {
     history_.set(asked.time_s);
     std::vector<FoamPlace> places;
     for (const auto& grid : asked.grids) {
-        const std::vector<FoamPlace> own = foam_places(history_.plan(), history_.time_s(), *grid);
+        const std::vector<FoamPlace> own = foam_places(history_.plan(), history_.time_s(), *grid, &cancel_);
         places.insert(places.end(), own.begin(), own.end());
     }
     history_.prepare(std::move(places), {.cancel = &cancel_});

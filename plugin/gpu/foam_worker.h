@@ -20,7 +20,7 @@ class FoamWorker {
 
     // Of a sea with living foam.
     explicit FoamWorker(std::shared_ptr<const Sea<float>> sea);
-    // Doesn't wait for a history that isn't done.
+    // Cancels a history that isn't done, and waits for the step of it that is being made.
     ~FoamWorker();
 
     // Wants the foam at a time that these grids show, above all the last of them. The latest request wins, but what is being made is finished: it is most
@@ -30,6 +30,8 @@ class FoamWorker {
     std::shared_ptr<const PackedFoam> take() { return worker_->take(); }
     bool is_busy() const { return worker_->is_busy(); }
     std::string error() const { return worker_->error(); }
+    // What is being made, and whatever is asked for later, ends within a step.
+    void cancel() { cancel_ = true; }
 
   private:
     struct Asked {

@@ -82,7 +82,8 @@ std::size_t PackedFoam::bytes_for(const FoamPlan& foam, std::size_t history_byte
     return (tiles + kTilesAcross) * FoamPlan::kTileNodes * sizeof(glm::vec2);
 }
 
-std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid) {
+std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid,
+                                   const std::atomic<bool>* cancel) {
     std::vector<FoamPlace> places;
     std::array<FoamPlace, FoamPlan::kLevels> before;
     before.fill({.level = -1});
@@ -103,7 +104,8 @@ std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const Pr
     const auto level_at = [&](std::size_t i) {
         return foam_rung(foam, foam_footprint_m(grid.pixel_m[i], glm::length(grid.pixel_axis_m[i]))).level;
     };
-    for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row)
+    for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row) {
+        if (cancel && cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
         for (std::size_t column = 0; column + 1 < stride; ++column) {
             const std::size_t i = row * stride + column;
             const std::array corners{i, i + 1, i + stride, i + stride + 1};
@@ -138,6 +140,7 @@ std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const Pr
                     }
             }
         }
+    }
     return places;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
@@ -55,6 +56,8 @@ class PackedFoam {
 };
 
 // The tiles that pixels between a grid's points read at the history's time, and some of coarser levels, which they need where waves turn away.
-std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid);
+// `cancel` is looked at for each row of the grid: throws BuildCancelled.
+std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid,
+                                   const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace pelagic

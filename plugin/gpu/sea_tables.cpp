@@ -52,11 +52,8 @@ std::vector<std::array<float, 4>> rows_of(const Gusts& gusts, glm::dvec2 origin_
         rows.push_back({number(wave.cycles_per_m.x), number(wave.cycles_per_m.y), number(cycles[i]),
                         number(wave.amplitude)});
     }
-    for (const GustsPlan::Wave& wave : gusts.plan.waves) {
-        const double per_m = 1.0 / std::hypot(wave.cycles_per_m.x, wave.cycles_per_m.y);
-        rows.push_back({number(wave.shortest_m), number(wave.cycles_per_m.x * per_m),
-                        number(wave.cycles_per_m.y * per_m), 0.0f});
-    }
+    for (const GustsPlan::Wave& wave : gusts.plan.waves)
+        rows.push_back({number(wave.shortest_m), number(wave.along.x), number(wave.along.y), 0.0f});
     std::vector<float> terms;
     for (const double term : gusts.of_level) terms.push_back(number(term));
     for (const double term : gusts.of_kept) terms.push_back(number(term));

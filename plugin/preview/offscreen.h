@@ -11,6 +11,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
+#include "core/waves/sea.h"
 #include "plugin/preview/sea_renderer.h"
 #include "plugin/render/render.h"
 
@@ -54,9 +55,15 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size = gl
 // What drawing it holds at most: with a driver in software that is all memory of this process.
 MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads);
 
+// Of building the sea, and of going through its foam's past where that is long.
+struct OffscreenWatch {
+    BuildWatch sea{}, foam_past{};
+};
+
 // One sample per pixel. Needs a current context. The GPU computes in single precision; a note says so if
 // quality.level asks for double. Throws std::invalid_argument for a camera under water
-// (plugin/render/under_water.h).
-OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky);
+// (plugin/render/under_water.h), and BuildCancelled.
+OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky,
+                                  const OffscreenWatch& watch = {});
 
 }  // namespace pelagic

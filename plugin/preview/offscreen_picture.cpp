@@ -182,7 +182,7 @@ namespace {
 
 // What the waves that broke before have left where the picture's pixels are.
 void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s,
-                 const View& view, const ProjectedGrid& grid) {
+                 const View& view, const ProjectedGrid& grid, const BuildWatch& watch) {
     const SeaRenderer::ShownPoints shown = renderer.shown_points(view, grid);
     FoamHistory<float> history(sea);
     history.set(time_s);
@@ -191,14 +191,14 @@ void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>&
                                   .rest_m = {shown.rest_m.data()},
                                   .pixel_m = {shown.pixel_m.data()},
                                   .pixel_axis_m = {shown.pixel_axis_m.data()}},
-                    0);
+                    0, watch);
     renderer.upload_foam(std::make_shared<const PackedFoam>(history, grid.origin_m));
 }
 
 }  // namespace
 
-OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky) {
-    const auto sea = std::make_shared<const Sea<float>>(planned.plan);
+OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, const OffscreenWatch& watch) {
+    const auto sea = std::make_shared<const Sea<float>>(planned.plan, watch.sea);
     SeaRenderer renderer;
     renderer.set_sky(sky, make_water(planned.scene));
     {
@@ -215,7 +215,9 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky) 
     const View view = view_at(planned.scene.camera, planned.frame);
     const LightingChoice lighting = render_options(planned.scene).lighting;
     const bool lives = planned.plan.foam && lighting.whitecaps;
-    if (lives) upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.grid);
+    if (lives)
+        upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.grid,
+                    watch.foam_past);
     renderer.draw(
         view, planned.grid,
         {.lighting = lighting,

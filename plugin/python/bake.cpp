@@ -86,12 +86,17 @@ BakeOrder order_of(const Scene& scene, const std::optional<std::filesystem::path
     return order;
 }
 
+// How much of what the stage goes through is done, where that is known.
+double share_of(const BakeProgress& now) {
+    if (now.stage == BakeStage::Checking) return now.checked;
+    return now.stage == BakeStage::Frames ? now.foam_past : now.built;
+}
+
 // Without the interpreter. watch: a Watch or a Task.
 template <class Watching>
 BakeReport baked(BakeOrder order, Watching& watch) {
     order.options.progress = [&](const BakeProgress& now) {
-        watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total,
-                   now.stage == BakeStage::Checking ? now.checked : now.built);
+        watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total, share_of(now));
     };
     order.options.cancel = watch.flag();
     return bake(order.scene, order.options);
@@ -315,9 +320,10 @@ void add_bake(py::module_& module) {
         "already are kept. Other threads run meanwhile.\n\n"
         "out: the folder, made where it is missing; by default ./NAME. frames: a frame, a list, a text like "
         "\"1-48x5\", or None for the whole shot.\n"
-        "progress: called as progress(stage, frame, done, kept, total, built) from any thread: \"planning\", "
-        "\"checking\" (built: the share of the files that were read), \"building\" (built: the share of the sea "
-        "that is), \"frames\" or \"waiting\" (for another bake that writes into the folder); the frame finished last; frames "
+        "progress: called as progress(stage, frame, done, kept, total, share) from any thread: \"planning\", "
+        "\"checking\" (share: of the files, those that were read), \"building\" (share: of the sea), \"frames\" (share: of the "
+        "earlier times that the foam of the frame at hand comes from, while it goes through many, otherwise 0) or "
+        "\"waiting\" (for another bake that writes into the folder); the frame finished last; frames "
         "written, kept, and asked for. cancel: a Cancel, or a callable that is asked as often and is true "
         "when it is enough: the bake ends soon, and its report says so.\n"
         "max_memory_bytes: MemoryError, before anything is written, for a bake that needs more; by default "

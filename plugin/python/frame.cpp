@@ -163,7 +163,8 @@ class PythonFrame {
     }
 
     py::dict heights(const py::object& xy, std::array<double, 2> origin_m, const py::object& footprint_m,
-                     const std::optional<std::vector<std::string>>& outputs) const {
+                     const std::optional<std::vector<std::string>>& outputs, const py::object& progress,
+                     const py::object& cancel) const {
         require_output(index(Product::Position));
         const auto places = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(xy);
         if (!places || places.ndim() != 2 || places.shape(1) != 2)
@@ -191,7 +192,8 @@ class PythonFrame {
         }
         std::vector<glm::vec2> rest_m(points.count);
         std::vector<float> residual_m(points.count), height_m(points.count);
-        {
+        Watch watch(progress, cancel);
+        try {
             const OthersMayRun others_may_run;
             require_on_the_sea(points, "xy");
             const std::shared_lock reading(mutex_);
@@ -209,8 +211,12 @@ class PythonFrame {
             const Strided<glm::vec3> displaced_m = asked.results.vectors(Product::Displacement);
             for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
             asked.points = points;
-            add_foam(asked, {});
+            add_foam(asked, watch_of(watch));
+        } catch (const BuildCancelled&) {
+            watch.rethrow();
+            throw Cancelled("finding heights was cancelled");
         }
+        watch.rethrow();
         written["height_m"] = array_of<float>(std::move(height_m));
         written["rest_m"] = array_of<float>(std::move(rest_m));
         written["residual_m"] = array_of<float>(std::move(residual_m));
@@ -436,6 +442,7 @@ void add_frame(py::module_& module) {
         .def(
             "heights", &PythonFrame::heights, py::arg("xy"), py::arg("origin") = std::array{0.0, 0.0},
             py::kw_only(), py::arg("footprint_m") = none(), py::arg("outputs") = none(),
+            py::arg("progress") = none(), py::arg("cancel") = none(),
             "The sea above places of the world: what evaluate() gives at the points at rest that are displaced "
             "there, found by iteration. The sea must hold positions.\n\n"
             "xy: numbers of shape (n, 2), relative to origin [m]. footprint_m: as cell_m and pixel_m of "
@@ -443,7 +450,7 @@ void add_frame(py::module_& module) {
             "A dict: height_m, float32 (n,); rest_m, float32 (n, 2), the points at rest; residual_m, float32 "
             "(n,), how far from its place each one's surface is, below a millimetre but where the sea has "
             "folded over and the search ended; and the outputs named, by default normal and velocity, of "
-            "those that the sea holds. All are finite.")
+            "those that the sea holds. All are finite. progress, cancel: as evaluate()'s.")
         .def_property_readonly("sea", &PythonFrame::sea, "The sea that it is of.")
         .def_property_readonly("time_s", &PythonFrame::time_s, "The time that was set [s].")
         .def_property_readonly("executed_transforms", &PythonFrame::executed_transforms,

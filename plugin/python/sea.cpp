@@ -3,7 +3,7 @@
 
 #include <pybind11/stl.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -12,6 +12,7 @@
 
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
+#include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/task.h"
 #include "plugin/python/watch.h"
@@ -47,7 +48,7 @@ using Ladder = std::variant<double, std::vector<double>>;
 struct SeaRequest {
     std::vector<std::string> products;
     std::optional<Ladder> cell_m, pixel_m;
-    std::optional<std::array<double, 2>> lattice;
+    std::optional<std::vector<double>> lattice;
     std::vector<View> views;
     bool pixels = false;
 };
@@ -63,10 +64,20 @@ Query plain_query(const Scene& scene, const SeaRequest& request) {
     query.cell_m = rungs(request.cell_m, scene.surface);
     query.pixel_m = rungs(request.pixel_m, scene.surface);
     if (request.lattice) {
-        const auto [first_m, spacing_m] = *request.lattice;
-        if (!std::isfinite(first_m) || !(spacing_m > 0.0) || !std::isfinite(spacing_m))
-            throw py::value_error("lattice: accepted: (first_m, spacing_m), finite, spacing_m > 0");
-        query.lattice = Lattice{first_m, spacing_m};
+        const std::vector<double>& given = *request.lattice;
+        Lattice lattice;
+        if (given.size() == 2 || given.size() == 3) {
+            lattice = {.first_m = given[0], .spacing_m = given[1]};
+            if (given.size() == 3) lattice.last_m = given[2];
+        }
+        const bool is_finite =
+            std::all_of(given.begin(), given.end(), [](double v) { return std::isfinite(v); });
+        if (given.size() < 2 || given.size() > 3 || !is_finite || !(lattice.spacing_m > 0.0) ||
+            !(lattice.last_m >= lattice.first_m))
+            throw py::value_error(
+                "lattice: accepted: (first_m, spacing_m) or (first_m, spacing_m, last_m), finite, spacing_m > 0, "
+                "last_m ≥ first_m");
+        query.lattice = lattice;
     }
     return query;
 }
@@ -133,6 +144,12 @@ PythonSea build_sea(const SeaOrder& order, Watch& watch) {
     return *sea;
 }
 
+std::pair<float, float> dense_foam(const PythonSea& self) {
+    const Scene& scene = self.plan().from->scene;
+    const FoamLook look = make_foam(scene, active_foam(scene, self.sea->residual_coverage()));
+    return {look.dense_active, look.dense_left};
+}
+
 const std::string kSeaDoc =
     "A sea, built once from a scene, for one kind of question: immutable, shared by threads and frames. "
     "Single precision.\n\n"
@@ -145,8 +162,9 @@ const std::string kSeaDoc =
     "derivatives: waves too short for them are left out, and counted in slope_variance and coverage. A "
     "number for all points, or a rising ladder between whose rungs each point's own footprint is blended; 0 "
     "filters nothing. Default: the spacing of the scene's patch.\n"
-    "lattice: (first_m, spacing_m) where all points are known to lie at first + i·spacing in x and in y, "
-    "seen from the world's origin: sampling may then be free of error. Only with points that do.\n"
+    "lattice: (first_m, spacing_m, last_m) where all points are known to lie at first + i·spacing in x and in y, none beyond "
+    "last, seen from the world's origin: sampling may then be free of error. Only with points that do. Without last_m they go "
+    "on for ever, which costs more.\n"
     "views: Views whose projected grids it is for, instead of the three above: footprints from the finest cell in them up "
     "to the horizon's. Their rungs are the same for all views, so that a point's answer doesn't depend on "
     "which other views there are. pixels: as fine as the views' pixels, for normals finer than the cells.\n"
@@ -167,8 +185,8 @@ void add_sea(py::module_& module) {
     with_request([&](const auto&... arguments) {
         sea.def(py::init([](const Scene& scene, std::vector<std::string> products,
                             std::optional<Ladder> cell_m, std::optional<Ladder> pixel_m,
-                            std::optional<std::array<double, 2>> lattice, std::vector<View> views,
-                            bool pixels, const py::object& progress, const py::object& cancel) {
+                            std::optional<std::vector<double>> lattice, std::vector<View> views, bool pixels,
+                            const py::object& progress, const py::object& cancel) {
                     Watch watch(progress, cancel);
                     return build_sea(order_of(scene, {std::move(products), std::move(cell_m),
                                                       std::move(pixel_m), lattice, std::move(views), pixels}),
@@ -178,7 +196,7 @@ void add_sea(py::module_& module) {
         sea.def_static(
             "begin",
             [](const Scene& scene, std::vector<std::string> products, std::optional<Ladder> cell_m,
-               std::optional<Ladder> pixel_m, std::optional<std::array<double, 2>> lattice,
+               std::optional<Ladder> pixel_m, std::optional<std::vector<double>> lattice,
                std::vector<View> views, bool pixels) {
                 return std::make_unique<Task>(
                     [order = order_of(scene, {std::move(products), std::move(cell_m), std::move(pixel_m),
@@ -197,7 +215,13 @@ void add_sea(py::module_& module) {
             "Mean square slope of the whole spectrum, capillary tail included.")
         .def_property_readonly(
             "whitecap_threshold", [](const PythonSea& self) { return self.sea->whitecap_threshold(); },
-            "The Jacobian below which there is foam; -inf: there never is.")
+            "The Jacobian below which there is foam, without gusts, which move it from place to place; -inf: there "
+            "never is.")
+        .def_property_readonly(
+            "dense_foam", &dense_foam,
+            "(active, left): the part of its foam that is dense, of reflectance 0.55, where waves break now, "
+            "and in what they left; the rest is bubbles over water. The mean over a law's foam is 0.4, and "
+            "both are where foam doesn't live (Koepke 1984; Darles et al. 2007).")
         .def_property_readonly(
             "products",
             [](const PythonSea& self) {

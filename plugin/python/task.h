@@ -16,7 +16,7 @@ namespace pelagic::python {
 // For hosts that bear no Python beside their own: before Blender enters Python it asks whether some thread is in it, not
 // whether its own is, so beside a thread of Python's two would be in it at once. Made and destroyed with the interpreter
 // held. The work holds nothing of Python's, and sees the task as it would a Watch: tell() and flag().
-class Task {
+class Task final : public NativeWork {
   public:
     // Makes the result of what was worked out, with the interpreter held.
     using Made = std::function<pybind11::object()>;
@@ -41,13 +41,12 @@ class Task {
 
     // For Python.
     pybind11::object progress() const;
-    void cancel() { stop_.store(true); }
-    bool is_done() const;
+    void cancel() override { stop_.store(true); }
+    bool is_done() const override;
     void wait() const;
     pybind11::object result();
 
-    // In a forked process, which doesn't have the thread.
-    void abandon();
+    void abandon() override;
 
   private:
     std::atomic<bool> stop_ = false;

@@ -152,6 +152,32 @@ py::array triangles_of(const GpuGrid& grid) {
 
 // ---- Sea
 
+// GpuSea's thread. The program's end waits for it; a forked process, which doesn't have it, makes its own where it asks.
+class FoamThread final : public NativeWork {
+  public:
+    // With the interpreter held, as Enlisted.
+    explicit FoamThread(std::shared_ptr<const Sea<float>> sea) : sea_(std::move(sea)) {}
+
+    FoamWorker& worker() {
+        if (!worker_) worker_ = std::make_unique<FoamWorker>(sea_);
+        return *worker_;
+    }
+
+    FoamWorker* made() { return worker_.get(); }  // null until it was asked, and again in a forked process
+
+    void cancel() override {
+        if (worker_) worker_->cancel();
+    }
+    bool is_done() const override { return !worker_ || !worker_->is_busy(); }
+    // Neither joined nor destroyed: the thread may have been anywhere.
+    void abandon() override { static_cast<void>(worker_.release()); }
+
+  private:
+    std::shared_ptr<const Sea<float>> sea_;
+    Enlisted enlisted_{*this};
+    std::unique_ptr<FoamWorker> worker_;
+};
+
 class GpuSea {
   public:
     GpuSea(const Scene& scene, double finest_m, const BuildWatch& watch = {})
@@ -166,7 +192,6 @@ class GpuSea {
           packed_(sea_, 0) {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();
         ellipse_table_ = packed_.layout()->ellipse_texels();
-        if (packed_.layout()->has_living_foam()) foam_worker_.emplace(sea_);
     }
 
     bool serves(const Scene& scene) const { return what_counts(scene) == made_from_; }
@@ -278,11 +303,12 @@ class GpuSea {
     }
 
     py::dict foam(const Scene& scene, std::array<double, 2> origin_m) const {
-        const double active = foam_worker_ ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
+        const double active =
+            has_living_foam() ? active_foam(prepared_->scene, sea_->residual_coverage()) : 1.0;
         return dict_of(foam_uniforms(foam_pattern(make_foam(scene, active), checked_origin(origin_m))));
     }
 
-    bool has_living_foam() const { return foam_worker_.has_value(); }
+    bool has_living_foam() const { return packed_.layout()->has_living_foam(); }
     void ask_foam(double t_s, const std::vector<GpuGrid*>& grids) {
         if (!(std::abs(t_s) <= Frame<float>::kLatest_s))
             throw py::value_error("t: accepted: a time of at most 1e12 s to either side of 0");
@@ -291,16 +317,21 @@ class GpuSea {
             if (!grid) throw py::type_error("grids: accepted: a list of GpuGrid");
             asked.push_back(grid->grid);
         }
-        if (foam_worker_) foam_worker_->ask(t_s, std::move(asked));
+        if (!has_living_foam()) return;
+        if (!foam_thread_) foam_thread_.emplace(sea_);
+        foam_thread_->worker().ask(t_s, std::move(asked));
     }
-    bool is_foam_busy() const { return foam_worker_ && foam_worker_->is_busy(); }
+    bool is_foam_busy() const { return foam_thread_ && !foam_thread_->is_done(); }
     // Empty where there is nothing new.
     py::dict take_foam() {
         py::dict made;
-        if (!foam_worker_) return made;
-        if (const std::string problem = foam_worker_->error(); !problem.empty())
-            throw std::runtime_error(problem);
-        auto foam = foam_worker_->take();
+        if (!has_living_foam()) return made;
+        std::shared_ptr<const PackedFoam> foam;
+        if (FoamWorker* const worker = foam_thread_ ? foam_thread_->made() : nullptr) {
+            if (const std::string problem = worker->error(); !problem.empty())
+                throw std::runtime_error(problem);
+            foam = worker->take();
+        }
         if (!foam && foam_) return made;
         foam_ = foam ? std::move(foam) : std::make_shared<const PackedFoam>();
         const auto picture = [](auto values, glm::ivec2 size, py::ssize_t channels) {
@@ -365,7 +396,7 @@ class GpuSea {
     std::vector<glm::vec4> train_table_, ellipse_table_;
     mutable std::mutex mutex_;
     std::shared_ptr<const PackedFoam> foam_;  // what was taken last
-    std::optional<FoamWorker> foam_worker_;   // where foam lives
+    std::optional<FoamThread> foam_thread_;   // of living foam that was asked for
 };
 
 void add_gpu_light(py::module_& module) {

@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "plugin/python/bindings.h"
-#include "plugin/python/task.h"
 
 namespace pelagic::python {
 
@@ -17,7 +16,7 @@ namespace {
 struct Work {
     int running = 0;
     std::vector<Watch*> watched;
-    std::vector<Task*> tasks;
+    std::vector<NativeWork*> native;
     std::optional<std::thread::id> ending;  // the thread that ends the program, once it does
 };
 Work& work() {
@@ -26,14 +25,14 @@ Work& work() {
 }
 
 bool is_at_work() {
-    return work().running > 0 ||
-           !std::all_of(work().tasks.begin(), work().tasks.end(), [](Task* task) { return task->is_done(); });
+    return work().running > 0 || !std::all_of(work().native.begin(), work().native.end(),
+                                              [](NativeWork* each) { return each->is_done(); });
 }
 
 void end_all_work() {
     work().ending = std::this_thread::get_id();
     for (Watch* watch : work().watched) watch->stop();
-    for (Task* task : work().tasks) task->cancel();
+    for (NativeWork* each : work().native) each->cancel();
     while (is_at_work()) {
         const py::gil_scoped_release others_may_run;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -73,13 +72,13 @@ OthersMayRun::~OthersMayRun() {
     --work().running;
 }
 
-Enlisted::Enlisted(Task& task) : task_(task) {
-    if (work().ending) throw Cancelled("the program ends");
-    work().tasks.push_back(&task);
+Enlisted::Enlisted(NativeWork& work) : work_(work) {
+    if (python::work().ending) throw Cancelled("the program ends");
+    python::work().native.push_back(&work);
 }
 
 Enlisted::~Enlisted() {
-    std::erase(work().tasks, &task_);
+    std::erase(work().native, &work_);
 }
 
 Watch::Watch(const py::object& progress, const py::object& cancel) : progress_(progress) {
@@ -111,7 +110,8 @@ void add_watch(py::module_& module) {
     // A child has this thread alone.
     py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] {
                                                            work().running = 0;
-                                                           for (Task* task : work().tasks) task->abandon();
+                                                           for (NativeWork* each : work().native)
+                                                               each->abandon();
                                                        }));
 }
 

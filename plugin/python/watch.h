@@ -54,18 +54,27 @@ class OthersMayRun {
     std::optional<pybind11::gil_scoped_release> released_;
 };
 
-class Task;
+// Work in a native thread, as the program's end and a fork see it: both hold the interpreter.
+class NativeWork {
+  public:
+    virtual void cancel() = 0;  // it ends soon
+    virtual bool is_done() const = 0;
+    virtual void abandon() = 0;  // in a forked process, which doesn't have the thread
 
-// While it lives, the program's end cancels a task and waits for it. Throws Cancelled if that has begun.
+  protected:
+    ~NativeWork() = default;
+};
+
+// While it lives, the program's end cancels this work and waits for it. Throws Cancelled if that has begun.
 class Enlisted {
   public:
-    explicit Enlisted(Task& task);
+    explicit Enlisted(NativeWork& work);
     ~Enlisted();
     Enlisted(const Enlisted&) = delete;
     Enlisted& operator=(const Enlisted&) = delete;
 
   private:
-    Task& task_;
+    NativeWork& work_;
 };
 
 // What a caller of long work passes: `progress`, a callable or None, and `cancel`, a Cancel, a callable that is

@@ -8,6 +8,7 @@
 #include <glm/ext/vector_double1.hpp>
 #include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -73,13 +74,17 @@ class RendererOf final : public Impl {
         clear(picture);
         const std::vector<double> moments = moments_of(frame, options_);
         const auto passes = static_cast<int>(moments.size());
-        const double first_s = scene_.shot.time_s(*std::min_element(moments.begin(), moments.end()));
+        // In rising time, so that foam's past is gone through once.
+        std::vector<int> order(moments.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return moments[a] < moments[b]; });
         double begun = 0.0;  // the share of the pass that its foam's past took
-        const auto go_on = [&](int pass, double done) {
-            if (watch.progress) watch.progress((pass + begun + (1.0 - begun) * done) / passes);
+        int ended = 0;       // passes
+        const auto go_on = [&](double done) {
+            if (watch.progress) watch.progress((ended + begun + (1.0 - begun) * done) / passes);
             return !(watch.cancel && watch.cancel->load(std::memory_order_relaxed));
         };
-        for (int pass = 0; pass < passes; ++pass) {
+        for (const int pass : order) {
             // With a shutter the first pass is for what isn't blurred, and each of the others takes one sample.
             const bool is_own = pass == 0, is_lit = passes == 1 || !is_own;
             const int sample = pass - 1;
@@ -88,13 +93,12 @@ class RendererOf final : public Impl {
                                     : Sampling{n, {sample % n, sample / n}};
             begun = 0.0;
             try {
-                begin(moments[pass], scene_.shot.time_s(moments[pass]) - first_s,
-                      {.progress =
-                           [&](double done) {
-                               begun = 0.5 * done;
-                               go_on(pass, 0.0);
-                           },
-                       .cancel = watch.cancel});
+                begin(moments[pass], {.progress =
+                                          [&](double done) {
+                                              begun = 0.5 * done;
+                                              go_on(0.0);
+                                          },
+                                      .cancel = watch.cancel});
             } catch (const BuildCancelled&) {
                 return false;
             }
@@ -107,8 +111,9 @@ class RendererOf final : public Impl {
                 if (is_lit) light_sea();
                 if (is_lit) average(row, rows, picture);
                 if (is_own) describe(row, rows, frame, picture);
-                if (!go_on(pass, static_cast<double>(row + rows) / raster_size().y)) return false;
+                if (!go_on(static_cast<double>(row + rows) / raster_size().y)) return false;
             }
+            ++ended;
         }
         return true;
     }
@@ -141,8 +146,8 @@ class RendererOf final : public Impl {
                 !row.light && options_.layers[index(row.layer)] ? pixels * row.components : 0);
     }
 
-    // `back_s`: how much earlier moments follow. Throws BuildCancelled.
-    void begin(double moment, double back_s, const BuildWatch& watch) {
+    // Throws BuildCancelled.
+    void begin(double moment, const BuildWatch& watch) {
         frame_.set(scene_.shot.time_s(moment));
         refuse_under_water(frame_, scene_, moment, grid_options_);
         const double height_m = view_.position_m.z;
@@ -150,13 +155,13 @@ class RendererOf final : public Impl {
         if (sky_.air && (air_.empty() || view_.position_m.z != height_m))
             air_ = sky_.air->seen_from(view_.position_m.z);
         lay_out_grid();
-        prepare_foam(scene_.shot.time_s(moment), back_s, watch);
+        prepare_foam(scene_.shot.time_s(moment), watch);
     }
 
     // Of all that the picture shows, so that its parts don't each go through the earlier times.
-    void prepare_foam(double time_s, double back_s, const BuildWatch& watch) {
+    void prepare_foam(double time_s, const BuildWatch& watch) {
         if (!history_) return;
-        history_->set(time_s, back_s);
+        history_->set(time_s);
         const std::vector<T> pixel_m(grid_.pixel_m.begin(), grid_.pixel_m.end());
         const std::vector<glm::vec<2, T>> axis_m(grid_.pixel_axis_m.begin(), grid_.pixel_axis_m.end());
         history_->prepare(Points<T>{.origin_m = grid_.origin_m,

@@ -16,11 +16,11 @@ from harness import *  # noqa: F403
 enable()
 import pelagic
 
-from pelagic_ocean import baked
+from pelagic_ocean import baked, play
 
 program = sys.argv[-1]
 folder = Path(tempfile.mkdtemp())
-LIVE = ("position", "velocity", "slope_variance", "whitecap_coverage")
+LIVE = ("position", "velocity", "slope_variance", "whitecap_coverage", "foam_active", "foam_age")
 
 
 def shot_file(name, more=""):
@@ -63,6 +63,9 @@ for name, mesh in (("binary", ""), ("text", '[output]\nmesh = "usda"\n')):
             for attribute in LIVE:
                 both = (numbers(obj.data, attribute) for obj in (from_disk, live))
                 assert np.array_equal(*both), (frame, attribute)
+        nodes = from_disk.data.materials[0].node_tree.nodes
+        densities = [nodes[name].outputs[0].default_value for name in ("Active Foam Density", "Residual Foam Density")]
+        assert np.allclose(densities, play.simulation_of(live).sea.dense_foam) and densities[0] > densities[1], densities
         faces = [[tuple(face.vertices) for face in obj.data.polygons] for obj in (from_disk, live)]
         assert faces[0] == faces[1]
         uvs = [np.array([entry.uv for entry in obj.data.uv_layers["UVMap"].data]) for obj in (from_disk, live)]

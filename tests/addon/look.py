@@ -12,7 +12,7 @@ import math
 
 import pelagic
 from mathutils import Matrix, Vector
-from pelagic_ocean import light, material, ocean
+from pelagic_ocean import light, material, ocean, play
 from pictures import LUMINANCE, cycles_exr
 
 SAMPLES = 64
@@ -48,14 +48,14 @@ def flat_sea(**settings):
     return scene
 
 
-def seen(angle_deg, azimuth_deg):
+def seen(angle_deg, azimuth_deg, samples=SAMPLES):
     """(r, g, b) of a picture from so far off the zenith, looking at the azimuth; and the direction to the eye."""
     angle, azimuth = math.radians(angle_deg), math.radians(azimuth_deg + 180)
     to_eye = Vector((math.sin(angle) * math.cos(azimuth), math.sin(angle) * math.sin(azimuth), math.cos(angle)))
     bpy.context.scene.camera.matrix_world = (Matrix.Translation(500 * to_eye)
                                              @ to_eye.to_track_quat("Z", "Y").to_matrix().to_4x4())
     with tempfile.TemporaryDirectory() as folder:
-        pixels = cycles_exr(Path(folder) / "picture.exr", (24, 24), SAMPLES)
+        pixels = cycles_exr(Path(folder) / "picture.exr", (24, 24), samples)
     assert np.isfinite(pixels).all()
     return pixels[..., :3].mean((0, 1)), np.array([to_eye], np.float32)
 
@@ -109,12 +109,34 @@ with checking("the foam's mean is the coverage"):
         assert 0.085 < picture[0] < 0.115, (age_s, structure, streaks, picture)
         assert structure > 0.0 or abs(picture[0] - 0.1) < 1e-3, picture
 
+with checking("foam is dense where waves break and thin in what they left, by the core's numbers"):
+    scene = pelagic.Scene()
+    water = np.array(pelagic.WaterBody(scene).reflectance)
+    dense = pelagic.Sea(scene, ("coverage",)).dense_foam
+    expected = np.divide(*(0.55 * part + (1.0 - part) * water for part in dense))  # foam_reflectance() of foam.glsl
+    assert expected.min() > 2.0, expected
+    flat_sea()
+    bare, _ = seen(0, 0, samples=16)
+    for structure in (0.0, 1.0):
+        shades = []
+        for active in (0.5, 0.0):
+            flat_sea(whitecap_coverage=0.5, foam_active=active, foam_age=2.0)
+            material.update_material(bpy.data.objects["Sea"], scene, dense_foam=dense)
+            bpy.data.materials["Pelagic Water"].node_tree.nodes["Foam Structure"].outputs[0].default_value = structure
+            shades.append(seen(0, 0, samples=16)[0] - 0.5 * bare)
+        print("  ", structure, np.round(dense, 3), np.round(shades[0] / shades[1], 3), np.round(expected, 3))
+        assert np.allclose(shades[0] / shades[1], expected, rtol=0.03)
+    scene.effects.foam_decay_s = 0.0  # then meshes have no foam_active, and all foam is alike
+    assert np.allclose(pelagic.Sea(scene, ("coverage",)).dense_foam, 0.4)
+
 with checking("settings reach light and material; an artist's own colour, world and lamp stay"):
     fresh_file()
     bpy_scene = bpy.context.scene
     obj = add_ocean()
     nodes, lamp = obj.data.materials[0].node_tree.nodes, light.own_sun(bpy_scene)
     before, height, exposure = tuple(nodes["Water Color"].outputs[0].default_value), lamp.matrix_world.copy(), bpy_scene.view_settings.exposure
+    densities = [nodes[name].outputs[0].default_value for name in ("Active Foam Density", "Residual Foam Density")]
+    assert np.allclose(densities, play.simulation_of(obj).sea.dense_foam) and densities[0] > 2 * densities[1], densities
     change(obj, light__sun_elevation_deg=3.0, water__type="turbid")
     bpy.context.view_layer.update()
     assert tuple(nodes["Water Color"].outputs[0].default_value) != before

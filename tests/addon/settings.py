@@ -105,6 +105,32 @@ with checking("the entries of lists at both ends"):
         obj.update_tag()
         assert settle() is None
 
+with checking("gusts: hidden ripples and foam vary over the surface, and the waves that show stay"):
+    obj.pelagic.viewport_percentage = 100
+    change(obj, surface__resolution=64, surface__size_m=2000.0, sea__gust_size_m=300.0)
+    calm, waves = numbers(obj.data, "slope_variance")[:, 0], numbers(obj.data)
+    change(obj, sea__gust_strength=0.8)
+    assert settle() is None
+    gusty = numbers(obj.data, "slope_variance")[:, 0]
+    print(f"    deviation of the slope variance, in means: {calm.std() / calm.mean():.3f}, with gusts {gusty.std() / gusty.mean():.3f}")
+    assert gusty.std() > 2.0 * calm.std() and abs(gusty.mean() / calm.mean() - 1.0) < 0.1
+    assert np.array_equal(numbers(obj.data), waves)
+    foam = numbers(obj.data, "whitecap_coverage")
+    strong, weak = (foam[gusty > np.quantile(gusty, 0.75)].mean(), foam[gusty < np.quantile(gusty, 0.25)].mean())
+    print(f"    foam where gusts are strong: {strong:.4f}, where they are weak: {weak:.4f}")
+    assert strong > 2.0 * weak
+
+    def step():
+        """From neighbour to neighbour, 31 m apart, which are the more alike the larger the patches."""
+        return np.abs(np.diff(numbers(obj.data, "slope_variance")[:, 0].reshape(65, 65), axis=1)).mean()
+
+    small = step()
+    change(obj, sea__gust_size_m=3000.0)
+    assert settle() is None and step() < 0.7 * small, (step(), small)
+    change(obj, sea__gust_strength=0.0, sea__gust_size_m=300.0)
+    assert np.array_equal(numbers(obj.data, "slope_variance")[:, 0], calm)
+    obj.pelagic.viewport_percentage = 1
+
 with checking("a wind of 0 is a flat sea"):
     change(obj, sea__wind_speed_mps=0.0)
     assert np.abs(numbers(obj.data)[:, 2]).max() < 1e-3

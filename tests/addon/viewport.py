@@ -42,24 +42,28 @@ def redraw():
         bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
 
 
+def state(preview):
+    """What a picture is made of."""
+    drawing = preview.drawing
+    return drawing.sea, drawing.light, list(preview.hidden_in), drawing.awaits_foam, drawing.is_coarse(), preview.is_building
+
+
 def settle():
-    """Until the preview has nothing left to do; its timers don't run while a script does."""
-    before = None
+    """Until the preview has nothing left to do; its timers don't run while a script does. In software a picture takes
+    seconds: there is no more than is needed."""
     for _ in range(20):
-        redraw()
         preview = viewport._preview
-        if preview is None:
+        before = preview and state(preview)
+        redraw()
+        if preview is None or viewport._preview is not preview:
             return
         if preview._job is not None:
             preview._job.finish()
         while preview.drawing.awaits_foam and preview.drawing.sea.is_foam_busy:
             time.sleep(0.01)
         viewport._tend()
-        now = (preview.drawing.sea, preview.drawing.light, list(preview.hidden_in), preview.drawing.awaits_foam,
-               preview.drawing.is_coarse())
-        if now == before and not preview.is_building and not any(now[-2:]):
+        if state(preview) == before and not any(before[-3:]):
             return
-        before = now
     raise AssertionError("the preview doesn't come to rest")
 
 
@@ -175,14 +179,23 @@ def steps():
         wind_mps, obj.pelagic.sea.wind_speed_mps = obj.pelagic.sea.wind_speed_mps, 18.0
         obj.pelagic.effects.foam_decay_s = 3.0
         living, here = picture("living foam"), seen_from_here(obj)
-        difference = change_of(living, programs_picture(here))[:place_of((0, 1e5, 0))[0] - 3]
-        print(f"    living foam: differences: median {np.median(difference):.4f}, mean {difference.mean():.4f}")
-        assert difference.mean() < 0.02  # without it 0.03
+        theirs = programs_picture(here)
+        here.effects.foam_decay_s = 0.0
+        without = programs_picture(here)
+        here.effects.foam_decay_s = obj.pelagic.effects.foam_decay_s
+        # What earlier breaking has left is seen in few pixels of the sea: there the picture is the one that has it.
+        left = change_of(theirs, without) > 0.1
+        left[place_of((0, 1e5, 0))[0] - 3:] = False
+        near, far = change_of(living, theirs)[left].mean(), change_of(living, without)[left].mean()
+        print(f"    where there is old foam, {left.mean():.4f} of the picture: differs by {near:.4f} from it, by {far:.4f} from none")
+        assert left.mean() > 0.005 and near < 0.3 * far
         drawing = viewport._preview.drawing
         here.effects.foam_structure = 0.0
         assert drawing.sea.has_living_foam and drawing.sea.serves(here) and drawing.light.serves(here)
-        obj.pelagic.effects.property_unset("foam_decay_s")
         obj.pelagic.sea.wind_speed_mps = wind_mps
+    # What follows is about the window, for which a sea will do that takes half the time to draw in software.
+    obj.pelagic.effects.foam_decay_s = 0.0
+    obj.pelagic.waves.tiling = "periodic"
     drawn = picture("draft")
 
     with checking("a turned ocean is another sea under the same sky"):
@@ -267,7 +280,8 @@ def steps():
         assert change_of(through[row - 12:row - 6], through[row + 6:row + 12]).mean() > 0.05, "the horizon isn't where it should be"
         look(-4.0, 12.0)
 
-    with checking("two views at once"):
+    with checking("two views at once: they come to rest, also where foam lives"):
+        obj.pelagic.effects.foam_decay_s = 1.0
         with in_view():
             bpy.ops.screen.back_to_previous()
         settle()
@@ -275,7 +289,11 @@ def steps():
             bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
         yield lambda: all(area.width > 1 for area in bpy.context.window_manager.windows[0].screen.areas)
         settle()
-        assert len(viewport._preview.drawing._grids) >= 2
+        drawing = viewport._preview.drawing
+        assert len(drawing._grids) >= 2 and drawing.sea.has_living_foam
+        redraw()
+        assert not drawing.awaits_foam, "each view's picture asks for both views' foam again"
+        obj.pelagic.effects.foam_decay_s = 0.0
 
     with checking("a view that needs the mesh gets it"):
         space = view3d()[1].spaces.active

@@ -36,7 +36,7 @@ struct Case {
         query.products =
             products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage);
         query.cell_m = query.pixel_m = {patch.spacing_m};
-        query.lattice = Lattice{patch.first_m, patch.spacing_m};
+        query.lattice = Lattice{patch.first_m, patch.spacing_m, -patch.first_m};
         return make_plan(at_level, {query});
     }
 };

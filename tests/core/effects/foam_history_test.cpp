@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <thread>
 
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
@@ -201,7 +203,7 @@ TEST(LivingFoam, IsTheSameAloneAndInARunOnAnyNumberOfThreads) {
     expect_same(single.at(5.2, points), cold);
 }
 
-// A time far from those before says how far it is; a step, and a shutter's moments, have no past to go through.
+// A time far from those before says how far it is; a step, and a shutter's rising moments, have no past to go through.
 TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
     const auto sea = sea_of(scene_of(2.0), 0.7);
     const auto rest_m = square(50, 0.9);
@@ -211,14 +213,14 @@ TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
     std::atomic<bool> enough = false;
     const BuildWatch watch{.progress = [&](double done) { told.push_back(done); }, .cancel = &enough};
     const double shutter_s = 2.5 * sea->plan().foam->step_s;
-    history.set(9.0, shutter_s);
+    history.set(9.0 - shutter_s);
     history.prepare(points, 0, watch);
     EXPECT_GT(told.size(), 10u);
     EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
     EXPECT_EQ(told.back(), 1.0);
     told.clear();
-    for (const double back_s : {shutter_s, 0.3 * shutter_s, -0.02}) {
-        history.set(9.0 - back_s);
+    for (const double t_s : {9.0 - 0.3 * shutter_s, 9.0, 9.02}) {
+        history.set(t_s);
         history.prepare(points, 0, watch);
     }
     EXPECT_TRUE(told.empty());
@@ -241,6 +243,33 @@ TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
     std::vector<float> total(whole.active);
     history.add(points, 0, {.coverage = {total.data()}});
     EXPECT_EQ(total, whole.total);
+}
+
+// Also while a level's own sea is built, which takes long for large cascades.
+TEST(LivingFoam, IsCancelledWhereALevelIsBuilt) {
+    Scene scene = scene_of(2.0);
+    scene.waves.cascades = {{.size_m = 1500.0, .resolution = 1024}};
+    const auto sea = sea_of(scene, 3.0);
+    const auto seconds_of = [](const auto& work) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    const double level_s =
+        seconds_of([&] { Sea<float>{plan_of_foam_level(sea->plan(), sea->plan().foam->cell_of(0))}; });
+    FoamHistory<float> history(sea);
+    history.set(9.0);
+    std::atomic<bool> enough = false;
+    std::thread cancels([&] {
+        std::this_thread::sleep_for(std::chrono::duration<double>(0.2 * level_s));
+        enough = true;
+    });
+    const double until_s = seconds_of([&] {
+        EXPECT_THROW(history.prepare(std::vector<FoamPlace>{{0, 0, 0}}, {.progress = {}, .cancel = &enough}),
+                     BuildCancelled);
+    });
+    cancels.join();
+    EXPECT_LT(until_s, 0.7 * level_s);
 }
 
 // Between a frame and the next where the loop begins again foam changes as between any two, near and far: on all levels
@@ -288,10 +317,10 @@ TEST(LivingFoam, Drifts) {
 }
 
 // Total coverage over area, of the law's.
-double share_of_law(double footprint_m, int per_side, double spacing_m, double decay_s = 4.0) {
+double share_of_law(double footprint_m, int per_side, double spacing_m, double decay_s = 4.0,
+                    Tiling tiling = Tiling::Periodic) {
     Scene scene = scene_of(decay_s);
-    // So that the small piece below is whole tiles of the waves that break.
-    scene.waves.tiling = Tiling::Periodic;
+    scene.waves.tiling = tiling;
     Shown<> shown(sea_of(scene, footprint_m));
     double foam = 0.0, sea = 0.0;
     const Foam now = shown.at(11.0, square(per_side, spacing_m));
@@ -307,13 +336,18 @@ double share_of_law(double footprint_m, int per_side, double spacing_m, double d
 // All foam together has the law's coverage, at any footprint.
 TEST(LivingFoam, HasTheLawsCoverage) {
     double of_8m = 1.0;
-    for (const double footprint_m : {8.0, 60.0, 200.0}) {
-        const double share = share_of_law(footprint_m, 200, 8.0);
-        std::printf("footprint %5.2f m: %.3f of the law\n", footprint_m, share);
-        EXPECT_NEAR(share, 1.0, 0.03) << footprint_m;
-        if (footprint_m == 8.0) of_8m = share;
-    }
-    // A smaller piece of the sea, whose own mean isn't the whole sea's.
+    for (const Tiling tiling : {Tiling::Random, Tiling::Periodic})
+        for (const double footprint_m : {8.0, 60.0, 200.0}) {
+            const double share = share_of_law(footprint_m, 200, 8.0, 4.0, tiling);
+            std::printf("footprint %5.2f m: %.3f of the law\n", footprint_m, share);
+            // Without whole tiles a piece of the sea that shows its crests is one draw; over 10 km it is 0.970 ± 0.010.
+            const bool is_a_draw = tiling == Tiling::Random && footprint_m == 8.0;
+            EXPECT_NEAR(share, 1.0, is_a_draw ? 0.06 : 0.03) << footprint_m;
+            of_8m = footprint_m == 8.0 ? share : of_8m;
+        }
+    // A smaller piece of the sea, whose own mean isn't the whole sea's. Of whole tiles: with copies pieces of 240 m differ by
+    // 17 % (one standard deviation) at 0.02 m, so that this needs dozens of them. Of 32, four seeds', the mean is 0.946 ±
+    // 0.031 of the law with copies and 0.954 ± 0.024 with tiles; at 8 m 0.969 ± 0.021 and 0.995 ± 0.014.
     const double far = share_of_law(8.0, 40, 6.0);
     for (const double footprint_m : {0.02, 0.5, 2.0}) {
         const double share = share_of_law(footprint_m, 400, 0.6) / far;
@@ -352,8 +386,6 @@ TEST(LivingFoam, OfGustsIsAsMuchAndWhereTheyBlew) {
         for (const double v : of) sum += (v - mean(of)) * (v - mean(of)) / static_cast<double>(of.size());
         return std::sqrt(sum) / mean(of);
     };
-    std::printf("residual of gusts %.3f of that without; spread %.2f and %.2f\n", mean(gusty) / mean(even),
-                spread(gusty), spread(even));
     EXPECT_NEAR(mean(gusty) / mean(even), 1.0, 0.05);
     EXPECT_GT(spread(gusty), 1.5 * spread(even));
 }
@@ -442,7 +474,6 @@ TEST(LivingFoam, OfTrainsHasTheLawsCoverage) {
             area_sum += area;
         }
     }
-    std::printf("trains: %.3f of the law\n", foam / area_sum / law_coverage(scene));
     EXPECT_NEAR(foam / area_sum / law_coverage(scene), 1.0, 0.1);
     Shown<> alone(sea);
     EXPECT_EQ(alone.at(61.0, points).total, run.at(61.0, points).total);

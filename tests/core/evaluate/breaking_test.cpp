@@ -160,6 +160,47 @@ TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
     }
 }
 
+// However little choppiness there is. Where copies of tiles blend, the strain that a level sea breaks by has no gradient of the
+// weights: from choppiness 0 to the least that counts, some of the foam moves there, and the bound is wider.
+TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
+    const auto points = random_points<float>(3000.0, 20000);
+    Scene scene;
+    scene.sea.wind_speed_mps = 14.0;
+    for (const Tiling tiling : {Tiling::Periodic, Tiling::Random}) {
+        scene.waves.tiling = tiling;
+        std::vector<float> before;
+        double of_none = 0.0;
+        for (const double choppiness :
+             {0.0, 1e-8, 1e-6, 0.999e-4, 1e-4, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0}) {
+            SCOPED_TRACE(choppiness);
+            scene.waves.choppiness = choppiness;
+            const auto frame = frame_of<float>(scene, {filtered(kFoam | products(Position), 0.5)}, 3.0);
+            const auto values = sample(frame, 0, points);
+            double foam = 0.0, area = 0.0, changed = 0.0, all = 0.0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                const glm::dvec3 j(values.vectors(Product::JacobianMoments)[i]);
+                const double own = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
+                const double coverage = static_cast<double>(values.numbers(Coverage)[i]);
+                area += own;
+                foam += own * coverage;
+                all += coverage;
+                if (!before.empty()) changed += std::abs(coverage - static_cast<double>(before[i]));
+                // Nor does the surface jump where it begins to be displaced.
+                ASSERT_LE(glm::length(glm::vec2(values.vectors(Position)[i]) - points[i]),
+                          5.0 * choppiness + 2e-4);
+            }
+            const double of_law = foam / area / law_coverage(scene);
+            if (before.empty()) of_none = of_law;
+            EXPECT_NEAR(of_law, 1.0, 0.15);  // one tile's peak waves
+            if (choppiness <= 0.01) {
+                EXPECT_NEAR(of_law, of_none, 0.01);
+                EXPECT_LT(changed / all, tiling == Tiling::Periodic ? 0.01 : 0.1);
+            }
+            before = values.numbers(Coverage);
+        }
+    }
+}
+
 // Where no wave is that long, or none that is has any steepness.
 TEST(Breaking, RipplesMakeNoFoam) {
     for (const double fetch_m : {1.0, 30.0}) {

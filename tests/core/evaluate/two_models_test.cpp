@@ -128,49 +128,58 @@ TEST(TwoModels, ShownAndHiddenAddUpToTheWholeAtEveryFootprint) {
 
 // The house's rule: instruction sets agree to 1e-5 of the significant height. They don't agree to the bit
 // (one fuses multiplication and addition, another doesn't): a set that is never switched to would.
-TEST(TwoModels, AgreeOnEveryInstructionSet) {
-    for (const Scene& scene : {Scene{}, trains_alone(), trains_and_cascades()}) {
-        const Query between = filtered(kEverything, 0.5);
-        auto rest = random_points<float>(150.0, 700);
-        // Rows of a patch as well, which grids are read at in another way. They cross copies of tiles.
-        const auto rows = rest_points<float>({.per_side = 60, .spacing_m = 2.5, .first_m = -75.0});
-        rest.insert(rest.end(), rows.begin(), rows.end());
-        std::vector<ProductArrays<float>> answers;
-        std::vector<std::string> names;
-        double height_m = 0.0;
-        // The CPU may know targets that the program doesn't contain.
-        const std::int64_t built = HWY_TARGETS | HWY_STATIC_TARGET;
-        for (std::int64_t left = hwy::SupportedTargets() & built; left != 0; left &= left - 1) {
-            hwy::SetSupportedTargetsForTest(left & -left);
-            names.push_back(instruction_set());
-            const auto frame = frame_of<float>(scene, {between}, 5.0);
-            height_m = frame.sea().total().significant_height_m();
-            answers.push_back(sample(frame, 0, rest));
-        }
-        hwy::SetSupportedTargetsForTest(0);
-        double largest = 0.0;
-        for (std::size_t s = 1; s < answers.size(); ++s) {
-            double worst = 0.0;
-            const auto compare = [&](double a, double b, double tolerance) {
-                worst = std::max(worst, std::abs(a - b));
-                ASSERT_NEAR(a, b, tolerance) << names[s] << " and " << names[0];
-            };
-            for (std::size_t i = 0; i < rest.size(); ++i)
-                for (int a = 0; a < 3; ++a) {
-                    compare(answers[s].vectors(Displacement)[i][a], answers[0].vectors(Displacement)[i][a],
-                            1e-5 * height_m);
-                    compare(answers[s].vectors(Velocity)[i][a], answers[0].vectors(Velocity)[i][a],
-                            2e-5 * height_m);
-                    compare(answers[s].vectors(Normal)[i][a], answers[0].vectors(Normal)[i][a], 1e-5);
-                    compare(answers[s].numbers(Coverage)[i], answers[0].numbers(Coverage)[i], 1e-5);
-                }
-            largest = std::max(largest, worst);
-        }
-        // AVX2 and AVX-512 may give the same bits; sets with and without fused products don't.
-        EXPECT_GT(largest, 0.0) << names.front() << " and " << names.back() << " ran the same code";
-        EXPECT_NE(names.front(), names.back())
-            << "only one instruction set on this machine: nothing was compared";
+template <class T>
+void expect_agreement(const Scene& scene, double tolerance) {
+    const Query between = filtered(kEverything, 0.5);
+    auto rest = random_points<T>(150.0, 700);
+    // Rows of a patch as well, which grids are read at in another way. They cross copies of tiles.
+    const auto rows = rest_points<T>({.per_side = 60, .spacing_m = 2.5, .first_m = -75.0});
+    rest.insert(rest.end(), rows.begin(), rows.end());
+    std::vector<ProductArrays<T>> answers;
+    std::vector<std::string> names;
+    double height_m = 0.0;
+    // The CPU may know targets that the program doesn't contain.
+    const std::int64_t built = HWY_TARGETS | HWY_STATIC_TARGET;
+    for (std::int64_t left = hwy::SupportedTargets() & built; left != 0; left &= left - 1) {
+        hwy::SetSupportedTargetsForTest(left & -left);
+        names.push_back(instruction_set());
+        const auto frame = frame_of<T>(scene, {between}, 5.0);
+        height_m = frame.sea().total().significant_height_m();
+        answers.push_back(sample(frame, 0, rest));
     }
+    hwy::SetSupportedTargetsForTest(0);
+    double largest = 0.0;
+    for (std::size_t s = 1; s < answers.size(); ++s) {
+        double worst = 0.0;
+        const auto compare = [&](T a, T b, double most) {
+            worst = std::max(worst, std::abs(static_cast<double>(a - b)));
+            ASSERT_NEAR(a, b, most) << names[s] << " and " << names[0];
+        };
+        for (std::size_t i = 0; i < rest.size(); ++i)
+            for (int a = 0; a < 3; ++a) {
+                compare(answers[s].vectors(Displacement)[i][a], answers[0].vectors(Displacement)[i][a],
+                        tolerance * height_m);
+                compare(answers[s].vectors(Velocity)[i][a], answers[0].vectors(Velocity)[i][a],
+                        2.0 * tolerance * height_m);
+                compare(answers[s].vectors(Normal)[i][a], answers[0].vectors(Normal)[i][a], tolerance);
+                compare(answers[s].numbers(Coverage)[i], answers[0].numbers(Coverage)[i], tolerance);
+            }
+        largest = std::max(largest, worst);
+    }
+    // AVX2 and AVX-512 may give the same bits; sets with and without fused products don't.
+    EXPECT_GT(largest, 0.0) << names.front() << " and " << names.back() << " ran the same code";
+    EXPECT_NE(names.front(), names.back())
+        << "only one instruction set on this machine: nothing was compared";
+}
+
+// Both lengths of splines, in both precisions: vectors hold other numbers of their taps.
+TEST(TwoModels, AgreeOnEveryInstructionSet) {
+    for (Scene scene : {Scene{}, trains_alone(), trains_and_cascades()})
+        for (const QualityLevel level : {QualityLevel::Draft, QualityLevel::Final}) {
+            scene.quality.level = level;
+            expect_agreement<float>(scene, 1e-5);
+            expect_agreement<double>(scene, 1e-9);
+        }
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <glm/glm.hpp>
 #include <random>
 
+#include "core/lighting/foam_structure.h"
+
 namespace pelagic::optics {
 
 using namespace glm;

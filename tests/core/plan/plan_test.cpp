@@ -52,13 +52,24 @@ TEST(Plan, HasNoJacobianWithoutWhitecapsNormalsAndSlopeVariance) {
     }
 }
 
-// But the strain that waves would have, where somebody asks for foam.
+// But the strain that waves would have, where somebody asks for foam. So little choppiness that nobody sees it is none.
 TEST(Plan, HasNoHorizontalFieldsWithoutChoppiness) {
-    Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity});
-    scene.waves.choppiness = 0.0;
-    EXPECT_EQ(fields_of_plan(plan_bake(scene)), fields(Field::Height, Field::VelocityZ) | kSlopes);
-    scene.output.attributes.push_back(MeshAttribute::Whitecaps);
-    EXPECT_EQ(fields_of_plan(plan_bake(scene)), fields(Field::Height, Field::VelocityZ) | kSlopes | kStrain);
+    const FieldSet level = fields(Field::Height, Field::VelocityZ) | kSlopes;
+    for (const double choppiness : {0.0, 1e-12, 1e-6, 0.99 * kLeastShownChoppiness}) {
+        Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity});
+        scene.waves.choppiness = choppiness;
+        EXPECT_EQ(fields_of_plan(plan_bake(scene)), level);
+        scene.output.attributes.push_back(MeshAttribute::Whitecaps);
+        EXPECT_EQ(fields_of_plan(plan_bake(scene)), level | kStrain);
+        // And the page says so.
+        const std::string page = explain(plan_bake(scene));
+        EXPECT_NE(page.find("whitecap coverage  ← Dxx, Dyy, Dxy"), std::string::npos) << page;
+        EXPECT_NE(page.find("as a choppiness of 0.01 would press them"), std::string::npos) << page;
+    }
+    Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity, MeshAttribute::Whitecaps});
+    scene.waves.choppiness = kLeastShownChoppiness;
+    EXPECT_TRUE(fields_of_plan(plan_bake(scene))[index(Field::Dx)]);
+    EXPECT_EQ(explain(plan_bake(scene)).find("would press them"), std::string::npos);
 }
 
 TEST(Plan, HasNothingToRunWithoutWindAndSwell) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/plan/copies.h"
+#include "core/scene/validate.h"
 #include "core/waves/frame.h"
 #include "core/waves/sea.h"
 #include "tests/core/waves/samples.h"
@@ -86,6 +88,68 @@ TEST(Repeats, OfExplicitTilesAreToldOf) {
     EXPECT_FALSE(tells());
     scene.surface.kind = SurfaceKind::ProjectedGrid;
     EXPECT_TRUE(tells());
+}
+
+// What copies add to the slopes of the largest tile, of the energies that its modes have.
+double gain_of(const Scene& scene) {
+    Query query;
+    query.name = "tile";
+    query.products = products(Product::SlopeVariance);
+    query.only_cascade = 0;
+    const Sea<double> sea(make_plan(scene, {query}));
+    const SpectralMoments& own = sea.statistics(0).resolved.front();
+    const double size_m = scene.waves.cascades.front().size_m;
+    return 2.0 * kCopySlopes * own.m0 / (size_m * size_m * own.mss());
+}
+
+// Of any sea and any explicit sizes, where it is more than 5 %, with what it is and a size that helps.
+TEST(CopiesGain, IsToldOfWithWhatHelps) {
+    const std::string of_share = "which adds ", of_size = "size_m = ";
+    std::vector<Scene> seas(4);
+    seas[1].sea.wind_speed_mps = 3.0;
+    seas[2].sea.wind_speed_mps = 0.0;
+    seas[2].sea.swell = {{2.0, 12.0, 40.0}};
+    seas[3].sea.directionality = 5.0;
+    int told = 0, untold = 0;
+    for (Scene scene : seas) {
+        const double peak_m = kTwoPi / prepare(scene)->spectrum.longest_peak_wavenumber();
+        EXPECT_TRUE(sea_warnings(*prepare(scene)).empty());
+        for (const double waves : {0.7, 1.5, 3.0, 5.0, 10.0, 20.0})
+            for (const bool has_second : {false, true}) {
+                scene.waves.tiling = Tiling::Random;
+                scene.waves.cascades = {{waves * peak_m, 128}};
+                if (has_second) scene.waves.cascades.push_back({0.2 * waves * peak_m, 128});
+                const double gain = gain_of(scene);
+                const std::vector<std::string> warnings = sea_warnings(*prepare(scene));
+                SCOPED_TRACE(std::to_string(waves) + " waves: " + std::to_string(gain));
+                if (gain < 0.045) {
+                    EXPECT_TRUE(warnings.empty());
+                    ++untold;
+                }
+                if (gain < 0.055) continue;
+                ++told;
+                ASSERT_EQ(warnings.size(), 1u);
+                const std::size_t share = warnings[0].find(of_share), size = warnings[0].find(of_size);
+                ASSERT_NE(share, std::string::npos) << warnings[0];
+                ASSERT_NE(size, std::string::npos) << warnings[0];
+                EXPECT_NEAR(std::stod(warnings[0].substr(share + of_share.size())), 100.0 * gain,
+                            25.0 * gain);
+                scene.waves.cascades[0].size_m = std::stod(warnings[0].substr(size + of_size.size()));
+                const std::string of_resolution = "resolution = ";
+                if (const std::size_t more = warnings[0].find(of_resolution); more != std::string::npos)
+                    scene.waves.cascades[0].resolution =
+                        std::stoi(warnings[0].substr(more + of_resolution.size()));
+                EXPECT_TRUE(validate(scene).empty()) << warnings[0];
+                EXPECT_TRUE(sea_warnings(*prepare(scene)).empty());
+                EXPECT_LT(gain_of(scene), 0.055);
+                scene.waves.cascades[0] = {waves * peak_m, 128};
+                scene.waves.tiling = Tiling::Periodic;
+                for (const std::string& warning : sea_warnings(*prepare(scene)))
+                    EXPECT_EQ(warning.find(of_share), std::string::npos);
+            }
+    }
+    EXPECT_GT(told, 5);
+    EXPECT_GT(untold, 5);
 }
 
 }  // namespace

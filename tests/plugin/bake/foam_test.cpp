@@ -4,12 +4,14 @@
 
 #include <ImfChannelList.h>
 #include <tbb/global_control.h>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "core/scene/names.h"
 #include "core/scene/validate.h"
@@ -86,6 +88,37 @@ TEST(BakedFoam, IsCancelledInItsPast) {
     FrameSlot other;
     make_sequence(plan)->compute(1, other);
     EXPECT_EQ(slot.outputs.front()->foam_age_s, other.outputs.front()->foam_age_s);
+}
+
+// And it says how far it is, over all of its parts; a run's next frame has nothing long to go through.
+TEST(BakedFoam, SaysHowFarItsPastIs) {
+    Scene scene = scene_of(SurfaceKind::Patch);
+    scene.output.maps = {MapKind::Whitecaps, MapKind::Displacement, MapKind::Normal};
+    scene.output.map_resolution = 32;
+    const auto sequence = make_sequence(plan_bake(scene));
+    FrameSlot slot;
+    std::vector<double> told;
+    const auto tell = [&](double done) { told.push_back(done); };
+    sequence->compute(1, slot, tell);
+    EXPECT_GT(told.size(), 5u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_GT(told.front(), 0.0);
+    EXPECT_NEAR(told.back(), 1.0, 0.05);  // though there are maps that have no foam
+    told.clear();
+    sequence->compute(2, slot, tell);
+    EXPECT_TRUE(told.empty());
+
+    const fs::path folder = fs::temp_directory_path() / ("pelagic-foam-past-" + std::to_string(getpid()));
+    scene.shot.last_frame = 1;
+    int during = 0;
+    double last = 1.0;
+    bake(scene, {.out = folder, .frames = {}, .progress = [&](const BakeProgress& now) {
+                     during += now.stage == BakeStage::Frames && now.done == 0 && now.foam_past > 0.0;
+                     last = now.foam_past;
+                 }});
+    fs::remove_all(folder);
+    EXPECT_GT(during, 5);
+    EXPECT_EQ(last, 0.0);
 }
 
 TEST(BakedFoam, IsInFilesOnlyWhereItLives) {

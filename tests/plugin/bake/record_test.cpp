@@ -34,7 +34,7 @@ TEST(Record, HasEveryKeyAsAValue) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("pelagic-record-" + std::to_string(getpid()) + ".json");
     Record record;
-    record.describe(plan_bake(scene), SpectralMoments{}, 0.0);
+    record.describe(plan_bake(scene), SpectralMoments{}, 0.0, 0.0);
     record.save(file);
     std::ifstream stream(file);
     const auto settings = nlohmann::json::parse(stream).at("settings");
@@ -54,6 +54,29 @@ TEST(Record, HasEveryKeyAsAValue) {
     EXPECT_TRUE(settings.at("sea.depth_m").is_null()) << "infinite";
     EXPECT_TRUE(settings.at("waves.longest_m").is_null()) << "not given";
     EXPECT_EQ(settings.at("camera.look_at_m"), (nlohmann::json{0.0, 0.0, 0.0}));
+}
+
+// One number can't be every place's.
+TEST(Record, SaysThatTheThresholdIsWithoutGusts) {
+    for (const double strength : {0.0, 0.5}) {
+        Scene scene;
+        scene.surface.resolution = 16;
+        scene.sea.gust_strength = strength;
+        const std::filesystem::path file =
+            std::filesystem::temp_directory_path() / ("pelagic-gusts-" + std::to_string(getpid()) + ".json");
+        Record record;
+        record.describe(plan_bake(scene), SpectralMoments{}, 0.5, 0.0);
+        record.save(file);
+        std::ifstream stream(file);
+        const auto shot = nlohmann::json::parse(stream);
+        std::filesystem::remove(file);
+        EXPECT_EQ(shot.at("whitecap_threshold"), 0.5);
+        EXPECT_EQ(shot.contains("whitecap_threshold_is"), strength > 0.0);
+        if (strength > 0.0) {
+            EXPECT_NE(shot.at("whitecap_threshold_is").get<std::string>().find("without gusts"),
+                      std::string::npos);
+        }
+    }
 }
 
 }  // namespace

@@ -23,7 +23,13 @@ bool has(const std::string& text, const std::string& part) {
 
 class Cli : public ::testing::Test {
   protected:
-    void SetUp() override { write_file(folder() / "small.toml", text_of({.frames = 12})); }
+    // Of tiles that repeat: copies of so small a tile would be remarked on.
+    void SetUp() override {
+        std::string text = text_of({.frames = 12});
+        const std::string waves = "[waves]\n";
+        text.insert(text.find(waves) + waves.size(), "tiling = \"periodic\"\n");
+        write_file(folder() / "small.toml", text);
+    }
     const fs::path& folder() const { return folder_.path(); }
     Ended cli(std::vector<std::string> arguments) const {
         return run({.arguments = std::move(arguments), .folder = folder()});
@@ -310,9 +316,14 @@ TEST_F(Cli, ATerminalGetsOneLineThatIsRewritten) {
 }
 
 TEST_F(Cli, ALogThatIsClosedDoesNotEndABake) {
-    const std::string line = "'" PELAGIC_PROGRAM "' bake small.toml 2>&1 | true";
-    run({.arguments = {"-c", line}, .folder = folder(), .program = "/bin/sh"});
-    EXPECT_TRUE(fs::exists(folder() / "small/mesh/small.0012.usda"));
+    // With and without a remark on the sea before the bake begins.
+    write_file(folder() / "noted.toml", text_of({.name = "noted", .frames = 12}));
+    ASSERT_TRUE(has(cli({"validate", "noted.toml"}).err, "note: "));
+    for (const std::string name : {"small", "noted"}) {
+        const std::string line = "'" PELAGIC_PROGRAM "' bake " + name + ".toml 2>&1 | true";
+        run({.arguments = {"-c", line}, .folder = folder(), .program = "/bin/sh"});
+        EXPECT_TRUE(fs::exists(folder() / (name + "/mesh/" + name + ".0012.usda"))) << name;
+    }
 }
 
 TEST_F(Cli, AShotThatAsksForNothingIsRefused) {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/lighting/foam_structure.h"
 #include "core/lighting/sky_map.h"
 #include "plugin/gpu/shader_variants.h"
 #include "tests/plugin/preview/gpu.h"

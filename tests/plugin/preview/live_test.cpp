@@ -19,6 +19,8 @@
 #include <vector>
 
 #include "core/plan/plan.h"
+#include "core/surface/projected_grid.h"
+#include "plugin/gpu/foam_worker.h"
 #include "plugin/gpu/sea_layout.h"
 
 namespace pelagic {
@@ -384,6 +386,33 @@ TEST(LiveWorker, TakesTurnsAndHandsEachThingOverOnce) {
     EXPECT_EQ(worker.take(), nullptr);
     EXPECT_FALSE(worker.is_busy());
     EXPECT_EQ(most, 1);
+}
+
+// Where a new sea comes the old one's foam is let go of on the drawing thread, in the middle of looking for the tiles that
+// a view shows as well as of its past.
+TEST(LiveFoam, IsLeftBehindWithoutWaiting) {
+    Scene scene = small_scene(16.0);
+    scene.effects.foam_decay_s = 4.0;
+    scene.camera.resolution = {640, 360};
+    const auto prepared = prepare(scene);
+    const auto sea = std::make_shared<const Sea<float>>(
+        make_plan(prepared, {view_query(*prepared, {.finest_cell_m = 0.5, .finest_pixel_m = 0.2})},
+                  {.double_precision = false, .living_foam = true}));
+    const auto grid = std::make_shared<const ProjectedGrid>(
+        projected_grid(view_at(scene.camera, 1), projected_grid_options(*prepared)));
+    const auto seconds_of = [](const auto& work) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    constexpr int kGrids = 30;
+    const double looking_s =
+        kGrids * seconds_of([&] { EXPECT_FALSE(foam_places(*sea->plan().foam, 20.0, *grid).empty()); });
+    auto worker = std::make_unique<FoamWorker>(sea);
+    worker->ask(20.0, FoamWorker::Grids(kGrids, grid));
+    std::this_thread::sleep_for(std::chrono::duration<double>(0.1 * looking_s));
+    ASSERT_TRUE(worker->is_busy());
+    EXPECT_LT(seconds_of([&] { worker.reset(); }), 0.25 * looking_s);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 // Both are in single precision. The GPU's positions are as exact as evaluate()'s doubles (places.glsl). What
 // remains is the rounding of sums of some hundred terms in another order, 1e-7 of the largest, and the
 // precision of the driver's sines. The bounds are ten times llvmpipe's errors.
+#include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,8 +11,11 @@
 #include <glm/geometric.hpp>
 #include <memory>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "core/evaluate/evaluate.h"
+#include "core/scene/limits.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/gpu/shader_variants.h"
 #include "plugin/preview/sea_textures.h"
@@ -263,6 +267,59 @@ TEST(QueryOnTheGpu, WithOneFootprintForAllIsEvaluates) {
     Query query = picture_query();
     query.cell_m = query.pixel_m = {0.8};
     compare(scene_of(WaveModel::Fft), query, {});
+}
+
+// OpenGL 3.3 promises 16 KiB of uniforms in a block.
+TEST(SeaTables, OfSizesChosenForTheSceneFitEverywhere) {
+    std::vector<Scene> scenes(5);
+    scenes[1].sea.wind_speed_mps = 30.0;
+    scenes[2].sea.wind_speed_mps = 3.0;
+    scenes[2].sea.fetch_m = 500.0;
+    scenes[3].sea.gust_strength = 0.5;
+    scenes[4].sea.swell = {{3.0, 20.0, 0.0}};
+    for (const Scene& scene : scenes)
+        for (const double finest_m : {0.0, 1e-3, 0.01, 1.0}) {
+            const auto prepared = prepare(scene);
+            const Query query =
+                view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m});
+            const SeaLayout layout(std::make_shared<const Sea<float>>(make_plan(prepared, {query})), 0);
+            EXPECT_LE(layout.tables(glm::dvec2(0.0), 0.0).size(), 16384u) << finest_m;
+        }
+}
+
+// As many explicit cascades as a shot may have need more: who draws them refuses where the driver has less.
+TEST(SeaTables, ThatTheDriverCannotHoldAreRefused) {
+    gpu::need_context();
+    Scene scene;
+    for (int i = 0; i < limits::kCascades; ++i)
+        scene.waves.cascades.push_back({1000.0 * std::pow(0.6, i), 64});
+    bool refused = false;
+    for (const int rungs : {4, 100}) {
+        Query query = picture_query();
+        query.cell_m.clear();
+        for (int i = 0; i < rungs; ++i) query.cell_m.push_back(0.5 * std::pow(1.1, i));
+        query.pixel_m = query.cell_m;
+        const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
+        Frame<float> frame(sea);
+        frame.set(0.0);
+        PackedFrame packed(sea, 0);
+        packed.pack(frame);
+        GLint largest = 0;
+        glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &largest);
+        const bool is_too_large =
+            packed.layout()->tables(glm::dvec2(0.0), 0.0).size() > static_cast<std::size_t>(largest);
+        SeaTextures textures;
+        try {
+            textures.upload_once(packed);
+            EXPECT_FALSE(is_too_large) << rungs;
+        } catch (const PreviewError& error) {
+            refused = true;
+            EXPECT_TRUE(is_too_large) << rungs;
+            EXPECT_NE(std::string(error.what()).find("ask for fewer cascades"), std::string::npos)
+                << error.what();
+        }
+    }
+    if (!refused) GTEST_SKIP() << "this driver holds the tables of every shot";
 }
 
 }  // namespace

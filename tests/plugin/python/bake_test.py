@@ -171,9 +171,26 @@ class Meshes(InFolder):
     def test_a_patch(self):
         scene = shot()
         size_m, quads = scene.surface.size_m, scene.surface.resolution
-        frame = pelagic.Frame(pelagic.Sea(scene, lattice=(-size_m / 2, size_m / quads)))
+        frame = pelagic.Frame(pelagic.Sea(scene, lattice=(-size_m / 2, size_m / quads, size_m / 2)))
         frame.set(scene.shot.time_s(3))
         self.compare(frame.evaluate(pelagic.patch(size_m, quads)[0]), self.baked(scene, 3))
+
+    def test_a_lattice_with_an_end_is_a_bakes(self):
+        """It lies within one copy of each large tile, and reads its nodes."""
+        scene = shot()
+        scene.waves.cascades = [pelagic.CascadeSize(256.0, 128)]
+        size_m, quads = 64.0, 32
+        scene.surface.size_m, scene.surface.resolution = size_m, quads
+        endless = (-size_m / 2, size_m / quads)
+        lattice = (*endless, size_m / 2)
+        transforms = [pelagic.Sea(scene, ("normal", "coverage"), lattice=each).transforms_per_frame for each in (lattice, endless)]
+        self.assertLess(*transforms)
+        frame = pelagic.Frame(pelagic.Sea(scene, lattice=lattice))
+        frame.set(scene.shot.time_s(3))
+        self.compare(frame.evaluate(pelagic.patch(size_m, quads)[0]), self.baked(scene, 3))
+        for wrong in ((0.0,), (0.0, 1.0, -1.0), (0.0, 1.0, np.inf), (0.0, 1.0, 2.0, 3.0), (0.0, 0.0, 1.0)):
+            with self.assertRaisesRegex(ValueError, "lattice: accepted"):
+                pelagic.Sea(scene, lattice=wrong)
 
     def test_a_projected_grid(self):
         scene = shot()
@@ -206,7 +223,7 @@ class Maps(unittest.TestCase):
         line = np.arange(n, dtype=np.float32) * np.float32(size_m / n) - np.float32(0.5 * size_m)
         rest = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
         frame = pelagic.Frame(pelagic.Sea(scene, tuple(patch), cell_m=size_m / n, pixel_m=size_m / n,
-                                          lattice=(-0.5 * size_m, size_m / n)))
+                                          lattice=(-0.5 * size_m, size_m / n, 0.5 * size_m)))
         frame.set(1.5)
         for name, array in frame.evaluate(rest).items():
             np.testing.assert_allclose(patch[name].reshape(array.shape), array, atol=2e-5, err_msg=name)

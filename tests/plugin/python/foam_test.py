@@ -1,6 +1,7 @@
 """Foam that lives, in frames and maps."""
 
 import threading
+import time
 import unittest
 
 import numpy as np
@@ -117,12 +118,28 @@ class LivingFoam(unittest.TestCase):
         foam = task.result()
         self.assertEqual(task.progress, (1.0,))
         np.testing.assert_array_equal(foam["coverage"], self.at(400.0)["coverage"])
-        task = frame.begin(500.0, self.rest)
+        # Begun with its first step, of many: it can't be done before it is cancelled.
+        far, _ = pelagic.patch(300.0, 100)
+        task = frame.begin(500.0, far)
+        while task.progress is None and not task.is_done:
+            time.sleep(0.001)
         task.cancel()
-        try:
+        with self.assertRaises(pelagic.Cancelled):
             task.result()
-        except pelagic.Cancelled:
-            pass
+        self.assertLess(task.progress[0], 1.0)
+
+    def test_heights_say_how_far_they_are_and_can_be_cancelled(self):
+        frame, told = pelagic.Frame(sea_of(products=("position",) + FOAM)), []
+        frame.set(20.0)
+        whole = frame.heights(self.rest, outputs=FOAM, progress=told.append)
+        self.assertEqual(told, sorted(told))
+        self.assertTrue(len(told) > 5 and told[-1] == 1.0)
+        frame.set(200.0)
+        with self.assertRaises(pelagic.Cancelled):
+            frame.heights(self.rest, outputs=FOAM, progress=told.append, cancel=lambda: told[-1] < 0.9)
+        frame.set(20.0)
+        for name, values in frame.heights(self.rest, outputs=FOAM).items():  # and goes on
+            np.testing.assert_array_equal(values, whole[name])
 
     def test_it_has_no_history_without_whitecaps(self):
         frame = pelagic.Frame(sea_of(products=("position", "coverage")))

@@ -385,6 +385,12 @@ class Numbers(unittest.TestCase):
         self.assertLess(abs(4 * height.std() / sea.significant_height_m - 1), 0.14)
         self.assertTrue(0.0 < sea.mss < 0.2)
         self.assertTrue(-1.0 < sea.whitecap_threshold < 1.0)
+        active, left = sea.dense_foam
+        self.assertTrue(0.1 < left < 0.4 < active <= 1.0)  # the mean of all foam is 0.4
+        scene = small_scene()
+        scene.effects.foam_decay_s = 0.0
+        self.assertEqual(pelagic.Sea(scene).dense_foam, pelagic.Sea(scene, ()).dense_foam)
+        np.testing.assert_allclose(pelagic.Sea(scene).dense_foam, 0.4)
         self.assertGreater(sea.transforms_per_frame, 0)
         self.assertGreater(sea.bytes, 0)
         self.assertGreater(sea.frame_bytes, 0)

@@ -179,6 +179,39 @@ class Endings(unittest.TestCase):
                      "    assert status == 0, status",
                      "    assert not task.is_done"])
 
+    LIVING_FOAM = ["scene.sea.wind_speed_mps, scene.effects.foam_decay_s = 16.0, 8.0",
+                   "sea = pelagic.GpuSea(scene, 0.1)",
+                   "view = pelagic.View(position_m=(0.0, 0.0, 8.0), right=(1, 0, 0), up=(0, 0, 1), forward=(0, 1, 0),",
+                   "                    tan_half_width=0.5, resolution=(640, 360))",
+                   "grids = [sea.grid(view)]",
+                   "def foam(t):",
+                   "    sea.ask_foam(t, grids)",
+                   "    while sea.is_foam_busy: time.sleep(0.001)",
+                   "    return sea.take_foam()['foam_nodes']"]
+
+    def test_a_program_ends_while_a_sea_makes_its_foam(self):
+        for wait in ("pass", "time.sleep(0.05)", "foam(3.0)"):
+            self.end_of([*self.LIVING_FOAM, wait, "sea.ask_foam(500.0, grids)", "kept = [sea]; kept.append(kept)"])
+
+    def test_a_forked_process_makes_its_own_foam(self):
+        """It doesn't have the sea's thread, and waits neither for it nor for its locks."""
+        self.end_of([*self.LIVING_FOAM,
+                     "wanted = foam(3.0)",
+                     "sea.ask_foam(500.0, grids)",
+                     "for asks in (False, True):",
+                     "    child = os.fork()",
+                     "    if child == 0:",
+                     "        assert not sea.is_foam_busy",
+                     "        if asks: np.testing.assert_array_equal(foam(3.0), wanted)",
+                     "        break",
+                     "    end = time.monotonic() + 60",
+                     "    done = (0, 0)",
+                     "    while done[0] == 0 and time.monotonic() < end:",
+                     "        done = os.waitpid(child, os.WNOHANG)",
+                     "        time.sleep(0.01)",
+                     "    if done[0] == 0: os.kill(child, 9)",
+                     "    assert done == (child, 0), done"])
+
 
 if __name__ == "__main__":
     unittest.main()

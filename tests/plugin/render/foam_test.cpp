@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -74,6 +75,27 @@ TEST(FoamInPictures, IsAllOfTheLawsThatBreaksOrIsLeft) {
     EXPECT_GT(age_s / total, 0.5);
     EXPECT_LT(age_s / total, 2.0);
     EXPECT_NEAR(total / plain, 1.0, 0.35);  // one frame of a small piece of the sea
+}
+
+// A shutter that is open for seconds of the sea goes through foam's past once, not once for each sample: a long past tells
+// how far it is, beside the rows of each sample.
+TEST(FoamInPictures, OfATimeLapseGoesThroughItsPastOnce) {
+    Scene scene = scene_of(2.0);
+    scene.camera.resolution = {32, 20};
+    RenderOptions options = options_of(scene);
+    options.samples = 4;
+    options.shutter_frames = 1.0;
+    const auto told_of = [&](double time_scale) {
+        scene.shot.time_scale = time_scale;
+        Renderer renderer(scene, options, uniform_sky(), std::array{4});
+        Picture picture;
+        std::vector<double> told;
+        EXPECT_TRUE(renderer.render(4, picture, {.progress = [&](double done) { told.push_back(done); }}));
+        EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+        return told.size();
+    };
+    const std::size_t brief = told_of(1.0), lapse = told_of(72.0);
+    EXPECT_LT(lapse, brief + 3);
 }
 
 }  // namespace

@@ -35,7 +35,11 @@ namespace {
 
 void say(pelagic_error* error, const char* message) {
     if (!error) return;
-    const std::size_t length = std::min(std::strlen(message), sizeof error->message - 1);
+    std::size_t length = std::min(std::strlen(message), sizeof error->message - 1);
+    const auto is_inside_character = [&] {
+        return (static_cast<unsigned char>(message[length]) & 0xc0) == 0x80;
+    };
+    while (length > 0 && is_inside_character()) --length;
     std::memcpy(error->message, message, length);
     error->message[length] = '\0';
 }
@@ -71,32 +75,44 @@ T& required(T* pointer, const char* name) {
     return *pointer;
 }
 
-// A structure of the caller's, as this version knows it: members that the caller's version has not are 0.
+// A structure of the caller's, as this version knows it. A longer one is of a later version: what this one doesn't know of it must
+// be 0.
 template <class S>
 S taken(const S* from, const char* name) {
     const std::size_t size = required(from, name).size;
-    if (size < sizeof(std::size_t))
+    if (size < sizeof(S))
         throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
-    S to{};
-    std::memcpy(&to, from, std::min(size, sizeof to));
-    return to;
+    const auto* bytes = reinterpret_cast<const unsigned char*>(from);
+    if (std::any_of(bytes + sizeof(S), bytes + size, [](unsigned char byte) { return byte != 0; }))
+        throw std::invalid_argument(std::string(name) + " asks for what a later version of the library has");
+    return *from;
 }
 // The same where null stands for a structure of zeros.
 template <class S>
 S taken_or_zeros(const S* from, const char* name) {
     return from ? taken(from, name) : S{};
 }
-// Into the caller's, as much of it as there is; its size stays.
+// Into the caller's; its size stays.
 template <class S>
 void give(S from, S* to, const char* name) {
-    from.size = taken(to, name).size;
-    std::memcpy(to, &from, std::min(from.size, sizeof from));
+    if (required(to, name).size < sizeof(S))
+        throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
+    from.size = to->size;
+    *to = from;
+}
+
+// [m], as cameras' may be.
+void check_place(double metres, const char* name) {
+    if (!limits::kCameraCoordinate_m.holds(metres))
+        throw std::invalid_argument(std::string(name) + " is outside the range; accepted: " +
+                                    text_of(limits::kCameraCoordinate_m) + " m");
 }
 
 Scene scene_of(const pelagic_source& source) {
     if (source.text)
-        return parse_shot(std::string_view(source.text, source.text_length),
-                          source.path ? source.path : "shot.toml", check_scene);
+        return parse_shot(
+            source.text_length > 0 ? std::string_view(source.text, source.text_length) : source.text,
+            source.path ? source.path : "shot.toml", check_scene);
     return load_shot(&required(source.path, "source.path"), check_scene);
 }
 
@@ -105,10 +121,7 @@ View view_of(const pelagic_camera& camera) {
     const auto vector = [](const double(&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
     View view;
     view.position_m = vector(camera.position_m);
-    for (int axis = 0; axis < 3; ++axis)
-        if (!limits::kCameraCoordinate_m.holds(view.position_m[axis]))
-            throw std::invalid_argument("camera.position_m is outside the range; accepted: " +
-                                        text_of(limits::kCameraCoordinate_m) + " m");
+    for (int axis = 0; axis < 3; ++axis) check_place(view.position_m[axis], "camera.position_m");
     const glm::dvec3 right = vector(camera.right), up = vector(camera.up), forward = vector(camera.forward);
     const auto is = [](double value, double wanted) { return std::abs(value - wanted) < kAxisTolerance; };
     if (!is(glm::dot(right, right), 1.0) || !is(glm::dot(forward, forward), 1.0) ||
@@ -168,12 +181,12 @@ struct Expansion {
 Expansion expansion_of(const ShotFrame& frame, const pelagic_camera* camera,
                        const pelagic_expand_options* options) {
     const auto asked = taken_or_zeros(options, "options");
-    const double cell_px = asked.cell_px == 0.0 ? 2.0 : asked.cell_px;
+    const double cell_px = asked.cell_px == 0.0 ? kCell_px : asked.cell_px;
     if (!(cell_px >= 0.25 && cell_px <= 1000.0))
         throw std::invalid_argument(
             "options.cell_px is outside the range; accepted: 0.25 to 1000 pixels, or 0");
     Expansion expansion{view_of(taken(camera, "camera")), grid_options(frame, cell_px), asked.triangles != 0};
-    if (frame.shot().scene.surface.earth_curvature) expansion.options.curvature_per_m = kEarthCurvature_per_m;
+    expansion.options.curvature_per_m = asked.on_earth != 0 ? kEarthCurvature_per_m : 0.0;
     expansion.options.size = projected_grid_needs(expansion.view, expansion.options).size;
     return expansion;
 }
@@ -188,27 +201,32 @@ pelagic_mesh_size size_of(const Expansion& expansion) {
     return size;
 }
 
+// As grid_faces() and projected_grid_triangles() have them.
 void fill_corners(const Expansion& expansion, std::uint32_t* corner) {
-    if (expansion.triangles) {
-        const std::vector<std::uint32_t> triangles = projected_grid_triangles(expansion.options.size);
-        std::copy(triangles.begin(), triangles.end(), corner);
-        return;
-    }
-    const Faces faces = grid_faces(expansion.options.size.columns, expansion.options.size.rows);
-    std::transform(faces.indices.begin(), faces.indices.end(), corner,
-                   [](std::int32_t index) { return static_cast<std::uint32_t>(index); });
+    const auto columns = static_cast<std::uint32_t>(expansion.options.size.columns),
+               rows = static_cast<std::uint32_t>(expansion.options.size.rows);
+    for (std::uint32_t row = 0; row < rows; ++row)
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            const std::uint32_t near = row * (columns + 1) + column, far = near + columns + 1;
+            const std::array<std::uint32_t, 6> triangles{near, near + 1, far + 1, near, far + 1, far};
+            const std::array<std::uint32_t, 4> quad{near, near + 1, far + 1, far};
+            corner = expansion.triangles ? std::copy(triangles.begin(), triangles.end(), corner)
+                                         : std::copy(quad.begin(), quad.end(), corner);
+        }
 }
 
-void expand(const ShotFrame& frame, const Expansion& expansion, pelagic_mesh_buffers& buffers) {
+void expand(const ShotFrame& frame, const Expansion& expansion, const Results<float>& results,
+            pelagic_mesh_buffers& buffers) {
     ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
-    keep_to_rungs(grid, projected_grid_needs(expansion.view, expansion.options));
+    // Trains have no ladder: they see each point's own footprints.
+    if (frame.shot().query().cell_m.size() > 1)
+        keep_to_rungs(grid, projected_grid_needs(expansion.view, expansion.options));
     for (int axis = 0; axis < 2; ++axis) buffers.origin_m[axis] = grid.origin_m[axis];
     buffers.origin_m[2] = 0.0;
     if (buffers.corner) fill_corners(expansion, buffers.corner);
     if (buffers.rest_m)
         std::memcpy(buffers.rest_m, grid.rest_m.data(), grid.rest_m.size() * sizeof(glm::vec2));
-    if (!buffers.values) return;
-    const Results<float> results = results_in(taken(buffers.values, "buffers.values"));
+    if (results.given().none()) return;
     frame.evaluate_by_all({.origin_m = grid.origin_m,
                            .count = grid.rest_m.size(),
                            .rest_m = {grid.rest_m.data()},
@@ -278,8 +296,15 @@ pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_opt
                 if (asked.progress(done, asked.user) != 0) cancel = true;
             };
         }
-        out = new pelagic_sea{std::make_shared<const ShotSea>(
-            std::move(scene), SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads}, watch)};
+        const auto tell = [&](double done) {
+            if (watch.progress) watch.progress(done);
+            if (cancel) throw BuildCancelled();
+        };
+        tell(0.0);
+        auto shot = std::make_shared<const ShotSea>(
+            std::move(scene), SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads}, watch);
+        tell(1.0);
+        out = new pelagic_sea{std::move(shot)};
         return PELAGIC_OK;
     });
 }
@@ -296,6 +321,7 @@ pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pela
         about.first_frame = shot.scene.shot.first_frame;
         about.last_frame = shot.scene.shot.last_frame;
         about.frames_per_second = shot.scene.shot.fps;
+        about.time_scale = shot.scene.shot.time_scale;
         about.loop_s = shot.sea->loop_s();
         about.significant_height_m = shot.sea->total().significant_height_m();
         about.peak_wavelength_m = kTwoPi / plan.from->spectrum.peak_wavenumber();
@@ -310,10 +336,11 @@ pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pela
 pelagic_status pelagic_time_of_frame(const pelagic_sea* sea, double frame, double* time_s,
                                      pelagic_error* error) {
     return guarded(error, [&] {
-        const Scene& scene = required(sea, "sea").shot->scene;
+        const Shot& shot = required(sea, "sea").shot->scene.shot;
         if (!limits::kFrame.holds(frame))
             throw std::invalid_argument("frame is outside the range; accepted: " + text_of(limits::kFrame));
-        required(time_s, "time_s") = scene.shot.time_s(frame);
+        // Not reduced to the first round of a loop: a shutter may lie across its seam.
+        required(time_s, "time_s") = shot.time_offset_s + shot.time_scale * ((frame - 1.0) / shot.fps);
         return PELAGIC_OK;
     });
 }
@@ -353,6 +380,8 @@ pelagic_status pelagic_bounds(const pelagic_frame* frame, const pelagic_region* 
                               pelagic_error* error) {
     return guarded(error, [&] {
         const auto asked = taken(region, "region");
+        for (const double metres : {asked.min_m[0], asked.min_m[1], asked.max_m[0], asked.max_m[1]})
+            check_place(metres, "region.min_m, max_m");
         const double any = std::numeric_limits<double>::infinity();
         const auto [least, greatest] =
             required(frame, "frame")
@@ -374,6 +403,7 @@ pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points
     return guarded(error, [&] {
         const auto asked = taken(points, "points");
         const Results<float> results = results_in(taken(values, "values"));
+        for (const double metres : asked.origin_m) check_place(metres, "points.origin_m");
         if (asked.count == 0) return PELAGIC_OK;
         static_assert(sizeof(glm::vec2) == 2 * sizeof(float));
         TimedPoints timed{.points = {.origin_m = {asked.origin_m[0], asked.origin_m[1]},
@@ -392,7 +422,9 @@ pelagic_status pelagic_expand_size(const pelagic_frame* frame, const pelagic_cam
                                    const pelagic_expand_options* options, pelagic_mesh_size* mesh_size,
                                    pelagic_error* error) {
     return guarded(error, [&] {
-        give(size_of(expansion_of(required(frame, "frame").frame, camera, options)), mesh_size, "mesh_size");
+        const ShotFrame& of = required(frame, "frame").frame;
+        give(of.shot().arena->execute([&] { return size_of(expansion_of(of, camera, options)); }), mesh_size,
+             "mesh_size");
         return PELAGIC_OK;
     });
 }
@@ -400,19 +432,25 @@ pelagic_status pelagic_expand_size(const pelagic_frame* frame, const pelagic_cam
 pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* camera,
                               const pelagic_expand_options* options, pelagic_mesh_buffers* buffers,
                               pelagic_error* error) {
-    return guarded(error, [&] {
+    return guarded(error, [&]() -> pelagic_status {
         auto into = taken(buffers, "buffers");
+        const Results<float> results =
+            into.values ? results_in(taken(into.values, "buffers.values")) : Results<float>();
         const ShotFrame& of = required(frame, "frame").frame;
-        const Expansion expansion = expansion_of(of, camera, options);
+        const Expansion expansion =
+            of.shot().arena->execute([&] { return expansion_of(of, camera, options); });
         const pelagic_mesh_size needed = size_of(expansion);
-        if (into.points < needed.points || (into.corner && into.corners < needed.corners)) {
+        const bool wants_points = into.rest_m || results.given().any();
+        if ((wants_points && into.points < needed.points) || (into.corner && into.corners < needed.corners)) {
             say(error, ("the mesh has " + std::to_string(needed.points) + " points and " +
                         std::to_string(needed.corners) + " corners; the buffers have room for " +
                         std::to_string(into.points) + " and " + std::to_string(into.corners))
                            .c_str());
             return PELAGIC_TOO_SMALL;
         }
-        of.shot().arena->execute([&] { expand(of, expansion, into); });
+        of.shot().arena->execute([&] { expand(of, expansion, results, into); });
+        into.points = needed.points;
+        into.corners = needed.corners;
         give(into, buffers, "buffers");
         return PELAGIC_OK;
     });

@@ -1,5 +1,6 @@
 #include "plugin/procedural/procedural_frame.h"
 
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -10,9 +11,11 @@
 #include <string>
 
 #include "core/plan/grid_layout.h"
+#include "core/plan/memory.h"
 #include "core/scene/text.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "plugin/machine/memory.h"
 
 namespace pelagic::procedural {
 namespace {
@@ -24,7 +27,8 @@ Plan plan_of(const Scene& scene, const SeaOptions& options) {
     auto prepared = prepare(scene);
     double cell_m = options.finest_cell_m, pixel_m = options.finest_pixel_m;
     if (!(cell_m > 0.0) || !(pixel_m > 0.0)) {
-        const ProjectedGridOptions grid = projected_grid_options(*prepared);
+        ProjectedGridOptions grid = projected_grid_options(*prepared);
+        grid.cell_px = kCell_px;
         ProjectedGridNeeds needs;
         bool is_first = true;
         for (const int frame : representative_frames(scene, 16)) {
@@ -69,15 +73,28 @@ double most_of(const Frame<float>& frame, Field field) {
     return (1.0 + kRounding) * most;
 }
 
-constexpr double kFinestRung_m = 0x1p-20;  // of a query that filters nothing
+// Cells below which no wave is held back [m]: of a sea of trains, whose query needs no ladder. Others have one.
+double whole_cell_m(const Sea<float>& sea) {
+    constexpr double kOfShortest = 1.0 / 64.0;
+    const std::vector<double>& lengths_m = sea.trains().wavelength_m;
+    return lengths_m.empty() ? 0x1p-10 : kOfShortest * lengths_m.back();
+}
 
 }  // namespace
 
 ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
     : scene(std::move(from)),
-      arena(options.threads > 0 ? std::make_unique<tbb::task_arena>(options.threads)
+      arena(options.threads > 0 ? std::make_unique<tbb::task_arena>(
+                                      std::min(options.threads, tbb::info::default_concurrency()))
                                 : std::make_unique<tbb::task_arena>()) {
-    arena->execute([&] { sea = std::make_shared<const Sea<float>>(plan_of(scene, options), watch); });
+    arena->execute([&] {
+        Plan plan = plan_of(scene, options);
+        MemoryNeed need;
+        add_sea(need, plan, arena->max_concurrency());
+        require_memory(need, machine::memory_limit(), "a frame of this sea");
+        sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
+    });
+    whole_m = whole_cell_m(*sea);
 }
 
 ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
@@ -109,9 +126,9 @@ void ShotFrame::set(double open_s, double close_s) {
 const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
     const std::lock_guard<std::mutex> lock(bounds_lock_);
     auto& bounds = bounds_[rung_m];
-    // A thread that waits for its own loop takes up none of another caller's work, which might want the lock.
+    // By this thread alone, which takes up nobody else's work meanwhile: that might want the lock.
     if (!bounds)
-        tbb::this_task_arena::isolate([&] {
+        tbb::task_arena(1).execute([&] {
             bounds = std::make_unique<const FrameBounds<float>>(
                 frame_, 0, FootprintRange{.finest_m = rung_m, .coarsest_m = 2.0 * rung_m});
         });
@@ -121,8 +138,7 @@ const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
 // Rung by rung: what all footprints of a wide range have in common is a loose bound of each.
 template <class Bound>
 DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& bound) const {
-    const double finest_m = std::max(cells.finest_m, of_->query().cell_m.front());
-    double rung_m = rung_below_m(finest_m > 0.0 ? finest_m : kFinestRung_m);
+    double rung_m = rung_below_m(std::max({cells.finest_m, of_->query().cell_m.front(), of_->whole_m}));
     DisplacementBounds all = bound(bounds_from(rung_m));
     // Where a footprint hides all waves, nothing moves, and larger ones change nothing.
     const auto moves = [](const DisplacementBounds& b) { return b.z.hi > b.z.lo; };
@@ -149,32 +165,29 @@ std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, Fo
 }
 
 SurfaceBounds ShotFrame::everywhere() const {
-    const DisplacementBounds moved =
-        over_rungs({.finest_m = 0.0, .coarsest_m = std::numeric_limits<double>::infinity()},
-                   [](const FrameBounds<float>& of) { return of.everywhere(); });
-    const glm::dvec3 by_m = half_open_s_ * fastest_mps_;
-    const glm::dvec2 reach_m = moved.reach_m() + glm::dvec2(by_m);
-    return {.height_m = std::max(-moved.z.lo, moved.z.hi) + by_m.z, .reach_m = glm::length(reach_m)};
+    const auto most = [&](Field field, double velocity_mps) {
+        return most_of(frame_, field) + half_open_s_ * velocity_mps;
+    };
+    return {.height_m = most(Field::Height, fastest_mps_.z),
+            .reach_m = std::hypot(most(Field::Dx, fastest_mps_.x), most(Field::Dy, fastest_mps_.y))};
 }
 
-void ShotFrame::evaluate(const TimedPoints& timed, const Results<float>& results) const {
-    constexpr std::size_t kPoints = Chunk<float>::kPoints;
-    const bool moves = timed.time_s && results.holds(Product::Position);
-    std::array<glm::vec3, kPoints> velocity;
-    for (std::size_t first = 0; first < timed.points.count; first += kPoints) {
-        Points<float> points = timed.points;
-        points.count = std::min(kPoints, points.count - first);
-        points.rest_m.data = &points.rest_m[first];
-        if (points.cell_m) points.cell_m.data = &points.cell_m[first];
-        if (points.pixel_m) points.pixel_m.data = &points.pixel_m[first];
-        Results<float> here = results.from_point(first);
-        const bool has_velocity = results.holds(Product::Velocity);
-        if (moves && !has_velocity) here.set(Product::Velocity, {velocity.data()});
-        query_->evaluate(points, here);
-        if (!moves) continue;
-        const auto position = here.vectors(Product::Position), fast = here.vectors(Product::Velocity);
-        for (std::size_t i = 0; i < points.count; ++i)
-            position[i] += static_cast<float>(timed.time_s[first + i] - half_open_s_) * fast[i];
+void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const {
+    const std::size_t count = timed.points.count;
+    const bool moves = timed.time_s && half_open_s_ > 0.0 && results.holds(Product::Position);
+    std::vector<glm::vec3> velocity;
+    if (moves && !results.holds(Product::Velocity)) {
+        velocity.resize(count);
+        results.set(Product::Velocity, {velocity.data()});
+    }
+    query_->evaluate_alone(timed.points, results);
+    if (!moves) return;
+    const auto position = results.vectors(Product::Position), fast = results.vectors(Product::Velocity);
+    const auto half_s = static_cast<float>(half_open_s_);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float from_middle_s = timed.time_s[i] - half_s;  // one that is no number is the middle
+        position[i] += std::isnan(from_middle_s) ? glm::vec3(0.0f)
+                                                 : std::clamp(from_middle_s, -half_s, half_s) * fast[i];
     }
 }
 

@@ -21,6 +21,9 @@
 
 namespace pelagic::procedural {
 
+// The side of a mesh's cells on the screen where nobody says another.
+inline constexpr double kCell_px = 2.0;
+
 // What a sea is asked for.
 struct SeaOptions {
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;  // 0: as the shot's camera needs it
@@ -34,6 +37,7 @@ struct ShotSea {
     Scene scene;
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
     std::shared_ptr<const Sea<float>> sea;
+    double whole_m = 0.0;  // finer cells hold back no wave
     const Query& query() const { return sea->plan().queries.front().query; }
 };
 
@@ -57,8 +61,8 @@ class ShotFrame {
     // Half the height and the reach of all points everywhere.
     SurfaceBounds everywhere() const;
 
-    // By the calling thread alone.
-    void evaluate(const TimedPoints& points, const Results<float>& results) const;
+    // By the calling thread alone. Times outside the shutter are its ends.
+    void evaluate(const TimedPoints& points, Results<float> results) const;
     // The same in the middle of the shutter, by all threads of the calling arena.
     void evaluate_by_all(const Points<float>& points, const Results<float>& results) const;
 

@@ -162,8 +162,8 @@ TEST(Procedural, PointsMoveWithTheSea) {
 }
 
 TEST(Procedural, AMeshForACameraIsThePointsOfItsRests) {
-    for (const std::string earth : {"", "[surface]\nearth_curvature = true\n"}) {
-        const SeaHandle sea = open_text(kShot + earth);
+    for (const int on_earth : {0, 1}) {
+        const SeaHandle sea = open_text(kShot);
         const FrameHandle frame = frame_of(sea, 1.0, 1.0);
         pelagic_camera camera = PELAGIC_INIT(pelagic_camera);
         ASSERT_EQ(pelagic_shot_camera(sea.get(), 1.0, &camera, nullptr), PELAGIC_OK);
@@ -171,6 +171,7 @@ TEST(Procedural, AMeshForACameraIsThePointsOfItsRests) {
             pelagic_expand_options options = PELAGIC_INIT(pelagic_expand_options);
             options.cell_px = 4.0;
             options.triangles = triangles;
+            options.on_earth = on_earth;
             pelagic_mesh_size size = PELAGIC_INIT(pelagic_mesh_size);
             pelagic_error error;
             ASSERT_EQ(pelagic_expand_size(frame.get(), &camera, &options, &size, &error), PELAGIC_OK)
@@ -196,12 +197,41 @@ TEST(Procedural, AMeshForACameraIsThePointsOfItsRests) {
                 EXPECT_NE(std::string(error.message).find(std::to_string(size.points)), std::string::npos);
                 EXPECT_EQ(corner[0], 0xdeadbeefu);
             }
+            pelagic_values no_size{};
+            pelagic_mesh_buffers refused = buffers;
+            refused.values = &no_size;
+            EXPECT_EQ(pelagic_expand(frame.get(), &camera, &options, &refused, &error),
+                      PELAGIC_INVALID_ARGUMENT);
+            EXPECT_EQ(corner[0], 0xdeadbeefu);
             ASSERT_EQ(pelagic_expand(frame.get(), &camera, &options, &buffers, &error), PELAGIC_OK)
                 << error.message;
             EXPECT_EQ(corner.back(), 0xdeadbeefu);
             corner.pop_back();
-            for (const std::uint32_t of : corner) ASSERT_LT(of, size.points);
-            if (!earth.empty()) continue;
+            EXPECT_EQ(buffers.points, size.points);
+            EXPECT_EQ(buffers.corners, size.corners);
+            // Counter-clockwise at rest; cells where a row begins elsewhere than the one before may be crossed.
+            const std::size_t corners = triangles ? 3 : 4;
+            double all = 0.0, turned = 0.0;
+            for (std::size_t f = 0; f < corner.size(); f += corners) {
+                double twice_area = 0.0;
+                for (std::size_t c = 0; c < corners; ++c) {
+                    ASSERT_LT(corner[f + c], size.points);
+                    const glm::dvec2 a(rests[corner[f + c]]), b(rests[corner[f + (c + 1) % corners]]);
+                    twice_area += a.x * b.y - a.y * b.x;
+                }
+                (twice_area < 0.0 ? turned : all) += std::abs(twice_area);
+            }
+            EXPECT_LT(turned, 0.01 * all);
+            double deepest_m = 0.0;
+            for (const glm::vec3& position : answers.position) {
+                ASSERT_TRUE(std::isfinite(position.z));
+                deepest_m = std::min(deepest_m, static_cast<double>(position.z));
+            }
+            if (on_earth) {
+                EXPECT_LT(deepest_m, -20.0);
+                continue;
+            }
+            EXPECT_GT(deepest_m, -5.0);
             // The footprints of the grid are ellipses, of a point here round: heights agree to what both hide.
             const Answers direct = ask(frame, rests, {buffers.origin_m[0], buffers.origin_m[1]});
             double squares = 0.0, heights = 0.0;
@@ -289,6 +319,11 @@ TEST(Procedural, NonsenseIsRefusedWithASentence) {
     pelagic_box box = PELAGIC_INIT(pelagic_box);
     pelagic_points points = PELAGIC_INIT(pelagic_points);
     points.count = 1;
+    pelagic_points nowhere = points, far_out = points;
+    const float origin[2] = {0.0f, 0.0f};
+    nowhere.rest_m = far_out.rest_m = origin;
+    nowhere.origin_m[0] = nan;
+    far_out.origin_m[1] = 1e12;
     pelagic_values values = PELAGIC_INIT(pelagic_values);
     pelagic_info info = PELAGIC_INIT(pelagic_info), small_info{};
     double time_s = 0.0;
@@ -328,6 +363,8 @@ TEST(Procedural, NonsenseIsRefusedWithASentence) {
         {"points of no frame", [&] { return pelagic_evaluate(nullptr, &points, &values, &error); }},
         {"no points", [&] { return pelagic_evaluate(frame.get(), nullptr, &values, &error); }},
         {"points without places", [&] { return pelagic_evaluate(frame.get(), &points, &values, &error); }},
+        {"points round nothing", [&] { return pelagic_evaluate(frame.get(), &nowhere, &values, &error); }},
+        {"points beyond the earth", [&] { return pelagic_evaluate(frame.get(), &far_out, &values, &error); }},
         {"points for nothing", [&] { return pelagic_evaluate(frame.get(), &points, nullptr, &error); }},
         {"a mesh of no frame", [&] { return pelagic_expand_size(nullptr, &camera, nullptr, &size, &error); }},
         {"a mesh for no camera",
@@ -375,36 +412,85 @@ TEST(Procedural, AShotThatIsRefusedSaysWhere) {
     EXPECT_EQ(sea, nullptr);
 }
 
+// At any of its reports, the last one too, and where a sea has little to build.
 TEST(Procedural, BuildingASeaCanBeCancelled) {
-    pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
-    options.progress = [](double, void*) { return 1; };
-    pelagic_source source = PELAGIC_INIT(pelagic_source);
-    source.text = kShot.data();
-    source.text_length = kShot.size();
-    pelagic_sea* sea = nullptr;
-    EXPECT_EQ(pelagic_open(&source, &options, &sea, nullptr), PELAGIC_CANCELLED);
-    EXPECT_EQ(sea, nullptr);
+    for (const std::string& text : {kShot, kShot + "[waves]\nmodel = \"trochoid\"\n"})
+        for (const double at : {0.0, 1.0}) {
+            pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
+            double wanted = at;
+            options.user = &wanted;
+            options.progress = [](double done, void* user) {
+                return done >= *static_cast<const double*>(user) ? 1 : 0;
+            };
+            pelagic_source source = PELAGIC_INIT(pelagic_source);
+            source.text = text.c_str();
+            pelagic_sea* sea = nullptr;
+            EXPECT_EQ(pelagic_open(&source, &options, &sea, nullptr), PELAGIC_CANCELLED) << at;
+            EXPECT_EQ(sea, nullptr);
+        }
 }
 
-// A program that was compiled when structures were shorter, or will be when they are longer.
-TEST(Procedural, OtherVersionsStructuresAreUnderstood) {
+// Also across a loop's seam, and in slow motion.
+TEST(Procedural, AShuttersTimesAreInOrder) {
+    const SeaHandle sea = open_text("[shot]\nloop_s = 2.0\nframes = [1, 48]\ntime_scale = 0.5\n" + kShot);
+    for (const double frame : {1.0, 24.0, 48.0, 49.0, -3.0}) {
+        double open_s = 0.0, close_s = 0.0;
+        ASSERT_EQ(pelagic_time_of_frame(sea.get(), frame - 0.25, &open_s, nullptr), PELAGIC_OK);
+        ASSERT_EQ(pelagic_time_of_frame(sea.get(), frame + 0.25, &close_s, nullptr), PELAGIC_OK);
+        EXPECT_NEAR(close_s - open_s, 0.25 / 24.0, 1e-12);
+        EXPECT_NE(frame_of(sea, open_s, close_s), nullptr);
+    }
+    pelagic_info info = PELAGIC_INIT(pelagic_info);
+    ASSERT_EQ(pelagic_get_info(sea.get(), &info, nullptr), PELAGIC_OK);
+    EXPECT_EQ(info.time_scale, 0.5);
+    EXPECT_EQ(info.loop_s, 1.0);
+    const std::vector<glm::vec2> rests = random_rests(20, 50.0f);
+    EXPECT_TRUE(ask(frame_of(sea, 0.25, 0.25), rests) == ask(frame_of(sea, 1.25, 1.25), rests));
+}
+
+// Times beyond the shutter are its ends, and one that is no number its middle.
+TEST(Procedural, NoTimeLeavesTheShutter) {
+    const FrameHandle frame = frame_of(open_text(kShot), 1.0, 1.5);
+    const std::vector<glm::vec2> rests = random_rests(10, 50.0f);
+    const auto at = [&](float time_s) {
+        return ask(frame, rests, glm::dvec2(0.0), {}, std::vector<float>(rests.size(), time_s));
+    };
+    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+    EXPECT_TRUE(at(-3.0f) == at(0.0f));
+    EXPECT_TRUE(at(inf) == at(0.5f));
+    EXPECT_TRUE(at(nan) == ask(frame, rests));
+    EXPECT_FALSE(at(0.0f) == at(0.5f));
+}
+
+// A program that will be compiled when structures are longer, and asks for nothing new; or does.
+TEST(Procedural, LaterVersionsStructuresAreUnderstood) {
     const SeaHandle sea = open_text(kShot);
     struct {
         pelagic_info info;
         double later;
-    } longer{};
-    longer.info.size = sizeof longer;
-    longer.later = 7.0;
-    ASSERT_EQ(pelagic_get_info(sea.get(), &longer.info, nullptr), PELAGIC_OK);
-    EXPECT_EQ(longer.later, 7.0);
-    EXPECT_EQ(longer.info.size, sizeof longer);
-    EXPECT_GT(longer.info.significant_height_m, 0.1);
-    pelagic_info shorter{};
-    shorter.size = offsetof(pelagic_info, frames_per_second);
-    shorter.frames_per_second = -1.0;
-    ASSERT_EQ(pelagic_get_info(sea.get(), &shorter, nullptr), PELAGIC_OK);
-    EXPECT_EQ(shorter.frames_per_second, -1.0);
-    EXPECT_EQ(shorter.last_frame, longer.info.last_frame);
+    } out{};
+    out.info.size = sizeof out;
+    out.later = 7.0;
+    ASSERT_EQ(pelagic_get_info(sea.get(), &out.info, nullptr), PELAGIC_OK);
+    EXPECT_EQ(out.later, 7.0);
+    EXPECT_EQ(out.info.size, sizeof out);
+    EXPECT_GT(out.info.significant_height_m, 0.1);
+    struct {
+        pelagic_region region;
+        double later;
+    } in{};
+    in.region.size = sizeof in;
+    const FrameHandle frame = frame_of(sea, 0.0, 0.0);
+    pelagic_box box = PELAGIC_INIT(pelagic_box);
+    EXPECT_EQ(pelagic_bounds(frame.get(), &in.region, &box, nullptr), PELAGIC_OK);
+    in.later = 1.0;
+    pelagic_error error;
+    EXPECT_EQ(pelagic_bounds(frame.get(), &in.region, &box, &error), PELAGIC_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(error.message).find("later version"), std::string::npos) << error.message;
+    // Cut in the middle.
+    in.later = 0.0;
+    in.region.size = sizeof in.region - 4;
+    EXPECT_EQ(pelagic_bounds(frame.get(), &in.region, &box, nullptr), PELAGIC_INVALID_ARGUMENT);
 }
 
 }  // namespace

@@ -192,6 +192,16 @@ typename PreparedQuery<T>::Call PreparedQuery<T>::call(const Points<T>& points, 
 
 template <class T>
 void PreparedQuery<T>::evaluate(const Points<T>& points, const Results<T>& results) const {
+    evaluate_by(points, results, false);
+}
+
+template <class T>
+void PreparedQuery<T>::evaluate_alone(const Points<T>& points, const Results<T>& results) const {
+    evaluate_by(points, results, true);
+}
+
+template <class T>
+void PreparedQuery<T>::evaluate_by(const Points<T>& points, const Results<T>& results, bool alone) const {
     const ProductSet given = results.given();
     for (const ProductRow& row : kProductTable)
         if (given[index(row.product)] && !wanted_[index(row.product)])
@@ -212,9 +222,10 @@ void PreparedQuery<T>::evaluate(const Points<T>& points, const Results<T>& resul
             Work of_thread;
             for (std::size_t c = begin; c < end; ++c) run(call, c * kPoints, of_thread);
         };
-        if (points.count <= kPoints) return work(0, 1);
+        const std::size_t chunks = (points.count + kPoints - 1) / kPoints;
+        if (alone || chunks == 1) return work(0, chunks);
         tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, (points.count + kPoints - 1) / kPoints),
+            tbb::blocked_range<std::size_t>(0, chunks),
             [&](const tbb::blocked_range<std::size_t>& range) { work(range.begin(), range.end()); });
     };
     if (points.origin_m == place_.origin_m)

@@ -31,6 +31,8 @@ class PreparedQuery {
     // calling thread alone and takes no memory. Throws std::invalid_argument for a product that isn't among
     // the wanted, std::logic_error when the frame was set since.
     void evaluate(const Points<T>& points, const Results<T>& results) const;
+    // The same, however many points there are, by the calling thread alone.
+    void evaluate_alone(const Points<T>& points, const Results<T>& results) const;
 
   private:
     // A level of the plan and its grids, cascade after cascade; those through which nothing passes are left
@@ -63,6 +65,7 @@ class PreparedQuery {
         Part part = Part::All;
     };
 
+    void evaluate_by(const Points<T>& points, const Results<T>& results, bool alone) const;
     Place place_of(glm::dvec2 origin_m) const;
     Call call(const Points<T>& points, const Results<T>& results, const Place& place) const;
     void run(const Call& call, std::size_t first, Work& work) const;

@@ -6,6 +6,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -52,7 +53,7 @@ if "python" in sys.argv[4:]:
     expect(run("/usr/bin/python3", "-c", "import pelagic; print(pelagic.__file__)", cwd="/",
                env={**os.environ, "PYTHONPATH": str(prefix / "lib/python3/dist-packages")}).startswith(str(prefix)),
            "the module isn't the installed one")
-headers = sorted(p.relative_to(prefix / "include/pelagic") for p in prefix.rglob("*.h"))
+headers = sorted(p.relative_to(prefix / "include/pelagic") for p in prefix.glob("include/pelagic/core/**/*.h"))
 expect({p.relative_to(SOURCE) for p in SOURCE.glob("core/**/*.h") if not p.name.endswith("-inl.h")} == set(headers),
        "the headers aren't those of core")
 pc = {**os.environ, "PKG_CONFIG_PATH": str(next(prefix.rglob("pkgconfig")))}
@@ -72,6 +73,28 @@ found = by_cmake("found", f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=R
                  "-DCMAKE_CXX_COMPILER=g++", "-DCMAKE_CXX_FLAGS=-march=native -Wall -Wextra -Wpedantic -Werror")
 run(cmake, "--build", found)
 expect(run(found / "consumer") == own, "other bits by g++ -march=native and find_package")
+
+# The shared library, from C, without any other library's package: the example by pkg-config and by CMake, the same mesh.
+example, shot = SOURCE / "examples/procedural.c", SOURCE / "examples/first-shot.toml"
+procedural = [run("pkg-config", flag, "pelagic", env=pc).split() for flag in ("--cflags", "--libs")]
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror")
+run("cc", *STRICT, *procedural[0], example, "-o", folder / "procedural", *procedural[1])
+run("c++", "-x", "c++", "-fsyntax-only", "-std=c++11", "-Wall", "-Wextra", "-pedantic", "-Werror",
+    prefix / "include/pelagic/procedural.h")
+renderer = folder / "renderer"
+run(cmake, "-S", SOURCE / "tests/package/renderer", "-B", renderer, "-G", "Ninja", f"-DEXAMPLE={example}",
+    f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_C_FLAGS={' '.join(STRICT)}", "-DCMAKE_CXX_COMPILER=/none/is/needed")
+run(cmake, "--build", renderer)
+(lib,) = {p.parent for p in prefix.rglob("libpelagic.so")}
+meshes = []
+for program in (folder / "procedural", renderer / "renderer"):
+    meshes.append(folder / f"{program.name}.obj")
+    said = run(program, shot, "3", meshes[-1], env={**os.environ, "LD_LIBRARY_PATH": str(lib)})
+    expect("two peak waves round the origin" in said and " quads of " in said, f"the example says\n{said}")
+expect(meshes[0].stat().st_size > 1000000 and meshes[0].read_bytes() == meshes[1].read_bytes(), "the example's meshes differ")
+expect(set(run("nm", "-D", "--defined-only", "--format=posix", lib / "libpelagic.so").split()[::4]) ==
+       set(re.findall(r"^PELAGIC_API [^;(]*?(pelagic_\w+)\(", (prefix / "include/pelagic/procedural.h").read_text(), re.M)),
+       "the library shows other names than its header")
 
 # As a part of another build: the core alone is wanted, so no window, Python, tests or rules of ours.
 part = by_cmake("part", f"-DPELAGIC_SOURCE={SOURCE}", "-DCMAKE_BUILD_TYPE=Release")

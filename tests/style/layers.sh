@@ -30,6 +30,7 @@ allow plugin/bake "core/[a-z]+ plugin/machine plugin/files plugin/exr plugin/png
 allow plugin/render "core/[a-z]+ plugin/machine plugin/files plugin/bake plugin/exr plugin/light plugin/png"
 allow plugin/gpu "core/[a-z]+"
 allow plugin/preview "core/[a-z]+ plugin/machine plugin/files plugin/exr plugin/light plugin/png plugin/render plugin/gpu"
+allow plugin/procedural "core/[a-z]+ plugin/machine plugin/shot plugin/light"
 allow plugin/cli "core/[a-z]+ plugin/machine plugin/files plugin/shot plugin/light plugin/bake plugin/render plugin/preview plugin/gpu"
 allow plugin/python "core/[a-z]+ plugin/machine plugin/files plugin/shot plugin/light plugin/usd plugin/bake plugin/render plugin/gpu"
 exit $bad

@@ -1,0 +1,251 @@
+/* The sea while a renderer asks for it: no mesh on disk, no cache. C99 and C++.
+ *
+ *   pelagic_sea *sea;      what a shot file describes, built once
+ *   pelagic_frame *frame;  the sea while the shutter is open
+ *
+ *   pelagic_open(&source, NULL, &sea, &error);
+ *   pelagic_frame_create(sea, open_s, close_s, &frame, &error);
+ *   pelagic_bounds(frame, &region, &box, &error);
+ *   pelagic_expand_size(frame, &camera, &options, &size, &error);
+ *   pelagic_expand(frame, &camera, &options, &buffers, &error);
+ *   pelagic_evaluate(frame, &points, &values, &error);
+ *   pelagic_frame_release(frame);
+ *   pelagic_close(sea);
+ *
+ * Units: metres, seconds of the sea, radians; z is up, and z = 0 is the sea at rest. Where a shot is in slow motion
+ * (pelagic_info.time_scale isn't 1), a second on the screen is time_scale seconds of the sea: velocities of the picture are those here
+ * times time_scale. Places in the world are doubles. Points of a batch
+ * are floats, relative to an origin in double, so that a sea a million metres away loses nothing.
+ *
+ * At rest, and displaced. Waves move water to the side as well as up. A place at rest names a point of the surface: pelagic_evaluate()
+ * says where it is. Regions and points are at rest wherever this header says so.
+ *
+ * Footprints. A place is asked for with the width of what will be seen of it [m]. Its cell is that of positions and velocities: the
+ * distance to the neighbours in a mesh, or the width of a ray. Its pixel is that of normals, slope variance and coverage. Waves
+ * that are too short for a footprint are left out of the shape; of the slopes they are in the variance.
+ *
+ * Motion. During the shutter each point moves in a straight line, with its velocity in the middle of the shutter. At the ends of 1/48 s that
+ * differs from its way by g/2 (1/96 s)² times the slope of its wave at most: by 0.2 mm.
+ *
+ * Threads. Any number of seas and frames at once. A sea is immutable: any number of threads may use it. So is a frame, but while
+ * pelagic_frame_set() or pelagic_frame_release() runs on it. pelagic_open(), pelagic_frame_create(), pelagic_frame_set(),
+ * pelagic_expand_size() and pelagic_expand() use several threads (pelagic_open_options.threads); all others work on the calling thread
+ * alone, because renderers bring their own. Values don't depend on the number of threads, nor on what was asked before. Frames are made
+ * and released with FFTW's planner, of which a process has one that isn't safe between libraries: a host that plans with FFTW itself, or has
+ * another copy of Pelagic, must not do so at the same moment.
+ *
+ * Errors. Each function returns a status. Where it isn't PELAGIC_OK, `error`, which may be null, has a sentence for people. What is refused
+ * (PELAGIC_INVALID_ARGUMENT, PELAGIC_SHOT_REFUSED, PELAGIC_TOO_SMALL) leaves all results as they were; after other failures what buffers
+ * hold isn't known, and a frame that couldn't be set must be set again. No exception leaves a function. Nothing is kept between calls but
+ * in the handles, and FFTW's own table of plans.
+ *
+ * Structures begin with their own size: set it by PELAGIC_INIT, so that a program and a later version of the library understand
+ * each other. New members come at the end, and 0 in them means what earlier versions did. A program that asks for what only a later
+ * version has is refused.
+ */
+#ifndef PELAGIC_PROCEDURAL_H
+#define PELAGIC_PROCEDURAL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define PELAGIC_API
+#else
+#define PELAGIC_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A structure with its size, and zeros in the rest: pelagic_camera camera = PELAGIC_INIT(pelagic_camera); */
+#ifdef __cplusplus
+#define PELAGIC_INIT(type)               \
+    [] {                                 \
+        type of_zeros{};                 \
+        of_zeros.size = sizeof of_zeros; \
+        return of_zeros;                 \
+    }()
+#else
+#define PELAGIC_INIT(type) \
+    { .size = sizeof(type) }
+#endif
+
+typedef enum pelagic_status {
+    PELAGIC_OK = 0,
+    PELAGIC_INVALID_ARGUMENT = 1, /* a null where there must be none, a number that isn't accepted */
+    PELAGIC_SHOT_REFUSED = 2,     /* the shot file: the message has a line for each mistake, with its place */
+    PELAGIC_TOO_SMALL = 3,        /* a buffer for what pelagic_expand() has to say */
+    PELAGIC_OUT_OF_MEMORY = 4,
+    PELAGIC_CANCELLED = 5,
+    PELAGIC_FAILED = 6 /* anything else */
+} pelagic_status;
+
+/* Ends with a zero; cut where it is longer. */
+typedef struct pelagic_error {
+    char message[2048];
+} pelagic_error;
+
+typedef struct pelagic_sea pelagic_sea;
+typedef struct pelagic_frame pelagic_frame;
+
+/* "0.1.0" */
+PELAGIC_API const char* pelagic_version(void);
+/* "invalid argument", … */
+PELAGIC_API const char* pelagic_status_text(pelagic_status status);
+
+/* ---- A sea */
+
+/* A shot: a file, or a text that is already in memory. */
+typedef struct pelagic_source {
+    size_t size;
+    const char*
+        path; /* UTF-8. With `text`: the name that messages use; files that the shot names are relative to its folder */
+    const char* text;   /* null: the file is read */
+    size_t text_length; /* 0: up to the text's own zero */
+} pelagic_source;
+
+typedef struct pelagic_open_options {
+    size_t size;
+    /* No finer cells and pixels will be asked for; those that are count as this. 0: as fine as the shot's own camera sees the
+     * sea with cells of 2 pixels. What a frame holds and takes rises with them. Pixels are no coarser than cells. */
+    double finest_cell_m, finest_pixel_m;
+    int threads; /* at most so many, and no more than the machine has; 0: all */
+    /* Called while the sea is built, 0 … 1, one call at a time, from any thread; not 0 ends pelagic_open() with PELAGIC_CANCELLED.
+     * It must return, and must not wait for the thread that called pelagic_open(). */
+    int (*progress)(double done, void* user);
+    void* user;
+} pelagic_open_options;
+
+/* Reads, validates and builds: from milliseconds to seconds. `options` may be null. */
+PELAGIC_API pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_options* options,
+                                        pelagic_sea** sea, pelagic_error* error);
+/* Frames keep what they need of it: they may be released later. Null is nothing to close. */
+PELAGIC_API void pelagic_close(pelagic_sea* sea);
+
+/* What a shot says, for hosts that want to know. */
+typedef struct pelagic_info {
+    size_t size;
+    int first_frame, last_frame;
+    double frames_per_second;
+    double time_scale;           /* seconds of the sea in a second on the screen */
+    double loop_s;               /* after which the sea is the same again; 0: never */
+    double significant_height_m; /* Hs */
+    double peak_wavelength_m;
+    double finest_cell_m, finest_pixel_m; /* what is asked for finer counts as this */
+    size_t frame_bytes; /* what a frame holds; bounds keep up to three times as much beside it */
+} pelagic_info;
+PELAGIC_API pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pelagic_error* error);
+
+/* The time of a frame of the shot [s]; frames may lie between frames. In a loop it goes on rising: the sea repeats by itself. */
+PELAGIC_API pelagic_status pelagic_time_of_frame(const pelagic_sea* sea, double frame, double* time_s,
+                                                 pelagic_error* error);
+
+/* A pinhole whose pixels are square. */
+typedef struct pelagic_camera {
+    size_t size;
+    double position_m[3];
+    double right[3], up[3], forward[3]; /* unit vectors in the world; up = right × forward */
+    double tan_half_width;              /* tangent of half the horizontal field of view */
+    int width, height;                  /* pixels */
+} pelagic_camera;
+/* The shot's own at a frame. */
+PELAGIC_API pelagic_status pelagic_shot_camera(const pelagic_sea* sea, double frame, pelagic_camera* camera,
+                                               pelagic_error* error);
+
+/* ---- A frame */
+
+/* The sea from open_s to close_s; the same twice: a moment. Runs the frame's transforms: pelagic_frame_set() again into the
+ * same memory. */
+PELAGIC_API pelagic_status pelagic_frame_create(const pelagic_sea* sea, double open_s, double close_s,
+                                                pelagic_frame** frame, pelagic_error* error);
+PELAGIC_API pelagic_status pelagic_frame_set(pelagic_frame* frame, double open_s, double close_s,
+                                             pelagic_error* error);
+/* Null is nothing to release. */
+PELAGIC_API void pelagic_frame_release(pelagic_frame* frame);
+
+/* ---- Bounds */
+
+/* At rest, in the world, as far out as cameras may be (1e9 m); edges belong to it. */
+typedef struct pelagic_region {
+    size_t size;
+    double min_m[2], max_m[2];
+    double finest_cell_m, coarsest_cell_m; /* of what will be asked for there; 0: the finest there is; any */
+} pelagic_region;
+typedef struct pelagic_box {
+    size_t size;
+    double min_m[3], max_m[3];
+} pelagic_box;
+/* A box in the world that all displaced points of the region stay in while the shutter is open. It is never left by what
+ * pelagic_evaluate() answers for those footprints. From 0.1 ms up to 50 ms for large regions, and some 20 ms more for the first question
+ * about a footprint. */
+PELAGIC_API pelagic_status pelagic_bounds(const pelagic_frame* frame, const pelagic_region* region,
+                                          pelagic_box* box, pelagic_error* error);
+
+/* ---- Points */
+
+typedef struct pelagic_points {
+    size_t size;
+    double origin_m[2]; /* of the points, in the world */
+    size_t count;
+    const float* rest_m;  /* x, y of each, relative to the origin */
+    const float* cell_m;  /* of each; null: the finest there is */
+    const float* pixel_m; /* of each; null: the finest there is */
+    /* Of each, from the shutter's opening on, and no further than its closing; null: its middle. Positions follow it; normals, variances and
+     * coverage are those of the middle. */
+    const float* time_s;
+} pelagic_points;
+
+/* Buffers of the caller, as long as there are points; null: not wanted, and not computed. */
+typedef struct pelagic_values {
+    size_t size;
+    float* position_m;     /* x, y, z, relative to the origin at z = 0 */
+    float* normal;         /* x, y, z: unit; z is negative where the surface has folded over */
+    float* velocity_mps;   /* x, y, z */
+    float* slope_variance; /* xx, yy, xy of the slopes that a pixel hides */
+    float* coverage;       /* of whitecaps that break now, 0 … 1 */
+} pelagic_values;
+
+/* Each value depends on its point alone, and is finite where the point's place is. */
+PELAGIC_API pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points,
+                                            const pelagic_values* values, pelagic_error* error);
+
+/* ---- A mesh for a camera */
+
+typedef struct pelagic_expand_options {
+    size_t size;
+    double
+        cell_px; /* the side of a cell on the screen, 0.25 … 1000 pixels; 0: 2. No mesh has more than 8192 × 8192 cells. */
+    int triangles; /* 0: quads */
+    int on_earth; /* 0: flat, as points and bounds are; 1: bent with the earth, which touches z = 0 below the camera */
+} pelagic_expand_options;
+typedef struct pelagic_mesh_size {
+    size_t size;
+    size_t points, faces, corners; /* corners of all faces: 4 or 3 of each */
+} pelagic_mesh_size;
+PELAGIC_API pelagic_status pelagic_expand_size(const pelagic_frame* frame, const pelagic_camera* camera,
+                                               const pelagic_expand_options* options,
+                                               pelagic_mesh_size* mesh_size, pelagic_error* error);
+
+typedef struct pelagic_mesh_buffers {
+    size_t size;
+    size_t points, corners; /* how many the buffers have room for; out: how many there are */
+    uint32_t*
+        corner; /* indices of points, face after face, counter-clockwise seen from above; null: not wanted */
+    float* rest_m; /* x, y of each point, relative to origin_m, on a flat sea; null: not wanted */
+    const pelagic_values* values; /* of each point, in the middle of the shutter; null: not wanted */
+    double origin_m[3];           /* out: what positions are relative to: below the camera, at z = 0 */
+} pelagic_mesh_buffers;
+/* All of the sea that may be in view from there while the shutter is open, with cells that are as large on the screen as `options` say:
+ * they grow with distance, and each point shows the waves that its cells can. Cells that are longer than wide show the waves along
+ * their longer side that they can, so that positions aren't exactly those of pelagic_evaluate(), and may leave a box of the same region
+ * by little. `options` may be null. */
+PELAGIC_API pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* camera,
+                                          const pelagic_expand_options* options,
+                                          pelagic_mesh_buffers* buffers, pelagic_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,457 @@
+// The C interface: looks at what comes in, and lets no exception out.
+#include "pelagic/procedural.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/plan/extent.h"
+#include "core/scene/limits.h"
+#include "core/surface/earth.h"
+#include "core/surface/rungs.h"
+#include "core/surface/view.h"
+#include "plugin/light/light.h"
+#include "plugin/procedural/procedural_frame.h"
+#include "plugin/shot/shot.h"
+
+struct pelagic_sea {
+    std::shared_ptr<const pelagic::procedural::ShotSea> shot;
+};
+struct pelagic_frame {
+    pelagic::procedural::ShotFrame frame;
+};
+
+namespace pelagic::procedural {
+namespace {
+
+void say(pelagic_error* error, const char* message) {
+    if (!error) return;
+    std::size_t length = std::min(std::strlen(message), sizeof error->message - 1);
+    const auto is_inside_character = [&] {
+        return (static_cast<unsigned char>(message[length]) & 0xc0) == 0x80;
+    };
+    while (length > 0 && is_inside_character()) --length;
+    std::memcpy(error->message, message, length);
+    error->message[length] = '\0';
+}
+
+// Runs `work`; what it throws becomes a status and a message.
+template <class Work>
+pelagic_status guarded(pelagic_error* error, const Work& work) noexcept {
+    const auto failed = [&](pelagic_status status, const char* message) {
+        say(error, message);
+        return status;
+    };
+    say(error, "");
+    try {
+        return work();
+    } catch (const ShotError& refused) {
+        return failed(PELAGIC_SHOT_REFUSED, refused.what());
+    } catch (const BuildCancelled& cancelled) {
+        return failed(PELAGIC_CANCELLED, cancelled.what());
+    } catch (const std::invalid_argument& invalid) {
+        return failed(PELAGIC_INVALID_ARGUMENT, invalid.what());
+    } catch (const std::bad_alloc&) {
+        return failed(PELAGIC_OUT_OF_MEMORY, "there is not enough memory");
+    } catch (const std::exception& other) {
+        return failed(PELAGIC_FAILED, other.what());
+    } catch (...) {
+        return failed(PELAGIC_FAILED, "something failed that has no name");
+    }
+}
+
+template <class T>
+T& required(T* pointer, const char* name) {
+    if (!pointer) throw std::invalid_argument(std::string(name) + " is null");
+    return *pointer;
+}
+
+// A structure of the caller's, as this version knows it. A longer one is of a later version: what this one doesn't know of it must
+// be 0.
+template <class S>
+S taken(const S* from, const char* name) {
+    const std::size_t size = required(from, name).size;
+    if (size < sizeof(S))
+        throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
+    const auto* bytes = reinterpret_cast<const unsigned char*>(from);
+    if (std::any_of(bytes + sizeof(S), bytes + size, [](unsigned char byte) { return byte != 0; }))
+        throw std::invalid_argument(std::string(name) + " asks for what a later version of the library has");
+    return *from;
+}
+// The same where null stands for a structure of zeros.
+template <class S>
+S taken_or_zeros(const S* from, const char* name) {
+    return from ? taken(from, name) : S{};
+}
+// Into the caller's; its size stays.
+template <class S>
+void give(S from, S* to, const char* name) {
+    if (required(to, name).size < sizeof(S))
+        throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
+    from.size = to->size;
+    *to = from;
+}
+
+// [m], as cameras' may be.
+void check_place(double metres, const char* name) {
+    if (!limits::kCameraCoordinate_m.holds(metres))
+        throw std::invalid_argument(std::string(name) + " is outside the range; accepted: " +
+                                    text_of(limits::kCameraCoordinate_m) + " m");
+}
+
+Scene scene_of(const pelagic_source& source) {
+    if (source.text)
+        return parse_shot(
+            source.text_length > 0 ? std::string_view(source.text, source.text_length) : source.text,
+            source.path ? source.path : "shot.toml", check_scene);
+    return load_shot(&required(source.path, "source.path"), check_scene);
+}
+
+View view_of(const pelagic_camera& camera) {
+    constexpr double kAxisTolerance = 1e-3;  // as hosts round them
+    const auto vector = [](const double(&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
+    View view;
+    view.position_m = vector(camera.position_m);
+    for (int axis = 0; axis < 3; ++axis) check_place(view.position_m[axis], "camera.position_m");
+    const glm::dvec3 right = vector(camera.right), up = vector(camera.up), forward = vector(camera.forward);
+    const auto is = [](double value, double wanted) { return std::abs(value - wanted) < kAxisTolerance; };
+    if (!is(glm::dot(right, right), 1.0) || !is(glm::dot(forward, forward), 1.0) ||
+        !is(glm::dot(right, forward), 0.0) || !is(glm::length(glm::cross(right, forward) - up), 0.0))
+        throw std::invalid_argument(
+            "camera.right, up, forward: accepted: unit vectors at right angles, with up = right × forward");
+    view.forward = glm::normalize(forward);
+    view.right = glm::normalize(right - glm::dot(right, view.forward) * view.forward);
+    view.up = glm::cross(view.right, view.forward);
+    const auto tangent = [](double fov_deg) { return std::tan(fov_deg * (kPi / 360.0)); };
+    if (!(camera.tan_half_width >= tangent(limits::kFov_deg.low) &&
+          camera.tan_half_width <= tangent(limits::kFov_deg.high)))
+        throw std::invalid_argument(
+            "camera.tan_half_width is outside the range; accepted: that of a field of view of " +
+            text_of(limits::kFov_deg) + " degrees");
+    view.tan_half_width = camera.tan_half_width;
+    for (const int pixels : {camera.width, camera.height})
+        if (!limits::kImageResolution.holds(pixels))
+            throw std::invalid_argument("camera.width, height are outside the range; accepted: " +
+                                        text_of(limits::kImageResolution));
+    view.resolution = {camera.width, camera.height};
+    return view;
+}
+
+pelagic_camera camera_of(const View& view) {
+    pelagic_camera camera{};
+    for (int axis = 0; axis < 3; ++axis) {
+        camera.position_m[axis] = view.position_m[axis];
+        camera.right[axis] = view.right[axis];
+        camera.up[axis] = view.up[axis];
+        camera.forward[axis] = view.forward[axis];
+    }
+    camera.tan_half_width = view.tan_half_width;
+    camera.width = view.resolution.x;
+    camera.height = view.resolution.y;
+    return camera;
+}
+
+Results<float> results_in(const pelagic_values& values) {
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    const auto vectors = [](float* at) { return Strided<glm::vec3>{reinterpret_cast<glm::vec3*>(at)}; };
+    Results<float> results;
+    results.set(Product::Position, vectors(values.position_m));
+    results.set(Product::Normal, vectors(values.normal));
+    results.set(Product::Velocity, vectors(values.velocity_mps));
+    results.set(Product::SlopeVariance, vectors(values.slope_variance));
+    results.set(Product::Coverage, {values.coverage});
+    return results;
+}
+
+// What pelagic_expand() and pelagic_expand_size() agree on.
+struct Expansion {
+    View view;
+    ProjectedGridOptions options;
+    bool triangles = false;
+};
+Expansion expansion_of(const ShotFrame& frame, const pelagic_camera* camera,
+                       const pelagic_expand_options* options) {
+    const auto asked = taken_or_zeros(options, "options");
+    const double cell_px = asked.cell_px == 0.0 ? kCell_px : asked.cell_px;
+    if (!(cell_px >= 0.25 && cell_px <= 1000.0))
+        throw std::invalid_argument(
+            "options.cell_px is outside the range; accepted: 0.25 to 1000 pixels, or 0");
+    Expansion expansion{view_of(taken(camera, "camera")), grid_options(frame, cell_px), asked.triangles != 0};
+    expansion.options.curvature_per_m = asked.on_earth != 0 ? kEarthCurvature_per_m : 0.0;
+    expansion.options.size = projected_grid_needs(expansion.view, expansion.options).size;
+    return expansion;
+}
+
+pelagic_mesh_size size_of(const Expansion& expansion) {
+    const ProjectedGridSize grid = expansion.options.size;
+    pelagic_mesh_size size{};
+    size.points = points_of(grid);
+    size.faces = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows) *
+                 (expansion.triangles ? 2 : 1);
+    size.corners = size.faces * (expansion.triangles ? 3 : 4);
+    return size;
+}
+
+// As grid_faces() and projected_grid_triangles() have them.
+void fill_corners(const Expansion& expansion, std::uint32_t* corner) {
+    const auto columns = static_cast<std::uint32_t>(expansion.options.size.columns),
+               rows = static_cast<std::uint32_t>(expansion.options.size.rows);
+    for (std::uint32_t row = 0; row < rows; ++row)
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            const std::uint32_t near = row * (columns + 1) + column, far = near + columns + 1;
+            const std::array<std::uint32_t, 6> triangles{near, near + 1, far + 1, near, far + 1, far};
+            const std::array<std::uint32_t, 4> quad{near, near + 1, far + 1, far};
+            corner = expansion.triangles ? std::copy(triangles.begin(), triangles.end(), corner)
+                                         : std::copy(quad.begin(), quad.end(), corner);
+        }
+}
+
+void expand(const ShotFrame& frame, const Expansion& expansion, const Results<float>& results,
+            pelagic_mesh_buffers& buffers) {
+    ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
+    // Trains have no ladder: they see each point's own footprints.
+    if (frame.shot().query().cell_m.size() > 1)
+        keep_to_rungs(grid, projected_grid_needs(expansion.view, expansion.options));
+    for (int axis = 0; axis < 2; ++axis) buffers.origin_m[axis] = grid.origin_m[axis];
+    buffers.origin_m[2] = 0.0;
+    if (buffers.corner) fill_corners(expansion, buffers.corner);
+    if (buffers.rest_m)
+        std::memcpy(buffers.rest_m, grid.rest_m.data(), grid.rest_m.size() * sizeof(glm::vec2));
+    if (results.given().none()) return;
+    frame.evaluate_by_all({.origin_m = grid.origin_m,
+                           .count = grid.rest_m.size(),
+                           .rest_m = {grid.rest_m.data()},
+                           .cell_m = {grid.cell_m.data()},
+                           .pixel_m = {grid.pixel_m.data()},
+                           .cell_axis_m = {grid.cell_axis_m.data()},
+                           .pixel_axis_m = {grid.pixel_axis_m.data()}},
+                          results);
+    if (grid.curvature_per_m == 0.0) return;
+    for (std::size_t i = 0; i < grid.rest_m.size(); ++i) {
+        const glm::dvec3 up = earth_up(glm::dvec2(grid.rest_m[i]), grid.curvature_per_m);
+        if (const auto at = results.vectors(Product::Position))
+            at[i] = glm::vec3(on_earth(glm::dvec3(at[i]), grid.curvature_per_m));
+        for (const VectorProduct product : {VectorProduct(Product::Normal), VectorProduct(Product::Velocity)})
+            if (const auto at = results.vectors(product))
+                at[i] = glm::vec3(from_level(glm::dvec3(at[i]), up));
+    }
+}
+
+}  // namespace
+}  // namespace pelagic::procedural
+
+using namespace pelagic;
+using namespace pelagic::procedural;
+
+const char* pelagic_version(void) {
+    return PELAGIC_VERSION;
+}
+
+const char* pelagic_status_text(pelagic_status status) {
+    switch (status) {
+        case PELAGIC_OK:
+            return "ok";
+        case PELAGIC_INVALID_ARGUMENT:
+            return "invalid argument";
+        case PELAGIC_SHOT_REFUSED:
+            return "shot refused";
+        case PELAGIC_TOO_SMALL:
+            return "buffer too small";
+        case PELAGIC_OUT_OF_MEMORY:
+            return "out of memory";
+        case PELAGIC_CANCELLED:
+            return "cancelled";
+        case PELAGIC_FAILED:
+            return "failed";
+    }
+    return "unknown status";
+}
+
+pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_options* options,
+                            pelagic_sea** sea, pelagic_error* error) {
+    return guarded(error, [&] {
+        pelagic_sea*& out = required(sea, "sea");
+        const auto asked = taken_or_zeros(options, "options");
+        for (const double metres : {asked.finest_cell_m, asked.finest_pixel_m})
+            if (!(metres >= 0.0 && metres <= 1e6))
+                throw std::invalid_argument(
+                    "options.finest_cell_m, finest_pixel_m are outside the range; accepted: 0 to 1e6 m");
+        if (asked.threads < 0)
+            throw std::invalid_argument("options.threads is negative; accepted: 0 or more");
+        Scene scene = scene_of(taken(source, "source"));
+        std::atomic<bool> cancel = false;
+        BuildWatch watch;
+        if (asked.progress) {
+            watch.cancel = &cancel;
+            watch.progress = [&](double done) {
+                if (asked.progress(done, asked.user) != 0) cancel = true;
+            };
+        }
+        const auto tell = [&](double done) {
+            if (watch.progress) watch.progress(done);
+            if (cancel) throw BuildCancelled();
+        };
+        tell(0.0);
+        auto shot = std::make_shared<const ShotSea>(
+            std::move(scene), SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads}, watch);
+        tell(1.0);
+        out = new pelagic_sea{std::move(shot)};
+        return PELAGIC_OK;
+    });
+}
+
+void pelagic_close(pelagic_sea* sea) {
+    delete sea;
+}
+
+pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pelagic_error* error) {
+    return guarded(error, [&] {
+        const ShotSea& shot = *required(sea, "sea").shot;
+        const Plan& plan = shot.sea->plan();
+        pelagic_info about{};
+        about.first_frame = shot.scene.shot.first_frame;
+        about.last_frame = shot.scene.shot.last_frame;
+        about.frames_per_second = shot.scene.shot.fps;
+        about.time_scale = shot.scene.shot.time_scale;
+        about.loop_s = shot.sea->loop_s();
+        about.significant_height_m = shot.sea->total().significant_height_m();
+        about.peak_wavelength_m = kTwoPi / plan.from->spectrum.peak_wavenumber();
+        about.finest_cell_m = shot.query().cell_m.front();
+        about.finest_pixel_m = shot.query().pixel_m.front();
+        about.frame_bytes = plan.frame_bytes();
+        give(about, info, "info");
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_time_of_frame(const pelagic_sea* sea, double frame, double* time_s,
+                                     pelagic_error* error) {
+    return guarded(error, [&] {
+        const Shot& shot = required(sea, "sea").shot->scene.shot;
+        if (!limits::kFrame.holds(frame))
+            throw std::invalid_argument("frame is outside the range; accepted: " + text_of(limits::kFrame));
+        // Not reduced to the first round of a loop: a shutter may lie across its seam.
+        required(time_s, "time_s") = shot.time_offset_s + shot.time_scale * ((frame - 1.0) / shot.fps);
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_shot_camera(const pelagic_sea* sea, double frame, pelagic_camera* camera,
+                                   pelagic_error* error) {
+    return guarded(error, [&] {
+        const Scene& scene = required(sea, "sea").shot->scene;
+        if (!limits::kFrame.holds(frame))
+            throw std::invalid_argument("frame is outside the range; accepted: " + text_of(limits::kFrame));
+        give(camera_of(view_at(scene.camera, frame)), camera, "camera");
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_frame_create(const pelagic_sea* sea, double open_s, double close_s,
+                                    pelagic_frame** frame, pelagic_error* error) {
+    return guarded(error, [&] {
+        pelagic_frame*& out = required(frame, "frame");
+        out = new pelagic_frame{ShotFrame(required(sea, "sea").shot, open_s, close_s)};
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_frame_set(pelagic_frame* frame, double open_s, double close_s, pelagic_error* error) {
+    return guarded(error, [&] {
+        required(frame, "frame").frame.set(open_s, close_s);
+        return PELAGIC_OK;
+    });
+}
+
+void pelagic_frame_release(pelagic_frame* frame) {
+    delete frame;
+}
+
+pelagic_status pelagic_bounds(const pelagic_frame* frame, const pelagic_region* region, pelagic_box* box,
+                              pelagic_error* error) {
+    return guarded(error, [&] {
+        const auto asked = taken(region, "region");
+        for (const double metres : {asked.min_m[0], asked.min_m[1], asked.max_m[0], asked.max_m[1]})
+            check_place(metres, "region.min_m, max_m");
+        const double any = std::numeric_limits<double>::infinity();
+        const auto [least, greatest] =
+            required(frame, "frame")
+                .frame.bounds({{asked.min_m[0], asked.min_m[1]}, {asked.max_m[0], asked.max_m[1]}},
+                              {.finest_m = asked.finest_cell_m,
+                               .coarsest_m = asked.coarsest_cell_m == 0.0 ? any : asked.coarsest_cell_m});
+        pelagic_box found{};
+        for (int axis = 0; axis < 3; ++axis) {
+            found.min_m[axis] = least[axis];
+            found.max_m[axis] = greatest[axis];
+        }
+        give(found, box, "box");
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points,
+                                const pelagic_values* values, pelagic_error* error) {
+    return guarded(error, [&] {
+        const auto asked = taken(points, "points");
+        const Results<float> results = results_in(taken(values, "values"));
+        for (const double metres : asked.origin_m) check_place(metres, "points.origin_m");
+        if (asked.count == 0) return PELAGIC_OK;
+        static_assert(sizeof(glm::vec2) == 2 * sizeof(float));
+        TimedPoints timed{.points = {.origin_m = {asked.origin_m[0], asked.origin_m[1]},
+                                     .count = asked.count,
+                                     .rest_m = {reinterpret_cast<const glm::vec2*>(
+                                         &required(asked.rest_m, "points.rest_m"))}},
+                          .time_s = asked.time_s};
+        if (asked.cell_m) timed.points.cell_m = {asked.cell_m};
+        if (asked.pixel_m) timed.points.pixel_m = {asked.pixel_m};
+        required(frame, "frame").frame.evaluate(timed, results);
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_expand_size(const pelagic_frame* frame, const pelagic_camera* camera,
+                                   const pelagic_expand_options* options, pelagic_mesh_size* mesh_size,
+                                   pelagic_error* error) {
+    return guarded(error, [&] {
+        const ShotFrame& of = required(frame, "frame").frame;
+        give(of.shot().arena->execute([&] { return size_of(expansion_of(of, camera, options)); }), mesh_size,
+             "mesh_size");
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* camera,
+                              const pelagic_expand_options* options, pelagic_mesh_buffers* buffers,
+                              pelagic_error* error) {
+    return guarded(error, [&]() -> pelagic_status {
+        auto into = taken(buffers, "buffers");
+        const Results<float> results =
+            into.values ? results_in(taken(into.values, "buffers.values")) : Results<float>();
+        const ShotFrame& of = required(frame, "frame").frame;
+        const Expansion expansion =
+            of.shot().arena->execute([&] { return expansion_of(of, camera, options); });
+        const pelagic_mesh_size needed = size_of(expansion);
+        const bool wants_points = into.rest_m || results.given().any();
+        if ((wants_points && into.points < needed.points) || (into.corner && into.corners < needed.corners)) {
+            say(error, ("the mesh has " + std::to_string(needed.points) + " points and " +
+                        std::to_string(needed.corners) + " corners; the buffers have room for " +
+                        std::to_string(into.points) + " and " + std::to_string(into.corners))
+                           .c_str());
+            return PELAGIC_TOO_SMALL;
+        }
+        of.shot().arena->execute([&] { expand(of, expansion, results, into); });
+        into.points = needed.points;
+        into.corners = needed.corners;
+        give(into, buffers, "buffers");
+        return PELAGIC_OK;
+    });
+}

@@ -1,0 +1,205 @@
+#include "plugin/procedural/procedural_frame.h"
+
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "core/plan/grid_layout.h"
+#include "core/plan/memory.h"
+#include "core/scene/text.h"
+#include "core/surface/rungs.h"
+#include "core/surface/view.h"
+#include "plugin/machine/memory.h"
+
+namespace pelagic::procedural {
+namespace {
+
+constexpr ProductSet kProducts = products(Product::Position, Product::Normal, Product::Velocity,
+                                          Product::SlopeVariance, Product::Coverage);
+
+Plan plan_of(const Scene& scene, const SeaOptions& options) {
+    auto prepared = prepare(scene);
+    double cell_m = options.finest_cell_m, pixel_m = options.finest_pixel_m;
+    if (!(cell_m > 0.0) || !(pixel_m > 0.0)) {
+        ProjectedGridOptions grid = projected_grid_options(*prepared);
+        grid.cell_px = kCell_px;
+        ProjectedGridNeeds needs;
+        bool is_first = true;
+        for (const int frame : representative_frames(scene, 16)) {
+            const ProjectedGridNeeds own = projected_grid_needs(view_at(scene.camera, frame), grid);
+            needs = is_first ? own : together(needs, own);
+            is_first = false;
+        }
+        if (!(cell_m > 0.0)) cell_m = needs.finest_cell_m;
+        if (!(pixel_m > 0.0)) pixel_m = needs.finest_pixel_m;
+    }
+    Query query = view_query(*prepared, {.products = kProducts,
+                                         .finest_cell_m = cell_m,
+                                         .finest_pixel_m = std::min(cell_m, pixel_m),
+                                         .points = Chunk<float>::kPoints});
+    return make_plan(std::move(prepared), {query}, {.double_precision = false});
+}
+
+// The most that a field's sum can be, everywhere: splines stay within their coefficients, and the weights of the copies at a
+// point add up to 2 at most (core/plan/copies.h).
+double most_of(const Frame<float>& frame, Field field) {
+    const Plan& plan = frame.sea().plan();
+    double most = 0.0;
+    for (std::size_t c = 0; c < plan.cascades.size(); ++c) {
+        double of_cascade = 0.0;
+        for (std::size_t g = 0; g < plan.cascades[c].grids.size(); ++g) {
+            const int n = plan.cascades[c].grids[g].resolution;
+            const float* samples = frame.samples(static_cast<int>(c), static_cast<int>(g), field);
+            if (!samples) continue;
+            for (int y = 0; y < n; ++y)
+                for (int x = 0; x < n; ++x)
+                    of_cascade =
+                        std::max(of_cascade, std::abs(static_cast<double>(
+                                                 samples[static_cast<std::size_t>(y) * line_stride<float>(n) +
+                                                         static_cast<std::size_t>(x)])));
+        }
+        most += (plan.cascades[c].has_copies ? 2.0 : 1.0) * of_cascade;
+    }
+    if (plan.trains)
+        for (const float amplitude : frame.sea().trains().amplitude[index(field)])
+            most += std::abs(static_cast<double>(amplitude));
+    constexpr double kRounding = 1e-4;  // of hundreds of sums in single precision
+    return (1.0 + kRounding) * most;
+}
+
+// Cells below which no wave is held back [m]: of a sea of trains, whose query needs no ladder. Others have one.
+double whole_cell_m(const Sea<float>& sea) {
+    constexpr double kOfShortest = 1.0 / 64.0;
+    const std::vector<double>& lengths_m = sea.trains().wavelength_m;
+    return lengths_m.empty() ? 0x1p-10 : kOfShortest * lengths_m.back();
+}
+
+}  // namespace
+
+ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
+    : scene(std::move(from)),
+      arena(options.threads > 0 ? std::make_unique<tbb::task_arena>(
+                                      std::min(options.threads, tbb::info::default_concurrency()))
+                                : std::make_unique<tbb::task_arena>()) {
+    arena->execute([&] {
+        Plan plan = plan_of(scene, options);
+        MemoryNeed need;
+        add_sea(need, plan, arena->max_concurrency());
+        require_memory(need, machine::memory_limit(), "a frame of this sea");
+        sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
+    });
+    whole_m = whole_cell_m(*sea);
+}
+
+ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
+    : of_(std::move(of)), frame_(of_->sea) {
+    set(open_s, close_s);
+}
+
+void ShotFrame::set(double open_s, double close_s) {
+    const auto accepts = [](double t_s) { return std::abs(t_s) <= Frame<float>::kLatest_s; };
+    if (!accepts(open_s) || !accepts(close_s) || !(open_s <= close_s))
+        throw std::invalid_argument("a shutter from " + number_text(open_s) + " s to " +
+                                    number_text(close_s) + " s: accepted: times within " +
+                                    number_text(Frame<float>::kLatest_s) + " s, in order");
+    of_->arena->execute([&] {
+        frame_.set(0.5 * (open_s + close_s));
+        if (query_)
+            query_->refresh();
+        else
+            query_.emplace(frame_, 0, kProducts);
+        half_open_s_ = 0.5 * (close_s - open_s);
+        fastest_mps_ = glm::dvec3(0.0);
+        bounds_.clear();
+        if (half_open_s_ == 0.0) return;
+        constexpr std::array kVelocities{Field::VelocityX, Field::VelocityY, Field::VelocityZ};
+        tbb::parallel_for(0, 3, [&](int axis) { fastest_mps_[axis] = most_of(frame_, kVelocities[axis]); });
+    });
+}
+
+const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
+    const std::lock_guard<std::mutex> lock(bounds_lock_);
+    auto& bounds = bounds_[rung_m];
+    // By this thread alone, which takes up nobody else's work meanwhile: that might want the lock.
+    if (!bounds)
+        tbb::task_arena(1).execute([&] {
+            bounds = std::make_unique<const FrameBounds<float>>(
+                frame_, 0, FootprintRange{.finest_m = rung_m, .coarsest_m = 2.0 * rung_m});
+        });
+    return *bounds;
+}
+
+// Rung by rung: what all footprints of a wide range have in common is a loose bound of each.
+template <class Bound>
+DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& bound) const {
+    double rung_m = rung_below_m(std::max({cells.finest_m, of_->query().cell_m.front(), of_->whole_m}));
+    DisplacementBounds all = bound(bounds_from(rung_m));
+    // Where a footprint hides all waves, nothing moves, and larger ones change nothing.
+    const auto moves = [](const DisplacementBounds& b) { return b.z.hi > b.z.lo; };
+    for (bool goes_on = moves(all); goes_on && 2.0 * rung_m < cells.coarsest_m;) {
+        const DisplacementBounds here = bound(bounds_from(rung_m *= 2.0));
+        goes_on = moves(here);
+        for (const auto axis : {&DisplacementBounds::z, &DisplacementBounds::dx, &DisplacementBounds::dy}) {
+            (all.*axis).lo = std::min((all.*axis).lo, (here.*axis).lo);
+            (all.*axis).hi = std::max((all.*axis).hi, (here.*axis).hi);
+        }
+    }
+    return all;
+}
+
+std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, FootprintRange cells) const {
+    constexpr int kBlocks = 2048;
+    if (!(cells.finest_m >= 0.0) || !(cells.coarsest_m >= cells.finest_m))
+        throw std::invalid_argument("region.finest_cell_m, coarsest_cell_m: accepted: 0 or more, in order");
+    const DisplacementBounds moved =
+        over_rungs(cells, [&](const FrameBounds<float>& of) { return of.region(region, kBlocks); });
+    const glm::dvec3 by_m = half_open_s_ * fastest_mps_;
+    return {glm::dvec3(region.min_m, 0.0) + glm::dvec3(moved.dx.lo, moved.dy.lo, moved.z.lo) - by_m,
+            glm::dvec3(region.max_m, 0.0) + glm::dvec3(moved.dx.hi, moved.dy.hi, moved.z.hi) + by_m};
+}
+
+SurfaceBounds ShotFrame::everywhere() const {
+    const auto most = [&](Field field, double velocity_mps) {
+        return most_of(frame_, field) + half_open_s_ * velocity_mps;
+    };
+    return {.height_m = most(Field::Height, fastest_mps_.z),
+            .reach_m = std::hypot(most(Field::Dx, fastest_mps_.x), most(Field::Dy, fastest_mps_.y))};
+}
+
+void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const {
+    const std::size_t count = timed.points.count;
+    const bool moves = timed.time_s && half_open_s_ > 0.0 && results.holds(Product::Position);
+    std::vector<glm::vec3> velocity;
+    if (moves && !results.holds(Product::Velocity)) {
+        velocity.resize(count);
+        results.set(Product::Velocity, {velocity.data()});
+    }
+    query_->evaluate_alone(timed.points, results);
+    if (!moves) return;
+    const auto position = results.vectors(Product::Position), fast = results.vectors(Product::Velocity);
+    const auto half_s = static_cast<float>(half_open_s_);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float from_middle_s = timed.time_s[i] - half_s;  // one that is no number is the middle
+        position[i] += std::isnan(from_middle_s) ? glm::vec3(0.0f)
+                                                 : std::clamp(from_middle_s, -half_s, half_s) * fast[i];
+    }
+}
+
+void ShotFrame::evaluate_by_all(const Points<float>& points, const Results<float>& results) const {
+    query_->evaluate(points, results);
+}
+
+ProjectedGridOptions grid_options(const ShotFrame& frame, double cell_px) {
+    ProjectedGridOptions options = projected_grid_options(*frame.shot().sea->plan().from);
+    options.cell_px = cell_px;
+    options.bounds = frame.everywhere();
+    return options;
+}
+
+}  // namespace pelagic::procedural

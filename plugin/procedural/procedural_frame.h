@@ -1,0 +1,88 @@
+// The sea of a shot and its frames, as the C interface hands them out (pelagic/procedural.h says what each call does).
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <functional>
+#include <glm/vec3.hpp>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/evaluate/bounds.h"
+#include "core/evaluate/prepared_query.h"
+#include "core/plan/plan.h"
+#include "core/surface/projected_grid.h"
+#include "core/waves/frame.h"
+
+namespace pelagic::procedural {
+
+// The side of a mesh's cells on the screen where nobody says another.
+inline constexpr double kCell_px = 2.0;
+
+// What a sea is asked for.
+struct SeaOptions {
+    double finest_cell_m = 0.0, finest_pixel_m = 0.0;  // 0: as the shot's camera needs it
+    int threads = 0;                                   // at most; 0: all
+};
+
+// Immutable. The plan has one query, number 0.
+struct ShotSea {
+    ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch);
+
+    Scene scene;
+    std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
+    std::shared_ptr<const Sea<float>> sea;
+    double whole_m = 0.0;  // finer cells hold back no wave
+    const Query& query() const { return sea->plan().queries.front().query; }
+};
+
+// Points as evaluate() takes them, and when each is asked for.
+struct TimedPoints {
+    Points<float> points;
+    const float* time_s = nullptr;  // from the shutter's opening on; null: its middle
+};
+
+class ShotFrame {
+  public:
+    ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s);
+
+    // Not while others use the frame. Throws std::invalid_argument for times that aren't accepted.
+    void set(double open_s, double close_s);
+
+    const ShotSea& shot() const { return *of_; }
+
+    // Of all points of the region, displaced, while the shutter is open: least and greatest corner in the world [m].
+    std::pair<glm::dvec3, glm::dvec3> bounds(const RestRegion& region, FootprintRange cells) const;
+    // Half the height and the reach of all points everywhere.
+    SurfaceBounds everywhere() const;
+
+    // By the calling thread alone. Times outside the shutter are its ends.
+    void evaluate(const TimedPoints& points, Results<float> results) const;
+    // The same in the middle of the shutter, by all threads of the calling arena.
+    void evaluate_by_all(const Points<float>& points, const Results<float>& results) const;
+
+  private:
+    // Of cells from this rung to the next.
+    const FrameBounds<float>& bounds_from(double rung_m) const;
+    template <class Bound>
+    DisplacementBounds over_rungs(FootprintRange cells, const Bound& bound) const;
+
+    std::shared_ptr<const ShotSea> of_;
+    Frame<float> frame_;
+    std::optional<PreparedQuery<float>> query_;
+    double half_open_s_ = 0.0;     // half of the time for which the shutter is open
+    glm::dvec3 fastest_mps_{0.0};  // no point moves faster along the axes
+    mutable std::mutex bounds_lock_;
+    mutable std::map<double, std::unique_ptr<const FrameBounds<float>>>
+        bounds_;  // by rung, made when asked for
+};
+
+// All of the sea that may be in view from there while the shutter is open.
+ProjectedGridOptions grid_options(const ShotFrame& frame, double cell_px);
+
+}  // namespace pelagic::procedural

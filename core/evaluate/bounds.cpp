@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/base/constants.h"
+#include "core/evaluate/prepared_query.h"
 #include "core/plan/grid_layout.h"
 
 namespace pelagic {
@@ -188,7 +189,12 @@ glm::dvec2 DisplacementBounds::reach_m() const {
 
 template <class T>
 FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRange cells)
-    : frame_(&frame), planned_(&frame.sea().plan().queries.at(query_index)), cells_(cells) {
+    : frame_(&frame),
+      planned_(&frame.sea().plan().queries.at(query_index)),
+      query_(query_index),
+      sampled_(planned_->query.products[index(Product::Displacement)] ? Product::Displacement
+                                                                      : Product::Position),
+      cells_(cells) {
     const Plan& plan = frame.sea().plan();
     const Query& query = planned_->query;
     if (!(query.products[index(Product::Position)] || query.products[index(Product::Displacement)]))
@@ -251,7 +257,8 @@ void FrameBounds<T>::refresh() {
                 grid.copies_key = copies_key(plan.from->scene.shot.seed, c);
             const Grid& planned = plan.cascades[c].grids[g];
             grid.n = planned.resolution * (is_refined(planned) ? 2 : 1);
-            smallest_block_m_ = std::max(smallest_block_m_, 0.5 * kBlockCells * grid.size_m / grid.n);
+            const double block_m = 0.5 * kBlockCells * grid.size_m / grid.n;
+            smallest_block_m_ = places.size() == 1 ? block_m : std::min(smallest_block_m_, block_m);
         }
     tbb::parallel_for(std::size_t(0), places.size() * kFields.size(), [&](std::size_t i) {
         const Place& place = places[i / kFields.size()];
@@ -430,11 +437,12 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
     return bounds;
 }
 
-// The block that exceeds most what the region surely reaches is split, until none exceeds it by much: every
-// point of a block lies above its lower bound, so that the region reaches at least the highest of those.
+// The blocks that exceed most what the region surely reaches are split, until none exceeds it by much. What it reaches is seen in
+// the blocks' middles.
 template <class T>
 DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blocks) const {
     constexpr double kTolerance = 0.05;  // of what is surely reached
+    constexpr std::size_t kAtOnce = 32;
     if (!is_current())
         throw std::logic_error("the frame was set to another time: refresh() makes the bounds valid again");
     for (int axis = 0; axis < 2; ++axis)
@@ -446,6 +454,8 @@ DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blo
     const std::vector<double> cycles =
         finest_weight_.empty() ? std::vector<double>()
                                : phases_at(frame_->sea().trains(), origin_m, frame_->time_within_loop_s());
+    const Block whole{region.min_m - origin_m, region.max_m - origin_m};
+    if (most_blocks == 1) return bounds_of(whole, cycles, origin_m);
 
     struct Part {
         Block block;
@@ -453,9 +463,7 @@ DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blo
         double excess;
         bool operator<(const Part& other) const { return excess < other.excess; }
     };
-    DisplacementBounds settled, reached;  // the latter inside out until something is: lo ≥ the region's least
-    reached.z = reached.dx =
-        reached.dy = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    DisplacementBounds settled, reached;
     const auto excess_of = [&](const DisplacementBounds& bounds) {
         double most = 0.0;
         for (const auto axis : axes()) {
@@ -466,30 +474,56 @@ DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blo
         return most;
     };
     std::priority_queue<Part> parts;
-    const auto add = [&](const Block& block) {
-        const DisplacementBounds bounds = bounds_of(block, cycles, origin_m);
-        for (const auto axis : axes()) {
-            (reached.*axis).hi = std::max((reached.*axis).hi, (bounds.*axis).lo);
-            (reached.*axis).lo = std::min((reached.*axis).lo, (bounds.*axis).hi);
+    const PreparedQuery<T> query(*frame_, query_, products(sampled_), origin_m);
+    std::vector<Block> blocks{whole};
+    std::vector<glm::vec<2, T>> middles;
+    std::vector<glm::vec<3, T>> moved;
+    const std::vector<T> cells_m(2 * kAtOnce, static_cast<T>(cells_.finest_m));
+    const auto add = [&] {
+        middles.clear();
+        for (const Block& block : blocks) middles.emplace_back(0.5 * (block.min_m + block.max_m));
+        moved.resize(middles.size());
+        Results<T> results;
+        results.set(VectorProduct::checked(sampled_), {moved.data()});
+        query.evaluate({.origin_m = origin_m,
+                        .count = middles.size(),
+                        .rest_m = {middles.data()},
+                        .cell_m = {cells_m.data()}},
+                       results);
+        for (std::size_t i = 0; i < blocks.size(); ++i) {
+            glm::dvec3 at(moved[i]);
+            if (sampled_ == Product::Position) at -= glm::dvec3(glm::dvec2(middles[i]), 0.0);
+            for (const auto& [axis, value] :
+                 {std::pair(&DisplacementBounds::dx, at.x), std::pair(&DisplacementBounds::dy, at.y),
+                  std::pair(&DisplacementBounds::z, at.z)})
+                include(reached.*axis, {value, value});
         }
-        parts.push({block, bounds, excess_of(bounds)});
+        for (const Block& block : blocks) {
+            const DisplacementBounds bounds = bounds_of(block, cycles, origin_m);
+            parts.push({block, bounds, excess_of(bounds)});
+        }
+        blocks.clear();
     };
-    add({region.min_m - origin_m, region.max_m - origin_m});
-    for (int blocks = 1; !parts.empty();) {
-        Part part = parts.top();
-        parts.pop();
-        const glm::dvec2 side = part.block.max_m - part.block.min_m;
-        const int longer = side.y > side.x ? 1 : 0;
-        if (blocks >= most_blocks || side[longer] <= smallest_block_m_ ||
-            excess_of(part.bounds) <= kTolerance) {
-            include(settled, part.bounds);
-            continue;
+    add();
+    for (int count = 1; !parts.empty();) {
+        while (!parts.empty() && blocks.size() < 2 * kAtOnce) {
+            const Part part = parts.top();
+            parts.pop();
+            const glm::dvec2 side = part.block.max_m - part.block.min_m;
+            const int longer = side.y > side.x ? 1 : 0;
+            if (count >= most_blocks || side[longer] <= smallest_block_m_ ||
+                excess_of(part.bounds) <= kTolerance) {
+                include(settled, part.bounds);
+                continue;
+            }
+            Block low = part.block, high = part.block;
+            low.max_m[longer] = high.min_m[longer] =
+                0.5 * (part.block.min_m[longer] + part.block.max_m[longer]);
+            blocks.push_back(low);
+            blocks.push_back(high);
+            ++count;
         }
-        Block low = part.block, high = part.block;
-        low.max_m[longer] = high.min_m[longer] = 0.5 * (part.block.min_m[longer] + part.block.max_m[longer]);
-        add(low);
-        add(high);
-        ++blocks;
+        if (!blocks.empty()) add();
     }
     return settled;
 }

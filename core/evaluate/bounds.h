@@ -93,13 +93,15 @@ class FrameBounds {
 
     const Frame<T>* frame_;
     const PlannedQuery* planned_;
+    int query_;
+    Product sampled_;          // displacements, or positions where the query has no others
     FootprintRange cells_;     // of the trains: not below the query's first
     std::vector<int> levels_;  // the plan's, that these footprints lie on or between
     std::vector<GridBounds> grids_;
     std::vector<std::vector<int>> grid_of_level_;          // by level, the indices of its grids
     std::array<std::vector<double>, 3> train_amplitudes_;  // height, Dx, Dy [m]
     std::vector<double> finest_weight_, coarsest_weight_;  // of each train, at the ends of the range
-    double smallest_block_m_ = 0.0;                        // smaller ones are bounded no better
+    double smallest_block_m_ = 0.0;  // of the finest grid: smaller ones are bounded no better
     long times_set_ = -1;
 };
 

@@ -154,7 +154,7 @@ DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& boun
 }
 
 std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, FootprintRange cells) const {
-    constexpr int kBlocks = 2048;
+    constexpr int kBlocks = 4096;
     if (!(cells.finest_m >= 0.0) || !(cells.coarsest_m >= cells.finest_m))
         throw std::invalid_argument("region.finest_cell_m, coarsest_cell_m: accepted: 0 or more, in order");
     const DisplacementBounds moved =

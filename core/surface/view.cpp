@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 
 #include "core/base/constants.h"
+#include "core/scene/limits.h"
 
 namespace pelagic {
 namespace {
@@ -112,6 +115,35 @@ glm::dmat4 View::clip_from(glm::dvec3 origin_m, double near_m) const {
     for (int i = 0; i < 3; ++i) clip[i] = glm::dvec4(x[i], y[i], forward[i], forward[i]);
     clip[3] = glm::dvec4(glm::dot(x, offset_m), glm::dot(y, offset_m), depth_m - 2.0 * near_m, depth_m);
     return clip;
+}
+
+View checked_view(View view) {
+    constexpr double kAxisTolerance =
+        1e-3;  // of axes that a host has in single precision, turned a few times
+    for (int axis = 0; axis < 3; ++axis)
+        if (!limits::kCameraCoordinate_m.holds(view.position_m[axis]))
+            throw std::invalid_argument(
+                "position_m: is outside the range; accepted: " + text_of(limits::kCameraCoordinate_m) + " m");
+    const glm::dvec3 x = view.right, y = view.up, z = view.forward;
+    const auto is = [](double value, double wanted) { return std::abs(value - wanted) < kAxisTolerance; };
+    if (!is(glm::dot(x, x), 1.0) || !is(glm::dot(z, z), 1.0) || !is(glm::dot(x, z), 0.0) ||
+        !is(glm::length(glm::cross(x, z) - y), 0.0))
+        throw std::invalid_argument(
+            "right, up, forward: accepted: unit vectors at right angles, with up = right × forward");
+    view.forward = glm::normalize(z);
+    view.right = glm::normalize(x - glm::dot(x, view.forward) * view.forward);
+    view.up = glm::cross(view.right, view.forward);
+    const auto tangent = [](double fov_deg) { return std::tan(fov_deg * (kPi / 360.0)); };
+    if (!(view.tan_half_width >= tangent(limits::kFov_deg.low) &&
+          view.tan_half_width <= tangent(limits::kFov_deg.high)))
+        throw std::invalid_argument(
+            "tan_half_width: is outside the range; accepted: that of a field of view of " +
+            text_of(limits::kFov_deg) + " degrees");
+    for (const int pixels : {view.resolution.x, view.resolution.y})
+        if (!limits::kImageResolution.holds(pixels))
+            throw std::invalid_argument("resolution: is outside the range; accepted: " +
+                                        text_of(limits::kImageResolution));
+    return view;
 }
 
 View view_at(const Camera& camera, double frame) {

@@ -30,6 +30,10 @@ struct View {
     glm::dmat4 clip_from(glm::dvec3 origin_m, double near_m) const;
 };
 
+// A host's view, whose axes may be rounded to single precision: made orthonormal. Throws std::invalid_argument, naming the
+// member and what is accepted.
+View checked_view(View view);
+
 // The shot's camera at a frame: its single pose, or camera.keys, constant outside them and between them, angles too, on
 // straight lines or, with camera.interpolation = "smooth", on C1 cubics whose heights and angles keep between their
 // keys'. Up is z, for a vertical direction +y, and then the roll.

@@ -3,18 +3,18 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <exception>
-#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
-#include "core/plan/extent.h"
 #include "core/scene/limits.h"
 #include "core/surface/earth.h"
 #include "core/surface/rungs.h"
@@ -117,33 +117,13 @@ Scene scene_of(const pelagic_source& source) {
 }
 
 View view_of(const pelagic_camera& camera) {
-    constexpr double kAxisTolerance = 1e-3;  // as hosts round them
     const auto vector = [](const double(&v)[3]) { return glm::dvec3(v[0], v[1], v[2]); };
-    View view;
-    view.position_m = vector(camera.position_m);
-    for (int axis = 0; axis < 3; ++axis) check_place(view.position_m[axis], "camera.position_m");
-    const glm::dvec3 right = vector(camera.right), up = vector(camera.up), forward = vector(camera.forward);
-    const auto is = [](double value, double wanted) { return std::abs(value - wanted) < kAxisTolerance; };
-    if (!is(glm::dot(right, right), 1.0) || !is(glm::dot(forward, forward), 1.0) ||
-        !is(glm::dot(right, forward), 0.0) || !is(glm::length(glm::cross(right, forward) - up), 0.0))
-        throw std::invalid_argument(
-            "camera.right, up, forward: accepted: unit vectors at right angles, with up = right × forward");
-    view.forward = glm::normalize(forward);
-    view.right = glm::normalize(right - glm::dot(right, view.forward) * view.forward);
-    view.up = glm::cross(view.right, view.forward);
-    const auto tangent = [](double fov_deg) { return std::tan(fov_deg * (kPi / 360.0)); };
-    if (!(camera.tan_half_width >= tangent(limits::kFov_deg.low) &&
-          camera.tan_half_width <= tangent(limits::kFov_deg.high)))
-        throw std::invalid_argument(
-            "camera.tan_half_width is outside the range; accepted: that of a field of view of " +
-            text_of(limits::kFov_deg) + " degrees");
-    view.tan_half_width = camera.tan_half_width;
-    for (const int pixels : {camera.width, camera.height})
-        if (!limits::kImageResolution.holds(pixels))
-            throw std::invalid_argument("camera.width, height are outside the range; accepted: " +
-                                        text_of(limits::kImageResolution));
-    view.resolution = {camera.width, camera.height};
-    return view;
+    return checked_view({.position_m = vector(camera.position_m),
+                         .right = vector(camera.right),
+                         .up = vector(camera.up),
+                         .forward = vector(camera.forward),
+                         .tan_half_width = camera.tan_half_width,
+                         .resolution = {camera.width, camera.height}});
 }
 
 pelagic_camera camera_of(const View& view) {
@@ -176,6 +156,7 @@ Results<float> results_in(const pelagic_values& values) {
 struct Expansion {
     View view;
     ProjectedGridOptions options;
+    ProjectedGridNeeds needs;
     bool triangles = false;
 };
 Expansion expansion_of(const ShotFrame& frame, const pelagic_camera* camera,
@@ -185,9 +166,13 @@ Expansion expansion_of(const ShotFrame& frame, const pelagic_camera* camera,
     if (!(cell_px >= 0.25 && cell_px <= 1000.0))
         throw std::invalid_argument(
             "options.cell_px is outside the range; accepted: 0.25 to 1000 pixels, or 0");
-    Expansion expansion{view_of(taken(camera, "camera")), grid_options(frame, cell_px), asked.triangles != 0};
+    Expansion expansion{.view = view_of(taken(camera, "camera")),
+                        .options = grid_options(frame, cell_px),
+                        .needs = {},
+                        .triangles = asked.triangles != 0};
     expansion.options.curvature_per_m = asked.on_earth != 0 ? kEarthCurvature_per_m : 0.0;
-    expansion.options.size = projected_grid_needs(expansion.view, expansion.options).size;
+    expansion.needs = projected_grid_needs(expansion.view, expansion.options);
+    expansion.options.size = expansion.needs.size;
     return expansion;
 }
 
@@ -219,8 +204,7 @@ void expand(const ShotFrame& frame, const Expansion& expansion, const Results<fl
             pelagic_mesh_buffers& buffers) {
     ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
     // Trains have no ladder: they see each point's own footprints.
-    if (frame.shot().query().cell_m.size() > 1)
-        keep_to_rungs(grid, projected_grid_needs(expansion.view, expansion.options));
+    if (frame.shot().query().cell_m.size() > 1) keep_to_rungs(grid, expansion.needs);
     for (int axis = 0; axis < 2; ++axis) buffers.origin_m[axis] = grid.origin_m[axis];
     buffers.origin_m[2] = 0.0;
     if (buffers.corner) fill_corners(expansion, buffers.corner);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/plan/grid_layout.h"
 #include "core/plan/memory.h"
@@ -73,11 +74,11 @@ double most_of(const Frame<float>& frame, Field field) {
     return (1.0 + kRounding) * most;
 }
 
-// Cells below which no wave is held back [m]: of a sea of trains, whose query needs no ladder. Others have one.
+// A cell that holds back no train [m], far below what the filter asks for (core/plan/filter.h); without trains any will do.
 double whole_cell_m(const Sea<float>& sea) {
     constexpr double kOfShortest = 1.0 / 64.0;
     const std::vector<double>& lengths_m = sea.trains().wavelength_m;
-    return lengths_m.empty() ? 0x1p-10 : kOfShortest * lengths_m.back();
+    return lengths_m.empty() ? 1.0 : kOfShortest * lengths_m.back();
 }
 
 }  // namespace
@@ -94,7 +95,6 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
         require_memory(need, machine::memory_limit(), "a frame of this sea");
         sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
     });
-    whole_m = whole_cell_m(*sea);
 }
 
 ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
@@ -138,7 +138,9 @@ const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
 // Rung by rung: what all footprints of a wide range have in common is a loose bound of each.
 template <class Bound>
 DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& bound) const {
-    double rung_m = rung_below_m(std::max({cells.finest_m, of_->query().cell_m.front(), of_->whole_m}));
+    // Finer cells than the query's first count as that; a sea of trains has no first.
+    const double first_m = of_->query().cell_m.front();
+    double rung_m = rung_below_m(std::max(cells.finest_m, first_m > 0.0 ? first_m : whole_cell_m(*of_->sea)));
     DisplacementBounds all = bound(bounds_from(rung_m));
     // Where a footprint hides all waves, nothing moves, and larger ones change nothing.
     const auto moves = [](const DisplacementBounds& b) { return b.z.hi > b.z.lo; };

@@ -3,15 +3,12 @@
 
 #include <tbb/task_arena.h>
 
-#include <functional>
 #include <glm/vec3.hpp>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "core/evaluate/bounds.h"
 #include "core/evaluate/prepared_query.h"
@@ -37,7 +34,6 @@ struct ShotSea {
     Scene scene;
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
     std::shared_ptr<const Sea<float>> sea;
-    double whole_m = 0.0;  // finer cells hold back no wave
     const Query& query() const { return sea->plan().queries.front().query; }
 };
 

@@ -5,12 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <glm/geometric.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "core/base/constants.h"
 #include "core/scene/limits.h"
 #include "core/surface/patch.h"
 #include "core/surface/projected_grid.h"
@@ -57,38 +55,14 @@ py::tuple tuple_of(glm::dvec3 v) {
     return py::make_tuple(v.x, v.y, v.z);
 }
 
-// Axes as a host has them, rounded to single precision, say.
-constexpr double kAxisTolerance = 1e-3;
-
 View make_view(const Triple& position_m, const Triple& right, const Triple& up, const Triple& forward,
                double tan_half_width, std::array<int, 2> resolution) {
-    for (const double metres : position_m)
-        if (!limits::kCameraCoordinate_m.holds(metres))
-            throw py::value_error(
-                "position_m: is outside the range; accepted: " + text_of(limits::kCameraCoordinate_m) + " m");
-    View view;
-    view.position_m = vector_of(position_m);
-    const glm::dvec3 x = vector_of(right), y = vector_of(up), z = vector_of(forward);
-    const auto is = [](double value, double wanted) { return std::abs(value - wanted) < kAxisTolerance; };
-    if (!is(glm::dot(x, x), 1.0) || !is(glm::dot(z, z), 1.0) || !is(glm::dot(x, z), 0.0) ||
-        !is(glm::length(glm::cross(x, z) - y), 0.0))
-        throw py::value_error(
-            "right, up, forward: accepted: unit vectors at right angles, with up = right × forward");
-    view.forward = glm::normalize(z);
-    view.right = glm::normalize(x - glm::dot(x, view.forward) * view.forward);
-    view.up = glm::cross(view.right, view.forward);
-    const auto tangent = [](double fov_deg) { return std::tan(fov_deg * (kPi / 360.0)); };
-    if (!(tan_half_width >= tangent(limits::kFov_deg.low) &&
-          tan_half_width <= tangent(limits::kFov_deg.high)))
-        throw py::value_error("tan_half_width: is outside the range; accepted: that of a field of view of " +
-                              text_of(limits::kFov_deg) + " degrees");
-    view.tan_half_width = tan_half_width;
-    for (const int pixels : resolution)
-        if (!limits::kImageResolution.holds(pixels))
-            throw py::value_error("resolution: is outside the range; accepted: " +
-                                  text_of(limits::kImageResolution));
-    view.resolution = {resolution[0], resolution[1]};
-    return view;
+    return checked_view({.position_m = vector_of(position_m),
+                         .right = vector_of(right),
+                         .up = vector_of(up),
+                         .forward = vector_of(forward),
+                         .tan_half_width = tan_half_width,
+                         .resolution = {resolution[0], resolution[1]}});
 }
 
 View view_of_scene(const Scene& scene, double frame) {

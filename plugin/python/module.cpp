@@ -59,7 +59,8 @@ PYBIND11_MODULE(pelagic, module) {
         "    frame.set(1.5)\n"
         "    position = frame.evaluate(rest, outputs=(\"position\",))[\"position\"]\n\n"
         "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north. At the program's end "
-        "work in other threads is cancelled, or waited for.";
+        "work in other threads is cancelled, or waited for. A process that is forked after the first computation "
+        "can't compute: start workers with multiprocessing's \"spawn\" or \"forkserver\".";
     module.attr("__version__") = PELAGIC_VERSION;
     py::register_exception<pelagic::ShotError>(module, "ShotError", PyExc_ValueError).doc() =
         "A shot that is refused: a line for each problem, FILE:LINE:COLUMN: KEY = VALUE: PROBLEM; accepted: "

@@ -152,18 +152,14 @@ py::array triangles_of(const GpuGrid& grid) {
 
 // ---- Sea
 
-// GpuSea's thread. The program's end waits for it; a forked process, which doesn't have it, makes its own where it asks.
+// GpuSea's thread. The program's end waits for it.
 class FoamThread final : public NativeWork {
   public:
     // With the interpreter held, as Enlisted.
-    explicit FoamThread(std::shared_ptr<const Sea<float>> sea) : sea_(std::move(sea)) {}
+    explicit FoamThread(std::shared_ptr<const Sea<float>> sea)
+        : worker_(std::make_unique<FoamWorker>(std::move(sea))) {}
 
-    FoamWorker& worker() {
-        if (!worker_) worker_ = std::make_unique<FoamWorker>(sea_);
-        return *worker_;
-    }
-
-    FoamWorker* made() { return worker_.get(); }  // null until it was asked, and again in a forked process
+    FoamWorker* worker() { return worker_.get(); }  // null in a forked process
 
     void cancel() override {
         if (worker_) worker_->cancel();
@@ -173,7 +169,6 @@ class FoamThread final : public NativeWork {
     void abandon() override { static_cast<void>(worker_.release()); }
 
   private:
-    std::shared_ptr<const Sea<float>> sea_;
     Enlisted enlisted_{*this};
     std::unique_ptr<FoamWorker> worker_;
 };
@@ -318,8 +313,8 @@ class GpuSea {
             asked.push_back(grid->grid);
         }
         if (!has_living_foam()) return;
-        if (!foam_thread_) foam_thread_.emplace(sea_);
-        foam_thread_->worker().ask(t_s, std::move(asked));
+        if (!foam_thread_ || !foam_thread_->worker()) foam_thread_.emplace(sea_);
+        foam_thread_->worker()->ask(t_s, std::move(asked));
     }
     bool is_foam_busy() const { return foam_thread_ && !foam_thread_->is_done(); }
     // Empty where there is nothing new.
@@ -327,7 +322,7 @@ class GpuSea {
         py::dict made;
         if (!has_living_foam()) return made;
         std::shared_ptr<const PackedFoam> foam;
-        if (FoamWorker* const worker = foam_thread_ ? foam_thread_->made() : nullptr) {
+        if (FoamWorker* const worker = foam_thread_ ? foam_thread_->worker() : nullptr) {
             if (const std::string problem = worker->error(); !problem.empty())
                 throw std::runtime_error(problem);
             foam = worker->take();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 #include <thread>
 
 #include "plugin/python/bindings.h"
@@ -17,6 +18,8 @@ struct Work {
     int running = 0;
     std::vector<Watch*> watched;
     std::vector<NativeWork*> native;
+    bool was_any = false;                   // in this process, or in those that it was forked from
+    bool was_before_fork = false;           // this process is a fork's child
     std::optional<std::thread::id> ending;  // the thread that ends the program, once it does
 };
 Work& work() {
@@ -37,6 +40,17 @@ void end_all_work() {
         const py::gil_scoped_release others_may_run;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+}
+
+// What begins work calls it first. TBB's threads don't live on in a forked process, and its lists of them may have been
+// copied in the middle of a change.
+void begin_any() {
+    if (work().was_before_fork)
+        throw std::runtime_error(
+            "this process was forked from one that had computed with Pelagic, and a fork leaves threads behind: "
+            "start worker processes with multiprocessing's \"spawn\" or \"forkserver\", or before the first "
+            "computation");
+    work().was_any = true;
 }
 
 }  // namespace
@@ -63,6 +77,7 @@ void Cancel::ends(const std::shared_ptr<std::atomic<bool>>& flag) {
 
 OthersMayRun::OthersMayRun() {
     if (work().ending && *work().ending != std::this_thread::get_id()) throw Cancelled("the program ends");
+    begin_any();
     ++work().running;
     released_.emplace();
 }
@@ -74,6 +89,7 @@ OthersMayRun::~OthersMayRun() {
 
 Enlisted::Enlisted(NativeWork& work) : work_(work) {
     if (python::work().ending) throw Cancelled("the program ends");
+    begin_any();
     python::work().native.push_back(&work);
 }
 
@@ -110,6 +126,7 @@ void add_watch(py::module_& module) {
     // A child has this thread alone.
     py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") = py::cpp_function([] {
                                                            work().running = 0;
+                                                           work().was_before_fork = work().was_any;
                                                            for (NativeWork* each : work().native)
                                                                each->abandon();
                                                        }));

@@ -42,7 +42,8 @@ class Cancelled : public std::exception {
 
 // During its lifetime other Python threads run, as with pybind11's gil_scoped_release, but Python doesn't end: it
 // would end this thread in the middle of its work, which C++ can't survive. At the program's end watched work is
-// cancelled and all work is waited for. Work begun by another thread after that throws Cancelled.
+// cancelled and all work is waited for. Work begun by another thread after that throws Cancelled; work in a process
+// that was forked after any had begun throws std::runtime_error.
 class OthersMayRun {
   public:
     OthersMayRun();
@@ -59,13 +60,13 @@ class NativeWork {
   public:
     virtual void cancel() = 0;  // it ends soon
     virtual bool is_done() const = 0;
-    virtual void abandon() = 0;  // in a forked process, which doesn't have the thread
+    virtual void abandon() = 0;  // in a forked process, which doesn't have the thread and begins none
 
   protected:
     ~NativeWork() = default;
 };
 
-// While it lives, the program's end cancels this work and waits for it. Throws Cancelled if that has begun.
+// While it lives, the program's end cancels this work and waits for it. Throws as OthersMayRun.
 class Enlisted {
   public:
     explicit Enlisted(NativeWork& work);

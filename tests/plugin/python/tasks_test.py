@@ -193,24 +193,32 @@ class Endings(unittest.TestCase):
         for wait in ("pass", "time.sleep(0.05)", "foam(3.0)"):
             self.end_of([*self.LIVING_FOAM, wait, "sea.ask_foam(500.0, grids)", "kept = [sea]; kept.append(kept)"])
 
-    def test_a_forked_process_makes_its_own_foam(self):
-        """It doesn't have the sea's thread, and waits neither for it nor for its locks."""
-        self.end_of([*self.LIVING_FOAM,
-                     "wanted = foam(3.0)",
-                     "sea.ask_foam(500.0, grids)",
-                     "for asks in (False, True):",
-                     "    child = os.fork()",
-                     "    if child == 0:",
-                     "        assert not sea.is_foam_busy",
-                     "        if asks: np.testing.assert_array_equal(foam(3.0), wanted)",
-                     "        break",
-                     "    end = time.monotonic() + 60",
-                     "    done = (0, 0)",
-                     "    while done[0] == 0 and time.monotonic() < end:",
-                     "        done = os.waitpid(child, os.WNOHANG)",
-                     "        time.sleep(0.01)",
-                     "    if done[0] == 0: os.kill(child, 9)",
-                     "    assert done == (child, 0), done"])
+    def test_a_forked_process_is_told_how_to_compute(self):
+        """TBB's threads aren't in it. What was made before is left alone, and the process ends."""
+        for before in ([], ["foam(3.0)"], ["foam(3.0)", "sea.ask_foam(500.0, grids)"]):
+            self.end_of([*self.LIVING_FOAM,
+                         *before,
+                         "child = os.fork()",
+                         "if child == 0:",
+                         "    assert not sea.is_foam_busy",
+                         "    for work in (lambda: foam(3.0), lambda: sea.set(1.0), lambda: pelagic.Sea(scene),",
+                         "                 lambda: pelagic.Sea.begin(scene), lambda: pelagic.begin_bake(scene, 'out')):",
+                         "        try: work()",
+                         "        except RuntimeError as error: assert 'spawn' in str(error), error",
+                         "        else: raise AssertionError('a forked process computed')",
+                         "else:",
+                         "    end = time.monotonic() + 60",
+                         "    done = (0, 0)",
+                         "    while done[0] == 0 and time.monotonic() < end:",
+                         "        done = os.waitpid(child, os.WNOHANG)",
+                         "        time.sleep(0.01)",
+                         "    if done[0] == 0: os.kill(child, 9)",
+                         "    assert done == (child, 0), done"])
+
+    def test_a_process_forked_before_any_work_computes(self):
+        self.end_of(["child = os.fork()",
+                     "pelagic.Sea(scene)",
+                     "if child != 0: assert os.waitpid(child, 0)[1] == 0"])
 
 
 if __name__ == "__main__":

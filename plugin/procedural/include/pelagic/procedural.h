@@ -9,6 +9,7 @@
  *   pelagic_expand_size(frame, &camera, &options, &size, &error);
  *   pelagic_expand(frame, &camera, &options, &buffers, &error);
  *   pelagic_evaluate(frame, &points, &values, &error);
+ *   pelagic_intersect(frame, &rays, &hits, &error);
  *   pelagic_frame_release(frame);
  *   pelagic_close(sea);
  *
@@ -116,6 +117,7 @@ typedef struct pelagic_open_options {
      * It must return, and must not wait for the thread that called pelagic_open(). */
     int (*progress)(double done, void* user);
     void* user;
+    size_t ray_cache_bytes; /* what a frame keeps for rays at most; 0: 256 MiB */
 } pelagic_open_options;
 
 /* Reads, validates and builds: from milliseconds to seconds. `options` may be null. */
@@ -210,6 +212,44 @@ typedef struct pelagic_values {
 /* Each value depends on its point alone, and is finite where the point's place is. */
 PELAGIC_API pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points,
                                             const pelagic_values* values, pelagic_error* error);
+
+/* ---- Rays */
+
+typedef struct pelagic_rays {
+    size_t size;
+    double origin_m[3]; /* of the batch, in the world */
+    size_t count;
+    const float* offset_m;    /* x, y, z of where each begins, relative to the origin; null: there */
+    const float* direction;   /* x, y, z of each, of any length: distances are counted in it */
+    const float *near, *far;  /* distances between which each counts; null: 0, and without end */
+    const float* time_s;      /* of each, as in pelagic_points; null: the shutter's middle */
+    const float* footprint_m; /* width of each where it begins; null: 0 */
+    const float*
+        spread; /* how much each widens in a metre: of a pixel's ray, the tangent of its angle; null: 0 */
+    double tolerance; /* how far from the surface hits may lie, in footprints: 0.05 ... 4; 0: 0.5 */
+    int on_earth;     /* 0: flat; 1: the sea is bent with the earth, which touches z = 0 at the origin */
+} pelagic_rays;
+
+/* Buffers of the caller, as long as there are rays; null: not wanted, and not computed. */
+typedef struct pelagic_hits {
+    size_t size;
+    float* distance;    /* in lengths of the direction; infinity: the ray hits nothing */
+    float* rest_m;      /* x, y of the place at rest, relative to the origin, on a flat sea */
+    float* footprint_m; /* of the ray there */
+    /* Of each hit, as pelagic_evaluate() has them for the place at rest, with the footprint as pixel; the position is that on the ray.
+     * Zeros where there is none. null: not wanted. */
+    const pelagic_values* values;
+} pelagic_hits;
+
+/* The first place where each ray meets the sea, from above or from below. The sea is the exact surface of the frame's finest cells, but for the
+ * tolerance: a hit lies no further from it than tolerance × footprint, a ray that goes deeper through it has a hit, and one that stays
+ * further away has none. Footprints below the finest cell count as that. A ray that isn't finite, or has no direction, hits nothing.
+ * What rays ask for first is worked out then and kept, as far as ray_cache_bytes allow; hits don't depend on that. */
+PELAGIC_API pelagic_status pelagic_intersect(const pelagic_frame* frame, const pelagic_rays* rays,
+                                             const pelagic_hits* hits, pelagic_error* error);
+/* Whether each ray meets the sea at all: 1 or 0. Less work than the first place. */
+PELAGIC_API pelagic_status pelagic_occluded(const pelagic_frame* frame, const pelagic_rays* rays,
+                                            unsigned char* occluded, pelagic_error* error);
 
 /* ---- A mesh for a camera */
 

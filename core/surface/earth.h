@@ -23,6 +23,16 @@ inline glm::dvec3 on_earth(glm::dvec3 flat_m, double curvature_per_m) {
     const auto at = earth_detail::on_earth(flat_m.x, flat_m.y, flat_m.z, curvature_per_m);
     return {at.x, at.y, at.z};
 }
+// Its inverse, up to the half circle; curvature_per_m > 0.
+inline glm::dvec3 from_earth(glm::dvec3 point_m, double curvature_per_m) {
+    const double radius_m = 1.0 / curvature_per_m, across_m = std::hypot(point_m.x, point_m.y),
+                 up_m = radius_m + point_m.z;
+    const double far_m = std::hypot(across_m, up_m);
+    const double height_m = (across_m * across_m + point_m.z * (up_m + radius_m)) / (far_m + radius_m);
+    const double stretch =
+        across_m > 0.0 ? radius_m * std::atan2(across_m, up_m) / across_m : radius_m / up_m;
+    return {point_m.x * stretch, point_m.y * stretch, height_m};
+}
 // The vertical (unit) at a point.
 inline glm::dvec3 earth_up(glm::dvec2 flat_m, double curvature_per_m) {
     const auto up = earth_detail::earth_up(flat_m.x, flat_m.y, curvature_per_m);

@@ -468,6 +468,15 @@ double foreshortening(const Station& at, double radius_m) {
     return std::hypot(radius_m, at.effective_height_m) / at.effective_height_m;
 }
 
+// The same at a point, which is so far from the eye. A pixel's angle shrinks with the cosine of its distance from the axis, down to
+// the corner's.
+double seen_pixel_m(const View& view, const Station& at, glm::dvec2 rest_m, double distance_m) {
+    const double down_m = std::copysign(at.effective_height_m, at.height_m) * view.forward.z;
+    const double ahead_m =
+        std::max(glm::dot(rest_m, glm::dvec2(view.forward)) - down_m, at.corner_cos * distance_m);
+    return kPixel * view.pixel_tangent() * ahead_m;
+}
+
 // How near the sea comes that is seen: its waves two deviations high, where the bounds are five. Only single crests come
 // nearer. Footprints for them would ask for grids four times as large, twice, which hardly a pixel reads.
 double nearest_seen_m(const View& view, const ProjectedGridOptions& options, const Station& at,
@@ -514,6 +523,16 @@ ProjectedGridNeeds projected_grid_needs(const View& view, const ProjectedGridOpt
                 pixel_width_m(view, at, nearest_seen_m(view, options, at, rows[0].radius_m), at.corner_cos)};
 }
 
+PixelFootprint<double> pixel_at_rest(const View& view, const ProjectedGridOptions& options,
+                                     glm::dvec2 rest_m) {
+    const Station at = station_of(view, options);
+    const double radius_m = glm::length(rest_m);
+    const double pixel_m = seen_pixel_m(view, at, rest_m, std::hypot(radius_m, at.effective_height_m));
+    const glm::dvec2 away = radius_m > 0.0 ? rest_m / radius_m : at.ahead;
+    const glm::dvec2 axis_m = pixel_m * foreshortening(at, radius_m) * away;
+    return {.width = pixel_m, .axis_x = axis_m.x, .axis_y = axis_m.y};
+}
+
 ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options) {
     const Station at = station_of(view, options);
     ProjectedGridOptions sized = options;
@@ -536,10 +555,8 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
     grid.pixel_axis_m.resize(count);
     std::vector<glm::dvec2> previous(stride), row(stride);
     std::vector<double> across_m(rows.size()), away_m(count, 0.0);  // to the neighbouring columns, and rows
-    const glm::dvec2 forward(view.forward);
     for (std::size_t j = 0; j < rows.size(); ++j) {
         const double r = rows[j].radius_m, distance_m = std::hypot(r, at.effective_height_m);
-        const double down_m = std::copysign(at.effective_height_m, at.height_m) * view.forward.z;
         const double step = 2.0 * rows[j].half_width / columns;
         const glm::dvec2 turn(std::cos(step), -std::sin(step));
         across_m[j] = 2.0 * r * std::sin(std::min(0.5 * step, 0.5 * kPi));
@@ -553,9 +570,7 @@ ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& optio
             row[i] = r * away;
             const std::size_t here = j * stride + i;
             grid.rest_m[here] = glm::vec2(row[i]);
-            // A pixel's angle shrinks with the cosine of its distance from the axis, down to the corner's.
-            const double ahead_m = std::max(glm::dot(row[i], forward) - down_m, at.corner_cos * distance_m);
-            const double pixel_m = kPixel * view.pixel_tangent() * ahead_m;
+            const double pixel_m = seen_pixel_m(view, at, row[i], distance_m);
             grid.pixel_m[here] = static_cast<float>(pixel_m);
             grid.pixel_axis_m[here] = glm::vec2(pixel_m * foreshortening(at, r) * away);
             grid.cell_axis_m[here] = glm::vec2(away);  // its length follows below

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "core/surface/hidden_height.h"
+#include "core/surface/pixel_footprint.h"
 #include "core/surface/view.h"
 
 namespace pelagic {
@@ -84,6 +85,10 @@ ProjectedGridNeeds together(const ProjectedGridNeeds& a, const ProjectedGridNeed
 // Covers every point at rest whose displaced position may be in view. Where none is (looking up from above
 // the crests), the grid is valid and lies at the horizon.
 ProjectedGrid projected_grid(const View& view, const ProjectedGridOptions& options);
+
+// A pixel's footprint at a point at rest, relative to the camera's nadir: as the grid's points have it.
+PixelFootprint<double> pixel_at_rest(const View& view, const ProjectedGridOptions& options,
+                                     glm::dvec2 rest_m);
 
 // Two triangles per cell, as indices of rest_m. They depend on the size alone.
 std::vector<std::uint32_t> projected_grid_triangles(ProjectedGridSize size);

@@ -20,93 +20,12 @@
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
+#include "plugin/procedural/c_interface.h"
 #include "plugin/procedural/procedural_frame.h"
 #include "plugin/shot/shot.h"
 
-struct pelagic_sea {
-    std::shared_ptr<const pelagic::procedural::ShotSea> shot;
-};
-struct pelagic_frame {
-    pelagic::procedural::ShotFrame frame;
-};
-
 namespace pelagic::procedural {
 namespace {
-
-void say(pelagic_error* error, const char* message) {
-    if (!error) return;
-    std::size_t length = std::min(std::strlen(message), sizeof error->message - 1);
-    const auto is_inside_character = [&] {
-        return (static_cast<unsigned char>(message[length]) & 0xc0) == 0x80;
-    };
-    while (length > 0 && is_inside_character()) --length;
-    std::memcpy(error->message, message, length);
-    error->message[length] = '\0';
-}
-
-// Runs `work`; what it throws becomes a status and a message.
-template <class Work>
-pelagic_status guarded(pelagic_error* error, const Work& work) noexcept {
-    const auto failed = [&](pelagic_status status, const char* message) {
-        say(error, message);
-        return status;
-    };
-    say(error, "");
-    try {
-        return work();
-    } catch (const ShotError& refused) {
-        return failed(PELAGIC_SHOT_REFUSED, refused.what());
-    } catch (const BuildCancelled& cancelled) {
-        return failed(PELAGIC_CANCELLED, cancelled.what());
-    } catch (const std::invalid_argument& invalid) {
-        return failed(PELAGIC_INVALID_ARGUMENT, invalid.what());
-    } catch (const std::bad_alloc&) {
-        return failed(PELAGIC_OUT_OF_MEMORY, "there is not enough memory");
-    } catch (const std::exception& other) {
-        return failed(PELAGIC_FAILED, other.what());
-    } catch (...) {
-        return failed(PELAGIC_FAILED, "something failed that has no name");
-    }
-}
-
-template <class T>
-T& required(T* pointer, const char* name) {
-    if (!pointer) throw std::invalid_argument(std::string(name) + " is null");
-    return *pointer;
-}
-
-// A structure of the caller's, as this version knows it. A longer one is of a later version: what this one doesn't know of it must
-// be 0.
-template <class S>
-S taken(const S* from, const char* name) {
-    const std::size_t size = required(from, name).size;
-    if (size < sizeof(S))
-        throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
-    const auto* bytes = reinterpret_cast<const unsigned char*>(from);
-    if (std::any_of(bytes + sizeof(S), bytes + size, [](unsigned char byte) { return byte != 0; }))
-        throw std::invalid_argument(std::string(name) + " asks for what a later version of the library has");
-    return *from;
-}
-// The same where null stands for a structure of zeros.
-template <class S>
-S taken_or_zeros(const S* from, const char* name) {
-    return from ? taken(from, name) : S{};
-}
-// Into the caller's; its size stays.
-template <class S>
-void give(S from, S* to, const char* name) {
-    if (required(to, name).size < sizeof(S))
-        throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
-    from.size = to->size;
-    *to = from;
-}
-
-// [m], as cameras' may be.
-void check_place(double metres, const char* name) {
-    if (!limits::kCameraCoordinate_m.holds(metres))
-        throw std::invalid_argument(std::string(name) + " is outside the range; accepted: " +
-                                    text_of(limits::kCameraCoordinate_m) + " m");
-}
 
 Scene scene_of(const pelagic_source& source) {
     if (source.text)
@@ -138,18 +57,6 @@ pelagic_camera camera_of(const View& view) {
     camera.width = view.resolution.x;
     camera.height = view.resolution.y;
     return camera;
-}
-
-Results<float> results_in(const pelagic_values& values) {
-    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
-    const auto vectors = [](float* at) { return Strided<glm::vec3>{reinterpret_cast<glm::vec3*>(at)}; };
-    Results<float> results;
-    results.set(Product::Position, vectors(values.position_m));
-    results.set(Product::Normal, vectors(values.normal));
-    results.set(Product::Velocity, vectors(values.velocity_mps));
-    results.set(Product::SlopeVariance, vectors(values.slope_variance));
-    results.set(Product::Coverage, {values.coverage});
-    return results;
 }
 
 // What pelagic_expand() and pelagic_expand_size() agree on.
@@ -286,7 +193,9 @@ pelagic_status pelagic_open(const pelagic_source* source, const pelagic_open_opt
         };
         tell(0.0);
         auto shot = std::make_shared<const ShotSea>(
-            std::move(scene), SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads}, watch);
+            std::move(scene),
+            SeaOptions{asked.finest_cell_m, asked.finest_pixel_m, asked.threads, asked.ray_cache_bytes},
+            watch);
         tell(1.0);
         out = new pelagic_sea{std::move(shot)};
         return PELAGIC_OK;

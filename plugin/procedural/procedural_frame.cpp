@@ -21,6 +21,8 @@
 namespace pelagic::procedural {
 namespace {
 
+constexpr std::size_t kRayCache_bytes = std::size_t{256} << 20;
+
 constexpr ProductSet kProducts = products(Product::Position, Product::Normal, Product::Velocity,
                                           Product::SlopeVariance, Product::Coverage);
 
@@ -85,6 +87,7 @@ double whole_cell_m(const Sea<float>& sea) {
 
 ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
     : scene(std::move(from)),
+      ray_cache_bytes(options.ray_cache_bytes > 0 ? options.ray_cache_bytes : kRayCache_bytes),
       arena(options.threads > 0 ? std::make_unique<tbb::task_arena>(
                                       std::min(options.threads, tbb::info::default_concurrency()))
                                 : std::make_unique<tbb::task_arena>()) {
@@ -95,6 +98,12 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
         require_memory(need, machine::memory_limit(), "a frame of this sea");
         sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
     });
+}
+
+double ShotSea::finest_cell_m() const {
+    // A sea of trains has no first cell.
+    const double first_m = query().cell_m.front();
+    return first_m > 0.0 ? first_m : whole_cell_m(*sea);
 }
 
 ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
@@ -117,6 +126,8 @@ void ShotFrame::set(double open_s, double close_s) {
         half_open_s_ = 0.5 * (close_s - open_s);
         fastest_mps_ = glm::dvec3(0.0);
         bounds_.clear();
+        tiles_.reset();
+        everywhere_.reset();
         if (half_open_s_ == 0.0) return;
         constexpr std::array kVelocities{Field::VelocityX, Field::VelocityY, Field::VelocityZ};
         tbb::parallel_for(0, 3, [&](int axis) { fastest_mps_[axis] = most_of(frame_, kVelocities[axis]); });
@@ -124,7 +135,7 @@ void ShotFrame::set(double open_s, double close_s) {
 }
 
 const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
-    const std::lock_guard<std::mutex> lock(bounds_lock_);
+    const std::lock_guard<std::mutex> lock(lock_);
     auto& bounds = bounds_[rung_m];
     // By this thread alone, which takes up nobody else's work meanwhile: that might want the lock.
     if (!bounds)
@@ -138,9 +149,7 @@ const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
 // Rung by rung: what all footprints of a wide range have in common is a loose bound of each.
 template <class Bound>
 DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& bound) const {
-    // Finer cells than the query's first count as that; a sea of trains has no first.
-    const double first_m = of_->query().cell_m.front();
-    double rung_m = rung_below_m(std::max(cells.finest_m, first_m > 0.0 ? first_m : whole_cell_m(*of_->sea)));
+    double rung_m = rung_below_m(std::max(cells.finest_m, of_->finest_cell_m()));
     DisplacementBounds all = bound(bounds_from(rung_m));
     // Where a footprint hides all waves, nothing moves, and larger ones change nothing.
     const auto moves = [](const DisplacementBounds& b) { return b.z.hi > b.z.lo; };
@@ -167,11 +176,23 @@ std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, Fo
 }
 
 SurfaceBounds ShotFrame::everywhere() const {
+    const std::lock_guard<std::mutex> lock(lock_);
     const auto most = [&](Field field, double velocity_mps) {
         return most_of(frame_, field) + half_open_s_ * velocity_mps;
     };
-    return {.height_m = most(Field::Height, fastest_mps_.z),
+    if (!everywhere_)
+        everywhere_ = {
+            .height_m = most(Field::Height, fastest_mps_.z),
             .reach_m = std::hypot(most(Field::Dx, fastest_mps_.x), most(Field::Dy, fastest_mps_.y))};
+    return *everywhere_;
+}
+
+const SurfaceTiles& ShotFrame::tiles() const {
+    const std::lock_guard<std::mutex> lock(lock_);
+    if (!tiles_)
+        tiles_ = std::make_unique<const SurfaceTiles>(*query_, of_->finest_cell_m(), half_open_s_,
+                                                      of_->ray_cache_bytes);
+    return *tiles_;
 }
 
 void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const {

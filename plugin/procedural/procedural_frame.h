@@ -15,6 +15,7 @@
 #include "core/plan/plan.h"
 #include "core/surface/projected_grid.h"
 #include "core/waves/frame.h"
+#include "plugin/procedural/surface_tiles.h"
 
 namespace pelagic::procedural {
 
@@ -25,6 +26,7 @@ inline constexpr double kCell_px = 2.0;
 struct SeaOptions {
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;  // 0: as the shot's camera needs it
     int threads = 0;                                   // at most; 0: all
+    std::size_t ray_cache_bytes = 0;                   // that a frame keeps for rays; 0: 256 MiB
 };
 
 // Immutable. The plan has one query, number 0.
@@ -32,9 +34,12 @@ struct ShotSea {
     ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch);
 
     Scene scene;
+    std::size_t ray_cache_bytes;
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
     std::shared_ptr<const Sea<float>> sea;
     const Query& query() const { return sea->plan().queries.front().query; }
+    // The cell at which nothing more comes to light [m], > 0.
+    double finest_cell_m() const;
 };
 
 // Points as evaluate() takes them, and when each is asked for.
@@ -57,6 +62,10 @@ class ShotFrame {
     // Half the height and the reach of all points everywhere.
     SurfaceBounds everywhere() const;
 
+    double half_open_s() const { return half_open_s_; }  // half of the time for which the shutter is open
+    // What rays see; made when asked for, as those of a frame that nobody traces cost nothing.
+    const SurfaceTiles& tiles() const;
+
     // By the calling thread alone. Times outside the shutter are its ends.
     void evaluate(const TimedPoints& points, Results<float> results) const;
     // The same in the middle of the shutter, by all threads of the calling arena.
@@ -71,11 +80,13 @@ class ShotFrame {
     std::shared_ptr<const ShotSea> of_;
     Frame<float> frame_;
     std::optional<PreparedQuery<float>> query_;
-    double half_open_s_ = 0.0;     // half of the time for which the shutter is open
+    double half_open_s_ = 0.0;
     glm::dvec3 fastest_mps_{0.0};  // no point moves faster along the axes
-    mutable std::mutex bounds_lock_;
+    mutable std::mutex lock_;      // of what is made when asked for
     mutable std::map<double, std::unique_ptr<const FrameBounds<float>>>
         bounds_;  // by rung, made when asked for
+    mutable std::unique_ptr<const SurfaceTiles> tiles_;
+    mutable std::optional<SurfaceBounds> everywhere_;
 };
 
 // All of the sea that may be in view from there while the shutter is open.

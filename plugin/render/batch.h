@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec2.hpp>
-#include <glm/vec3.hpp>
 #include <vector>
 
-#include "core/evaluate/values.h"
 #include "core/lighting/lighting.h"
 #include "core/scene/scene.h"
 #include "plugin/render/raster.h"
+#include "plugin/render/sea_light.h"
 
 namespace pelagic {
 
@@ -39,15 +37,7 @@ struct Batch {
     std::vector<std::uint32_t> triangles;  // by sample
     std::vector<SeaRadiance> radiance;     // by sample
     std::vector<std::size_t> sea;          // which samples show the sea, rising
-    std::vector<glm::vec<2, T>> rest;      // from here on by entry of `sea`
-    std::vector<T> pixel_m;
-    std::vector<glm::vec<2, T>> pixel_axis_m;
-    std::vector<glm::vec3> to_eye, up;
-    std::vector<float> distance_m;     // of the eye
-    std::vector<float> mesh_variance;  // of the slopes that the mesh hides at rest, along the view
-    Values answers;
-    std::vector<float> foam_active, foam_age_s;  // where foam lives
-    std::vector<SeaPoint> points;
+    SeenSea<T> seen;                       // from here on by entry of `sea`
     std::vector<SeaRadiance> lit;
 };
 

@@ -9,24 +9,20 @@
 #include <glm/ext/vector_float1.hpp>
 #include <glm/geometric.hpp>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <utility>
 
 #include "core/base/precision.h"
-#include "core/effects/foam_history.h"
-#include "core/lighting/air.h"
 #include "core/lighting/background.h"
-#include "core/lighting/water.h"
 #include "core/surface/earth.h"
 #include "core/surface/pixel_footprint.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
-#include "plugin/light/light.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/motion.h"
 #include "plugin/render/raster.h"
+#include "plugin/render/sea_light.h"
 #include "plugin/render/under_water.h"
 
 namespace pelagic {
@@ -55,19 +51,11 @@ class RendererOf final : public Impl {
     RendererOf(const Plan& plan, const RenderOptions& options, Sky sky, const BuildWatch& watch)
         : scene_(plan.from->scene),
           options_(options),
-          sky_(std::move(sky)),
-          water_(make_water(scene_)),
-          foam_(make_foam(scene_)),
-          sea_(std::make_shared<const Sea<T>>(plan, watch)),
-          frame_(sea_),
-          grid_options_(projected_grid_options(*plan.from)) {
-        if (!plan.foam) return;
-        history_.emplace(sea_);
-        foam_ = make_foam(scene_, active_foam(scene_, sea_->residual_coverage()));
-    }
+          sea_(plan, options.lighting, std::move(sky), watch),
+          grid_options_(projected_grid_options(*plan.from)) {}
 
-    const Plan& plan() const override { return sea_->plan(); }
-    const Sky& sky() const override { return sky_; }
+    const Plan& plan() const override { return sea_.plan(); }
+    const Sky& sky() const override { return sea_.sky(); }
 
     bool render(int frame, Picture& picture, const RenderWatch& watch) override {
         const int n = options_.samples;
@@ -107,7 +95,10 @@ class RendererOf final : public Impl {
                 const int rows = std::min(step, raster_size().y - row);
                 draw(row, rows);
                 if (is_lit) light_sky(row);
-                if (is_lit || has_data()) answer_sea(row);
+                if ((is_lit || has_data()) && !batch_.sea.empty()) {
+                    find_places(row);
+                    sea_.answer(batch_.seen);
+                }
                 if (is_lit) light_sea();
                 if (is_lit) average(row, rows, picture);
                 if (is_own) describe(row, rows, frame, picture);
@@ -122,8 +113,8 @@ class RendererOf final : public Impl {
         for (std::size_t i = 0; i < frames.size(); ++i)
             for (const double moment : moments_of(frames[i], options_)) {
                 if (!is_among_waves(view_at(scene_.camera, moment), grid_options_)) continue;
-                frame_.set(scene_.shot.time_s(moment));
-                refuse_under_water(frame_, scene_, moment, grid_options_);
+                sea_.set(scene_.shot.time_s(moment));
+                refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
                 if (watch.progress)
                     watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
                 if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
@@ -148,28 +139,26 @@ class RendererOf final : public Impl {
 
     // Throws BuildCancelled.
     void begin(double moment, const BuildWatch& watch) {
-        frame_.set(scene_.shot.time_s(moment));
-        refuse_under_water(frame_, scene_, moment, grid_options_);
+        sea_.set(scene_.shot.time_s(moment));
+        refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
         const double height_m = view_.position_m.z;
         view_ = view_at(scene_.camera, moment);
-        if (sky_.air && (air_.empty() || view_.position_m.z != height_m))
-            air_ = sky_.air->seen_from(view_.position_m.z);
+        if (air_.empty() || view_.position_m.z != height_m) air_ = sea_.air_before(view_.position_m.z);
         lay_out_grid();
         prepare_foam(scene_.shot.time_s(moment), watch);
     }
 
-    // Of all that the picture shows, so that its parts don't each go through the earlier times.
     void prepare_foam(double time_s, const BuildWatch& watch) {
-        if (!history_) return;
-        history_->set(time_s);
+        if (!sea_.foam_lives()) return;
         const std::vector<T> pixel_m(grid_.pixel_m.begin(), grid_.pixel_m.end());
         const std::vector<glm::vec<2, T>> axis_m(grid_.pixel_axis_m.begin(), grid_.pixel_axis_m.end());
-        history_->prepare(Points<T>{.origin_m = grid_.origin_m,
+        sea_.prepare_foam(time_s,
+                          Points<T>{.origin_m = grid_.origin_m,
                                     .count = rest_.size(),
                                     .rest_m = {rest_.data()},
                                     .pixel_m = {pixel_m.data()},
                                     .pixel_axis_m = {axis_m.data()}},
-                          kQuery, watch);
+                          watch);
     }
 
     void lay_out_grid() {
@@ -191,7 +180,7 @@ class RendererOf final : public Impl {
             velocity_.resize(count);
             results.set(Product::Velocity, {velocity_.data()});
         }
-        evaluate(frame_, kQuery,
+        evaluate(sea_.frame(), kQuery,
                  Points<T>{.origin_m = grid_.origin_m,
                            .count = count,
                            .rest_m = {rest_.data()},
@@ -229,7 +218,7 @@ class RendererOf final : public Impl {
         for (T& width : width_m) width = std::max(width, first_pixel_m_);
         Results<T> results;
         results.set(Product::SlopeVarianceAtRest, {mesh_variance_.data()});
-        evaluate(frame_, kQuery,
+        evaluate(sea_.frame(), kQuery,
                  Points<T>{.origin_m = grid_.origin_m,
                            .count = count,
                            .rest_m = {rest_.data()},
@@ -281,91 +270,25 @@ class RendererOf final : public Impl {
             if (batch_.triangles[i] != Rasteriser::kNone) return;
             const glm::dvec3 direction = view_.direction(seen_at(first_row, i));
             const auto cos_off_axis = static_cast<float>(glm::dot(direction, view_.forward));
-            const Background behind =
-                background(sky_, glm::vec3(direction),
-                           pixel_angle(static_cast<float>(view_.pixel_tangent()), cos_off_axis));
-            if (lighting.sky)
-                batch_.radiance[i].sky += air_.has_sky ? sky_through(air_, glm::vec3(direction)) : behind.sky;
-            if (lighting.sun) batch_.radiance[i].sky += behind.sun;
+            batch_.radiance[i] =
+                sea_.behind(air_, glm::vec3(direction),
+                            pixel_angle(static_cast<float>(view_.pixel_tangent()), cos_off_axis));
         });
     }
 
-    void answer_sea(int first_row) {
-        const std::size_t count = batch_.sea.size();
-        if (count == 0) return;
-        find_places(first_row);
-        ProductSet wanted = plan().queries[kQuery].query.products;
-        wanted &= ~products(Product::Position, Product::Velocity);  // the triangles have them
-        const Points<T> points{.origin_m = grid_.origin_m,
-                               .count = count,
-                               .rest_m = {batch_.rest.data()},
-                               .pixel_m = {batch_.pixel_m.data()},
-                               .pixel_axis_m = {batch_.pixel_axis_m.data()}};
-        runner_.run(frame_, kQuery, points, wanted, batch_.answers);
-        if (!history_) return;
-        batch_.foam_active.resize(count);
-        batch_.foam_age_s.resize(count);
-        history_->add(points, kQuery,
-                      {.coverage = {batch_.answers.numbers(Product::Coverage).data()},
-                       .active = {batch_.foam_active.data()},
-                       .age_s = {batch_.foam_age_s.data()}});
-    }
-
     void light_sea() {
-        const std::size_t count = batch_.sea.size();
-        if (count == 0) return;
-        const std::vector<glm::vec3>& normal = batch_.answers.vectors(Product::Normal);
-        const std::vector<glm::vec3>& slope_variance = batch_.answers.vectors(Product::SlopeVariance);
-        const std::vector<glm::vec3>& at_rest = batch_.answers.vectors(Product::SlopeVarianceAtRest);
-        const std::vector<float>& coverage = batch_.answers.numbers(Product::Coverage);
-        batch_.points.resize(count);
-        batch_.lit.resize(count);
-        const FoamPattern foam = foam_pattern(foam_, grid_.origin_m);
-        tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, count, kShadeGrain),
-            [&](const tbb::blocked_range<std::size_t>& range) {
-                for (std::size_t i = range.begin(); i < range.end(); ++i)
-                    batch_.points[i] = {.to_eye = batch_.to_eye[i],
-                                        .normal = normal[i],
-                                        .slope_variance = slope_variance[i],
-                                        .slope_variance_at_rest = at_rest[i],
-                                        .coverage = coverage.empty() ? 0.0f : coverage[i],
-                                        .up = batch_.up[i],
-                                        .mesh_variance = batch_.mesh_variance[i],
-                                        .rest_m = glm::vec2(batch_.rest[i]),
-                                        .pixel_m = glm::vec3(batch_.pixel_m[i], batch_.pixel_axis_m[i])};
-                if (history_)
-                    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        batch_.points[i].active = batch_.foam_active[i];
-                        batch_.points[i].age_s = residual_age_s(i);
-                    }
-                const auto points = std::span(batch_.points).subspan(range.begin(), range.size());
-                const auto lit = std::span(batch_.lit).subspan(range.begin(), range.size());
-                shade_sea(options_.lighting, sky_, water_, points, lit, &air_, foam);
-                if (options_.lighting.air)
-                    see_through(air_, std::span(batch_.to_eye).subspan(range.begin(), range.size()),
-                                std::span(batch_.distance_m).subspan(range.begin(), range.size()), lit);
-                for (std::size_t i = range.begin(); i < range.end(); ++i)
-                    batch_.radiance[batch_.sea[i]] = batch_.lit[i];
-            });
-    }
-
-    // Of the foam that earlier breaking has left, without what breaks now.
-    float residual_age_s(std::size_t i) const {
-        const float total = batch_.points[i].coverage, left = total - batch_.foam_active[i];
-        return left > 0.0f ? batch_.foam_age_s[i] * total / left : 0.0f;
+        if (batch_.sea.empty()) return;
+        batch_.lit.resize(batch_.sea.size());
+        sea_.light(batch_.seen, air_, batch_.lit);
+        for (std::size_t i = 0; i < batch_.sea.size(); ++i) batch_.radiance[batch_.sea[i]] = batch_.lit[i];
     }
 
     // The place at rest that each sample of the sea shows, its footprint and the way to the eye.
     void find_places(int first_row) {
         const std::size_t count = batch_.sea.size();
-        batch_.rest.resize(count);
-        batch_.pixel_m.resize(count);
-        batch_.pixel_axis_m.resize(count);
-        batch_.to_eye.resize(count);
-        batch_.up.resize(count);
-        batch_.distance_m.resize(count);
-        batch_.mesh_variance.assign(count, 0.0f);
+        SeenSea<T>& seen = batch_.seen;
+        seen.origin_m = grid_.origin_m;
+        seen.resize(count);
         const glm::dvec3 eye = view_.position_m - glm::dvec3(grid_.origin_m, 0.0);
         in_parallel(count, [&](std::size_t i) {
             const std::uint32_t triangle = batch_.triangles[batch_.sea[i]];
@@ -382,23 +305,23 @@ class RendererOf final : public Impl {
                 pixel_axis_m += weights[corner] * glm::dvec2(grid_.pixel_axis_m[vertex]);
                 mesh_variance += weights[corner] * glm::dvec3(mesh_variance_[vertex]);
             }
-            batch_.rest[i] = glm::vec<2, T>(rest);
-            batch_.up[i] = glm::vec3(earth_up(rest, grid_.curvature_per_m));
+            seen.rest[i] = glm::vec<2, T>(rest);
+            seen.up[i] = glm::vec3(earth_up(rest, grid_.curvature_per_m));
             const auto pixel = pixel_on_mesh(
                 triangle, first_row, batch_.sea[i],
                 PixelFootprint<double>{.width = pixel_m, .axis_x = pixel_axis_m.x, .axis_y = pixel_axis_m.y});
-            batch_.pixel_axis_m[i] = glm::vec<2, T>(pixel.axis_x, pixel.axis_y);
+            seen.pixel_axis_m[i] = glm::vec<2, T>(pixel.axis_x, pixel.axis_y);
             // Rounding must not reach the rung below the frame's first.
-            batch_.pixel_m[i] = std::max(static_cast<T>(pixel.width), first_pixel_m_);
+            seen.pixel_m[i] = std::max(static_cast<T>(pixel.width), first_pixel_m_);
             const glm::dvec3 way = eye - position;
             const double distance = glm::length(way);
-            batch_.distance_m[i] = static_cast<float>(distance);
+            seen.distance_m[i] = static_cast<float>(distance);
             // At the eye itself, which the near plane keeps from happening, up is as good as any.
-            batch_.mesh_variance[i] =
+            seen.mesh_variance[i] =
                 static_cast<float>((mesh_variance.x * way.x * way.x + mesh_variance.y * way.y * way.y +
                                     2.0 * mesh_variance.z * way.x * way.y) /
                                    std::max(way.x * way.x + way.y * way.y, 1e-12));
-            batch_.to_eye[i] = distance > 0.0 ? glm::vec3(way / distance) : glm::vec3(0.0f, 0.0f, 1.0f);
+            seen.to_eye[i] = distance > 0.0 ? glm::vec3(way / distance) : glm::vec3(0.0f, 0.0f, 1.0f);
         });
     }
 
@@ -504,28 +427,23 @@ class RendererOf final : public Impl {
         // Samples that show the sea stand in rising order.
         const std::size_t i =
             std::lower_bound(batch_.sea.begin(), batch_.sea.end(), sample) - batch_.sea.begin();
-        const std::vector<float>& coverage = batch_.answers.numbers(Product::Coverage);
-        set(PictureLayer::Normal,
-            from_level(glm::dvec3(batch_.answers.vectors(Product::Normal)[i]), glm::dvec3(batch_.up[i])));
-        set(PictureLayer::SlopeVariance, batch_.answers.vectors(Product::SlopeVariance)[i]);
+        const std::vector<float>& coverage = sea_.answers().numbers(Product::Coverage);
+        set(PictureLayer::Normal, from_level(glm::dvec3(sea_.answers().vectors(Product::Normal)[i]),
+                                             glm::dvec3(batch_.seen.up[i])));
+        set(PictureLayer::SlopeVariance, sea_.answers().vectors(Product::SlopeVariance)[i]);
         set(PictureLayer::Coverage, glm::vec1(coverage.empty() ? 0.0f : coverage[i]));
         // Foam that doesn't live is all of waves that break now.
-        set(PictureLayer::FoamActive, glm::vec1(history_           ? batch_.foam_active[i]
+        set(PictureLayer::FoamActive, glm::vec1(sea_.foam_lives()  ? sea_.foam_active()[i]
                                                 : coverage.empty() ? 0.0f
                                                                    : coverage[i]));
-        set(PictureLayer::FoamAge, glm::vec1(history_ ? batch_.foam_age_s[i] : 0.0f));
+        set(PictureLayer::FoamAge, glm::vec1(sea_.foam_lives() ? sea_.foam_age_s()[i] : 0.0f));
     }
 
-    static constexpr int kQuery = 0;  // the plan's only one
+    static constexpr int kQuery = SeaLight<T>::kQuery;
 
     Scene scene_;
     RenderOptions options_;
-    Sky sky_;
-    WaterBody water_;
-    FoamLook foam_;
-    std::shared_ptr<const Sea<T>> sea_;
-    Frame<T> frame_;
-    std::optional<FoamHistory<T>> history_;
+    SeaLight<T> sea_;
     ProjectedGridOptions grid_options_;
     View view_;
     Air air_;  // before that view's eye
@@ -542,7 +460,6 @@ class RendererOf final : public Impl {
     std::vector<glm::vec<3, T>> velocity_;  // where motion vectors are asked for
     std::vector<glm::dvec4> clip_;
     Rasteriser raster_;
-    QueryRunner<T> runner_;
     Batch<T> batch_;
 };
 

@@ -1,0 +1,39 @@
+// A ray against the triangles of a tile of the sea, in the vectors of the CPU at hand (Highway, chosen at run time).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/vec3.hpp>
+
+namespace pelagic::procedural {
+
+// A tile has so many cells along a side. Points go row by row; each cell is two triangles, which meet in its diagonal
+// from the lower to the higher corner.
+inline constexpr int kTileCells = 8;
+inline constexpr int kTilePoints = (kTileCells + 1) * (kTileCells + 1);
+
+// By axis.
+struct TilePoints {
+    std::array<const float*, 3> at_m{};          // kTilePoints of each
+    std::array<const float*, 3> velocity_mps{};  // null: they stand still
+};
+
+// Relative to the tile's origin.
+struct TileRay {
+    glm::vec3 from_m{0.0f}, direction{0.0f, 0.0f, -1.0f};
+    float near = 0.0f, far = 0.0f;  // in lengths of the direction
+    float time_s = 0.0f;            // since the moment of at_m
+    float rounding_m =
+        0.0f;  // of points: a ray that passes between neighbouring tiles, so near to both, meets one
+};
+
+struct TileHit {
+    float distance = 0.0f;     // in lengths of the direction
+    float x = 0.0f, y = 0.0f;  // of the place in the tile, 0 … kTileCells
+};
+
+// The nearest triangle between near and far, from above or from below; false, and `hit` as it was, where there is none.
+using NearestInTile = bool (*)(const TilePoints& points, const TileRay& ray, TileHit& hit);
+NearestInTile nearest_in_tile();
+
+}  // namespace pelagic::procedural

@@ -1,0 +1,110 @@
+// The light of a frame of the sea, at places that somebody else has found: those that the rasteriser shows (render.h), or those
+// that rays meet (examples/trace).
+#pragma once
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/effects/foam_history.h"
+#include "core/evaluate/values.h"
+#include "core/lighting/air.h"
+#include "core/lighting/foam_structure.h"
+#include "core/lighting/lighting.h"
+#include "core/lighting/sky.h"
+#include "core/lighting/water.h"
+#include "core/plan/plan.h"
+#include "core/scene/scene.h"
+#include "core/waves/frame.h"
+#include "plugin/render/render.h"
+
+namespace pelagic {
+
+// Places of the sea and how they are seen, an entry each.
+template <class T>
+struct SeenSea {
+    glm::dvec2 origin_m{0.0};          // of places at rest
+    std::vector<glm::vec<2, T>> rest;  // [m]
+    std::vector<T> pixel_m;  // the pixel's footprint at rest, as in Points (core/evaluate/evaluate.h)
+    std::vector<glm::vec<2, T>> pixel_axis_m;
+    std::vector<glm::vec3> to_eye, up;  // unit; the vertical there, in the eye's axes
+    std::vector<float> distance_m;      // of the eye
+    // Of the slopes that the surface on which places were found lacks, at rest, along the view; 0: it lacks none that the
+    // pixel shows.
+    std::vector<float> mesh_variance;
+
+    std::size_t size() const { return rest.size(); }
+    void resize(std::size_t count) {
+        rest.resize(count);
+        pixel_m.resize(count);
+        pixel_axis_m.resize(count);
+        to_eye.resize(count);
+        up.resize(count);
+        distance_m.resize(count);
+        mesh_variance.assign(count, 0.0f);
+    }
+    Points<T> points() const {
+        return {.origin_m = origin_m,
+                .count = size(),
+                .rest_m = {rest.data()},
+                .pixel_m = {pixel_m.data()},
+                .pixel_axis_m = {pixel_axis_m.data()}};
+    }
+};
+
+// Holds the plan's sea and one frame of it. The plan is that of pictures (picture_plan()).
+template <class T>
+class SeaLight {
+  public:
+    static constexpr int kQuery = 0;  // the plan's only one
+
+    // Throws BuildCancelled.
+    SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, const BuildWatch& watch);
+
+    const Plan& plan() const { return sea_->plan(); }
+    const Sky& sky() const { return sky_; }
+    const WaterBody& water() const { return water_; }
+    const Frame<T>& frame() const { return frame_; }
+
+    void set(double time_s) { frame_.set(time_s); }
+    // The air before an eye at this height above the sea at rest [m]; none where the light has none.
+    Air air_before(double height_m) const;
+    // Of all that a picture of the time that is set will show, so that its parts don't each go through the earlier times.
+    // Throws BuildCancelled.
+    void prepare_foam(double time_s, const Points<T>& points, const BuildWatch& watch);
+
+    // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad].
+    SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
+
+    // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
+    void answer(const SeenSea<T>& seen);
+    // The light of the places that were answered last, through the air before the eye.
+    void light(const SeenSea<T>& seen, const Air& air, std::span<SeaRadiance> lit);
+
+    const Values& answers() const { return answers_; }
+    bool foam_lives() const { return history_.has_value(); }
+    // Of the places that were answered last, where foam lives.
+    const std::vector<float>& foam_active() const { return foam_active_; }
+    const std::vector<float>& foam_age_s() const { return foam_age_s_; }
+
+  private:
+    float residual_age_s(std::size_t i) const;
+
+    LightingChoice choice_;
+    Sky sky_;
+    WaterBody water_;
+    FoamLook foam_;
+    std::shared_ptr<const Sea<T>> sea_;
+    Frame<T> frame_;
+    std::optional<FoamHistory<T>> history_;
+    QueryRunner<T> runner_;
+    Values answers_;
+    std::vector<float> foam_active_, foam_age_s_;
+    std::vector<SeaPoint> points_;
+};
+
+}  // namespace pelagic

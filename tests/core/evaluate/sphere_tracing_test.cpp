@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/constants.h"
@@ -181,16 +183,18 @@ Batch along_crests(const Frame<float>& frame, const Plain& plain, std::mt19937& 
 }
 
 struct Count {
-    int hits = 0, crossings = 0, grazes = 0;
+    int crossings = 0, grazes = 0;
+    std::size_t evaluated = 0;
 };
 
 // Each ray against the march. A hit that isn't at the first crossing must be where the ray grazes the surface.
-Count compare(const Kind& kind, const Batch& batch, const SphereTracing& tracing, const Plain& plain) {
+Count compare(const Kind& kind, const Batch& batch, const SphereTracing& tracing, const Plain& plain,
+              SeenSpheres* seen = nullptr) {
     const float tolerance_m = 0.002f;
     std::vector<double> distance(batch.offset_m.size(), -1.0);
     const std::vector<float> tolerances(batch.offset_m.size(), tolerance_m);
-    tracing.trace(batch.rays(kind, tolerances), {distance.data()});
     Count count;
+    count.evaluated = tracing.trace(batch.rays(kind, tolerances), {distance.data()}, seen);
     for (std::size_t i = 0; i < distance.size(); ++i) {
         const glm::dvec3 p = kind.origin_m + glm::dvec3(batch.offset_m[i]), direction(batch.direction[i]);
         const double length = glm::length(direction), far_m = length * static_cast<double>(batch.far[i]);
@@ -207,7 +211,6 @@ Count compare(const Kind& kind, const Batch& batch, const SphereTracing& tracing
         EXPECT_FALSE(std::isnan(hit_m)) << kind.name << " " << i;
         EXPECT_GE(hit_m, 0.0) << kind.name << " " << i;
         const double tolerance = static_cast<double>(tolerance_m);
-        count.hits += std::isfinite(hit_m);
         count.crossings += std::isfinite(crossing_m);
         if (crossing_m == hit_m) continue;  // both infinite
         // A crossing just before the ray's end may count as beyond it.
@@ -263,6 +266,39 @@ TEST(SphereTracing, AStepIsNeverLongerThanTheWayToTheSurface) {
         }
     }
     EXPECT_LT(nearest, 1.05);  // and not shorter than it must be
+}
+
+// The sea moves on, goes back and jumps; rays change places; another sea comes.
+TEST(SphereTracing, WhatRaysHaveSeenBeforeHelpsAndMisleadsNone) {
+    Frame<float> frame = frame_of_trains(sea(40));
+    Scene other = sea(40);
+    other.shot.seed = 2;
+    Frame<float> another = frame_of_trains(other);
+    std::mt19937 random(11);
+    const Plain at_first(frame, 0.0);
+    std::size_t with = 0, without = 0;
+    int grazes = 0, traced = 0;
+    for (Kind kind : kinds()) {
+        kind.rays /= 8;
+        Batch batch = batch_of(kind, at_first, random);
+        SeenSpheres seen;
+        for (const double frames : {0.0, 1.0, 2.0, 3.0, 2.5, 40.0, 41.0, -1e4}) {
+            Frame<float>& now = frames == 41.0 ? another : frame;
+            now.set(3.7 + frames / 24.0);
+            if (frames == 2.5) std::swap(batch.offset_m.front(), batch.offset_m.back());
+            const SphereTracing tracing(now);
+            const Plain plain(now, 0.0);
+            const Count count = compare(kind, batch, tracing, plain, &seen);
+            grazes += count.grazes;
+            traced += kind.rays;
+            if (!(frames > 0.0 && frames < 3.5)) continue;
+            with += count.evaluated;
+            without += compare(kind, batch, tracing, plain).evaluated;
+        }
+    }
+    EXPECT_LT(grazes, traced / 500);
+    EXPECT_LT(static_cast<double>(with), 0.7 * static_cast<double>(without));
+    std::printf("evaluations of a train: %zu, of rays that have seen the frame before %zu\n", without, with);
 }
 
 TEST(SphereTracing, IsTheSurfaceOfTheQuery) {

@@ -31,7 +31,7 @@ class Batch {
         required(rays.direction, "rays.direction");
         sea_ = {.tiles = &frame.tiles(),
                 .everywhere = frame.everywhere(),
-                .finest_cell_m = frame.shot().finest_cell_m(),
+                .finest_footprint_m = frame.shot().finest_ray_m,
                 .origin_m = {rays.origin_m[0], rays.origin_m[1]},
                 .curvature_per_m = rays.on_earth != 0 ? kEarthCurvature_per_m : 0.0,
                 .tolerance = rays.tolerance == 0.0 ? 0.5 : rays.tolerance};

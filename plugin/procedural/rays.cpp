@@ -45,7 +45,7 @@ RayTracer::RayTracer(const RaySea& sea) : sea_(sea) {
 }
 
 double RayTracer::footprint_m(const SeaRay& ray, double s_m) const {
-    return std::max(ray.footprint_m + ray.spread * s_m, sea_.finest_cell_m);
+    return std::max(ray.footprint_m + ray.spread * s_m, sea_.finest_footprint_m);
 }
 
 // Where it is no higher and no lower than any point of the sea; empty: y < x.

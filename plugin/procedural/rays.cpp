@@ -41,6 +41,9 @@ glm::dvec3 inverse(glm::dvec3 direction) {
 }  // namespace
 
 RayTracer::RayTracer(const RaySea& sea) : sea_(sea) {
+    constexpr double kRounding_m = 0.01;  // of places far away; flat water is no thicker
+    sea_.everywhere.height_m += kRounding_m;
+    sea_.everywhere.reach_m += kRounding_m;
     waiting_.reserve(64);
 }
 

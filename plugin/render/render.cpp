@@ -279,7 +279,7 @@ class RendererOf final : public Impl {
     void light_sea() {
         if (batch_.sea.empty()) return;
         batch_.lit.resize(batch_.sea.size());
-        sea_.light(batch_.seen, air_, batch_.lit);
+        sea_.light(batch_.seen, sea_.sky(), air_, batch_.lit);
         for (std::size_t i = 0; i < batch_.sea.size(); ++i) batch_.radiance[batch_.sea[i]] = batch_.lit[i];
     }
 

@@ -61,7 +61,7 @@ void SeaLight<T>::answer(const SeenSea<T>& seen) {
 }
 
 template <class T>
-void SeaLight<T>::light(const SeenSea<T>& seen, const Air& air, std::span<SeaRadiance> lit) {
+void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, std::span<SeaRadiance> lit) {
     const std::vector<glm::vec3>& normal = answers_.vectors(Product::Normal);
     const std::vector<glm::vec3>& slope_variance = answers_.vectors(Product::SlopeVariance);
     const std::vector<glm::vec3>& at_rest = answers_.vectors(Product::SlopeVarianceAtRest);
@@ -88,7 +88,7 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Air& air, std::span<SeaRad
                           const auto part = [&](auto& of) {
                               return std::span(of).subspan(range.begin(), range.size());
                           };
-                          shade_sea(choice_, sky_, water_, part(points_), part(lit), &air, foam);
+                          shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam);
                           if (choice_.air)
                               see_through(air, part(seen.to_eye), part(seen.distance_m), part(lit));
                       });

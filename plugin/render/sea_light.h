@@ -82,8 +82,8 @@ class SeaLight {
 
     // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
     void answer(const SeenSea<T>& seen);
-    // The light of the places that were answered last, through the air before the eye.
-    void light(const SeenSea<T>& seen, const Air& air, std::span<SeaRadiance> lit);
+    // The light of the places that were answered last, under a sky, through the air before the eye.
+    void light(const SeenSea<T>& seen, const Sky& sky, const Air& air, std::span<SeaRadiance> lit);
 
     const Values& answers() const { return answers_; }
     bool foam_lives() const { return history_.has_value(); }

@@ -72,7 +72,7 @@ struct Row {
     std::vector<Spheres> kept{};
     SeenSpheres seen{};
     std::vector<double> distance_m{};
-    double evaluated = 0.0;
+    double evaluated = 0.0;  // with `temporal` the mean of all frames but the first
     int frame = 0;
 };
 
@@ -80,22 +80,25 @@ struct Row {
 void trace(Row& row, Frame<float>& frame, const Picture& picture) {
     frame.set(row.ways.temporal ? row.frame++ / kFps : 0.0);
     const SphereTracing tracing(frame);
+    const auto count_of = [&](std::size_t evaluated) {
+        const auto now = static_cast<double>(evaluated);
+        // The first frame has nothing to reuse.
+        row.evaluated = row.frame > 2 ? row.evaluated + (now - row.evaluated) / (row.frame - 1) : now;
+    };
     if (!row.is_core) {
-        row.evaluated =
-            static_cast<double>(trace_by(row.ways, tracing.trains(), picture, row.kept, row.distance_m));
+        count_of(trace_by(row.ways, tracing.trains(), picture, row.kept, row.distance_m));
         return;
     }
     const std::size_t count = picture.direction.size();
     const std::vector<float> tolerance_m(count, static_cast<float>(picture.tolerance_m)),
         tolerance_per_m(count, static_cast<float>(picture.tolerance_per_m));
     row.distance_m.resize(count);
-    row.evaluated =
-        static_cast<double>(tracing.trace({.count = count,
-                                           .origin_m = picture.origin_m,
-                                           .direction = {picture.direction.data()},
-                                           .tolerance_m = {tolerance_m.data()},
-                                           .tolerance_per_m = {tolerance_per_m.data()}},
-                                          {row.distance_m.data()}, row.ways.temporal ? &row.seen : nullptr));
+    count_of(tracing.trace({.count = count,
+                            .origin_m = picture.origin_m,
+                            .direction = {picture.direction.data()},
+                            .tolerance_m = {tolerance_m.data()},
+                            .tolerance_per_m = {tolerance_per_m.data()}},
+                           {row.distance_m.data()}, row.ways.temporal ? &row.seen : nullptr));
 }
 
 void table(const View& view, int trains) {
@@ -117,6 +120,8 @@ void table(const View& view, int trains) {
     std::vector<Timed> timed;
     for (Row& row : rows) timed.push_back({row.name, [&] { trace(row, frame, picture); }});
     interleave(timed, 5);
+    for (Row& row : rows)
+        while (row.ways.temporal && row.frame < kFps) trace(row, frame, picture);  // a second, for the mean
 
     const auto rays = static_cast<double>(picture.direction.size());
     std::printf("\n%s, %d trains, %.0f rays\n  %-34s %10s %8s %8s %10s %8s %8s   %s\n", view.name, trains,

@@ -153,16 +153,16 @@ Batch batch_of(const Kind& kind, const Plain& plain, std::mt19937& random) {
 const std::vector<Kind>& kinds() {
     constexpr double kMegametre = 1e6;
     static const std::vector<Kind> all{
-        {"from a deck", 3000, {120.0, -40.0, 0.0}, 50.0, 4.0, 12.0, false, -0.9, -0.03, 1e4},
-        {"grazing", 300, {0.0, 0.0, 0.0}, 50.0, 0.5, 3.0, false, -0.01, 0.002, 400.0},
-        {"from below", 1500, {0.0, 70.0, 0.0}, 50.0, -30.0, -4.0, false, 0.05, 1.0, 1e4},
-        {"from below, down", 500, {0.0, 70.0, 0.0}, 50.0, -9.0, -1.5, false, -1.0, 0.05, 200.0},
-        {"from just above", 2000, {0.0, 0.0, 0.0}, 50.0, 0.01, 0.05, true, -0.5, 0.5, 150.0},
-        {"from just below", 2000, {0.0, 0.0, 0.0}, 50.0, -0.05, -0.01, true, -0.5, 0.5, 150.0},
-        {"upward", 1000, {0.0, 0.0, 0.0}, 50.0, 0.5, 8.0, false, 0.01, 1.0, 1e4},
-        {"from a megametre up", 2000, {300.0, 0.0, kMegametre}, 50.0, 0.0, 1.0, false, -1.0, -0.3, 1e7},
-        {"far away", 2000, {kMegametre, -kMegametre, 0.0}, 50.0, 3.0, 9.0, false, -0.6, -0.03, 1e4},
-        {"far ends first", 1000, {0.0, 0.0, 0.0}, 50.0, 1.0, 5.0, false, -0.9, -0.05, 9.0}};
+        {"from a deck", 9000, {120.0, -40.0, 0.0}, 50.0, 4.0, 12.0, false, -0.9, -0.03, 1e4},
+        {"grazing", 900, {0.0, 0.0, 0.0}, 50.0, 0.5, 3.0, false, -0.01, 0.002, 400.0},
+        {"from below", 4500, {0.0, 70.0, 0.0}, 50.0, -30.0, -4.0, false, 0.05, 1.0, 1e4},
+        {"from below, down", 1500, {0.0, 70.0, 0.0}, 50.0, -9.0, -1.5, false, -1.0, 0.05, 200.0},
+        {"from just above", 6000, {0.0, 0.0, 0.0}, 50.0, 0.01, 0.05, true, -0.5, 0.5, 150.0},
+        {"from just below", 6000, {0.0, 0.0, 0.0}, 50.0, -0.05, -0.01, true, -0.5, 0.5, 150.0},
+        {"upward", 3000, {0.0, 0.0, 0.0}, 50.0, 0.5, 8.0, false, 0.01, 1.0, 1e4},
+        {"from a megametre up", 6000, {300.0, 0.0, kMegametre}, 50.0, 0.0, 1.0, false, -1.0, -0.3, 1e7},
+        {"far away", 6000, {kMegametre, -kMegametre, 0.0}, 50.0, 3.0, 9.0, false, -0.6, -0.03, 1e4},
+        {"far ends first", 3000, {0.0, 0.0, 0.0}, 50.0, 1.0, 5.0, false, -0.9, -0.05, 9.0}};
     return all;
 }
 
@@ -173,7 +173,7 @@ Batch along_crests(const Frame<float>& frame, const Plain& plain, std::mt19937& 
         std::max_element(trains.height_m.begin(), trains.height_m.end()) - trains.height_m.begin());
     const double angle =
         std::atan2(trains.ky_cycles_per_m[highest], trains.kx_cycles_per_m[highest]) + 0.5 * kPi;
-    kind = {"along crests", 300, {0.0, 0.0, 0.0}, 100.0, -0.3, 0.6, true, 0.0, 0.0, 300.0};
+    kind = {"along crests", 900, {0.0, 0.0, 0.0}, 100.0, -0.3, 0.6, true, 0.0, 0.0, 300.0};
     Batch batch = batch_of(kind, plain, random);
     for (glm::vec3& d : batch.direction) {
         d = glm::vec3(std::cos(angle), std::sin(angle), -0.001);
@@ -279,7 +279,7 @@ TEST(SphereTracing, WhatRaysHaveSeenBeforeHelpsAndMisleadsNone) {
     std::size_t with = 0, without = 0;
     int grazes = 0, traced = 0;
     for (Kind kind : kinds()) {
-        kind.rays /= 8;
+        kind.rays /= 12;
         Batch batch = batch_of(kind, at_first, random);
         SeenSpheres seen;
         for (const double frames : {0.0, 1.0, 2.0, 3.0, 2.5, 40.0, 41.0, -1e4}) {

@@ -26,7 +26,8 @@ constexpr std::size_t kRayCache_bytes = std::size_t{256} << 20;
 constexpr ProductSet kProducts = products(Product::Position, Product::Normal, Product::Velocity,
                                           Product::SlopeVariance, Product::Coverage);
 
-Plan plan_of(const Scene& scene, const SeaOptions& options) {
+// finest_cell_m: becomes what was asked for, or what the shot's camera needs.
+Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_m) {
     auto prepared = prepare(scene);
     double cell_m = options.finest_cell_m, pixel_m = options.finest_pixel_m;
     if (!(cell_m > 0.0) || !(pixel_m > 0.0)) {
@@ -42,6 +43,7 @@ Plan plan_of(const Scene& scene, const SeaOptions& options) {
         if (!(cell_m > 0.0)) cell_m = needs.finest_cell_m;
         if (!(pixel_m > 0.0)) pixel_m = needs.finest_pixel_m;
     }
+    finest_cell_m = cell_m;
     Query query = view_query(*prepared, {.products = kProducts,
                                          .finest_cell_m = cell_m,
                                          .finest_pixel_m = std::min(cell_m, pixel_m),
@@ -92,7 +94,10 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
                                       std::min(options.threads, tbb::info::default_concurrency()))
                                 : std::make_unique<tbb::task_arena>()) {
     arena->execute([&] {
-        Plan plan = plan_of(scene, options);
+        Plan plan = plan_of(scene, options, finest_ray_m);
+        // As the plan's rungs have it; a sea of trains has none.
+        if (plan.queries.front().query.cell_m.front() > 0.0)
+            finest_ray_m = plan.queries.front().query.cell_m.front();
         MemoryNeed need;
         add_sea(need, plan, arena->max_concurrency());
         require_memory(need, machine::memory_limit(), "a frame of this sea");

@@ -35,6 +35,7 @@ struct ShotSea {
 
     Scene scene;
     std::size_t ray_cache_bytes;
+    double finest_ray_m = 0.0;               // finer footprints of rays count as that
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
     std::shared_ptr<const Sea<float>> sea;
     const Query& query() const { return sea->plan().queries.front().query; }

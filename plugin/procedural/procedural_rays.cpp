@@ -16,8 +16,8 @@
 namespace pelagic::procedural {
 namespace {
 
-// As far as a ray that ends nowhere is followed.
-constexpr double kFarthest_m = 1e12;
+// As far as a ray that ends nowhere is followed, and where no ray begins: a tenth of a millimetre is lost there.
+constexpr double kFarthest_m = 1e12, kFarthestOffset_m = 1e10;
 
 // The rays of a call, one by one.
 class Batch {
@@ -31,7 +31,7 @@ class Batch {
         required(rays.direction, "rays.direction");
         sea_ = {.tiles = &frame.tiles(),
                 .everywhere = frame.everywhere(),
-                .finest_cell_m = frame.shot().finest_cell_m(),
+                .finest_footprint_m = frame.shot().finest_ray_m,
                 .origin_m = {rays.origin_m[0], rays.origin_m[1]},
                 .curvature_per_m = rays.on_earth != 0 ? kEarthCurvature_per_m : 0.0,
                 .tolerance = rays.tolerance == 0.0 ? 0.5 : rays.tolerance};
@@ -49,12 +49,13 @@ class Batch {
         };
         const glm::dvec3 from_m = vector(rays_.offset_m), direction = vector(rays_.direction);
         length_m = glm::length(direction);
-        const double sum = from_m.x + from_m.y + from_m.z + length_m;
-        if (!std::isfinite(sum) || !(length_m > 0.0)) return false;
+        if (!(glm::length(from_m) <= kFarthestOffset_m) || !std::isfinite(length_m) || !(length_m > 0.0))
+            return false;
         ray.from_m = from_m + glm::dvec3(0.0, 0.0, rays_.origin_m[2]);
         ray.direction = direction / length_m;
         ray.near_m = std::max(number(rays_.near, 0.0), 0.0) * length_m;
-        ray.far_m = std::min(number(rays_.far, kFarthest_m) * length_m, kFarthest_m);
+        ray.far_m =
+            std::min(number(rays_.far, std::numeric_limits<double>::infinity()) * length_m, kFarthest_m);
         const double time_s = number(rays_.time_s, half_open_s_) - half_open_s_;
         ray.time_s = std::isnan(time_s) ? 0.0 : std::clamp(time_s, -half_open_s_, half_open_s_);
         ray.footprint_m = std::max(number(rays_.footprint_m, 0.0), 0.0);

@@ -41,11 +41,14 @@ glm::dvec3 inverse(glm::dvec3 direction) {
 }  // namespace
 
 RayTracer::RayTracer(const RaySea& sea) : sea_(sea) {
+    constexpr double kRounding_m = 0.01;  // of places far away; flat water is no thicker
+    sea_.everywhere.height_m += kRounding_m;
+    sea_.everywhere.reach_m += kRounding_m;
     waiting_.reserve(64);
 }
 
 double RayTracer::footprint_m(const SeaRay& ray, double s_m) const {
-    return std::max(ray.footprint_m + ray.spread * s_m, sea_.finest_cell_m);
+    return std::max(ray.footprint_m + ray.spread * s_m, sea_.finest_footprint_m);
 }
 
 // Where it is no higher and no lower than any point of the sea; empty: y < x.

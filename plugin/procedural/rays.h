@@ -18,11 +18,11 @@ namespace pelagic::procedural {
 // What rays of a batch have in common.
 struct RaySea {
     const SurfaceTiles* tiles = nullptr;
-    SurfaceBounds everywhere;      // of all points, at any time of the shutter
-    double finest_cell_m = 0.0;    // finer footprints count as that
-    glm::dvec2 origin_m{0.0};      // what rays are relative to, at z = 0
-    double curvature_per_m = 0.0;  // of the earth, which touches z = 0 at the origin; 0: flat
-    double tolerance = 0.5;        // how far from the surface a hit may lie, in footprints
+    SurfaceBounds everywhere;         // of all points, at any time of the shutter
+    double finest_footprint_m = 0.0;  // finer ones count as that
+    glm::dvec2 origin_m{0.0};         // what rays are relative to, at z = 0
+    double curvature_per_m = 0.0;     // of the earth, which touches z = 0 at the origin; 0: flat
+    double tolerance = 0.5;           // how far from the surface a hit may lie, in footprints
 };
 
 struct SeaRay {

@@ -104,7 +104,7 @@ int SurfaceTiles::level_within(double tolerance_m) const {
 // Triangles differ most from the surface in the middle of their longest edge, the cell's diagonal. Waves are many and independent of each other,
 // so that differences are normal: a sample's largest of 512 is some three standard deviations.
 double SurfaceTiles::sampled_deviation_m(int level, bool& is_flat) const {
-    constexpr int kPlaces = 16, kCells = 32;
+    constexpr int kPlaces = 32, kCells = 16;
     constexpr double kAboveLargest = 1.8;  // more than five of them
     const double step_m = std::ldexp(1.0, level);
     std::vector<glm::vec2> rest_m;

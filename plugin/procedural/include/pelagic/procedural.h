@@ -243,7 +243,8 @@ typedef struct pelagic_hits {
 
 /* The first place where each ray meets the sea, from above or from below. The sea is the exact surface of the frame's finest cells, but for the
  * tolerance: a hit lies no further from it than tolerance × footprint, a ray that goes deeper through it has a hit, and one that stays
- * further away has none. Footprints below the finest cell count as that. A ray that isn't finite, or has no direction, hits nothing.
+ * further away has none. Footprints below pelagic_open_options.finest_cell_m count as that; a ray
+ * that begins within the tolerance of the surface may begin on its other side. A ray that isn't finite, has no direction or begins more than 1e10 m away from the origin hits nothing.
  * What rays ask for first is worked out then and kept, as far as ray_cache_bytes allow; hits don't depend on that. */
 PELAGIC_API pelagic_status pelagic_intersect(const pelagic_frame* frame, const pelagic_rays* rays,
                                              const pelagic_hits* hits, pelagic_error* error);

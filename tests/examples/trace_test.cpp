@@ -109,6 +109,15 @@ TEST(Trace, WhatIsMirroredDependsOnNoThreads) {
     for (const SeaRadiance& light : all.picture.layers) EXPECT_TRUE(std::isfinite(test::luminance_of(light)));
 }
 
+TEST(Trace, RefusesWhatItCannotTrace) {
+    Scene scene = small_scene();
+    scene.quality.level = QualityLevel::Reference;
+    EXPECT_THROW(traced(scene, false, nullptr), std::invalid_argument);
+    scene = small_scene();
+    scene.camera.position_m.z = -30.0;
+    EXPECT_THROW(traced(scene, false, nullptr), std::invalid_argument);
+}
+
 TEST(Trace, AnObjThatCannotBeReadSaysWhere) {
     const auto file = std::filesystem::temp_directory_path() / "pelagic_trace_test.obj";
     const auto message_of = [&](const char* text) -> std::string {

@@ -173,6 +173,14 @@ std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, Fo
     constexpr int kBlocks = 4096;
     if (!(cells.finest_m >= 0.0) || !(cells.coarsest_m >= cells.finest_m))
         throw std::invalid_argument("region.finest_cell_m, coarsest_cell_m: accepted: 0 or more, in order");
+    // So large a region has every wave in it.
+    constexpr double kAnywhere_m = 65536.0;
+    const glm::dvec2 side_m = region.max_m - region.min_m;
+    if (std::min(side_m.x, side_m.y) >= kAnywhere_m) {
+        const SurfaceBounds all = everywhere();
+        const glm::dvec3 most_m(glm::dvec2(all.reach_m), all.height_m);
+        return {glm::dvec3(region.min_m, 0.0) - most_m, glm::dvec3(region.max_m, 0.0) + most_m};
+    }
     const DisplacementBounds moved =
         over_rungs(cells, [&](const FrameBounds<float>& of) { return of.region(region, kBlocks); });
     const glm::dvec3 by_m = half_open_s_ * fastest_mps_;

@@ -51,6 +51,20 @@ Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_
     return make_plan(std::move(prepared), {query}, {.double_precision = false});
 }
 
+// Of n samples, side by side so that the compiler takes vectors.
+float largest(const float* samples, std::size_t n) {
+    constexpr std::size_t kSide = 16;
+    std::array<float, kSide> most{};
+    std::size_t i = 0;
+    for (; i + kSide <= n; i += kSide)
+        for (std::size_t j = 0; j < kSide; ++j) {
+            const float size = std::abs(samples[i + j]);
+            most[j] = size > most[j] ? size : most[j];
+        }
+    for (; i < n; ++i) most[0] = std::max(most[0], std::abs(samples[i]));
+    return *std::max_element(most.begin(), most.end());
+}
+
 // The most that a field's sum can be, everywhere: splines stay within their coefficients, and the weights of the copies at a
 // point add up to 2 at most (core/plan/copies.h).
 double most_of(const Frame<float>& frame, Field field) {
@@ -63,11 +77,10 @@ double most_of(const Frame<float>& frame, Field field) {
             const float* samples = frame.samples(static_cast<int>(c), static_cast<int>(g), field);
             if (!samples) continue;
             for (int y = 0; y < n; ++y)
-                for (int x = 0; x < n; ++x)
-                    of_cascade =
-                        std::max(of_cascade, std::abs(static_cast<double>(
-                                                 samples[static_cast<std::size_t>(y) * line_stride<float>(n) +
-                                                         static_cast<std::size_t>(x)])));
+                of_cascade = std::max(
+                    of_cascade,
+                    static_cast<double>(largest(samples + static_cast<std::size_t>(y) * line_stride<float>(n),
+                                                static_cast<std::size_t>(n))));
         }
         most += (plan.cascades[c].has_copies ? 2.0 : 1.0) * of_cascade;
     }

@@ -269,6 +269,47 @@ Side tiles_side(RTCDevice device, const Shot& shot, double tolerance) {
     return side;
 }
 
+// Some of the camera's rays [µs each], one thread: each refining the surface by itself, and with what the others left.
+void compare_ways(const std::string& text, const Shot& shot) {
+    constexpr std::size_t kEvery = 149;
+    std::vector<glm::vec3> direction;
+    for (std::size_t i = 0; i < shot.direction.size(); i += kEvery) direction.push_back(shot.direction[i]);
+    std::vector<float> spread(direction.size(), static_cast<float>(shot.spread)), distance(direction.size());
+    const auto us = [&](pelagic_frame* frame, std::size_t together) {
+        const auto begin = std::chrono::steady_clock::now();
+        for (std::size_t i = 0; i < direction.size(); i += together) {
+            pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
+            std::copy_n(shot.camera.position_m, 3, rays.origin_m);
+            rays.count = std::min(together, direction.size() - i);
+            rays.direction = &direction[i].x;
+            rays.spread = &spread[i];
+            pelagic_hits hits = PELAGIC_INIT(pelagic_hits);
+            hits.distance = &distance[i];
+            pelagic_error error;
+            check(pelagic_intersect(frame, &rays, &hits, &error), error);
+        }
+        return 1e3 * since_ms(begin) / static_cast<double>(direction.size());
+    };
+    pelagic_error error;
+    pelagic_source source = PELAGIC_INIT(pelagic_source);
+    source.text = text.c_str();
+    pelagic_open_options forgetful = PELAGIC_INIT(pelagic_open_options);
+    forgetful.finest_cell_m = forgetful.finest_pixel_m = 0.002;
+    forgetful.ray_cache_bytes = 1;
+    pelagic_sea* sea = nullptr;
+    pelagic_frame* frame = nullptr;
+    check(pelagic_open(&source, &forgetful, &sea, &error), error);
+    check(pelagic_frame_create(sea, kOpen_s, kOpen_s, &frame, &error), error);
+    us(frame, direction.size());  // what a frame works out once
+    const double alone = us(frame, 1), alone_again = us(frame, 1), kept = us(shot.frame, direction.size()),
+                 one_by_one = us(shot.frame, 1);
+    std::printf(
+        "  a ray: refining by itself %.1f us; on tiles that are there %.1f us, in calls of one %.1f us\n",
+        std::min(alone, alone_again), kept, one_by_one);
+    pelagic_frame_release(frame);
+    pelagic_close(sea);
+}
+
 void run(RTCDevice device, const char* name, const std::string& text, int width, int height,
          double shutter_s) {
     Shot shot;
@@ -313,6 +354,7 @@ void run(RTCDevice device, const char* name, const std::string& text, int width,
                         time, pelagic::bench::verdict(time <= 1.5), memory,
                         pelagic::bench::verdict(memory <= 0.25), tiles.first_pixel_ms / mesh.first_pixel_ms);
     }
+    if (shutter_s == 0.0) compare_ways(text, shot);
     pelagic_frame_release(shot.frame);
     pelagic_close(shot.sea);
 }

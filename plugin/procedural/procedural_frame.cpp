@@ -146,6 +146,7 @@ void ShotFrame::set(double open_s, double close_s) {
         bounds_.clear();
         tiles_.reset();
         everywhere_.reset();
+        cells_.reset();
         if (half_open_s_ == 0.0) return;
         constexpr std::array kVelocities{Field::VelocityX, Field::VelocityY, Field::VelocityZ};
         tbb::parallel_for(0, 3, [&](int axis) { fastest_mps_[axis] = most_of(frame_, kVelocities[axis]); });
@@ -219,6 +220,18 @@ const SurfaceTiles& ShotFrame::tiles() const {
         tiles_ = std::make_unique<const SurfaceTiles>(*query_, of_->finest_cell_m(), half_open_s_,
                                                       of_->ray_cache_bytes);
     return *tiles_;
+}
+
+std::optional<double> ShotFrame::remembered_cell_px(const View& view, double error_px, bool on_earth) const {
+    const std::lock_guard<std::mutex> lock(lock_);
+    const bool is_it =
+        cells_ && cells_->view == view && cells_->error_px == error_px && cells_->on_earth == on_earth;
+    return is_it ? std::optional(cells_->cell_px) : std::nullopt;
+}
+
+void ShotFrame::remember_cell_px(const View& view, double error_px, bool on_earth, double cell_px) const {
+    const std::lock_guard<std::mutex> lock(lock_);
+    cells_ = {view, error_px, on_earth, cell_px};
 }
 
 void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const {

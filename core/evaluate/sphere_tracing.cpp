@@ -2,10 +2,12 @@
 #include "core/evaluate/sphere_tracing.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/constants.h"
 
@@ -32,73 +34,197 @@ struct Way {
     double before_m = 0.0, length_m = 0.0;  // of the ray's beginning; of the way
     bool is_entered = false;                // from outside the layer
 };
-// What is known of the ray at some place: the step that is safe, and where all trains were evaluated the height over the
-// surface (of the ray's side), its slope along the ray and the bound of that slope's change.
+// How near a hit must be.
+struct Tolerance {
+    double least_m, at_beginning_m, per_m;
+
+    HWY_INLINE double at(const Way& way, double s_m) const {
+        return std::max(least_m, at_beginning_m + (way.before_m + s_m) * per_m);
+    }
+};
+// What is known of the ray at some place: the step that is safe, and of the trains that allow it, or of all where all were
+// evaluated, the height over the surface (of the ray's side), less the rest's amplitudes, and its slope along the ray and in time.
 struct Look {
     double step_m = 0.0;
     bool is_whole = false;
-    double clearance_m = 0.0, slope = 0.0, curvature = 0.0;
+    std::size_t groups = 0;
+    double clearance_m = 0.0, slope = 0.0, rate_mps = 0.0;
 };
 
-// A bound from below of what follows along the ray: f + g r − ½ M r², until its slope has fallen to `steepest`, and straight from
-// there.
-struct Bound {
-    double f, g, curvature, steepest;
+// One ray after the other. kSeen: with SeenSpheres.
+template <bool kSeen>
+class Tracer {
+    using Sphere = SeenSpheres::Sphere;
+    using Waves = TrainsAlongRay<kSeen>;
 
-    // The first r > 0 where it is 0, for f ≥ 0; infinite where there is none.
-    HWY_INLINE double zero() const {
-        if (steepest >= 0.0) return kInfinity;
-        const double root = std::sqrt(g * g + 2.0 * curvature * f);
-        if (root <= -steepest) {  // −root is the slope there
-            if (g < 0.0) return 2.0 * f / (root - g);
-            return curvature > 0.0 ? (root + g) / curvature : kInfinity;
-        }
-        const double bent = curvature > 0.0 ? std::max(0.0, (g - steepest) / curvature) : 0.0;
-        return bent + (f + 0.5 * bent * (g + steepest)) / -steepest;
+  public:
+    explicit Tracer(const TracedTrains& trains) : trains_(trains), waves_(trains) {}
+
+    void begin(const Way& way) {
+        way_ = way;
+        waves_.begin(way.from_m, way.unit);
+        side_ = side();
     }
+    // `enough`: nobody wants a longer step [m].
+    HWY_INLINE Look look(double s_m, double enough_m) {
+        Look seen;
+        typename Waves::Sum sea;
+        const double z_m = way_.from_m.z + s_m * way_.unit.z;
+        for (std::size_t group = 0;; ++group) {
+            const double clearance_m = side_ * (z_m - sea.height_m) - trains_.rest_m[group];
+            const double slope = side_ * (way_.unit.z - sea.slope);
+            const double surely_m = clearance_m - trains_.height_error_m;
+            const bool is_whole = group == trains_.groups;
+            if (surely_m > 0.0 || is_whole) {
+                const double step_m =
+                    ahead(group, std::max(surely_m, 0.0), slope - trains_.slope_error).zero();
+                if (step_m > seen.step_m || is_whole)
+                    seen = {std::max(step_m, seen.step_m), is_whole, group, clearance_m, slope,
+                            -side_ * sea.rate_mps};
+            }
+            if (is_whole || seen.step_m >= enough_m || surely_m > kEnough * trains_.rest_m[group])
+                return seen;
+            waves_.add(group, s_m, sea);
+        }
+    }
+    // From the way's beginning [m]; infinite: none. With kSeen: `ray` is of another time, and then of this one.
+    double hit_m(const Tolerance& tolerance, int most_steps, SeenSpheres* seen, SeenSpheres::Ray* ray) {
+        if constexpr (kSeen) {
+            const bool is_same = ray->from_m == way_.from_m && ray->unit == way_.unit && ray->side == side_;
+            const auto first = seen->spheres.begin() + static_cast<std::ptrdiff_t>(ray->first);
+            old_.assign(first, first + static_cast<std::ptrdiff_t>(is_same ? ray->count : 0));
+            found_.clear();
+            const double hit = search_m(tolerance, most_steps);
+            *ray = {way_.from_m, way_.unit, side_, seen->next.size(), found_.size()};
+            seen->next.insert(seen->next.end(), found_.begin(), found_.end());
+            return hit;
+        }
+        return search_m(tolerance, most_steps);
+    }
+    std::size_t evaluated() const { return waves_.evaluated(); }
+
+  private:
+    // A hit, and from where to it the way is clear.
+    struct Ending {
+        double hit_m = kInfinity, clear_from_m = kInfinity;
+    };
+
+    HWY_INLINE double side() {
+        if (way_.is_entered) return way_.unit.z < 0.0 ? 1.0 : -1.0;
+        typename Waves::Sum sea;
+        for (std::size_t group = 0; group < trains_.groups; ++group) waves_.add(group, 0.0, sea);
+        const double clearance_m = way_.from_m.z - sea.height_m;
+        if (std::abs(clearance_m) > trains_.height_error_m) return clearance_m > 0.0 ? 1.0 : -1.0;
+        return way_.unit.z >= sea.slope ? 1.0 : -1.0;
+    }
+    HWY_INLINE Bound ahead(std::size_t groups, double f, double slope) const {
+        return {f, slope, waves_.curvature(groups), side_ * way_.unit.z - waves_.steepness(groups)};
+    }
+    HWY_INLINE Bound behind(std::size_t groups, double f, double slope) const {
+        return {f, -slope, waves_.curvature(groups), -side_ * way_.unit.z - waves_.steepness(groups)};
+    }
+
+    double search_m(const Tolerance& tolerance, int most_steps) {
+        Ending guessed;
+        if constexpr (kSeen)
+            if (!old_.empty()) guessed = guess(tolerance);
+        double s_m = 0.0;
+        std::size_t next = 0;
+        for (int step = 0; step < most_steps; ++step) {
+            if constexpr (kSeen) {
+                s_m = pass(next, s_m, tolerance);
+                if (guessed.hit_m < kInfinity && guessed.clear_from_m <= s_m) {
+                    // pass() may have taken the look at the hit.
+                    if (found_.empty() || found_.back().s_m != old_.back().s_m) found_.push_back(old_.back());
+                    return guessed.hit_m <= way_.length_m ? guessed.hit_m : kInfinity;
+                }
+            }
+            if (!(s_m < way_.length_m)) return kInfinity;
+            const Look seen = look(s_m, way_.length_m - s_m);
+            if (kSeen) found_.push_back(sphere_of(seen, s_m));
+            if (seen.is_whole) {
+                if (seen.clearance_m < -trains_.height_error_m) return s_m;
+                const double hit = end_m(seen, s_m, tolerance.at(way_, s_m));
+                if (hit < kInfinity) return hit <= way_.length_m ? hit : kInfinity;
+            }
+            s_m += seen.step_m;
+        }
+        return s_m < way_.length_m ? s_m : kInfinity;
+    }
+    // The hit, where a look from its own side shows it to be so near.
+    HWY_INLINE double end_m(const Look& seen, double s_m, double within_m) const {
+        const double latest_m = latest_zero(seen.clearance_m + trains_.height_error_m,
+                                            seen.slope + trains_.slope_error, waves_.curvature(seen.groups));
+        if (latest_m - seen.step_m <= 2.0 * within_m) return s_m + 0.5 * (seen.step_m + latest_m);
+        return seen.clearance_m <= kGraze * within_m && seen.step_m <= within_m ? s_m : kInfinity;
+    }
+
+    // Where the last hit must have gone, by what the sea there did. The look at it becomes the last of the old ones.
+    Ending guess(const Tolerance& tolerance) {
+        const Sphere last = old_.back();
+        const double slope = static_cast<double>(last.slope);
+        if (last.groups != trains_.groups || !(slope < 0.0)) return {};
+        const double dt = trains_.time_s - last.time_s;
+        const double at_m =
+            last.s_m + (static_cast<double>(last.f_m) + dt * static_cast<double>(last.rate_mps)) / -slope;
+        if (!(at_m > 0.0 && at_m < way_.length_m)) return {};
+        const Look seen = look(at_m, kInfinity);
+        if (!seen.is_whole) return {};
+        old_.push_back(sphere_of(seen, at_m));
+        const double within_m = tolerance.at(way_, at_m);
+        const double error_m = trains_.height_error_m, slope_error = trains_.slope_error;
+        if (seen.clearance_m >= error_m) {
+            const double hit = end_m(seen, at_m, within_m);
+            if (hit == kInfinity) return {};
+            return {hit,
+                    at_m - behind(seen.groups, seen.clearance_m - error_m, seen.slope + slope_error).zero()};
+        }
+        // From behind the surface, backwards: at `first` F may be 0, at `latest` it must have been, and it stays above for a while.
+        const double curvature = waves_.curvature(seen.groups), rise = -seen.slope - slope_error;
+        const double square = rise * rise + 2.0 * curvature * (seen.clearance_m - error_m);
+        if (!(seen.clearance_m < -error_m && rise > 0.0 && square > 0.0 && curvature > 0.0)) return {};
+        const double root = std::sqrt(square), latest_m = 2.0 * (error_m - seen.clearance_m) / (rise + root);
+        const double first_m =
+            Bound{-seen.clearance_m - error_m, seen.slope - slope_error, curvature, -kInfinity}.zero();
+        if (latest_m - first_m > 2.0 * within_m) return {};
+        return {at_m - 0.5 * (first_m + latest_m), at_m - (rise + root) / curvature};
+    }
+    // How far old looks, from `next` on, still show the way to be clear [m].
+    HWY_INLINE double pass(std::size_t& next, double s_m, const Tolerance& tolerance) {
+        for (; next < old_.size(); ++next) {
+            const Sphere& sphere = old_[next];
+            const double dt = trains_.time_s - sphere.time_s, either = std::abs(dt),
+                         rate = static_cast<double>(sphere.rate_mps),
+                         slope = static_cast<double>(sphere.slope);
+            const double f = static_cast<double>(sphere.f_m) + dt * rate - either * trains_.rate_error -
+                             0.5 * trains_.bend[sphere.groups] * dt * dt;
+            if (!(f > 0.0)) continue;
+            waves_.need(sphere.groups);
+            const double less = waves_.mixed(sphere.groups) * either;
+            if (sphere.s_m - behind(sphere.groups, f, slope + 4.0 * trains_.slope_error + less).zero() > s_m)
+                return s_m;
+            const double to_m = sphere.s_m + ahead(sphere.groups, f, slope - less).zero();
+            if (to_m <= s_m + tolerance.at(way_, s_m)) continue;
+            found_.push_back(sphere);
+            s_m = to_m;
+        }
+        return s_m;
+    }
+    // In single precision, rounded to the safe side by another of the errors that rounding may make.
+    Sphere sphere_of(const Look& seen, double s_m) const {
+        return {.s_m = s_m,
+                .time_s = trains_.time_s,
+                .f_m = static_cast<float>(seen.clearance_m - 2.0 * trains_.height_error_m),
+                .slope = static_cast<float>(seen.slope - 2.0 * trains_.slope_error),
+                .rate_mps = static_cast<float>(seen.rate_mps),
+                .groups = static_cast<std::uint32_t>(seen.groups)};
+    }
+    const TracedTrains& trains_;
+    Waves waves_;
+    Way way_{};
+    double side_ = 1.0;
+    std::vector<Sphere> old_, found_;
 };
-// The first r with f + g r + ½ M r² = 0: where a surface that curves away from the ray at most so much is met at the latest.
-HWY_INLINE double latest_zero(double f, double g, double curvature) {
-    const double square = g * g - 2.0 * curvature * f;
-    return g < 0.0 && square >= 0.0 ? 2.0 * f / (std::sqrt(square) - g) : kInfinity;
-}
-
-// `enough`: nobody wants a longer step [m]. side: 1 above the sea, −1 below.
-HWY_INLINE Look look(TrainsAlongRay& waves, const TracedTrains& trains, const Way& way, double s_m,
-                     double side, double enough_m) {
-    Look seen;
-    TrainsAlongRay::Sum sea;
-    const double z_m = way.from_m.z + s_m * way.unit.z;
-    for (std::size_t group = 0;; ++group) {
-        const double clearance_m = side * (z_m - sea.height_m) - trains.rest_m[group];
-        const double slope = side * (way.unit.z - sea.slope);
-        const double curvature = group > 0 ? waves.curvature(group) : 0.0;
-        const double surely_m = clearance_m - trains.height_error_m;
-        if (surely_m > 0.0 || group == trains.groups) {
-            const double steepest = side * way.unit.z - (group > 0 ? waves.steepness(group) : 0.0);
-            const Bound bound{std::max(surely_m, 0.0), slope - trains.slope_error, curvature, steepest};
-            seen.step_m = std::max(seen.step_m, bound.zero());
-        }
-        if (group == trains.groups) {
-            seen.is_whole = true;
-            seen.clearance_m = clearance_m;
-            seen.slope = slope;
-            seen.curvature = curvature;
-            return seen;
-        }
-        if (seen.step_m >= enough_m || surely_m > kEnough * trains.rest_m[group]) return seen;
-        waves.add(group, s_m, sea);
-    }
-}
-
-HWY_INLINE double side_of(TrainsAlongRay& waves, const TracedTrains& trains, const Way& way) {
-    if (way.is_entered) return way.unit.z < 0.0 ? 1.0 : -1.0;
-    TrainsAlongRay::Sum sea;
-    for (std::size_t group = 0; group < trains.groups; ++group) waves.add(group, 0.0, sea);
-    const double clearance_m = way.from_m.z - sea.height_m;
-    if (std::abs(clearance_m) > trains.height_error_m) return clearance_m > 0.0 ? 1.0 : -1.0;
-    return way.unit.z >= sea.slope ? 1.0 : -1.0;
-}
 
 // The part of a ray between two distances [m] that lies in the layer; of no length where there is none.
 Way way_of(const TracedTrains& trains, glm::dvec3 from_m, glm::dvec3 unit, double near_m, double far_m) {
@@ -119,42 +245,27 @@ Way way_of(const TracedTrains& trains, glm::dvec3 from_m, glm::dvec3 unit, doubl
             .is_entered = enters_m > near_m};
 }
 
-// From the way's beginning [m]; infinite: none.
-double hit_m(TrainsAlongRay& waves, const TracedTrains& trains, const Way& way, double tolerance_m,
-             double tolerance_per_m, int most_steps) {
-    const double least_m = 2.0 / kGraze * trains.height_error_m;
-    waves.begin(way.from_m, way.unit);
-    const double side = side_of(waves, trains, way);
-    double s_m = 0.0;
-    for (int step = 0; step < most_steps; ++step) {
-        const Look seen = look(waves, trains, way, s_m, side, way.length_m - s_m);
-        if (seen.is_whole) {
-            const double within_m = std::max(least_m, tolerance_m + (way.before_m + s_m) * tolerance_per_m);
-            if (seen.clearance_m < -trains.height_error_m) return s_m;
-            const double latest_m = latest_zero(seen.clearance_m + trains.height_error_m,
-                                                seen.slope + trains.slope_error, seen.curvature);
-            if (latest_m - seen.step_m <= 2.0 * within_m) {
-                const double at_m = s_m + 0.5 * (seen.step_m + latest_m);
-                return at_m <= way.length_m ? at_m : kInfinity;
-            }
-            if (seen.clearance_m <= kGraze * within_m && seen.step_m <= within_m) return s_m;
-        }
-        s_m += seen.step_m;
-        if (!(s_m < way.length_m)) return kInfinity;
-    }
-    return s_m;
-}
-
 bool is_finite(glm::dvec3 v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-}  // namespace
-
-std::size_t TraceRays(const TracedTrains& trains, const TracedRays& rays, Strided<double> distance) {
-    TrainsAlongRay waves(trains);
+template <bool kSeen>
+std::size_t trace_rays(const TracedTrains& trains, const TracedRays& rays, Strided<double> distance,
+                       SeenSpheres* seen) {
+    Tracer<kSeen> tracer(trains);
+    // Until all is done `seen` holds nothing, so that a call that fails leaves nothing half written.
+    std::vector<SeenSpheres::Ray> each;
+    if constexpr (kSeen) {
+        each.swap(seen->rays);
+        if (seen->sea != trains.sea) each.clear();
+        each.resize(rays.count);
+        seen->sea = trains.sea;
+        seen->next.clear();
+    }
     for (std::size_t i = 0; i < rays.count; ++i) {
         distance[i] = kInfinity;
+        SeenSpheres::Ray before;
+        if constexpr (kSeen) std::swap(before, each[i]);  // of none until it is traced
         const glm::dvec3 direction(rays.direction[i]);
         const glm::dvec3 from_m =
             rays.origin_m + (rays.offset_m ? glm::dvec3(rays.offset_m[i]) : glm::dvec3(0.0));
@@ -164,19 +275,33 @@ std::size_t TraceRays(const TracedTrains& trains, const TracedRays& rays, Stride
         if (!is_finite(from_m) || !std::isfinite(length) || length == 0.0 || !std::isfinite(near_m)) continue;
         const Way way = way_of(trains, from_m, direction / length, near_m, far_m);
         if (!(way.length_m > 0.0)) continue;
-        const double hit =
-            hit_m(waves, trains, way, rays.tolerance_m ? static_cast<double>(rays.tolerance_m[i]) : 1e-3,
-                  rays.tolerance_per_m ? static_cast<double>(rays.tolerance_per_m[i]) : 0.0, rays.most_steps);
-        distance[i] = (way.before_m + hit) / length;
+        tracer.begin(way);
+        const Tolerance tolerance{2.0 / kGraze * trains.height_error_m,
+                                  rays.tolerance_m ? static_cast<double>(rays.tolerance_m[i]) : 1e-3,
+                                  rays.tolerance_per_m ? static_cast<double>(rays.tolerance_per_m[i]) : 0.0};
+        const double hit_m = tracer.hit_m(tolerance, rays.most_steps, seen, &before);
+        if constexpr (kSeen) each[i] = before;
+        distance[i] = (way.before_m + hit_m) / length;
     }
-    return waves.evaluated();
+    if constexpr (kSeen) {
+        seen->spheres.swap(seen->next);
+        seen->rays.swap(each);
+    }
+    return tracer.evaluated();
+}
+
+}  // namespace
+
+std::size_t TraceRays(const TracedTrains& trains, const TracedRays& rays, Strided<double> distance,
+                      SeenSpheres* seen) {
+    return seen ? trace_rays<true>(trains, rays, distance, seen)
+                : trace_rays<false>(trains, rays, distance, nullptr);
 }
 
 double SafeStep(const TracedTrains& trains, glm::dvec3 from_m, glm::dvec3 unit) {
-    TrainsAlongRay waves(trains);
-    waves.begin(from_m, unit);
-    const Way way{.from_m = from_m, .unit = unit};
-    return look(waves, trains, way, 0.0, side_of(waves, trains, way), kInfinity).step_m;
+    Tracer<false> tracer(trains);
+    tracer.begin({.from_m = from_m, .unit = unit});
+    return tracer.look(0.0, kInfinity).step_m;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -189,6 +314,12 @@ HWY_EXPORT(TraceRays);
 HWY_EXPORT(SafeStep);
 
 namespace {
+
+// Of what there was and a number: FNV-1a over its bits, in one step.
+std::uint64_t mixed(std::uint64_t hash, double number) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(number)) * 0x100000001b3u;
+    return hash ^ (hash >> 32);
+}
 
 TracedTrains traced_trains(const Frame<float>& frame, double cell_m) {
     if (!frame.is_set()) throw std::invalid_argument("sphere tracing: the frame has no time yet");
@@ -207,8 +338,10 @@ TracedTrains traced_trains(const Frame<float>& frame, double cell_m) {
     const std::size_t most = (all.count() + TracedTrains::kGroup - 1) / TracedTrains::kGroup;
     for (Buffer<double>* const of : {&trains.kx_cycles_per_m, &trains.ky_cycles_per_m, &trains.start_cycles})
         *of = Buffer<double>(most * TracedTrains::kGroup);
-    trains.amplitude_m = Buffer<float>(most * TracedTrains::kGroup);
-    double heights_m = 0.0, slopes = 0.0;
+    for (Buffer<float>* const of : {&trains.amplitude_m, &trains.omega})
+        *of = Buffer<float>(most * TracedTrains::kGroup);
+    double heights_m = 0.0, slopes = 0.0, rates_mps = 0.0, bend = 0.0;
+    trains.bend.push_back(0.0);
     for (std::size_t i = 0; i < all.count(); ++i) {
         const double k = kTwoPi / all.wavelength_m[i];
         const double height_m = all.height_m[i] * sea.plan().filter.weight(k, cell_m);
@@ -218,9 +351,18 @@ TracedTrains traced_trains(const Frame<float>& frame, double cell_m) {
         trains.ky_cycles_per_m[at] = all.ky_cycles_per_m[i];
         trains.start_cycles[at] = cycles[i];
         trains.amplitude_m[at] = static_cast<float>(height_m);
+        const double omega = kTwoPi * all.cycles_per_s[i];
+        trains.omega[at] = static_cast<float>(omega);
         heights_m += height_m;
         slopes += k * height_m;
+        rates_mps += omega * height_m;
+        trains.bend.resize(at / TracedTrains::kGroup + 2);
+        trains.bend.back() = bend += omega * omega * height_m;
+        for (const double own : {all.kx_cycles_per_m[i], all.ky_cycles_per_m[i], all.cycles_per_s[i],
+                                 all.start_cycles[i], height_m})
+            trains.sea = mixed(trains.sea, own);
     }
+    trains.time_s = frame.time_within_loop_s();
     trains.groups = (trains.count + TracedTrains::kGroup - 1) / TracedTrains::kGroup;
     trains.rest_m.assign(trains.groups + 1, 0.0);
     for (std::size_t group = trains.groups; group-- > 0;) {
@@ -233,6 +375,7 @@ TracedTrains traced_trains(const Frame<float>& frame, double cell_m) {
     constexpr double kErrors = 16.0 / (1 << 24);
     trains.height_error_m = kErrors * heights_m + 1e-7;
     trains.slope_error = kErrors * slopes;
+    trains.rate_error = kErrors * rates_mps;
     return trains;
 }
 
@@ -241,8 +384,8 @@ TracedTrains traced_trains(const Frame<float>& frame, double cell_m) {
 SphereTracing::SphereTracing(const Frame<float>& frame, double cell_m)
     : trains_(traced_trains(frame, cell_m)) {}
 
-std::size_t SphereTracing::trace(const TracedRays& rays, Strided<double> distance) const {
-    return HWY_DYNAMIC_DISPATCH(TraceRays)(trains_, rays, distance);
+std::size_t SphereTracing::trace(const TracedRays& rays, Strided<double> distance, SeenSpheres* seen) const {
+    return HWY_DYNAMIC_DISPATCH(TraceRays)(trains_, rays, distance, seen);
 }
 
 double SphereTracing::safe_step_m(glm::dvec3 from_m, glm::dvec3 direction) const {

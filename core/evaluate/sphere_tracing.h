@@ -11,6 +11,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -26,11 +27,14 @@ struct TracedTrains {
     static constexpr std::size_t kGroup = 16;
 
     Buffer<double> kx_cycles_per_m, ky_cycles_per_m, start_cycles;  // θ/2π = start − κ·x
-    Buffer<float> amplitude_m;
+    Buffer<float> amplitude_m, omega;                               // ω [rad/s]
     std::size_t count = 0, groups = 0;
     std::vector<double> rest_m;  // by group: the sum of amplitudes from it on; at the end 0
-    // What rounding may do to a height [m] and to a slope along a ray, at most.
-    double height_error_m = 0.0, slope_error = 0.0;
+    std::vector<double> bend;    // by number of groups: Σ A ω² of the first ones [m/s²]
+    // What rounding may do to a height [m], to a slope along a ray and to a height's change in time [m/s], at most.
+    double height_error_m = 0.0, slope_error = 0.0, rate_error = 0.0;
+    double time_s = 0.0;
+    std::uint64_t sea = 0;  // the same for the same trains at whatever time
 };
 
 // Distances count in lengths of the direction, from where the ray begins.
@@ -45,6 +49,26 @@ struct TracedRays {
     // Of a ray at most. One that has taken them ends where it stands, as a hit: it is known to be clear up to there. A ray takes
     // some ten; those that graze for kilometres take hundreds.
     int most_steps = 4096;
+};
+
+// The paper's temporal coherence (§3.3): what rays have seen, for the same rays at another time of the same sea, as from a camera
+// that stands still. F moves with its own rate, which changes by Σ A ω² at most: a look at a ray still proves something a frame
+// later. What doesn't fit, another ray in that place or another sea, is left out. It belongs to the caller, for one call at a
+// time; 1 to 3 KB a ray.
+struct SeenSpheres {
+    struct Sphere {
+        double s_m = 0.0, time_s = 0.0;
+        float f_m = 0.0f, slope = 0.0f, rate_mps = 0.0f;  // F, at least; ∂F/∂s, at least; ∂F/∂t
+        std::uint32_t groups = 0;                         // of trains that were evaluated
+    };
+    struct Ray {
+        glm::dvec3 from_m{0.0}, unit{0.0};
+        double side = 0.0;
+        std::size_t first = 0, count = 0;  // of the spheres
+    };
+    std::uint64_t sea = 0;
+    std::vector<Ray> rays;
+    std::vector<Sphere> spheres, next;  // next: while they are looked for
 };
 
 // The sea is that of a frame's trains at its time, filtered for cells of one footprint. Immutable, and independent of the frame;
@@ -62,7 +86,10 @@ class SphereTracing {
     // (along the ray) from a crossing, or an eighth of it above or below the surface where the ray only grazes it. The tolerance is at
     // least 16 height_error_m: 2e-5 of the sum of all amplitudes. A ray that begins on the surface begins on the side that it
     // leaves to. A ray that isn't finite, or has no direction, hits nothing. A ray's result doesn't depend on the others.
-    std::size_t trace(const TracedRays& rays, Strided<double> distance) const;
+    //
+    // `seen`: read and written, where given. Hits are as good with it as without, though not the same to the last bit: they depend
+    // on what was asked before.
+    std::size_t trace(const TracedRays& rays, Strided<double> distance, SeenSpheres* seen = nullptr) const;
 
     // The step [m] that the bounds allow from there: the ray doesn't meet the surface before it. Infinite: it never does.
     double safe_step_m(glm::dvec3 from_m, glm::dvec3 direction) const;

@@ -145,20 +145,7 @@ class RendererOf final : public Impl {
         view_ = view_at(scene_.camera, moment);
         if (air_.empty() || view_.position_m.z != height_m) air_ = sea_.air_before(view_.position_m.z);
         lay_out_grid();
-        prepare_foam(scene_.shot.time_s(moment), watch);
-    }
-
-    void prepare_foam(double time_s, const BuildWatch& watch) {
-        if (!sea_.foam_lives()) return;
-        const std::vector<T> pixel_m(grid_.pixel_m.begin(), grid_.pixel_m.end());
-        const std::vector<glm::vec<2, T>> axis_m(grid_.pixel_axis_m.begin(), grid_.pixel_axis_m.end());
-        sea_.prepare_foam(time_s,
-                          Points<T>{.origin_m = grid_.origin_m,
-                                    .count = rest_.size(),
-                                    .rest_m = {rest_.data()},
-                                    .pixel_m = {pixel_m.data()},
-                                    .pixel_axis_m = {axis_m.data()}},
-                          watch);
+        sea_.prepare_foam(scene_.shot.time_s(moment), grid_, watch);
     }
 
     void lay_out_grid() {

@@ -30,10 +30,18 @@ Air SeaLight<T>::air_before(double height_m) const {
 }
 
 template <class T>
-void SeaLight<T>::prepare_foam(double time_s, const Points<T>& points, const BuildWatch& watch) {
+void SeaLight<T>::prepare_foam(double time_s, const ProjectedGrid& grid, const BuildWatch& watch) {
     if (!history_) return;
     history_->set(time_s);
-    history_->prepare(points, kQuery, watch);
+    const std::vector<glm::vec<2, T>> rest_m(grid.rest_m.begin(), grid.rest_m.end());
+    const std::vector<T> pixel_m(grid.pixel_m.begin(), grid.pixel_m.end());
+    const std::vector<glm::vec<2, T>> axis_m(grid.pixel_axis_m.begin(), grid.pixel_axis_m.end());
+    history_->prepare(Points<T>{.origin_m = grid.origin_m,
+                                .count = rest_m.size(),
+                                .rest_m = {rest_m.data()},
+                                .pixel_m = {pixel_m.data()},
+                                .pixel_axis_m = {axis_m.data()}},
+                      kQuery, watch);
 }
 
 template <class T>

@@ -19,6 +19,7 @@
 #include "core/lighting/water.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
+#include "core/surface/projected_grid.h"
 #include "core/waves/frame.h"
 #include "plugin/render/render.h"
 
@@ -73,9 +74,9 @@ class SeaLight {
     void set(double time_s) { frame_.set(time_s); }
     // The air before an eye at this height above the sea at rest [m]; none where the light has none.
     Air air_before(double height_m) const;
-    // Of all that a picture of the time that is set will show, so that its parts don't each go through the earlier times.
-    // Throws BuildCancelled.
-    void prepare_foam(double time_s, const Points<T>& points, const BuildWatch& watch);
+    // The foam of all that a picture of this time shows, so that its parts don't each go through the earlier times: of the grid of
+    // its view. Before the first answer. Throws BuildCancelled.
+    void prepare_foam(double time_s, const ProjectedGrid& grid, const BuildWatch& watch);
 
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad].
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;

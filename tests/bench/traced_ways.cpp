@@ -27,25 +27,9 @@ constexpr double kEnough = 2.0;       // as in the core
 constexpr double kGraze = 1.0 / 8.0;  // as in the core
 constexpr std::size_t kGroup = TracedTrains::kGroup;
 
-// The first r > 0 with f + g r − ½ M r² = 0, for f ≥ 0.
-HWY_INLINE double first_zero(double f, double g, double curvature) {
-    const double root = std::sqrt(g * g + 2.0 * curvature * f);
-    if (g < 0.0) return 2.0 * f / (root - g);
-    return curvature > 0.0 ? (root + g) / curvature : kInfinity;
-}
-HWY_INLINE double latest_zero(double f, double g, double curvature) {
-    const double square = g * g - 2.0 * curvature * f;
-    return g < 0.0 && square >= 0.0 ? 2.0 * f / (std::sqrt(square) - g) : kInfinity;
-}
-
-// Sums over the first groups, of each ray or of all.
-struct Prefix {
-    double lipschitz = 0.0, mixed = 0.0;                // Σ A|k·d|, Σ A|k·d|ω
-    double steepness = 0.0, fastest = 0.0, bend = 0.0;  // Σ A k, Σ Aω, Σ Aω²: of all rays
-};
 // What a group was last evaluated to be.
 struct Evaluated {
-    double s_m = -kInfinity, height_m = 0.0, slope = 0.0, rate = 0.0;
+    double s_m = -kInfinity, height_m = 0.0, slope = 0.0;
 };
 struct Look {
     Sphere sphere;
@@ -54,35 +38,35 @@ struct Look {
     double highest = 0.0, steepest = 0.0;  // where whole: bounds of F and F' from the other side
 };
 
-class Waves : public TrainsAlongRay {
+class Waves : public TrainsAlongRay<true> {
+    using Base = TrainsAlongRay<true>;
+    using typename Base::D;
+    using typename Base::Wide;
+
   public:
-    Waves(const TracedTrains& trains, const std::vector<double>& omega)
-        : TrainsAlongRay(trains),
+    explicit Waves(const TracedTrains& trains)
+        : Base(trains),
           all_(trains),
-          omega_(trains.groups * kGroup),
-          prefix_(trains.groups + 1),
+          everywhere_(trains.groups + 1),
           last_(trains.groups),
           values_(trains.groups * kGroup) {
-        std::copy_n(omega.begin(), trains.count, omega_.data());
         for (std::size_t i = 0; i < trains.groups * kGroup; ++i) {
-            Prefix& to = prefix_[i / kGroup + 1];
-            if (i % kGroup == 0) to = prefix_[i / kGroup];
-            const double height_m = static_cast<double>(trains.amplitude_m[i]),
-                         w = static_cast<double>(omega_[i]);
+            Everywhere& to = everywhere_[i / kGroup + 1];
+            if (i % kGroup == 0) to = everywhere_[i / kGroup];
+            const double height_m = static_cast<double>(trains.amplitude_m[i]);
             to.steepness +=
                 height_m * kTwoPi * std::hypot(trains.kx_cycles_per_m[i], trains.ky_cycles_per_m[i]);
-            to.fastest += height_m * w;
-            to.bend += height_m * w * w;
+            to.fastest += height_m * static_cast<double>(trains.omega[i]);
         }
     }
     void begin(glm::dvec3 from_m, glm::dvec3 unit, bool all_groups) {
-        TrainsAlongRay::begin(from_m, unit);
+        Base::begin(from_m, unit);
         z_m_ = from_m.z;
         rise_ = unit.z;
-        set_ = 0;
+        for (Evaluated& last : last_) last.s_m = -kInfinity;
         if (all_groups) need(all_.groups);
     }
-    double steepness() const { return prefix_.back().steepness; }
+    double steepest_anywhere() const { return everywhere_.back().steepness; }
     double height_over(double s_m) const { return z_m_ + s_m * rise_; }
 
     // All trains at once: for the ways without groups.
@@ -132,46 +116,41 @@ class Waves : public TrainsAlongRay {
     Look look(double s_m, double enough_m, double reuse_m) {
         constexpr bool kCurved = kBounds == Bounds::Curved;
         Look seen;
-        double low = height_over(s_m), high = low, low_slope = rise_, high_slope = rise_, rate = 0.0;
+        double low = height_over(s_m), high = low, low_slope = rise_, high_slope = rise_;
         for (std::size_t group = 0;; ++group) {
             const double f = low - all_.rest_m[group] - all_.height_error_m;
-            const Prefix& prefix = prefix_[group];
-            const double curvature = kCurved ? curvature_[group] : 0.0;
-            const double forward = kCurved ? low_slope - all_.slope_error : rise_ - prefix.lipschitz;
+            const double curvature = kCurved ? this->curvature(group) : 0.0;
+            const double steepest = rise_ - steepness(group),
+                         forward = kCurved ? low_slope - all_.slope_error : steepest;
             if (f > 0.0 || group == all_.groups) {
-                const double step_m = first_zero(std::max(f, 0.0), forward, curvature);
+                const double step_m = Bound{std::max(f, 0.0), forward, curvature, steepest}.zero();
+                const double steepness = everywhere_[group].steepness;
                 if (step_m > seen.step_m || group == all_.groups) {
-                    const double best_m = std::max(seen.step_m, step_m);
-                    seen.sphere = {
-                        .s_m = s_m,
-                        .f = f,
-                        .forward = forward,
-                        .backward = kCurved ? -high_slope - all_.slope_error : -rise_ - prefix.lipschitz,
-                        .curvature = curvature,
-                        .rate = rate,
-                        .fastest = prefix.fastest,
-                        .mixed = prefix.mixed,
-                        .bend = prefix.bend,
-                        .radius_m = std::max(seen.sphere.radius_m,
-                                             f / std::sqrt(1.0 + prefix.steepness * prefix.steepness))};
-                    seen.step_m = best_m;
+                    seen.step_m = std::max(seen.step_m, step_m);
+                    const double radius_m = f / std::sqrt(1.0 + steepness * steepness);
+                    seen.sphere = {.s_m = s_m,
+                                   .f = f,
+                                   .groups = group,
+                                   .radius_m = std::max(seen.sphere.radius_m, radius_m)};
                 }
             }
             if (group == all_.groups) {
                 seen.is_whole = true;
                 seen.highest = high + all_.height_error_m;
-                seen.steepest = kCurved ? high_slope + all_.slope_error : rise_ + prefix.lipschitz;
+                seen.steepest = high_slope + all_.slope_error;
                 return seen;
             }
             if (seen.step_m >= enough_m || f > kEnough * all_.rest_m[group]) return seen;
             need(group + 1);
             Evaluated& last = last_[group];
-            const double own_curvature = curvature_[group + 1] - curvature_[group],
-                         own_lipschitz = prefix_[group + 1].lipschitz - prefix.lipschitz;
+            const double own_curvature = this->curvature(group + 1) - this->curvature(group),
+                         own_steepness = steepness(group + 1) - steepness(group);
             double moved_m = s_m - last.s_m;
-            double off_m = kCurved ? 0.5 * own_curvature * moved_m * moved_m : own_lipschitz * moved_m;
+            double off_m = kCurved ? 0.5 * own_curvature * moved_m * moved_m : own_steepness * moved_m;
             if (!(off_m <= reuse_m)) {
-                evaluate(group, s_m, last);
+                Sum sum;
+                add(group, s_m, sum);
+                last = {s_m, sum.height_m, sum.slope};
                 moved_m = off_m = 0.0;
             }
             const double height_m = last.height_m + (kCurved ? moved_m * last.slope : 0.0);
@@ -179,83 +158,39 @@ class Waves : public TrainsAlongRay {
             high -= height_m - off_m;
             low_slope -= last.slope + own_curvature * moved_m;
             high_slope -= last.slope - own_curvature * moved_m;
-            rate -= last.rate;
         }
+    }
+
+    // F at a later time, at least.
+    double later(const Sphere& sphere, double dt) const {
+        return sphere.f - everywhere_[sphere.groups].fastest * dt;
     }
 
   private:
-    void need(std::size_t groups) {
-        const D d;
-        for (; set_ < groups; ++set_) {
-            prepare(set_);
-            ready_ = set_ + 1;
-            last_[set_].s_m = -kInfinity;
-            auto lipschitz = hn::Zero(d), mixed = hn::Zero(d);
-            for (std::size_t i = set_ * kGroup; i < (set_ + 1) * kGroup; i += hn::Lanes(d)) {
-                const auto steepness = hn::Abs(hn::Load(d, &steepness_[i]));
-                lipschitz = hn::Add(lipschitz, steepness);
-                mixed = hn::MulAdd(steepness, hn::Load(d, &omega_[i]), mixed);
-            }
-            prefix_[set_ + 1].lipschitz =
-                prefix_[set_].lipschitz + static_cast<double>(hn::GetLane(hn::SumOfLanes(d, lipschitz)));
-            prefix_[set_ + 1].mixed =
-                prefix_[set_].mixed + static_cast<double>(hn::GetLane(hn::SumOfLanes(d, mixed)));
-        }
-    }
-    HWY_INLINE void evaluate(std::size_t group, double s_m, Evaluated& out) {
-        const D d;
-        const auto s = hn::Set(Wide(), s_m);
-        auto height = hn::Zero(d), slope = hn::Zero(d), rate = hn::Zero(d);
-        for (std::size_t i = group * kGroup; i < (group + 1) * kGroup; i += hn::Lanes(d)) {
-            hn::Vec<D> sine, cosine;
-            SinCosCycles(d, phases(d, i, s), sine, cosine);
-            const auto amplitude = hn::Load(d, &all_.amplitude_m[i]);
-            height = hn::MulAdd(amplitude, cosine, height);
-            slope = hn::NegMulAdd(hn::Load(d, &steepness_[i]), sine, slope);
-            rate = hn::NegMulAdd(hn::Mul(amplitude, hn::Load(d, &omega_[i])), sine, rate);
-        }
-        const auto total = [&](hn::Vec<D> v) {
-            return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, v)));
-        };
-        out = {s_m, total(height), total(slope), total(rate)};
-        evaluated_ += std::min(kGroup, all_.count - group * kGroup);
-    }
+    // Of the first groups, in all directions: Σ A k, Σ A ω.
+    struct Everywhere {
+        double steepness = 0.0, fastest = 0.0;
+    };
 
     const TracedTrains& all_;
-    Buffer<float> omega_;
-    std::vector<Prefix> prefix_;
+    std::vector<Everywhere> everywhere_;
     std::vector<Evaluated> last_;
     Buffer<float> values_;  // of whole()
     std::vector<std::array<double, 3>> order_;
     double z_m_ = 0.0, rise_ = 0.0;
-    std::size_t set_ = 0;
 };
 
-// What a sphere of an earlier time still covers of its ray.
+// Where a look says that the hit is, to within_m; infinite: it doesn't.
 template <Bounds kBounds>
-HWY_INLINE bool covers(const Sphere& sphere, double time_s, double& from_m, double& to_m) {
-    constexpr bool kCurved = kBounds == Bounds::Curved;
-    const double dt = time_s - sphere.time_s;
-    const double f =
-        sphere.f + (kCurved ? dt * (sphere.rate - 0.5 * sphere.bend * dt) : -sphere.fastest * dt);
-    if (!(f > 0.0)) return false;
-    const double less = kCurved ? sphere.mixed * dt : 0.0;
-    to_m = sphere.s_m + first_zero(f, sphere.forward - less, sphere.curvature);
-    from_m = sphere.s_m - first_zero(f, sphere.backward - less, sphere.curvature);
-    return true;
-}
-
-// Where a look says that the hit is, to within_m; infinite: it doesn't. From either side of the surface.
-template <Bounds kBounds>
-HWY_INLINE double converged_m(const Look& seen, double within_m) {
+HWY_INLINE double converged_m(const Look& seen, double curvature, double within_m) {
     if (!seen.is_whole) return kInfinity;
     const Sphere& at = seen.sphere;
     if (kBounds != Bounds::Curved)
         return seen.step_m <= within_m || seen.highest <= 0.25 * within_m ? at.s_m : kInfinity;
-    const double latest_m = latest_zero(seen.highest, seen.steepest, at.curvature);
-    if (at.f >= 0.0 && latest_m - seen.step_m <= 2.0 * within_m)
-        return at.s_m + 0.5 * (seen.step_m + latest_m);
-    if (at.f >= 0.0 && at.f <= kGraze * within_m && seen.step_m <= within_m) return at.s_m;
+    if (at.f < 0.0) return at.s_m;  // by what rounding may do
+    const double latest_m = latest_zero(seen.highest, seen.steepest, curvature);
+    if (latest_m - seen.step_m <= 2.0 * within_m) return at.s_m + 0.5 * (seen.step_m + latest_m);
+    if (at.f <= kGraze * within_m && seen.step_m <= within_m) return at.s_m;
     return kInfinity;
 }
 
@@ -287,7 +222,7 @@ double trace(Waves& waves, const Ray& ray, Ways ways, const std::vector<std::arr
         const double reuse_m = ways.spatial ? std::max(0.02 * clearance_m, 0.02 * within_m) : -1.0;
         const Look seen = waves.look<kBounds>(s_m, ray.length_m - s_m, reuse_m);
         if (seen_before) seen_before->push_back(seen.sphere);
-        const double hit_m = converged_m<kBounds>(seen, within_m);
+        const double hit_m = converged_m<kBounds>(seen, waves.curvature(seen.sphere.groups), within_m);
         if (hit_m < kInfinity) return hit_m;
         clearance_m = std::max(seen.sphere.f, 0.0);
         s_m += seen.step_m;
@@ -295,61 +230,32 @@ double trace(Waves& waves, const Ray& ray, Ways ways, const std::vector<std::arr
     return kInfinity;
 }
 
-// The paper's temporal coherence (§3.3): the last frame's spheres, shrunk by what the sea may have moved, and its hit, moved as the sea
-// there does, from which the search goes backwards.
-template <Bounds kBounds>
+// The paper's temporal coherence (§3.3) with its own bounds: the last frame's spheres, shrunk by what the sea may have moved. (The
+// core's has bounds of second order in time as well.)
 double trace_again(Waves& waves, const Ray& ray, double time_s, Spheres& kept) {
     static thread_local Spheres found;
     found.clear();
-    double hit_m = kInfinity, hit_from_m = kInfinity;
-    if (!kept.empty() && kBounds == Bounds::Curved) {
-        const Sphere& last = kept.back();
-        const double f = last.f + last.rate * (time_s - last.time_s);
-        const double at_m = last.s_m + (last.forward < 0.0 ? f / -last.forward : 0.0);
-        Look seen = waves.look<kBounds>(at_m, kInfinity, -1.0);
-        seen.sphere.time_s = time_s;
-        const Sphere& at = seen.sphere;
-        if (seen.is_whole && at.f < 0.0 && at.backward > 0.0) {
-            // Below the surface: backwards F is below 0 up to `earliest` at least, and above 0 between the two zeros.
-            const double square = at.backward * at.backward + 2.0 * at.curvature * at.f;
-            if (square > 0.0 && seen.highest < 0.0) {
-                const double steepest = at.backward + 2.0 * (seen.steepest - at.forward),
-                             root = std::sqrt(square), first_m = -2.0 * at.f / (at.backward + root),
-                             earliest_m = first_zero(-seen.highest, -steepest, at.curvature);
-                if (first_m - earliest_m <= 2.0 * ray.within_m(at_m)) {
-                    hit_m = at.s_m - 0.5 * (first_m + earliest_m);
-                    hit_from_m = at.s_m - (at.backward + root) / at.curvature;
-                    kept.push_back(at);
-                }
-            }
-        } else if (seen.is_whole && at.f >= 0.0) {
-            hit_m = converged_m<kBounds>(seen, ray.within_m(at_m));
-            hit_from_m = at.s_m - first_zero(at.f, at.backward, at.curvature);
-            kept.push_back(at);
-        }
-    }
     double s_m = 0.0;
     std::size_t next = 0;
     while (s_m < ray.length_m) {
-        for (double from_m = 0.0, to_m = 0.0; next < kept.size(); ++next) {
-            if (!covers<kBounds>(kept[next], time_s, from_m, to_m)) continue;
-            if (from_m > s_m) break;
+        for (; next < kept.size(); ++next) {
+            const Sphere& old = kept[next];
+            const double f = waves.later(old, time_s - old.time_s);
+            if (!(f > 0.0)) continue;
+            waves.need(old.groups);
+            const double steepness = waves.steepness(old.groups);
+            if (old.s_m - f / std::max(ray.unit.z + steepness, 1e-9) > s_m) break;
+            const double to_m = old.s_m + f / (steepness - ray.unit.z);
             if (to_m <= s_m + 1e-3) continue;
             s_m = to_m;
-            found.push_back(kept[next]);
+            found.push_back(old);
         }
-        if (hit_m < kInfinity && hit_from_m <= s_m) {
-            if (found.empty() || found.back().s_m != kept.back().s_m) found.push_back(kept.back());
-            kept.swap(found);
-            return hit_m;
-        }
-        Look seen = waves.look<kBounds>(s_m, ray.length_m - s_m, -1.0);
+        Look seen = waves.look<Bounds::Efficient>(s_m, ray.length_m - s_m, -1.0);
         seen.sphere.time_s = time_s;
         found.push_back(seen.sphere);
-        const double here_m = converged_m<kBounds>(seen, ray.within_m(s_m));
-        if (here_m < kInfinity) {
+        if (converged_m<Bounds::Efficient>(seen, 0.0, ray.within_m(s_m)) < kInfinity) {
             kept.swap(found);
-            return here_m;
+            return s_m;
         }
         s_m += seen.step_m;
     }
@@ -359,7 +265,8 @@ double trace_again(Waves& waves, const Ray& ray, double time_s, Spheres& kept) {
 
 template <Bounds kBounds>
 double trace_whole(Waves& waves, const Ray& ray, double brute_step_m) {
-    const double steepness = waves.steepness(), longest = 1.0 / std::sqrt(1.0 + steepness * steepness);
+    const double steepness = waves.steepest_anywhere(),
+                 longest = 1.0 / std::sqrt(1.0 + steepness * steepness);
     for (double s_m = 0.0; s_m < ray.length_m;) {
         if (kBounds == Bounds::Brute) {
             if (waves.whole(s_m) <= 0.0) return s_m;
@@ -384,7 +291,7 @@ double trace_whole(Waves& waves, const Ray& ray, double brute_step_m) {
 template <Bounds kBounds>
 double find(Waves& waves, const Ray& ray, Ways ways, double time_s,
             std::vector<std::array<double, 4>>& neighbours, Spheres& kept) {
-    if (ways.temporal) return trace_again<kBounds>(waves, ray, time_s, kept);
+    if (ways.temporal) return trace_again(waves, ray, time_s, kept);
     if (!ways.image) return trace<kBounds>(waves, ray, ways, neighbours, nullptr);
     static thread_local Spheres seen;
     seen.clear();
@@ -412,9 +319,9 @@ double find(Waves& waves, const Ray& ray, Ways ways, double time_s,
 
 }  // namespace
 
-std::size_t TraceBy(Ways ways, const TracedTrains& trains, const std::vector<double>& omega, double time_s,
-                    const Picture& picture, std::vector<Spheres>& kept, std::vector<double>& distance_m) {
-    Waves waves(trains, omega);
+std::size_t TraceBy(Ways ways, const TracedTrains& trains, const Picture& picture, std::vector<Spheres>& kept,
+                    std::vector<double>& distance_m) {
+    Waves waves(trains);
     std::vector<std::array<double, 4>> neighbours;
     const double crest_m = trains.rest_m.front();
     distance_m.resize(picture.direction.size());
@@ -443,10 +350,10 @@ std::size_t TraceBy(Ways ways, const TracedTrains& trains, const std::vector<dou
                 hit_m = trace_whole<Bounds::Sorted>(waves, ray, 0.0);
                 break;
             case Bounds::Efficient:
-                hit_m = find<Bounds::Efficient>(waves, ray, ways, time_s, neighbours, kept[i]);
+                hit_m = find<Bounds::Efficient>(waves, ray, ways, trains.time_s, neighbours, kept[i]);
                 break;
             case Bounds::Curved:
-                hit_m = find<Bounds::Curved>(waves, ray, ways, time_s, neighbours, kept[i]);
+                hit_m = find<Bounds::Curved>(waves, ray, ways, trains.time_s, neighbours, kept[i]);
                 break;
         }
         distance_m[i] = enters_m + hit_m;
@@ -462,9 +369,9 @@ namespace pelagic {
 HWY_EXPORT(TraceBy);
 
 namespace bench {
-std::size_t trace_by(Ways ways, const TracedTrains& trains, const std::vector<double>& omega, double time_s,
-                     const Picture& picture, std::vector<Spheres>& kept, std::vector<double>& distance_m) {
-    return HWY_DYNAMIC_DISPATCH(TraceBy)(ways, trains, omega, time_s, picture, kept, distance_m);
+std::size_t trace_by(Ways ways, const TracedTrains& trains, const Picture& picture,
+                     std::vector<Spheres>& kept, std::vector<double>& distance_m) {
+    return HWY_DYNAMIC_DISPATCH(TraceBy)(ways, trains, picture, kept, distance_m);
 }
 }  // namespace bench
 }  // namespace pelagic

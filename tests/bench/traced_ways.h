@@ -19,17 +19,15 @@ enum class Bounds {
 };
 struct Ways {
     Bounds bounds = Bounds::Curved;
-    // Of the last two bounds: what a ray has evaluated before, what the ray before it has, what the same ray had in the
-    // last frame.
+    // Of the last two bounds: what a ray has evaluated before, what the ray before it has; of Efficient: what the same ray had in
+    // the last frame.
     bool spatial = false, image = false, temporal = false;
 };
 
-// What one look at a ray has shown: F(s ± r) ≥ f + g± r − ½ M r² at that time; for other times with the last four.
+// What one look at a ray has shown: F there and then, at least, by the first groups of trains.
 struct Sphere {
-    double s_m = 0.0, time_s = 0.0;
-    double f = 0.0, forward = 0.0, backward = 0.0, curvature = 0.0;
-    double rate = 0.0, fastest = 0.0, mixed = 0.0,
-           bend = 0.0;      // ∂F/∂t; Σ Aω, Σ A|k·d|ω, Σ Aω² of those evaluated
+    double s_m = 0.0, time_s = 0.0, f = 0.0;
+    std::size_t groups = 0;
     double radius_m = 0.0;  // of the ball round it that the sea doesn't reach
 };
 using Spheres = std::vector<Sphere>;
@@ -41,9 +39,8 @@ struct Picture {
     double tolerance_m = 1e-4, tolerance_per_m = 0.0, brute_step_m = 0.0;
 };
 
-// Distances [m]; returns how many times a train was evaluated. omega: by train [rad/s]. kept: by ray, of the frame before;
-// read and written with `temporal`.
-std::size_t trace_by(Ways ways, const TracedTrains& trains, const std::vector<double>& omega, double time_s,
-                     const Picture& picture, std::vector<Spheres>& kept, std::vector<double>& distance_m);
+// Distances [m]; returns how many times a train was evaluated. kept: by ray, of the frame before; read and written with `temporal`.
+std::size_t trace_by(Ways ways, const TracedTrains& trains, const Picture& picture,
+                     std::vector<Spheres>& kept, std::vector<double>& distance_m);
 
 }  // namespace pelagic::bench

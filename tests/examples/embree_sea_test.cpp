@@ -252,7 +252,7 @@ TEST_F(EmbreeSeaTest, PacketsOfAnySizeAgree) {
     const std::vector<Ray> rays = fan(3.0f, 23, 9);
     std::vector<RayWidth> widths;
     for (std::size_t i = 0; i < rays.size(); ++i)
-        widths.push_back({.footprint_m = 0.01f * static_cast<float>(i % 7), .spread = 0.004f});
+        widths.push_back({.footprint_m = 0.4f * static_cast<float>(i % 7), .spread = 0.004f});
     SeaRayContext context;
     context.widths = widths.data();
     const std::vector<Found> one = one_by_one(scene.get(), rays, context);
@@ -385,12 +385,17 @@ TEST_F(EmbreeSeaTest, BendsWithTheEarth) {
     for (int i = 0; i < 40; ++i)
         rays.push_back(
             {.from = {0.0f, 0.0f, 100.0f}, .towards = {0.6f, 0.8f, -0.001f * static_cast<float>(i)}});
+    // 60 km away the sea is 283 m lower than at the origin: these never come as high as its waves do there.
+    for (int i = 0; i < 10; ++i)
+        rays.push_back(
+            {.from = {6e4f, 0.0f, -200.0f}, .towards = {0.0f, 0.6f, -0.1f - 0.1f * static_cast<float>(i)}});
     SeaRayContext context({.footprint_m = 0.0f, .spread = 0.0005f});
     const std::vector<Found> found = one_by_one(scene.get(), rays, context),
                              expected = sea_alone(rays, context.width, true);
     for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(found[i].distance, expected[i].distance) << i;
     EXPECT_EQ(found[4].geometry, RTC_INVALID_GEOMETRY_ID);
     EXPECT_EQ(found[8].geometry, kSea);
+    EXPECT_EQ(found[44].geometry, kSea);
 }
 
 TEST_F(EmbreeSeaTest, KeepsTheFirstErrorOfACallback) {

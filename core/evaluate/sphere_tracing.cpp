@@ -253,16 +253,19 @@ template <bool kSeen>
 std::size_t trace_rays(const TracedTrains& trains, const TracedRays& rays, Strided<double> distance,
                        SeenSpheres* seen) {
     Tracer<kSeen> tracer(trains);
+    // Until all is done `seen` holds nothing, so that a call that fails leaves nothing half written.
+    std::vector<SeenSpheres::Ray> each;
     if constexpr (kSeen) {
-        if (seen->sea != trains.sea) seen->rays.clear();
+        each.swap(seen->rays);
+        if (seen->sea != trains.sea) each.clear();
+        each.resize(rays.count);
         seen->sea = trains.sea;
-        seen->rays.resize(rays.count);
         seen->next.clear();
     }
     for (std::size_t i = 0; i < rays.count; ++i) {
         distance[i] = kInfinity;
         SeenSpheres::Ray before;
-        if constexpr (kSeen) std::swap(before, seen->rays[i]);  // of none until it is traced
+        if constexpr (kSeen) std::swap(before, each[i]);  // of none until it is traced
         const glm::dvec3 direction(rays.direction[i]);
         const glm::dvec3 from_m =
             rays.origin_m + (rays.offset_m ? glm::dvec3(rays.offset_m[i]) : glm::dvec3(0.0));
@@ -277,10 +280,13 @@ std::size_t trace_rays(const TracedTrains& trains, const TracedRays& rays, Strid
                                   rays.tolerance_m ? static_cast<double>(rays.tolerance_m[i]) : 1e-3,
                                   rays.tolerance_per_m ? static_cast<double>(rays.tolerance_per_m[i]) : 0.0};
         const double hit_m = tracer.hit_m(tolerance, rays.most_steps, seen, &before);
-        if constexpr (kSeen) seen->rays[i] = before;
+        if constexpr (kSeen) each[i] = before;
         distance[i] = (way.before_m + hit_m) / length;
     }
-    if constexpr (kSeen) seen->spheres.swap(seen->next);
+    if constexpr (kSeen) {
+        seen->spheres.swap(seen->next);
+        seen->rays.swap(each);
+    }
     return tracer.evaluated();
 }
 

@@ -21,6 +21,7 @@
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
 #include "plugin/procedural/c_interface.h"
+#include "plugin/procedural/expansion.h"
 #include "plugin/procedural/procedural_frame.h"
 #include "plugin/shot/shot.h"
 
@@ -60,27 +61,25 @@ pelagic_camera camera_of(const View& view) {
 }
 
 // What pelagic_expand() and pelagic_expand_size() agree on.
-struct Expansion {
-    View view;
-    ProjectedGridOptions options;
-    ProjectedGridNeeds needs;
-    bool triangles = false;
-};
 Expansion expansion_of(const ShotFrame& frame, const pelagic_camera* camera,
                        const pelagic_expand_options* options) {
     const auto asked = taken_or_zeros(options, "options");
-    const double cell_px = asked.cell_px == 0.0 ? kCell_px : asked.cell_px;
-    if (!(cell_px >= 0.25 && cell_px <= 1000.0))
+    const auto within = [](double value, double low, double high) {
+        return value == 0.0 || (value >= low && value <= high);
+    };
+    if (!within(asked.cell_px, kFinestCell_px, 1000.0))
         throw std::invalid_argument(
             "options.cell_px is outside the range; accepted: 0.25 to 1000 pixels, or 0");
-    Expansion expansion{.view = view_of(taken(camera, "camera")),
-                        .options = grid_options(frame, cell_px),
-                        .needs = {},
-                        .triangles = asked.triangles != 0};
-    expansion.options.curvature_per_m = asked.on_earth != 0 ? kEarthCurvature_per_m : 0.0;
-    expansion.needs = projected_grid_needs(expansion.view, expansion.options);
-    expansion.options.size = expansion.needs.size;
-    return expansion;
+    if (!within(asked.error_px, 0.01, 100.0))
+        throw std::invalid_argument(
+            "options.error_px is outside the range; accepted: 0.01 to 100 pixels, or 0");
+    if (asked.cell_px != 0.0 && asked.error_px != 0.0)
+        throw std::invalid_argument("options.cell_px and error_px: accepted: one of them");
+    return expansion_of(frame, view_of(taken(camera, "camera")),
+                        {.cell_px = asked.cell_px == 0.0 ? kCell_px : asked.cell_px,
+                         .error_px = asked.error_px,
+                         .triangles = asked.triangles != 0,
+                         .on_earth = asked.on_earth != 0});
 }
 
 pelagic_mesh_size size_of(const Expansion& expansion) {
@@ -109,23 +108,14 @@ void fill_corners(const Expansion& expansion, std::uint32_t* corner) {
 
 void expand(const ShotFrame& frame, const Expansion& expansion, const Results<float>& results,
             pelagic_mesh_buffers& buffers) {
-    ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
-    // Trains have no ladder: they see each point's own footprints.
-    if (frame.shot().query().cell_m.size() > 1) keep_to_rungs(grid, expansion.needs);
+    const ProjectedGrid grid = grid_of(frame, expansion);
     for (int axis = 0; axis < 2; ++axis) buffers.origin_m[axis] = grid.origin_m[axis];
     buffers.origin_m[2] = 0.0;
     if (buffers.corner) fill_corners(expansion, buffers.corner);
     if (buffers.rest_m)
         std::memcpy(buffers.rest_m, grid.rest_m.data(), grid.rest_m.size() * sizeof(glm::vec2));
     if (results.given().none()) return;
-    frame.evaluate_by_all({.origin_m = grid.origin_m,
-                           .count = grid.rest_m.size(),
-                           .rest_m = {grid.rest_m.data()},
-                           .cell_m = {grid.cell_m.data()},
-                           .pixel_m = {grid.pixel_m.data()},
-                           .cell_axis_m = {grid.cell_axis_m.data()},
-                           .pixel_axis_m = {grid.pixel_axis_m.data()}},
-                          results);
+    frame.evaluate_by_all(points_of(grid), results);
     if (grid.curvature_per_m == 0.0) return;
     for (std::size_t i = 0; i < grid.rest_m.size(); ++i) {
         const glm::dvec3 up = earth_up(glm::dvec2(grid.rest_m[i]), grid.curvature_per_m);

@@ -51,6 +51,20 @@ Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_
     return make_plan(std::move(prepared), {query}, {.double_precision = false});
 }
 
+// Of n samples, side by side so that the compiler takes vectors.
+float largest(const float* samples, std::size_t n) {
+    constexpr std::size_t kSide = 16;
+    std::array<float, kSide> most{};
+    std::size_t i = 0;
+    for (; i + kSide <= n; i += kSide)
+        for (std::size_t j = 0; j < kSide; ++j) {
+            const float size = std::abs(samples[i + j]);
+            most[j] = size > most[j] ? size : most[j];
+        }
+    for (; i < n; ++i) most[0] = std::max(most[0], std::abs(samples[i]));
+    return *std::max_element(most.begin(), most.end());
+}
+
 // The most that a field's sum can be, everywhere: splines stay within their coefficients, and the weights of the copies at a
 // point add up to 2 at most (core/plan/copies.h).
 double most_of(const Frame<float>& frame, Field field) {
@@ -63,11 +77,10 @@ double most_of(const Frame<float>& frame, Field field) {
             const float* samples = frame.samples(static_cast<int>(c), static_cast<int>(g), field);
             if (!samples) continue;
             for (int y = 0; y < n; ++y)
-                for (int x = 0; x < n; ++x)
-                    of_cascade =
-                        std::max(of_cascade, std::abs(static_cast<double>(
-                                                 samples[static_cast<std::size_t>(y) * line_stride<float>(n) +
-                                                         static_cast<std::size_t>(x)])));
+                of_cascade = std::max(
+                    of_cascade,
+                    static_cast<double>(largest(samples + static_cast<std::size_t>(y) * line_stride<float>(n),
+                                                static_cast<std::size_t>(n))));
         }
         most += (plan.cascades[c].has_copies ? 2.0 : 1.0) * of_cascade;
     }
@@ -133,6 +146,7 @@ void ShotFrame::set(double open_s, double close_s) {
         bounds_.clear();
         tiles_.reset();
         everywhere_.reset();
+        cells_.reset();
         if (half_open_s_ == 0.0) return;
         constexpr std::array kVelocities{Field::VelocityX, Field::VelocityY, Field::VelocityZ};
         tbb::parallel_for(0, 3, [&](int axis) { fastest_mps_[axis] = most_of(frame_, kVelocities[axis]); });
@@ -173,6 +187,14 @@ std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, Fo
     constexpr int kBlocks = 4096;
     if (!(cells.finest_m >= 0.0) || !(cells.coarsest_m >= cells.finest_m))
         throw std::invalid_argument("region.finest_cell_m, coarsest_cell_m: accepted: 0 or more, in order");
+    // So large a region has every wave in it.
+    constexpr double kAnywhere_m = 65536.0;
+    const glm::dvec2 side_m = region.max_m - region.min_m;
+    if (std::min(side_m.x, side_m.y) >= kAnywhere_m) {
+        const SurfaceBounds all = everywhere();
+        const glm::dvec3 most_m(glm::dvec2(all.reach_m), all.height_m);
+        return {glm::dvec3(region.min_m, 0.0) - most_m, glm::dvec3(region.max_m, 0.0) + most_m};
+    }
     const DisplacementBounds moved =
         over_rungs(cells, [&](const FrameBounds<float>& of) { return of.region(region, kBlocks); });
     const glm::dvec3 by_m = half_open_s_ * fastest_mps_;
@@ -198,6 +220,18 @@ const SurfaceTiles& ShotFrame::tiles() const {
         tiles_ = std::make_unique<const SurfaceTiles>(*query_, of_->finest_cell_m(), half_open_s_,
                                                       of_->ray_cache_bytes);
     return *tiles_;
+}
+
+std::optional<double> ShotFrame::remembered_cell_px(const View& view, double error_px, bool on_earth) const {
+    const std::lock_guard<std::mutex> lock(lock_);
+    const bool is_it =
+        cells_ && cells_->view == view && cells_->error_px == error_px && cells_->on_earth == on_earth;
+    return is_it ? std::optional(cells_->cell_px) : std::nullopt;
+}
+
+void ShotFrame::remember_cell_px(const View& view, double error_px, bool on_earth, double cell_px) const {
+    const std::lock_guard<std::mutex> lock(lock_);
+    cells_ = {view, error_px, on_earth, cell_px};
 }
 
 void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const {

@@ -14,6 +14,7 @@
 #include "core/evaluate/prepared_query.h"
 #include "core/plan/plan.h"
 #include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
 #include "core/waves/frame.h"
 #include "plugin/procedural/surface_tiles.h"
 
@@ -67,6 +68,10 @@ class ShotFrame {
     // What rays see; made when asked for, as those of a frame that nobody traces cost nothing.
     const SurfaceTiles& tiles() const;
 
+    // The cells of the last mesh that was asked for by its error, if it was this one.
+    std::optional<double> remembered_cell_px(const View& view, double error_px, bool on_earth) const;
+    void remember_cell_px(const View& view, double error_px, bool on_earth, double cell_px) const;
+
     // By the calling thread alone. Times outside the shutter are its ends.
     void evaluate(const TimedPoints& points, Results<float> results) const;
     // The same in the middle of the shutter, by all threads of the calling arena.
@@ -88,6 +93,13 @@ class ShotFrame {
         bounds_;  // by rung, made when asked for
     mutable std::unique_ptr<const SurfaceTiles> tiles_;
     mutable std::optional<SurfaceBounds> everywhere_;
+    struct Cells {
+        View view;
+        double error_px;
+        bool on_earth;
+        double cell_px;
+    };
+    mutable std::optional<Cells> cells_;
 };
 
 // All of the sea that may be in view from there while the shutter is open.

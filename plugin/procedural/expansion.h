@@ -1,0 +1,36 @@
+// The mesh for a camera: how fine its cells are, and the grid that they make.
+#pragma once
+
+#include "core/evaluate/evaluate.h"
+#include "core/surface/projected_grid.h"
+#include "core/surface/view.h"
+#include "plugin/procedural/procedural_frame.h"
+
+namespace pelagic::procedural {
+
+// No mesh is finer.
+inline constexpr double kFinestCell_px = 0.25;
+
+struct ExpansionChoice {
+    double cell_px = kCell_px;  // the side of a cell on the screen
+    double error_px = 0.0;      // beyond 0: cells as large as keep 95 % of the picture so near to the surface
+    bool triangles = false, on_earth = false;
+};
+
+struct Expansion {
+    View view;
+    ProjectedGridOptions options;
+    ProjectedGridNeeds needs;
+    bool triangles = false;
+};
+
+// In the frame's arena.
+Expansion expansion_of(const ShotFrame& frame, const View& view, const ExpansionChoice& choice);
+ProjectedGrid grid_of(const ShotFrame& frame, const Expansion& expansion);
+Points<float> points_of(const ProjectedGrid& grid);
+
+// The distance from a point of a face to the surface of the finest cells along its normal, over the width of a pixel there: what 95 % of the
+// picture's sea is within, by samples.
+double mesh_error_px(const ShotFrame& frame, const Expansion& expansion);
+
+}  // namespace pelagic::procedural

@@ -1,4 +1,4 @@
-/* The sea as a renderer asks for it: bounds of a region, the mesh that a camera sees, a point's height.
+/* The sea as a renderer asks for it: bounds of a region, the mesh that a camera sees, where a ray meets it.
  *
  *   procedural SHOT.toml FRAME MESH.obj
  *
@@ -99,6 +99,22 @@ int main(int argc, char **argv) {
     write_obj(argv[3], &mesh);
     printf("%zu quads of %zu points, round (%.1f, %.1f) m: %s\n", size.faces, size.points, mesh.origin_m[0],
            mesh.origin_m[1], argv[3]);
+
+    /* No mesh: what a ray through the middle of the picture meets. */
+    const float spread = (float)(2.0 * camera.tan_half_width / camera.width);
+    float direction[3], distance;
+    pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
+    for (int axis = 0; axis < 3; ++axis) {
+        rays.origin_m[axis] = camera.position_m[axis];
+        direction[axis] = (float)camera.forward[axis];
+    }
+    rays.count = 1;
+    rays.direction = direction;
+    rays.spread = &spread;
+    pelagic_hits hits = PELAGIC_INIT(pelagic_hits);
+    hits.distance = &distance;
+    check(pelagic_intersect(frame, &rays, &hits, &error), "intersect");
+    printf("in the middle of the picture: the sea %.1f m away (infinity: none)\n", distance);
 
     free(mesh.corner);
     free(values.position_m);

@@ -1,5 +1,5 @@
 // The same views by rays (examples/trace) and by `pelagic render`, with its own cells and with finer ones: how their luminances differ, where rays only decide what hides
-// what, and where they also find what is mirrored. bench_trace [WIDTH]
+// what, and where they also find what is mirrored. bench_trace [WIDTH [SAMPLES]]
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -40,10 +40,11 @@ void print(const char* what, const std::vector<float>& of) {
                 100.0 * static_cast<double>(more) / static_cast<double>(std::max<std::size_t>(of.size(), 1)));
 }
 
-void compare(const Case& of, const trace::FloatingObject& boat) {
+void compare(const Case& of, const trace::FloatingObject& boat, int samples) {
     const int frame = of.scene.shot.first_frame;
     const Sky sky = make_sky(of.scene);
-    const RenderOptions options = render_options(of.scene);
+    RenderOptions options = render_options(of.scene);
+    options.samples = samples;
     Picture rendered, finely;
     const auto render = [&](const Scene& scene, Picture& to) {
         return seconds_of([&] {
@@ -111,7 +112,7 @@ void compare(const Case& of, const trace::FloatingObject& boat) {
 
 int main(int argc, char** argv) {
     using namespace pelagic;
-    const int width = argc > 1 ? std::atoi(argv[1]) : 640;
+    const int width = argc > 1 ? std::atoi(argv[1]) : 640, samples = argc > 2 ? std::atoi(argv[2]) : 1;
     const std::string root = PELAGIC_SOURCE_DIR;
     const auto load = [&](const char* shot) {
         Scene scene = load_shot(root + shot, check_scene);
@@ -121,8 +122,8 @@ int main(int argc, char** argv) {
     const trace::FloatingObject boat = trace::read_obj(root + "/examples/trace/boat.obj");
     compare(
         {"the first shot", load("/examples/first-shot.toml"), {.at_m = {-17.5, -62.0}, .heading_rad = 2.6}},
-        boat);
+        boat, samples);
     Scene storm = load("/examples/pictures/storm.toml");
     storm.camera.position_m.z = 10.0;
-    compare({"a storm from 10 m", storm, {.at_m = {2.0, -28.0}, .heading_rad = 2.4}}, boat);
+    compare({"a storm from 10 m", storm, {.at_m = {2.0, -28.0}, .heading_rad = 2.4}}, boat, samples);
 }

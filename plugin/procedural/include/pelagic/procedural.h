@@ -136,7 +136,8 @@ typedef struct pelagic_info {
     double significant_height_m; /* Hs */
     double peak_wavelength_m;
     double finest_cell_m, finest_pixel_m; /* what is asked for finer counts as this */
-    size_t frame_bytes; /* what a frame holds; bounds keep up to three times as much beside it */
+    size_t
+        frame_bytes; /* what a frame holds; beside it bounds keep up to three times as much, rays up to ray_cache_bytes */
 } pelagic_info;
 PELAGIC_API pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pelagic_error* error);
 

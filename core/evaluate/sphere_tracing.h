@@ -79,7 +79,7 @@ class SphereTracing {
     // (waves.choppiness above 0), and for a footprint that isn't one.
     explicit SphereTracing(const Frame<float>& frame, double cell_m = 0.0);
 
-    // The first place where each ray meets the surface, from above or from below; infinity where there is none. Returns how many
+    // The first place where each ray meets the surface, from above or from below; infinity where there is none within most_steps. Returns how many
     // times a train was evaluated.
     //
     // A ray that crosses the surface has a hit, no later than tolerance after the crossing along the ray. A hit lies at most tolerance

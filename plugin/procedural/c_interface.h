@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <exception>
 #include <glm/vec3.hpp>
@@ -67,17 +68,29 @@ T& required(T* pointer, const char* name) {
     return *pointer;
 }
 
-// A structure of the caller's, as this version knows it. A longer one is of a later version: what this one doesn't know of it must
-// be 0.
+// The size of a structure in its first version; later members follow.
+template <class S>
+inline constexpr std::size_t kFirstSize = sizeof(S);
+template <>
+inline constexpr std::size_t kFirstSize<pelagic_open_options> = offsetof(pelagic_open_options,
+                                                                         ray_cache_bytes);
+template <>
+inline constexpr std::size_t kFirstSize<pelagic_expand_options> = offsetof(pelagic_expand_options, error_px);
+
+// A structure of the caller's, as this version knows it. One of an earlier version has zeros for what came later; a longer one is of a later
+// version: what this one doesn't know of it must be 0.
 template <class S>
 S taken(const S* from, const char* name) {
     const std::size_t size = required(from, name).size;
-    if (size < sizeof(S))
+    if (size < kFirstSize<S>)
         throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
+    S known{};
+    std::memcpy(&known, from, std::min(size, sizeof(S)));
+    if (size <= sizeof(S)) return known;
     const auto* bytes = reinterpret_cast<const unsigned char*>(from);
     if (std::any_of(bytes + sizeof(S), bytes + size, [](unsigned char byte) { return byte != 0; }))
         throw std::invalid_argument(std::string(name) + " asks for what a later version of the library has");
-    return *from;
+    return known;
 }
 // The same where null stands for a structure of zeros.
 template <class S>
@@ -87,10 +100,11 @@ S taken_or_zeros(const S* from, const char* name) {
 // Into the caller's; its size stays.
 template <class S>
 void give(S from, S* to, const char* name) {
-    if (required(to, name).size < sizeof(S))
+    const std::size_t size = required(to, name).size;
+    if (size < kFirstSize<S>)
         throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
-    from.size = to->size;
-    *to = from;
+    from.size = size;
+    std::memcpy(to, &from, std::min(size, sizeof(S)));
 }
 
 // [m], as cameras' may be.

@@ -121,8 +121,8 @@ double mesh_error_px(const ShotFrame& frame, const Expansion& expansion) {
                          p = on_screen(on_face_m);
         // From behind, or beside the picture, a face isn't seen.
         const double area_px2 = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-        if (!(area_px2 > 0.0) || !(p.z > 0.0) || std::abs(p.x) > 0.5 * view.resolution.x ||
-            std::abs(p.y) > 0.5 * view.resolution.y)
+        if (!(area_px2 > 0.0) || !(std::min({a.z, b.z, c.z}) > 0.0) ||
+            std::abs(p.x) > 0.5 * view.resolution.x || std::abs(p.y) > 0.5 * view.resolution.y)
             continue;
         const double width_m = pixel * glm::length(glm::dvec3(on_face_m) - eye_m);
         const double off_m = std::abs(glm::dot(glm::dvec3(on_face_m - exact_m[i]), glm::dvec3(normal[i])));

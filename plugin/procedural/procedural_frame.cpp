@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <limits>
@@ -108,13 +109,13 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
                                 : std::make_unique<tbb::task_arena>()) {
     arena->execute([&] {
         Plan plan = plan_of(scene, options, finest_ray_m);
-        // As the plan's rungs have it; a sea of trains has none.
-        if (plan.queries.front().query.cell_m.front() > 0.0)
-            finest_ray_m = plan.queries.front().query.cell_m.front();
         MemoryNeed need;
         add_sea(need, plan, arena->max_concurrency());
         require_memory(need, machine::memory_limit(), "a frame of this sea");
         sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
+        // As the plan's rungs have it; a sea of trains has none.
+        finest_ray_m =
+            query().cell_m.front() > 0.0 ? query().cell_m.front() : std::max(finest_ray_m, finest_cell_m());
     });
 }
 
@@ -190,7 +191,7 @@ std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, Fo
     // So large a region has every wave in it.
     constexpr double kAnywhere_m = 65536.0;
     const glm::dvec2 side_m = region.max_m - region.min_m;
-    if (std::min(side_m.x, side_m.y) >= kAnywhere_m) {
+    if (std::min(side_m.x, side_m.y) >= kAnywhere_m && cells.finest_m <= of_->finest_cell_m()) {
         const SurfaceBounds all = everywhere();
         const glm::dvec3 most_m(glm::dvec2(all.reach_m), all.height_m);
         return {glm::dvec3(region.min_m, 0.0) - most_m, glm::dvec3(region.max_m, 0.0) + most_m};

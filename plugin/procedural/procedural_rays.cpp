@@ -133,6 +133,7 @@ void give_zeros(const Results<float>& to, std::size_t i) {
 void intersect(const ShotFrame& frame, const pelagic_rays& rays, const pelagic_hits& hits,
                const Results<float>& values) {
     constexpr std::size_t kTogether = 256;
+    constexpr double kMost = std::numeric_limits<float>::max();
     const Batch batch(rays, frame);
     RayTracer tracer(batch.sea());
     Waiting waiting;
@@ -143,7 +144,7 @@ void intersect(const ShotFrame& frame, const pelagic_rays& rays, const pelagic_h
         double length_m = 0.0;
         const bool is_hit = batch.ray(i, ray, length_m) && tracer.trace(ray, false, hit);
         if (hits.distance)
-            hits.distance[i] = is_hit ? static_cast<float>(hit.distance_m / length_m)
+            hits.distance[i] = is_hit ? static_cast<float>(std::min(hit.distance_m / length_m, kMost))
                                       : std::numeric_limits<float>::infinity();
         if (hits.footprint_m) hits.footprint_m[i] = static_cast<float>(hit.footprint_m);
         if (hits.rest_m) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -14,7 +16,7 @@ namespace {
 
 // A ray that goes so far through the waves' heights meets nothing but the sea at rest beyond: a level ray above the crests would look at
 // each wave as far as doubles go.
-constexpr double kLongestWay_m = 131072.0;
+constexpr double kLongestWay_m = 32768.0;
 // Cells for which two levels count.
 constexpr double kSharedCells = 32.0;
 
@@ -48,11 +50,24 @@ RayTracer::RayTracer(const RaySea& sea) : sea_(sea) {
 }
 
 double RayTracer::footprint_m(const SeaRay& ray, double s_m) const {
-    return std::max(ray.footprint_m + ray.spread * s_m, sea_.finest_footprint_m);
+    constexpr double kWidest_m = 1e30;  // beyond any sea, and a number in single precision
+    return std::min(std::max(ray.footprint_m + ray.spread * s_m, sea_.finest_footprint_m), kWidest_m);
 }
 
-// Where it is no higher and no lower than any point of the sea; empty: y < x.
-glm::dvec2 RayTracer::span_in_waves(const SeaRay& ray) const {
+// Within the earth's sphere, so much higher than the sea at rest; no less than that.
+RayTracer::Span RayTracer::within_sphere(const SeaRay& ray, double height_m) const {
+    const double radius_m = 1.0 / sea_.curvature_per_m;
+    const double b = glm::dot(ray.from_m, ray.direction) + radius_m * ray.direction.z;
+    const double c =
+        glm::dot(ray.from_m, ray.from_m) + 2.0 * radius_m * (ray.from_m.z - height_m) - height_m * height_m;
+    const double within = b * b - c;
+    if (!(within >= 0.0)) return {0.0, -1.0};
+    const double rounding_m = (1.0 + 1e-9 * std::abs(b)) * (height_m < 0.0 ? -1.0 : 1.0);
+    return {-b - std::sqrt(within) - rounding_m, -b + std::sqrt(within) + rounding_m};
+}
+
+// Where it is no higher and no lower than any point of the sea.
+RayTracer::Span RayTracer::span_in_waves(const SeaRay& ray) const {
     const double height_m = sea_.everywhere.height_m;
     double near_m = ray.near_m, far_m = ray.far_m;
     if (sea_.curvature_per_m == 0.0) {
@@ -61,16 +76,20 @@ glm::dvec2 RayTracer::span_in_waves(const SeaRay& ray) const {
         enters(ray.from_m, inverse(ray.direction), -any, any, near_m, far_m);
         return {near_m, far_m};
     }
-    // Within the sphere through the highest crests.
-    const double radius_m = 1.0 / sea_.curvature_per_m;
-    const double b = glm::dot(ray.from_m, ray.direction) + radius_m * ray.direction.z;
-    const double c =
-        glm::dot(ray.from_m, ray.from_m) + 2.0 * radius_m * (ray.from_m.z - height_m) - height_m * height_m;
-    const double within = b * b - c;
-    if (!(within >= 0.0)) return {0.0, -1.0};
-    const double rounding_m = 1.0 + 1e-9 * std::abs(b);
-    return {std::max(near_m, -b - std::sqrt(within) - rounding_m),
-            std::min(far_m, -b + std::sqrt(within) + rounding_m)};
+    // Between the spheres through the highest crests and the lowest troughs; what goes into the inner one has met the sea.
+    const Span outer = within_sphere(ray, height_m), inner = within_sphere(ray, -height_m);
+    near_m = std::max(near_m, outer.near_m);
+    far_m = std::min(far_m, outer.far_m);
+    if (inner.near_m < inner.far_m && inner.far_m > near_m) {
+        const double lowest_m = 0.5 * (inner.near_m + inner.far_m);
+        if (near_m < inner.near_m)
+            far_m = std::min(far_m, inner.near_m);
+        else if (near_m < lowest_m)
+            return {0.0, -1.0};  // down to the bottom of the sea
+        else
+            near_m = inner.far_m;
+    }
+    return {near_m, far_m};
 }
 
 RayTracer::Piece RayTracer::piece_of(const SeaRay& ray, int level, double near_m, double far_m) const {
@@ -93,21 +112,18 @@ RayTracer::Piece RayTracer::piece_of(const SeaRay& ray, int level, double near_m
 }
 
 bool RayTracer::trace(const SeaRay& ray, bool any, SeaHit& hit) {
-    constexpr int kRaysPerLook = 64;
-    if (rays_++ % kRaysPerLook == 0) {
-        std::shared_ptr<TileStore> store = sea_.tiles->store();
-        if (store != store_) {
-            roots_.fill({});
-            store_ = std::move(store);
-        }
+    if (!store_ || sea_.tiles->is_full(*store_)) {
+        store_ = sea_.tiles->store();
+        roots_.fill({});
     }
     const SurfaceTiles& tiles = *sea_.tiles;
-    const glm::dvec2 span_m = span_in_waves(ray);
-    const double end_m = span_m.y, last_m = span_m.x + kLongestWay_m;
+    const auto [begin_m, end_m] = span_in_waves(ray);
+    const double last_m = begin_m + kLongestWay_m;
     SeaHit best{.distance_m = std::numeric_limits<double>::infinity()};
-    for (double s_m = span_m.x; s_m <= end_m && s_m < best.distance_m;) {
+    for (double s_m = begin_m; s_m <= end_m && s_m < best.distance_m;) {
         const double tolerance_m = sea_.tolerance * footprint_m(ray, s_m);
         const bool is_flat = s_m >= last_m;
+        if (is_flat && s_m == last_m && meets_rest_between(ray, begin_m, last_m, best)) break;
         const int level = is_flat ? tiles.flat_level() : tiles.level_within(tolerance_m);
         double next_m = end_m, shared_m = 0.0;
         if (level < tiles.flat_level()) {
@@ -122,6 +138,8 @@ bool RayTracer::trace(const SeaRay& ray, bool any, SeaHit& hit) {
         // A straight piece leaves the bent sea's ray by a tenth of the tolerance at most.
         if (sea_.curvature_per_m > 0.0)
             next_m = std::min(next_m, s_m + std::sqrt(0.8 * tolerance_m / sea_.curvature_per_m));
+        next_m =
+            std::min(std::max(next_m, s_m * (1.0 + 1e-12)), end_m);  // where tolerances are below doubles
         if (hit_piece(piece_of(ray, level, s_m, std::min(next_m + shared_m, end_m)), any, best) && any) break;
         if (!(next_m > s_m)) break;
         s_m = next_m;
@@ -133,12 +151,32 @@ bool RayTracer::trace(const SeaRay& ray, bool any, SeaHit& hit) {
     return true;
 }
 
+// A ray that goes on over the sea at rest may have come to its other side meanwhile.
+bool RayTracer::meets_rest_between(const SeaRay& ray, double begin_m, double end_m, SeaHit& best) const {
+    const auto at = [&](double s_m) {
+        const Piece piece = piece_of(ray, 0, s_m, s_m);
+        const glm::dvec3 place_m = piece.from_m + s_m * piece.direction;
+        return sea_.curvature_per_m == 0.0
+                   ? place_m
+                   : from_earth(place_m - glm::dvec3(sea_.origin_m, 0.0), sea_.curvature_per_m) +
+                         glm::dvec3(sea_.origin_m, 0.0);
+    };
+    const glm::dvec3 here_m = at(end_m);
+    if ((at(begin_m).z > 0.0) == (here_m.z > 0.0)) return false;
+    best.distance_m = end_m;
+    best.rest_m = glm::dvec2(here_m);
+    return true;
+}
+
 bool RayTracer::hit_piece(Piece piece, bool any, SeaHit& best) {
     const SurfaceTiles& tiles = *sea_.tiles;
     piece.far_m = std::min(piece.far_m, best.distance_m);
     if (piece.level >= tiles.flat_level()) {
         const double s_m = -piece.from_m.z * piece.per_direction.z;
-        if (!(s_m >= piece.near_m && s_m < piece.far_m)) return false;
+        const double seam_m =
+            1e-9 * (1.0 + std::abs(s_m));  // pieces of a bent sea are rounded each by itself
+        if (!(s_m >= piece.near_m - seam_m && s_m < piece.far_m + seam_m && s_m < best.distance_m))
+            return false;
         best.distance_m = s_m;
         best.rest_m = glm::dvec2(piece.from_m + s_m * piece.direction);
         return true;

@@ -63,9 +63,14 @@ class RayTracer {
         int quarter;
     };
 
-    glm::dvec2 span_in_waves(const SeaRay& ray) const;
+    struct Span {
+        double near_m, far_m;  // none: far < near
+    };
+    Span within_sphere(const SeaRay& ray, double height_m) const;
+    Span span_in_waves(const SeaRay& ray) const;
     double footprint_m(const SeaRay& ray, double s_m) const;
     Piece piece_of(const SeaRay& ray, int level, double near_m, double far_m) const;
+    bool meets_rest_between(const SeaRay& ray, double begin_m, double end_m, SeaHit& best) const;
     bool hit_piece(Piece piece, bool any, SeaHit& best);
     void push_roots(const Piece& piece);
     void push(const Entry& entry);
@@ -75,7 +80,6 @@ class RayTracer {
     RaySea sea_;
     NearestInTile nearest_ = nearest_in_tile();
     std::shared_ptr<TileStore> store_;
-    int rays_ = 0;
     struct Root {
         TilePlace place;
         const Tile* tile = nullptr;

@@ -10,9 +10,6 @@
 namespace pelagic::procedural {
 namespace {
 
-constexpr int kRow = kTileCells + 1;
-// Vectors read beyond the last point.
-constexpr std::size_t kRoom = (kTilePoints + 15) / 16 * 16;
 // The finest level that any tolerance takes, below the query's finest cell: deviations fall with the square of the points' distance.
 constexpr int kLevelsBelowFinest = 4;
 // Of flat water, or where cells hide all waves from far above.
@@ -25,7 +22,7 @@ TileBox box_of(const float* const at_m[3], const float* const velocity_mps[3], d
         float low = INFINITY, high = -INFINITY, most = 0.0f;
         for (int y = y0; y <= y0 + cells; ++y)
             for (int x = x0; x <= x0 + cells; ++x) {
-                const int i = y * kRow + x;
+                const int i = y * kTileRow + x;
                 const float way = velocity_mps[axis]
                                       ? static_cast<float>(half_open_s) * std::abs(velocity_mps[axis][i])
                                       : 0.0f;
@@ -104,7 +101,7 @@ int SurfaceTiles::level_within(double tolerance_m) const {
 // Triangles differ most from the surface in the middle of their longest edge, the cell's diagonal. Waves are many and independent of each other,
 // so that differences are normal: a sample's largest of 512 is some three standard deviations.
 double SurfaceTiles::sampled_deviation_m(int level, bool& is_flat) const {
-    constexpr int kPlaces = 32, kCells = 16;
+    constexpr int kPlaces = 128, kCells = 4;
     constexpr double kAboveLargest = 1.8;  // more than five of them
     const double step_m = std::ldexp(1.0, level);
     std::vector<glm::vec2> rest_m;
@@ -148,7 +145,7 @@ double SurfaceTiles::sampled_deviation_m(int level, bool& is_flat) const {
 
 std::shared_ptr<TileStore> SurfaceTiles::store() const {
     const std::lock_guard<std::mutex> lock(lock_);
-    if (store_->bytes() > most_bytes_) store_ = std::make_shared<TileStore>();
+    if (is_full(*store_)) store_ = std::make_shared<TileStore>();
     return store_;
 }
 
@@ -156,7 +153,7 @@ const Tile& SurfaceTiles::tile(TileStore& store, const TilePlace& place) const {
     if (const Tile* found = store.find(place)) return *found;
     std::unique_ptr<Tile> tile = made(place);
     const std::size_t bytes =
-        sizeof(Tile) + (half_open_s_ > 0.0 ? 6 : 3) * kRoom * sizeof(float) + 4 * sizeof(void*);
+        sizeof(Tile) + (half_open_s_ > 0.0 ? 6 : 3) * kTileRoom * sizeof(float) + 4 * sizeof(void*);
     return *store.keep(place, std::move(tile), bytes);
 }
 
@@ -166,7 +163,7 @@ std::unique_ptr<Tile> SurfaceTiles::made(const TilePlace& place) const {
     std::array<glm::vec2, kTilePoints> rest_m;
     std::array<float, kTilePoints> cell_m;
     for (int i = 0; i < kTilePoints; ++i) {
-        const glm::vec2 node(i % kRow, i / kRow);
+        const glm::vec2 node(i % kTileRow, i / kTileRow);
         rest_m[static_cast<std::size_t>(i)] = step_m * (node - 0.5f * kTileCells);
     }
     cell_m.fill(step_m);
@@ -180,11 +177,11 @@ std::unique_ptr<Tile> SurfaceTiles::made(const TilePlace& place) const {
                             .cell_m = {cell_m.data()}},
                            results);
     auto tile = std::make_unique<Tile>();
-    tile->values = std::make_unique<float[]>((moves ? 6 : 3) * kRoom);
+    tile->values = std::make_unique<float[]>((moves ? 6 : 3) * kTileRoom);
     const float *at_m[3], *velocity_mps[3];
     for (int axis = 0; axis < 3; ++axis) {
-        float* at = tile->values.get() + static_cast<std::size_t>(axis) * kRoom;
-        float* fast = moves ? at + 3 * kRoom : nullptr;
+        float* at = tile->values.get() + static_cast<std::size_t>(axis) * kTileRoom;
+        float* fast = moves ? at + 3 * kTileRoom : nullptr;
         for (std::size_t i = 0; i < kTilePoints; ++i) {
             at[i] = position[i][axis];
             if (moves) fast[i] = velocity[i][axis];

@@ -65,16 +65,17 @@ class SurfaceTiles {
 
     // From this level on the sea is its plane at rest.
     int flat_level() const { return first_level_ + static_cast<int>(deviations_m_.size()); }
-    // No point of the level is further from the surface of the finest cells, where the same place at rest lies: by so many standard deviations
-    // that none is met. Levels below the finest count as that, flat ones as the first of these.
+    // No point of the level is further from the surface of the finest cells, where the same place at rest lies: by five
+    // standard deviations of what is sampled. Levels below the finest count as that, flat ones as the first of these.
     double deviation_m(int level) const;
     // The coarsest level that keeps this near to the surface.
     int level_within(double tolerance_m) const;
     // Tiles of the coarser level, or boxes of their quarters, hold all of the finer one's points when they are so much larger.
     double widening_m(int coarse, int fine) const { return 1.5 * (deviation_m(coarse) + deviation_m(fine)); }
 
-    // What calls hold while they use its tiles. New ones get an empty store once the last is full.
+    // What calls hold while they use its tiles; an empty one once the last is full.
     std::shared_ptr<TileStore> store() const;
+    bool is_full(const TileStore& store) const { return store.bytes() > most_bytes_; }
     const Tile& tile(TileStore& store, const TilePlace& place) const;
 
     static double width_m(int level);

@@ -19,13 +19,9 @@ namespace {  // names are this file's own
 using D = hn::CappedTag<float, kTileCells>;
 using N = pelagic::HWY_NAMESPACE::Pack<D>;
 
-// A row of a tile has one point more than a vector may have lanes.
-constexpr int kRow = kTileCells + 1;
-constexpr int kRoom = (kTilePoints + 15) / 16 * 16;
-
 // Along the ray: x and y are 0 on it, z is the distance.
 struct Sheared {
-    alignas(64) float x[kRoom], y[kRoom], z[kRoom];
+    alignas(64) float x[kTileRoom], y[kTileRoom], z[kTileRoom];
 };
 
 struct Corner {
@@ -109,9 +105,9 @@ bool Nearest(const TilePoints& points, const TileRay& ray, TileHit& hit) {
     float found = ray.far;
     for (int row = 0; row < kTileCells; ++row)
         for (int column = 0; column < kTileCells; column += lanes) {
-            const int i = row * kRow + column;
+            const int i = row * kTileRow + column;
             const Corner a = CornerAt(sheared, i), b = CornerAt(sheared, i + 1),
-                         c = CornerAt(sheared, i + kRow + 1), e = CornerAt(sheared, i + kRow);
+                         c = CornerAt(sheared, i + kTileRow + 1), e = CornerAt(sheared, i + kTileRow);
             const auto edge = [&](const Corner& from, const Corner& to)
                                   HWY_ATTR { return EdgeOf(from, to, rounding); };
             const Edge diagonal = edge(a, c);

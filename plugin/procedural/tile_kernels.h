@@ -10,11 +10,13 @@ namespace pelagic::procedural {
 // A tile has so many cells along a side. Points go row by row; each cell is two triangles, which meet in its diagonal
 // from the lower to the higher corner.
 inline constexpr int kTileCells = 8;
-inline constexpr int kTilePoints = (kTileCells + 1) * (kTileCells + 1);
+inline constexpr int kTileRow = kTileCells + 1, kTilePoints = kTileRow * kTileRow;
+// Values that an array of them must have: vectors read beyond the last.
+inline constexpr int kTileRoom = (kTilePoints + 15) / 16 * 16;
 
 // By axis.
 struct TilePoints {
-    std::array<const float*, 3> at_m{};          // kTilePoints of each
+    std::array<const float*, 3> at_m{};          // kTileRoom of each
     std::array<const float*, 3> velocity_mps{};  // null: they stand still
 };
 

@@ -26,6 +26,8 @@ TEST(Earth, KeepsDistancesAzimuthsAndHeights) {
                 const glm::dvec2 flat = s * glm::dvec2(std::cos(azimuth), std::sin(azimuth));
                 const glm::dvec3 p = on_earth(glm::dvec3(flat, z), kEarthCurvature_per_m);
                 EXPECT_NEAR(glm::length(p - kCentre), kEarthRadius_m + z, 1e-6 + 1e-10 * s);
+                EXPECT_LT(glm::length(from_earth(p, kEarthCurvature_per_m) - glm::dvec3(flat, z)),
+                          1e-6 + 1e-9 * s);
                 const double turn = std::atan2(std::hypot(p.x, p.y), p.z + kEarthRadius_m);
                 EXPECT_NEAR(turn * kEarthRadius_m, s, 1e-6 + 1e-9 * s);
                 if (s > 0.0) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -208,6 +209,81 @@ TEST(ProceduralRays, OnTheEarthPlacesAreTheBentSeas) {
     EXPECT_EQ(hits_of(frame, over.rays()).distance[0], kForever);
 }
 
+TEST(ProceduralRays, OnTheEarthEndWhereTheyAreUnderAllWaves) {
+    const FrameHandle frame = frame_of(open_text(kShot), 3.0, 3.0);
+    const auto distance = [&](double z, glm::vec3 direction) {
+        Fan fan;
+        fan.on_earth = true;
+        fan.origin_m.z = z;
+        fan.direction = {direction};
+        return hits_of(frame, fan.rays()).distance[0];
+    };
+    // Refracted rays don't come up at the other side of the world.
+    EXPECT_EQ(distance(-15.0, {0.1f, 0.0f, -1.0f}), kForever);
+    EXPECT_EQ(distance(-15.0, {1.0f, 0.0f, -0.5f}), kForever);
+    // From far below and from orbit they meet the waves over the place, not the sea at rest.
+    const float over = 30.0f - distance(30.0, {0.0f, 0.0f, -1.0f});
+    EXPECT_GT(std::abs(over), 0.01f);
+    EXPECT_NEAR(distance(-2e5, {0.0f, 0.0f, 1.0f}), 2e5 + over, 0.1);
+    EXPECT_NEAR(distance(4e5, {0.0f, 0.0f, -1.0f}), 4e5 - over, 0.1);
+}
+
+TEST(ProceduralRays, ALongWayBetweenTheWavesEndsOnTheSeaAtRest) {
+    const FrameHandle frame = frame_of(open_text("[sea]\nwind_speed_mps = 0.5\n"), 3.0, 3.0);
+    Fan fan;
+    fan.origin_m.z = 0.012;
+    fan.direction = {glm::vec3(1.0f, 0.0f, -1e-8f)};
+    const float distance = hits_of(frame, fan.rays()).distance[0];
+    EXPECT_GT(distance, 3e4f);
+    EXPECT_LT(distance, 2e6f);
+}
+
+TEST(ProceduralRays, OfTrainsTakeAnyFinestCell) {
+    for (const double finest_m : {1e-300, 1e-12, 1e6}) {
+        pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
+        options.finest_cell_m = options.finest_pixel_m = finest_m;
+        const FrameHandle frame = frame_of(open_text("[waves]\nmodel = \"trochoid\"\n", &options), 3.0, 3.0);
+        Fan fan = fan_of(60);
+        fan.spread.clear();
+        for (const bool on_earth : {false, true}) {
+            fan.on_earth = on_earth;
+            const Hits hits = hits_of(frame, fan.rays());
+            for (std::size_t i = 0; i < fan.direction.size(); ++i) {
+                if (fan.direction[i].z < -0.1f) {
+                    EXPECT_LT(hits.distance[i], 100.0f) << finest_m;
+                }
+            }
+        }
+    }
+}
+
+TEST(ProceduralRays, ShareALittleRoom) {
+    pelagic_open_options little = PELAGIC_INIT(pelagic_open_options);
+    little.ray_cache_bytes = 200000;
+    const FrameHandle frame = frame_of(open_text(kShot, &little), 3.0, 3.0);
+    const Fan fan = fan_of(1000);
+    const Hits alone = hits_of(frame_of(open_text(kShot), 3.0, 3.0), fan.rays());
+    std::vector<std::thread> threads;
+    for (int thread = 0; thread < 4; ++thread)
+        threads.emplace_back([&] { EXPECT_TRUE(alone == hits_of(frame, fan.rays())); });
+    for (std::thread& thread : threads) thread.join();
+}
+
+TEST(ProceduralRays, OfProgramsThatKnowLess) {
+    pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
+    options.size = offsetof(pelagic_open_options, ray_cache_bytes);
+    options.ray_cache_bytes = ~std::size_t{0};  // isn't theirs
+    const SeaHandle sea = open_text(kShot, &options);
+    const FrameHandle frame = frame_of(sea, 1.0, 1.0);
+    pelagic_camera camera = PELAGIC_INIT(pelagic_camera);
+    ASSERT_EQ(pelagic_shot_camera(sea.get(), 1.0, &camera, nullptr), PELAGIC_OK);
+    pelagic_expand_options expand = PELAGIC_INIT(pelagic_expand_options);
+    expand.size = offsetof(pelagic_expand_options, error_px);
+    expand.error_px = -1.0;
+    pelagic_mesh_size size = PELAGIC_INIT(pelagic_mesh_size);
+    EXPECT_EQ(pelagic_expand_size(frame.get(), &camera, &expand, &size, nullptr), PELAGIC_OK);
+}
+
 TEST(ProceduralRays, OfACalmSeaMeetThePlane) {
     for (const char* text : {"[sea]\nwind_speed_mps = 0.1\n", "[sea]\nwind_speed_mps = 0.0\n"}) {
         const FrameHandle frame = frame_of(open_text(text), 1.0, 1.0);
@@ -243,7 +319,7 @@ TEST(ProceduralRays, DirectionsHaveLengths) {
 TEST(ProceduralRays, WhateverComesInIsFiniteOrNothing) {
     const FrameHandle frame = frame_of(open_text(kShot), 3.0, 3.02);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float odd[] = {nan, kForever, -kForever, 0.0f, -1.0f, 1e30f, -1e30f, 1e-30f, 1.0f};
+    const float odd[] = {nan, kForever, -kForever, 0.0f, -1.0f, 3e38f, 1e30f, -1e30f, 1e-38f, 1.0f};
     Fan fan;
     std::vector<glm::vec3> offset_m;
     std::vector<float> near, far, footprint_m;

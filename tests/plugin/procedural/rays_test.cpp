@@ -24,13 +24,13 @@ using namespace test;
 constexpr double kCell_m = 0.25;
 constexpr float kForever = std::numeric_limits<float>::infinity();
 
-// The exact surface over a square round the world's origin, as triangles a quarter of the finest cell wide.
+// The exact surface over a square round a place of the world, as triangles a quarter of the finest cell wide.
 class FineMesh {
   public:
     static constexpr int kSide = 1024;
     static constexpr float kStep_m = static_cast<float>(kCell_m / 4.0);
 
-    FineMesh(const FrameHandle& frame, float shutter_s)
+    FineMesh(const FrameHandle& frame, float shutter_s, glm::dvec2 origin_m)
         : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
         const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         const std::size_t count = std::size_t{kSide + 1} * (kSide + 1);
@@ -46,6 +46,8 @@ class FineMesh {
             auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
                 geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), count));
             pelagic_points points = PELAGIC_INIT(pelagic_points);
+            points.origin_m[0] = origin_m.x;
+            points.origin_m[1] = origin_m.y;
             points.count = count;
             points.rest_m = &rest_m[0].x;
             points.time_s = times_s.data();
@@ -267,6 +269,7 @@ struct Sea {
     const char* name;
     const char* text;
     double shutter_s;
+    glm::dvec2 origin_m;
 };
 void PrintTo(const Sea& sea, std::ostream* os) {
     *os << sea.name;
@@ -284,7 +287,7 @@ TEST_P(RaysAgainstMesh, MeetTheSeaWhereItIs) {
     const SeaHandle sea = open_text(GetParam().text, &options);
     const auto shutter_s = static_cast<float>(GetParam().shutter_s);
     const FrameHandle frame = frame_of(sea, 7.0, 7.0 + GetParam().shutter_s);
-    const FineMesh mesh(frame, shutter_s);
+    const FineMesh mesh(frame, shutter_s, GetParam().origin_m);
     std::mt19937 random(5);
     std::uniform_real_distribution<float> share(0.0f, 1.0f);
     constexpr double kTolerance = 0.5, kOfMesh_m = 0.02 * kCell_m;
@@ -297,6 +300,8 @@ TEST_P(RaysAgainstMesh, MeetTheSeaWhereItIs) {
             rays.spread.assign(rays.size(), spread);
             for (std::size_t i = 0; i < rays.size(); ++i) rays.time_s.push_back(shutter_s * share(random));
             pelagic_rays asks = PELAGIC_INIT(pelagic_rays);
+            asks.origin_m[0] = GetParam().origin_m.x;
+            asks.origin_m[1] = GetParam().origin_m.y;
             asks.count = rays.size();
             asks.offset_m = &rays.offset_m[0].x;
             asks.direction = &rays.direction[0].x;
@@ -317,6 +322,8 @@ TEST_P(RaysAgainstMesh, MeetTheSeaWhereItIs) {
                 << error.message;
             // Where the places of the hits are.
             pelagic_points points = PELAGIC_INIT(pelagic_points);
+            points.origin_m[0] = GetParam().origin_m.x;
+            points.origin_m[1] = GetParam().origin_m.y;
             points.count = rays.size();
             points.rest_m = &rest_m[0].x;
             points.time_s = rays.time_s.data();
@@ -374,8 +381,8 @@ TEST_P(RaysAgainstMesh, MeetTheSeaWhereItIs) {
 constexpr char kStorm[] = "[sea]\nwind_speed_mps = 22.0\n[waves]\nchoppiness = 1.2\n";
 constexpr char kTrains[] = "[sea]\nwind_speed_mps = 9.0\n[waves]\nmodel = \"trochoid\"\n";
 INSTANTIATE_TEST_SUITE_P(Seas, RaysAgainstMesh,
-                         ::testing::Values(Sea{"storm", kStorm, 0.0}, Sea{"shutter", "", 0.02},
-                                           Sea{"trains", kTrains, 0.0}),
+                         ::testing::Values(Sea{"storm", kStorm, 0.0, {2e6, -7e5}},
+                                           Sea{"shutter", "", 0.02, {}}, Sea{"trains", kTrains, 0.0, {}}),
                          [](const auto& sea) { return std::string(sea.param.name); });
 
 }  // namespace

@@ -237,16 +237,24 @@ typedef struct pelagic_hits {
     float* distance;    /* in lengths of the direction; infinity: the ray hits nothing */
     float* rest_m;      /* x, y of the place at rest, relative to the origin, on a flat sea */
     float* footprint_m; /* of the ray there */
-    /* Of each hit, as pelagic_evaluate() has them for the place at rest, with the footprint as pixel; the position is that on the ray.
-     * Zeros where there is none. null: not wanted. */
+    /* Of each hit, as pelagic_evaluate() has them for the place at rest, with the footprint as cell and pixel; the position is that on the ray,
+     * at its time and, on the earth, on the bent sea, for which normals and velocities are turned too. Zeros where there is none.
+     * null: not wanted. */
     const pelagic_values* values;
 } pelagic_hits;
 
 /* The first place where each ray meets the sea, from above or from below. The sea is the exact surface of the frame's finest cells, but for the
- * tolerance: a hit lies no further from it than tolerance × footprint, a ray that goes deeper through it has a hit, and one that stays
- * further away has none. Footprints below pelagic_open_options.finest_cell_m count as that; a ray
- * that begins within the tolerance of the surface may begin on its other side. A ray that isn't finite, has no direction or begins more than 1e10 m away from the origin hits nothing.
- * What rays ask for first is worked out then and kept, as far as ray_cache_bytes allow; hits don't depend on that. */
+ * tolerance: a hit lies no further from it than tolerance x footprint, a ray that goes deeper through it has a hit, and one that stays
+ * further away has none. That is by samples of the frame, of which five standard deviations are within the tolerance. Footprints below
+ * pelagic_open_options.finest_cell_m count as that, and so do, of wave trains, those below 1/64 of the shortest.
+ *
+ * A ray that begins within the tolerance of the surface may begin on its other side. A ray that has gone between the heights of the highest
+ * crest and the lowest trough for 32 km meets the sea at rest from there on; on the earth, one that goes down from below all waves
+ * hits nothing. None is followed further than 1e12 m. A ray that isn't finite,
+ * has no direction or begins more than 1e10 m away from the origin hits nothing; a negative near, footprint or spread counts as 0.
+ *
+ * What rays ask for first is worked out then and kept while there is room, about ray_cache_bytes and, of each call that runs, what its last
+ * ray took; hits don't depend on that. */
 PELAGIC_API pelagic_status pelagic_intersect(const pelagic_frame* frame, const pelagic_rays* rays,
                                              const pelagic_hits* hits, pelagic_error* error);
 /* Whether each ray meets the sea at all: 1 or 0. Less work than the first place. */

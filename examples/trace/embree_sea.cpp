@@ -80,6 +80,7 @@ EmbreeSea::~EmbreeSea() {
 
 void EmbreeSea::refresh(double shutter_s) {
     options_.shutter_s = shutter_s;
+    status_ = PELAGIC_OK;  // of the frame before
     find_bounds();
     rtcCommitGeometry(geometry_);
 }

@@ -43,7 +43,7 @@ class EmbreeSea {
         bool on_earth = false;   // bent with the earth, which touches z = 0 at the origin
     };
 
-    // The frame must outlive it. Throws std::runtime_error where the frame has no bounds, or Embree no memory.
+    // The frame must outlive it, and it every scene with it in. Throws std::runtime_error where the frame has no bounds, or Embree no memory.
     EmbreeSea(RTCDevice device, const pelagic_frame* frame, const Options& options);
     ~EmbreeSea();
     EmbreeSea(const EmbreeSea&) = delete;

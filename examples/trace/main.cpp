@@ -46,14 +46,13 @@ void run(const Arguments& arguments) {
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     const Sky sky = make_sky(scene);
     const std::filesystem::path folder(arguments.out);
-    std::filesystem::create_directories(folder);
-
     Tracer tracer(scene, options, sky, frame);
     const bool is_terminal = isatty(STDERR_FILENO) != 0;
     const TracedPicture traced = tracer.render([&](double done) {
         if (is_terminal) std::fprintf(stderr, "\r%3.0f %%", 100.0 * done);
     });
     if (is_terminal) std::fprintf(stderr, "\r     \r");
+    std::filesystem::create_directories(folder);
     const PictureContext context{.scene = scene,
                                  .options = options.picture,
                                  .sky = sky,

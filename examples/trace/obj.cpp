@@ -1,5 +1,6 @@
 #include "obj.h"
 
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <glm/common.hpp>
@@ -23,12 +24,11 @@ glm::vec3 point_of(std::istringstream& words, glm::vec3& colour) {
 
 // "7", "7/1", "7//3": the point's index, from 1 on; negative ones count from the last.
 std::uint32_t corner_of(const std::string& word, std::size_t points) {
+    const std::string digits = word.substr(0, word.find('/'));
     long index = 0;
-    try {
-        index = std::stol(word.substr(0, word.find('/')));
-    } catch (const std::exception&) {
+    const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
+    if (problem != std::errc() || end != digits.data() + digits.size())
         throw std::runtime_error("\"" + word + "\" is no corner");
-    }
     const auto count = static_cast<long>(points);
     if (index < 0) index += count + 1;
     if (index < 1 || index > count)
@@ -67,9 +67,12 @@ FloatingObject read_obj(const std::filesystem::path& file) {
         } catch (const std::runtime_error& problem) {
             throw std::runtime_error(file.string() + ":" + std::to_string(number) + ": " + problem.what());
         }
+    if (in.bad()) throw std::runtime_error(file.string() + ": can't be read to its end");
     if (shown.triangles.empty()) throw std::runtime_error(file.string() + ": has no faces");
-    object.dry.points = shown.points;
-    object.dry.colours = shown.colours;
+    if (!object.dry.triangles.empty()) {
+        object.dry.points = shown.points;
+        object.dry.colours = shown.colours;
+    }
     return object;
 }
 

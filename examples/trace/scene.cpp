@@ -79,7 +79,7 @@ bool is_inside(RTCScene closed, const glm::vec3& point) {
         rtcInitIntersectContext(&context);
         rtcIntersect1(closed, &context, &up);
         if (up.hit.geomID == RTC_INVALID_GEOMETRY_ID) break;
-        from_m = up.ray.tfar + kBehind_m;
+        from_m = std::max(up.ray.tfar + kBehind_m, std::nextafter(up.ray.tfar, 1e9f));
     }
     return met % 2 == 1;
 }
@@ -94,6 +94,12 @@ void reject_dry(const RTCFilterFunctionNArguments* arguments) {
                                 hit.tfar * glm::vec3(hit.dir_x, hit.dir_y, hit.dir_z);
         if (is_inside(static_cast<RTCScene>(context.user), place)) arguments->valid[i] = 0;
     }
+}
+
+// Embree says what went wrong when it is asked.
+void check_device(RTCDevice device) {
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE)
+        throw std::runtime_error("Embree has no memory for the scene");
 }
 
 }  // namespace
@@ -116,6 +122,7 @@ TracedScene::TracedScene(const pelagic_frame* frame, EmbreeSea::Options options,
         }
     }
     rtcCommitScene(scene_.get());
+    check_device(device_.get());
 }
 
 TracedScene::Scene TracedScene::scene_of_mesh(const Mesh& mesh) {
@@ -124,7 +131,10 @@ TracedScene::Scene TracedScene::scene_of_mesh(const Mesh& mesh) {
                                            sizeof(glm::vec3), mesh.points.size());
     void* triangles = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                               sizeof(glm::uvec3), mesh.triangles.size());
-    if (!points || !triangles) throw std::runtime_error("Embree has no memory for the object");
+    if (!points || !triangles) {
+        rtcReleaseGeometry(geometry);
+        throw std::runtime_error("Embree has no memory for the object");
+    }
     std::copy(mesh.points.begin(), mesh.points.end(), static_cast<glm::vec3*>(points));
     std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<glm::uvec3*>(triangles));
     rtcCommitGeometry(geometry);
@@ -133,6 +143,7 @@ TracedScene::Scene TracedScene::scene_of_mesh(const Mesh& mesh) {
     rtcAttachGeometryByID(scene.get(), geometry, kObject);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene.get());
+    check_device(device_.get());
     return scene;
 }
 
@@ -187,7 +198,9 @@ void TracedScene::float_on(const pelagic_frame* frame, const EmbreeSea::Options&
     }
     if (!std::isfinite(height_m))
         throw std::runtime_error("the object has no sea to float on where it stands");
-    slope /= square;
+    // A flat object has no slope across itself.
+    for (int axis = 0; axis < 2; ++axis)
+        slope[axis] = square[axis] > 0.0f ? slope[axis] / square[axis] : 0.0f;
     const glm::vec3 up = glm::normalize(glm::vec3(turned(-slope), 1.0f));
     const glm::vec3 ahead =
         glm::normalize(glm::vec3(cosine, sine, 0.0f) - up * glm::dot(up, glm::vec3(cosine, sine, 0.0f)));

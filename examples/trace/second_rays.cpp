@@ -92,9 +92,20 @@ std::optional<glm::vec3> Tracer::Impl::facet(std::size_t i, glm::vec3 to_eye) co
     return std::nullopt;
 }
 
+// Of the air before each sample of the sea.
+std::vector<glm::vec3> Tracer::Impl::transmittances() const {
+    std::vector<SeaRadiance> white(on_sea_.size());
+    for (SeaRadiance& one : white) one.sea = glm::vec3(1.0f);
+    if (options_.picture.lighting.air) see_through(air_, seen_.to_eye, seen_.distance_m, white);
+    std::vector<glm::vec3> through(white.size());
+    for (std::size_t i = 0; i < white.size(); ++i) through[i] = glm::max(white[i].sea, glm::vec3(1e-6f));
+    return through;
+}
+
 // Rays from one facet of each sample of the sea. What the sea's own shading has of mirrored light is the sky's; what a mirrored ray
 // meets in its place replaces it. Facets that mirror the ray down into their own wave are left to that shading, too.
-void Tracer::Impl::mirror_and_refract() {
+void Tracer::Impl::mirror_and_refract(const std::vector<std::uint8_t>& dark) {
+    const std::vector<glm::vec3> through = transmittances();
     const std::vector<float>& coverage = light_.answers().numbers(Product::Coverage);
     std::vector<std::optional<SecondRay>> mirrored(on_sea_.size());
     std::vector<RayQuery> below(on_sea_.size());
@@ -111,7 +122,8 @@ void Tracer::Impl::mirror_and_refract() {
         const glm::vec3 towards = 2.0f * cosine * normal - view;
         if (glm::dot(towards, answers_[sample].normal) > 0.0f) {
             // One facet's share may be more than the mean that the shading has: no more of the sky is taken away than is there.
-            const glm::vec3 most = lit_[i].sky / glm::max(sky_towards(towards), glm::vec3(1e-12f));
+            const glm::vec3 most =
+                lit_[i].sky / (through[i] * glm::max(sky_towards(towards), glm::vec3(1e-12f)));
             SecondRay ray{.ray = from_place(rays_[sample], answers_[sample], towards),
                           .sample = sample,
                           .weight = glm::min(glm::vec3(clear * share), most),
@@ -133,16 +145,19 @@ void Tracer::Impl::mirror_and_refract() {
     const WaterBody& water = light_.water();
     const Sky& sky = light_.sky();
     const glm::vec3 loss_per_m = water.absorption_per_m + 2.0f * water.backscatter_per_m;
-    const glm::vec3 down = 0.95f * (sky.sun_irradiance + sky.sky_irradiance);
-    const glm::vec3 open = sea_albedo(water).water * (sky.sun_irradiance + sky.sky_irradiance) / kPi_f;
     for (std::size_t i = 0; i < met.size(); ++i) {
         if (met[i].met != Met::Object) continue;
         const glm::vec3 place = below[i].from + met[i].distance_m * below[i].towards;
         const float depth_m = std::max(below[i].from.z - place.z, 0.0f);
+        // Where the water's surface is in a shadow, so is what lies under it.
+        const glm::vec3 down =
+            0.95f * (sky.sky_irradiance + (dark[i] ? glm::vec3(0.0f) : sky.sun_irradiance));
         const glm::vec3 left = glm::exp(-loss_per_m * met[i].distance_m);
         const glm::vec3 object = met[i].albedo * down * glm::exp(-loss_per_m * depth_m) *
                                  ((0.6f + 0.4f * met[i].normal.z) / (kPi_f * kWaterIndex * kWaterIndex));
-        added_[on_sea_[i]] += enters[i] * left * (object - open);
+        // It stands in front of so much of the water's light; of one facet no more than there is.
+        const glm::vec3 hidden = left * lit_[i].sea / through[i];
+        added_[on_sea_[i]] += enters[i] * left * object - hidden;
     }
 }
 

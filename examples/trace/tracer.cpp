@@ -74,11 +74,14 @@ Tracer::Impl::Impl(const Scene& scene, const TraceOptions& options, Sky sky, int
 
     ProjectedGridOptions cells = grid_options_;
     cells.cell_px = kCell_px * options.picture.samples;
-    RaySea rays = ray_sea(scene_, projected_grid_needs(view_, cells).finest_cell_m, time_s);
+    RaySea rays = ray_sea(scene, projected_grid_needs(view_, cells).finest_cell_m, time_s);
     EmbreeSea::Options of_sea{.finest_cell_m = rays.finest_cell_m,
                               .on_earth = grid_options_.curvature_per_m != 0.0};
     of_sea.origin_m[0] = view_.position_m.x;
     of_sea.origin_m[1] = view_.position_m.y;
+    // As far as the earth's horizon from anywhere, within the world that regions may lie in.
+    of_sea.reach_m =
+        std::clamp(1e9 - std::max(std::abs(view_.position_m.x), std::abs(view_.position_m.y)), 1.0, 1e7);
     ray_frame_ = std::move(rays.frame);
     traced_.emplace(ray_frame_.get(), of_sea, options.object, options.placement);
 }
@@ -204,7 +207,7 @@ void Tracer::Impl::light_sea() {
             for (std::size_t i = 0; i < dark.size(); ++i)
                 if (dark[i]) lit_[i] = unlit[i];
         }
-        mirror_and_refract();
+        mirror_and_refract(dark);
     }
     for (std::size_t i = 0; i < on_sea_.size(); ++i) radiance_[on_sea_[i]] = lit_[i];
 }
@@ -265,7 +268,7 @@ void Tracer::Impl::average(int first_row, int rows, TracedPicture& to) const {
                 pixel.foam += light.foam * share;
                 pixel.air += light.air * share;
                 if (answers_[sample].met == Met::Object) to.object[at] = 1;
-                if (i == n * n / 2) to.picture.sea[at] = answers_[sample].met == Met::Sea;
+                if (i == n / 2 * n + n / 2) to.picture.sea[at] = answers_[sample].met == Met::Sea;
             }
         }
     });

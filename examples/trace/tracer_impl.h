@@ -67,7 +67,9 @@ class Tracer::Impl {
     void light_sea();
     void light_object();
     std::optional<glm::vec3> facet(std::size_t i, glm::vec3 to_eye) const;
-    void mirror_and_refract();
+    // dark: whether each sample of the sea lies in a shadow.
+    void mirror_and_refract(const std::vector<std::uint8_t>& dark);
+    std::vector<glm::vec3> transmittances() const;
     void trace_second_rays();
     void light_second_sea(std::span<const RayQuery> rays, std::span<const RayAnswer> met,
                           std::span<const std::size_t> sea, std::span<glm::vec3> light);

@@ -109,6 +109,21 @@ TEST(Trace, WhatIsMirroredDependsOnNoThreads) {
     for (const SeaRadiance& light : all.picture.layers) EXPECT_TRUE(std::isfinite(test::luminance_of(light)));
 }
 
+// Without width it floats as well, and what it hides of the water's light is no more than there is.
+TEST(Trace, ABlackBoardFloatsAndTakesNoMoreLightThanThereIs) {
+    trace::FloatingObject board;
+    for (const float z : {-3.0f, 3.0f})
+        for (const float y : {-6.0f, 6.0f}) board.shown.points.emplace_back(0.0f, y, z);
+    board.shown.colours.assign(4, glm::vec3(0.0f));
+    board.shown.triangles = {{0, 1, 3}, {0, 3, 2}};
+    const trace::TracedPicture all = traced(small_scene(), true, &board);
+    EXPECT_GT(count_of(all.object), 20u);
+    for (const SeaRadiance& light : all.picture.layers) {
+        const glm::vec3 sum = radiance_of(light);
+        ASSERT_GE(std::min({sum.x, sum.y, sum.z}), -1e-6f * (1.0f + sum.z));
+    }
+}
+
 TEST(Trace, RefusesWhatItCannotTrace) {
     Scene scene = small_scene();
     scene.quality.level = QualityLevel::Reference;

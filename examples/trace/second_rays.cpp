@@ -177,12 +177,7 @@ void Tracer::Impl::trace_second_rays() {
             (met[i].met == Met::Sea ? sea : object).push_back(i);
     }
     light_second_sea(rays, met, sea, light);
-    std::vector<RayQuery> to_object;
-    std::vector<RayAnswer> of_object;
-    for (const std::size_t i : object) {
-        to_object.push_back(rays[i]);
-        of_object.push_back(met[i]);
-    }
+    const auto [to_object, of_object] = gathered(rays, met, object);
     const std::vector<std::uint8_t> dark = in_shadow(to_object, of_object);
     for (std::size_t i = 0; i < object.size(); ++i)
         light[object[i]] = sun_on(of_object[i], dark[i] != 0) + sky_on(of_object[i]);

@@ -194,12 +194,7 @@ void Tracer::Impl::light_sea() {
     light_.answer(seen_);
     light_.light(seen_, light_.sky(), air_, lit_);
     if (options_.traced) {
-        std::vector<RayQuery> rays;
-        std::vector<RayAnswer> met;
-        for (const std::size_t sample : on_sea_) {
-            rays.push_back(rays_[sample]);
-            met.push_back(answers_[sample]);
-        }
+        const auto [rays, met] = gathered(rays_, answers_, on_sea_);
         const std::vector<std::uint8_t> dark = in_shadow(rays, met);
         if (std::find(dark.begin(), dark.end(), 1) != dark.end()) {
             std::vector<SeaRadiance> unlit(on_sea_.size());
@@ -214,12 +209,7 @@ void Tracer::Impl::light_sea() {
 
 void Tracer::Impl::light_object() {
     if (on_object_.empty()) return;
-    std::vector<RayQuery> rays;
-    std::vector<RayAnswer> met;
-    for (const std::size_t sample : on_object_) {
-        rays.push_back(rays_[sample]);
-        met.push_back(answers_[sample]);
-    }
+    const auto [rays, met] = gathered(rays_, answers_, on_object_);
     const std::vector<std::uint8_t> dark =
         options_.traced ? in_shadow(rays, met) : std::vector<std::uint8_t>(met.size(), 0);
     for (std::size_t i = 0; i < met.size(); ++i) {

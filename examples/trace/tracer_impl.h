@@ -49,6 +49,21 @@ struct SecondRay {
     bool replaces_sky = false;  // the sky in its direction is there already
 };
 
+// Those of some rays, side by side.
+struct Gathered {
+    std::vector<RayQuery> rays;
+    std::vector<RayAnswer> met;
+};
+inline Gathered gathered(std::span<const RayQuery> rays, std::span<const RayAnswer> met,
+                         std::span<const std::size_t> which) {
+    Gathered some;
+    for (const std::size_t i : which) {
+        some.rays.push_back(rays[i]);
+        some.met.push_back(met[i]);
+    }
+    return some;
+}
+
 class Tracer::Impl {
   public:
     Impl(const Scene& scene, const TraceOptions& options, Sky sky, int frame);

@@ -29,7 +29,6 @@ Expansion expansion_with(const ShotFrame& frame, const View& view, const Expansi
 
 // Corners of some cells' triangles, with a point in each.
 struct Samples {
-    Points<float> points;
     std::vector<glm::vec2> rest_m, cell_axis_m;  // three of each, and the points in them
     std::vector<float> cell_m;
     std::vector<glm::vec2> inside_m;
@@ -61,11 +60,6 @@ Samples samples_of(const ProjectedGrid& grid, std::size_t count) {
         }
         samples.inside_m.push_back(inside_m);
     }
-    samples.points = {.origin_m = grid.origin_m,
-                      .count = samples.rest_m.size(),
-                      .rest_m = {samples.rest_m.data()},
-                      .cell_m = {samples.cell_m.data()},
-                      .cell_axis_m = {samples.cell_axis_m.data()}};
     return samples;
 }
 
@@ -95,7 +89,12 @@ double mesh_error_px(const ShotFrame& frame, const Expansion& expansion) {
     std::vector<glm::vec3> corner_m(samples.rest_m.size()), exact_m(kSamples), normal(kSamples);
     Results<float> corners, exact;
     corners.set(Product::Position, {corner_m.data()});
-    frame.evaluate_by_all(samples.points, corners);
+    frame.evaluate_by_all({.origin_m = grid.origin_m,
+                           .count = samples.rest_m.size(),
+                           .rest_m = {samples.rest_m.data()},
+                           .cell_m = {samples.cell_m.data()},
+                           .cell_axis_m = {samples.cell_axis_m.data()}},
+                          corners);
     exact.set(Product::Position, {exact_m.data()});
     exact.set(Product::Normal, {normal.data()});
     frame.evaluate_by_all({.origin_m = grid.origin_m, .count = kSamples, .rest_m = {samples.inside_m.data()}},

@@ -17,7 +17,7 @@ namespace {
 // A ray that goes so far through the waves' heights meets nothing but the sea at rest beyond: a level ray above the crests would look at
 // each wave as far as doubles go.
 constexpr double kLongestWay_m = 32768.0;
-// Cells for which two levels count.
+// Cells for which two levels count: the two surfaces cross each other every one or two of them.
 constexpr double kSharedCells = 32.0;
 
 // Of from + s · direction with the box, within near … far.
@@ -154,17 +154,13 @@ bool RayTracer::trace(const SeaRay& ray, bool any, SeaHit& hit) {
 // A ray that goes on over the sea at rest may have come to its other side meanwhile.
 bool RayTracer::meets_rest_between(const SeaRay& ray, double begin_m, double end_m, SeaHit& best) const {
     const auto at = [&](double s_m) {
-        const Piece piece = piece_of(ray, 0, s_m, s_m);
-        const glm::dvec3 place_m = piece.from_m + s_m * piece.direction;
-        return sea_.curvature_per_m == 0.0
-                   ? place_m
-                   : from_earth(place_m - glm::dvec3(sea_.origin_m, 0.0), sea_.curvature_per_m) +
-                         glm::dvec3(sea_.origin_m, 0.0);
+        const glm::dvec3 place_m = ray.from_m + s_m * ray.direction;
+        return sea_.curvature_per_m == 0.0 ? place_m : from_earth(place_m, sea_.curvature_per_m);
     };
     const glm::dvec3 here_m = at(end_m);
     if ((at(begin_m).z > 0.0) == (here_m.z > 0.0)) return false;
     best.distance_m = end_m;
-    best.rest_m = glm::dvec2(here_m);
+    best.rest_m = glm::dvec2(here_m) + sea_.origin_m;
     return true;
 }
 
@@ -218,6 +214,7 @@ void RayTracer::push_roots(const Piece& piece) {
         b_m(piece.from_m + piece.far_m * piece.direction);
     const glm::dvec2 low_m = glm::min(a_m, b_m) - sea_.everywhere.reach_m,
                      high_m = glm::max(a_m, b_m) + sea_.everywhere.reach_m;
+    // So wide that a few of them hold all that may reach the piece.
     const double wide_m = std::max(
         {2.0 * sea_.everywhere.reach_m, 0.5 * std::abs(b_m.x - a_m.x), 0.5 * std::abs(b_m.y - a_m.y)});
     int level = piece.level;
@@ -267,6 +264,7 @@ bool RayTracer::hit_tile(const Tile& tile, const TilePlace& place, const Piece& 
     const glm::vec3 begin_m(from_m + near_m * piece.direction);
     const glm::vec3 most_m =
         glm::max(glm::max(glm::abs(tile.box.low_m), glm::abs(tile.box.high_m)), glm::abs(begin_m));
+    // Some eight roundings: of the points, of the ray's beginning, and of their difference.
     const float rounding_m = 1e-6f * std::max({most_m.x, most_m.y, most_m.z});
     const auto cell_m = static_cast<float>(std::ldexp(1.0, place.level));
     TileHit hit;

@@ -70,7 +70,7 @@ class SurfaceTiles {
     double deviation_m(int level) const;
     // The coarsest level that keeps this near to the surface.
     int level_within(double tolerance_m) const;
-    // Tiles of the coarser level, or boxes of their quarters, hold all of the finer one's points when they are so much larger.
+    // By half as much again as both deviations together, since a box that is too small loses hits: tiles of the coarser level, or boxes of their quarters, hold all of the finer one's points when they are so much larger.
     double widening_m(int coarse, int fine) const { return 1.5 * (deviation_m(coarse) + deviation_m(fine)); }
 
     // What calls hold while they use its tiles; an empty one once the last is full.

@@ -195,6 +195,7 @@ TEST(ProceduralRays, OnTheEarthPlacesAreTheBentSeas) {
         const glm::dvec3 bent = on_earth(glm::dvec3(flat), kEarthCurvature_per_m);
         const glm::dvec3 from(0.0, 0.0, 30.0), direction = glm::normalize(glm::dvec3(fan.direction[i]));
         const double along_m = glm::dot(bent - from, direction);
+        // The tolerance is half a footprint; straight pieces of the bent ray take a tenth of it more.
         EXPECT_LT(glm::length(bent - from - along_m * direction), 0.6 * hits.footprint_m[i]) << along_m;
         EXPECT_NEAR(glm::length(hits.normal[i]), 1.0f, 1e-5f);
         if (along_m > 8000.0) ++far;
@@ -222,6 +223,7 @@ TEST(ProceduralRays, OnTheEarthEndWhereTheyAreUnderAllWaves) {
     EXPECT_EQ(distance(-15.0, {0.1f, 0.0f, -1.0f}), kForever);
     EXPECT_EQ(distance(-15.0, {1.0f, 0.0f, -0.5f}), kForever);
     // From far below and from orbit they meet the waves over the place, not the sea at rest.
+    // To a tenth of a metre: distances are in single precision, footprints of centimetres.
     const float over = 30.0f - distance(30.0, {0.0f, 0.0f, -1.0f});
     EXPECT_GT(std::abs(over), 0.01f);
     EXPECT_NEAR(distance(-2e5, {0.0f, 0.0f, 1.0f}), 2e5 + over, 0.1);

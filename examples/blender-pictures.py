@@ -31,9 +31,13 @@ def main():
         parts = []
         if "beside" in named:
             parts.append(sum(core_layers(named["beside"], shot, folder, size).values()))
-        shot_in_blender(shot, size)
+        sea = shot_in_blender(shot, size)
         bpy_scene = bpy.context.scene
         bpy_scene.frame_set(int(named.get("frame", bpy_scene.frame_start)))
+        if sea.pelagic.effects.spray:
+            bpy_scene.frame_start = bpy_scene.frame_end = bpy_scene.frame_current
+            sea.pelagic_bake.folder = folder
+            bpy.ops.pelagic.bake_volume(kind="spray")
         bpy_scene.cycles.max_bounces, bpy_scene.cycles.sample_clamp_indirect = 3, 10.0
         parts.append(cycles_exr(Path(folder) / "cycles.exr", size, int(named.get("samples", 64)))[..., :3])
     pixels = np.concatenate(parts, axis=1)

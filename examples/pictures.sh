@@ -23,7 +23,7 @@ sheet() {  # COLUMNS JPEG PICTURE…
 render() {  # SHOT FRAMES
     "$PELAGIC_ROOT/build/release/pelagic" render "$here/pictures/$1.toml" --frames "$2" --samples 2 --out "$scratch"
 }
-for shot in noon low-sun overcast storm from-8-km; do
+for shot in noon low-sun overcast storm spray from-8-km; do
     render $shot 12
     sheet 1 $shot.jpg "$scratch/$shot.0012.png"
 done
@@ -31,4 +31,4 @@ for shot in foam-breeze foam-gale foam-storm; do render $shot 1-2; done
 sheet 2 foam.jpg "$scratch"/foam-{breeze,gale,storm}.000{1,2}.png
 render foam-strip 25-193x24
 sheet 4 foam-strip.jpg "$scratch"/foam-strip.*.png
-ls -l "$out"/{noon,low-sun,overcast,storm,from-8-km,foam,foam-strip}.jpg
+ls -l "$out"/{noon,low-sun,overcast,storm,spray,from-8-km,foam,foam-strip}.jpg

@@ -17,17 +17,19 @@ from bpy.props import BoolProperty, FloatVectorProperty, IntProperty, PointerPro
 from bpy_extras.io_utils import ImportHelper
 from mathutils import Vector
 
-from . import handlers, light, material, meshes, ocean
+from . import fitted, handlers, light, material, meshes, ocean, surfaces, volumes
 from .module import pelagic
 from .operators import NeedsModule
 from .query import first_ocean
 from .surfaces import Surface
 
 ENTRIES = {key["path"]: getattr(pelagic, key["entry"]) for key in pelagic.keys() if key["entry"]} if pelagic else {}
+DATA = {key["path"] for key in pelagic.keys() if key["type"].startswith("data")} if pelagic else set()
 UV_M = 100.0  # of a camera's grid: the length that is 1 in its UV map
 # Far out rest positions begin again after this length, so that they stay fine: a multiple of UV_M and of the longest step
 # of a mesh's origin.
 WRAP_M = 102400.0
+MOST_QUADS, EASY_QUADS = 8192, 2048  # a side, of a fitted cage's refined mesh: at all, and unless more are asked for
 ACCEPTED = "accepted: a bake's folder, or NAME.json or NAME.usda in it"
 
 
@@ -47,6 +49,7 @@ class Bake:
         try:
             told = json.loads(self.record.read_text(encoding="utf-8"))
             self.scene = _scene_of(told["settings"])
+            self.is_patch = told["settings"].get("surface.kind", "patch") == "patch"
             dense = told.get("dense_foam")  # since records tell it
             self.dense_foam = (float(dense["active"]), float(dense["left"])) if dense else None
         except FileNotFoundError:
@@ -62,31 +65,38 @@ class Bake:
 
     def missing(self):
         """The frames of the shot that aren't on disk, in words: "3, 7-9", "" if none."""
-        ranges = []
-        for frame in range(self.first, self.last + 1):
-            if frame in self.files:
-                continue
-            if ranges and ranges[-1][1] == frame - 1:
-                ranges[-1][1] = frame
-            else:
-                ranges.append([frame, frame])
-        return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in ranges)
+        return volumes.words_of(frame for frame in range(self.first, self.last + 1) if frame not in self.files)
 
     def nearest(self, frame):
         """The last frame on disk up to this one, or the first there is."""
         return max((each for each in self.files if each <= frame), default=min(self.files))
 
+    @property
+    def is_fitted(self):
+        """Whether the mesh on disk is a cage whose limit surface is the sea."""
+        return self.scene.output.mesh_scheme == "catmullClark"
+
+    def smoothed(self, arrays, halvings):
+        """A cage's arrays on its limit surface, each quad's sides halved so often, and the surface()."""
+        quads = self.scene.surface.resolution
+        halvings = _at_most(halvings, quads, MOST_QUADS)
+        try:
+            made = fitted.refined(arrays, quads, 1 << halvings)
+        except ValueError as error:
+            raise ValueError(f"{self.folder}: {error}") from None
+        return made, surfaces.patch(self.scene.surface.size_m, quads << halvings, False)
+
     def surface(self, arrays):
         """What meshes.put_surface() takes, for a frame's arrays."""
         told = arrays if "face_corners" in arrays else self._topology()
-        if len(told["st"]) != len(arrays["position"]):
-            raise ValueError(f"{self.folder}: a frame has {len(arrays['position'])} points, and its faces are of "
-                             f"{len(told['st'])}")
         corners = told["face_corners"]
+        points = len(arrays["position"])
+        if len(told["st"]) != points if self.is_patch else corners.max() >= points:
+            raise ValueError(f"{self.folder}: a frame has {points} points, and its faces are of others")
         starts = np.concatenate([[0], np.cumsum(told["face_counts"])[:-1]]).astype(np.int32)
-        signature = f"baked {len(told['st'])} {zlib.crc32(corners):08x} {zlib.crc32(starts):08x}"
-        if told is arrays:  # a camera's grid: a frame has its own faces, and where its points rest nobody knows
-            origin_m = arrays["origin_m"][:2]
+        signature = f"baked {points} {zlib.crc32(corners):08x} {zlib.crc32(starts):08x}"
+        if not self.is_patch:  # where the points rest nobody knows any more
+            origin_m = arrays.get("origin_m", np.zeros(3))[:2]
             rest = arrays["position"][:, :2] + (origin_m - WRAP_M * np.round(origin_m / WRAP_M)).astype(np.float32)
             return Surface(signature, rest, 1.0, lambda: (corners, starts), uv_m=UV_M, moves=True)
         size_m = np.float32(self.scene.surface.size_m)
@@ -98,6 +108,13 @@ class Bake:
         raise ValueError(f"{self.folder}: {self.name}.topology.usdc is missing")
 
 
+def _at_most(halvings, quads, most):
+    """As many halvings as make no more quads a side."""
+    while halvings and quads << halvings > most:
+        halvings -= 1
+    return halvings
+
+
 def _scene_of(settings):
     """Of a record's."""
     scene = pelagic.Scene()
@@ -105,7 +122,8 @@ def _scene_of(settings):
         table, name = path.split(".")
         if isinstance(value, list) and value and isinstance(value[0], dict):
             value = tuple(ENTRIES[path](**entry) for entry in value)
-        if value is not None and path != "sea.spectrum_time":
+        # A bake's frames hold the surface; who looks at its scene sees sea and light, and needs no cage.
+        if value is not None and path not in DATA and (path, value) != ("surface.kind", "cage"):
             setattr(getattr(scene, table), name, value)
     return scene
 
@@ -128,6 +146,13 @@ def bake_of(obj):
         return _bake(str(record), record.stat().st_mtime_ns, folder.stat().st_mtime_ns)
     except FileNotFoundError as error:
         raise ValueError(f"{error.filename}: is not there; {ACCEPTED}") from None
+
+
+def _is_fitted(obj):
+    try:
+        return bake_of(obj).is_fitted
+    except (OSError, ValueError):
+        return False
 
 
 def _move(obj, origin_m):
@@ -160,7 +185,10 @@ def show(obj, frame):
             problems[obj.name_full] = f"Missing on disk: {bake.missing()}. Shown instead of {wanted}: {nearest}"
         file = bake.files[nearest]
         arrays = _read(str(file), file.stat().st_mtime_ns)
-        surface = bake.surface(arrays)
+        if bake.is_fitted:
+            arrays, surface = bake.smoothed(arrays, obj.pelagic_baked.halvings)
+        else:
+            surface = bake.surface(arrays)
         if not meshes.holds(obj.data, surface):
             meshes.put_surface(obj.data, surface)
         elif surface.moves:
@@ -192,9 +220,25 @@ def _on_frame(bpy_scene, _depsgraph=None):
             _move(obj, origins_m[obj.data])
 
 
+def _show_volumes(obj, bake):
+    """The volumes that were baked with the mesh, at its frames. Returns the frames that are missing, in words."""
+    missing = []
+    for kind in bake.scene.output.volumes:
+        files = volumes.files_of(bake.record.parent, bake.name, kind)
+        if files:
+            # A mesh that isn't a patch is moved to where its points' origin is: volumes lie in the world.
+            volumes.show(obj, kind, files, bake.scene, obj.pelagic_baked.offset, bake.is_patch)
+        missing += [frame for frame in range(bake.first, bake.last + 1) if frame not in files]
+    return volumes.words_of(sorted(set(missing)))
+
+
 def _changed(settings, context):
-    if settings.path:
-        show(settings.id_data, context.scene.frame_current)
+    if not settings.path:
+        return
+    obj = settings.id_data
+    show(obj, context.scene.frame_current)
+    for volume in volumes.volumes_of(obj).values():
+        volume.data.frame_start = volume.data.frame_offset + 1 + settings.offset
 
 
 class PELAGIC_PG_baked(bpy.types.PropertyGroup):
@@ -202,6 +246,9 @@ class PELAGIC_PG_baked(bpy.types.PropertyGroup):
                          description="NAME.json in the folder of the bake that this object plays")
     offset: IntProperty(name="Offset", update=_changed,
                         description="Frames by which it is later than in the bake")
+    halvings: IntProperty(name="Halvings", default=2, min=0, max=6, update=_changed,
+                          description="Of a fitted cage: how often each of its quads' sides is halved. Every vertex lies "
+                                      "on the sea; more of them follow it between those of the cage")
     origin_m: FloatVectorProperty(size=3, subtype="TRANSLATION", options={"HIDDEN"})  # its part of the delta location
 
 
@@ -225,11 +272,15 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
             return {"CANCELLED"}
         obj = bpy.data.objects.new(bake.name, bpy.data.meshes.new(bake.name))
         context.collection.objects.link(obj)
+        obj.pelagic_baked.halvings = _at_most(obj.pelagic_baked.halvings, bake.scene.surface.resolution, EASY_QUADS)
         obj.pelagic_baked.path = str(bake.record)
         if obj.name_full in problems:
             self.report({"WARNING"}, problems[obj.name_full])
         if bake.missing():
             self.report({"WARNING"}, f"Missing on disk: {bake.missing()}")
+        missing = _show_volumes(obj, bake)
+        if missing:
+            self.report({"WARNING"}, f"Of its volumes missing on disk: {missing}")
         if abs(ocean.frame_rate(context.scene) / bake.scene.shot.fps - 1.0) > 1e-6:
             self.report({"WARNING"}, f"The bake has {bake.scene.shot.fps:g} frames a second, this scene "
                                      f"{ocean.frame_rate(context.scene):g}")
@@ -259,6 +310,8 @@ class PELAGIC_PT_baked(bpy.types.Panel):
         layout.use_property_split = True
         layout.prop(obj.pelagic_baked, "path")
         layout.prop(obj.pelagic_baked, "offset")
+        if _is_fitted(obj):
+            layout.prop(obj.pelagic_baked, "halvings")
         if obj.name_full in problems:
             layout.label(text=problems[obj.name_full], icon="ERROR")
 

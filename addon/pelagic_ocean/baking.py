@@ -30,7 +30,9 @@ def folder_of(obj):
 class Baking:
     """One bake, which begins at once."""
 
-    def __init__(self, scene, out):
+    def __init__(self, obj, scene, out):
+        """obj: the ocean. Its name is kept, since undo may make another object of it meanwhile."""
+        self.ocean, self.scene, self.folder, self.report = obj.name, scene, out, None
         self.task = pelagic.begin_bake(scene, out)
 
     @property
@@ -49,9 +51,9 @@ class Baking:
         return "Bake: planning"
 
     def outcome(self):
-        """The kind of a report, and its words, once it has ended."""
+        """The kind of a report, and its words, once it has ended; what it did is in `report` then, None after an error."""
         try:
-            report = self.task.result()
+            report = self.report = self.task.result()
         except (ValueError, OSError, MemoryError, RuntimeError) as error:
             return "ERROR", str(error) or type(error).__name__
         text = f"{report.done} frames baked" + (f", {report.kept} were there" if report.kept else "")
@@ -63,11 +65,8 @@ class Baking:
 _baking = None  # the one that runs
 
 
-class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
-    """Bake the scene's frames of the ocean to disk, as USD and maps. Esc stops it; the next bake goes on from there"""
-
-    bl_idname = "pelagic.bake"
-    bl_label = "Bake"
+class Bakes(NeedsOcean):
+    """An operator that bakes: at once in the background, and beside Blender's other work in a window. Esc stops it."""
 
     _timer = None
 
@@ -75,10 +74,18 @@ class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
     def poll(cls, context):
         return _baking is None and super().poll(context)
 
+    def order(self, context, obj):
+        """A pelagic.Scene to bake, the folder for it, and sentences about what it leaves out. ValueError, OSError."""
+        raise NotImplementedError
+
+    def take(self, context, baking):
+        """What is done with a bake that has ended without an error: more words for the report."""
+        return ""
+
     def _begin(self, context):
         try:
-            scene, remarks = shot_of(context, context.object)
-            baking = Baking(scene, folder_of(context.object))
+            scene, folder, remarks = self.order(context, context.object)
+            baking = Baking(context.object, scene, folder)
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return None
@@ -86,14 +93,16 @@ class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
             self.report({"WARNING"}, remark)
         return baking
 
-    def _end(self, baking):
+    def _end(self, context, baking):
         kind, text = baking.outcome()
+        if kind != "ERROR":
+            text += self.take(context, baking)
         self.report({kind}, text)
         return {"CANCELLED"} if kind == "ERROR" else {"FINISHED"}
 
     def execute(self, context):
         baking = self._begin(context)
-        return {"CANCELLED"} if baking is None else self._end(baking)
+        return {"CANCELLED"} if baking is None else self._end(context, baking)
 
     def invoke(self, context, _event):
         global _baking
@@ -127,7 +136,18 @@ class PELAGIC_OT_bake(NeedsOcean, bpy.types.Operator):
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
         _redraw(context)
-        return self._end(ended)
+        return self._end(context, ended)
+
+
+class PELAGIC_OT_bake(Bakes, bpy.types.Operator):
+    """Bake the scene's frames of the ocean to disk, as USD and maps. Esc stops it; the next bake goes on from there"""
+
+    bl_idname = "pelagic.bake"
+    bl_label = "Bake"
+
+    def order(self, context, obj):
+        scene, remarks = shot_of(context, obj)
+        return scene, folder_of(obj), remarks
 
 
 class PELAGIC_OT_stop_bake(bpy.types.Operator):
@@ -162,16 +182,22 @@ def _stop(*_):
         _baking = None
 
 
+def draw_progress(layout):
+    """How far the bake that runs is, and its end. Returns whether one runs."""
+    if _baking is None:
+        return False
+    row = layout.row(align=True)
+    row.label(text=_baking.text, icon="SORTTIME")
+    row.operator(PELAGIC_OT_stop_bake.bl_idname, icon="X")
+    return True
+
+
 def _draw(self, context):
     """The end of the Output panels."""
     layout, settings = self.layout, context.object.pelagic_bake
     layout.prop(settings, "folder")
-    row = layout.row(align=True)
-    if _baking is not None:
-        row.label(text=_baking.text, icon="SORTTIME")
-        row.operator(PELAGIC_OT_stop_bake.bl_idname, icon="X")
-    else:
-        row.operator(PELAGIC_OT_bake.bl_idname, icon="RENDER_ANIMATION")
+    if not draw_progress(layout):
+        layout.operator(PELAGIC_OT_bake.bl_idname, icon="RENDER_ANIMATION")
     layout.operator(PELAGIC_OT_export_shot.bl_idname, icon="EXPORT")
 
 

@@ -31,6 +31,21 @@ def shade_smooth(mesh):
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), dtype=bool))
 
 
+def creases(mesh):
+    """Blender's creases, 0 … 1, of edges and of vertices: float32 (edges,) and (vertices,)."""
+    edges, vertices = np.zeros(len(mesh.edges), np.float32), np.zeros(len(mesh.vertices), np.float32)
+    if "crease_edge" in mesh.attributes or "crease_vert" in mesh.attributes:  # since 4.0
+        for name, out in (("crease_edge", edges), ("crease_vert", vertices)):
+            if name in mesh.attributes:
+                mesh.attributes[name].data.foreach_get("value", out)
+    elif hasattr(mesh, "has_crease_edge"):  # in 3.4
+        if mesh.has_crease_edge:
+            mesh.edges.foreach_get("crease", edges)
+        if mesh.has_crease_vertex:
+            mesh.vertex_creases[0].data.foreach_get("value", vertices)
+    return edges, vertices
+
+
 def can_denoise():
     """Whether Cycles has a denoiser. Debian's has none, and refuses to render while one is asked for."""
     try:
@@ -38,6 +53,11 @@ def can_denoise():
     except ImportError:
         return True
     return getattr(_cycles, "with_openimagedenoise", True)
+
+
+# How far Blender shows a volume's voxels from where their file has them, along each axis, in voxels: OpenVDB's transform
+# leads to the middle of a voxel, and Cycles and the Volume to Mesh modifier of 3.4 take it for the corner.
+VOXELS_OFF = 0.5
 
 
 def curves(owner):

@@ -5,7 +5,7 @@ import bpy
 
 from .floating import PELAGIC_OT_float
 from .native import PELAGIC_OT_replace_ocean_modifier
-from .operators import PELAGIC_OT_use_mesh
+from .operators import PELAGIC_OT_use_cage, PELAGIC_OT_use_mesh
 from .sampling import PELAGIC_OT_sample_heights
 
 
@@ -19,6 +19,7 @@ class PELAGIC_MT_object(bpy.types.Menu):
         layout.operator_menu_enum(PELAGIC_OT_sample_heights.bl_idname, "into")
         layout.separator()
         layout.operator(PELAGIC_OT_use_mesh.bl_idname)
+        layout.operator(PELAGIC_OT_use_cage.bl_idname)
         layout.operator(PELAGIC_OT_replace_ocean_modifier.bl_idname)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 from mathutils import Vector
 
+from .cages import cage_of
 from .module import pelagic
 from .properties import BY_PATH, FIELDS, TABLES, VERSION, counts, shortest_for
 
@@ -49,12 +50,14 @@ def _on_disk(path):
     return bpy.path.abspath(path) if path.startswith("//") else path
 
 
-def _with_settings(settings):
+def _with_settings(settings, obj, depsgraph):
     scene = pelagic.Scene()
     values = {field.path: value for field, value in zip(FIELDS, settings)}
     if values["sea.spectrum"] == "file":
         scene.sea = _measured(values).sea
-    for path in ("sea.spectrum_file", "sea.spectrum_time"):
+    if values["surface.kind"] == "cage":
+        scene.surface.cage = cage_of(obj, values["surface.cage_file"] or "", depsgraph)
+    for path in ("sea.spectrum_file", "sea.spectrum_time", "surface.cage_file"):
         del values[path]
     for path, value in values.items():
         key = BY_PATH[path].key
@@ -86,7 +89,8 @@ def scene_of(obj, bpy_scene, depsgraph=None, settings=None):
     settings_of(), if known. pelagic.ShotError for what the core refuses."""
     if pelagic is None:
         raise RuntimeError(NO_MODULE)
-    scene = _with_settings(settings or settings_of(obj.evaluated_get(depsgraph) if depsgraph else obj))
+    settings = settings or settings_of(obj.evaluated_get(depsgraph) if depsgraph else obj)
+    scene = _with_settings(settings, obj, depsgraph)
     scene.shot.name = clean_name(obj.name)
     scene.shot.frames = (bpy_scene.frame_start, bpy_scene.frame_end)
     scene.shot.fps = frame_rate(bpy_scene)

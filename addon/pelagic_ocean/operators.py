@@ -115,6 +115,34 @@ class PELAGIC_OT_use_mesh(GivesLook, bpy.types.Operator):
         return {"FINISHED"}
 
 
+class PELAGIC_OT_use_cage(GivesLook, bpy.types.Operator):
+    """Add a sea on the smooth surface of the active mesh, its creases kept: the mesh is its cage, and can go on changing"""
+
+    bl_idname = "pelagic.use_cage"
+    bl_label = "Use Mesh as Cage of an Ocean"
+    bl_options = {"REGISTER", "UNDO"}
+
+    poll = PELAGIC_OT_use_mesh.poll
+
+    def execute(self, context):
+        cage = context.object
+        obj = ocean.make(f"{cage.name} Sea", context.collection)
+        obj.pelagic.surface.kind, obj.pelagic.cage = "cage", cage
+        try:
+            self.give_look(context, obj)
+            simulation = show_now(context, obj)
+            problem = simulation.problem
+        except ValueError as error:
+            problem = str(error)
+        if problem:
+            self.report({"ERROR"}, problem)
+            bpy.data.objects.remove(obj)
+            return {"CANCELLED"}
+        cage.display_type, cage.hide_render = "WIRE", True
+        ocean.select_only(context, obj)
+        return {"FINISHED"}
+
+
 class PELAGIC_OT_release_mesh(NeedsOcean, bpy.types.Operator):
     """Make the ocean an ordinary mesh again: its own vertices go back to rest, another's stay as they are"""
 
@@ -169,7 +197,7 @@ class PELAGIC_OT_list_remove(ListOperator, bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (PELAGIC_OT_add_ocean, PELAGIC_OT_use_mesh, PELAGIC_OT_release_mesh, PELAGIC_OT_list_add, PELAGIC_OT_list_remove)
+CLASSES = (PELAGIC_OT_add_ocean, PELAGIC_OT_use_mesh, PELAGIC_OT_use_cage, PELAGIC_OT_release_mesh, PELAGIC_OT_list_add, PELAGIC_OT_list_remove)
 
 
 def _menu(self, _context):

@@ -126,6 +126,8 @@ def _draw_surface(layout, settings):
         return
     if settings.surface.kind == "patch":
         layout.prop(settings, "horizon")
+    if settings.surface.kind == "cage":
+        layout.prop(settings, "cage")
     layout.prop(settings, "viewport_percentage")
     layout.prop(settings, "uv_map")
 

@@ -18,6 +18,7 @@ from bpy.app.handlers import persistent
 
 from . import handlers, meshes, surfaces
 from .module import pelagic
+from .cages import cage_of
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of
 from .properties import FIELDS
 from .sea import BuiltSea, Moment
@@ -27,6 +28,7 @@ SEA_FEEDS = {"waves", "gusts", "foam", "quality", "surface", "grid"}
 SEA_FIELDS = tuple(place for place, field in enumerate(FIELDS) if SEA_FEEDS & set(field.key["feeds"]))
 CLOCK_FIELDS = tuple(place for place, field in enumerate(FIELDS) if "clock" in field.key["feeds"])
 PLACE = {field.path: place for place, field in enumerate(FIELDS)}
+BAKED_ALONE = {"planet": "A planet", "near-far": "A mesh from near to far"}  # kinds of surfaces that nobody plays
 
 POLL_S = 0.02  # how often a window looks whether a sea is ready
 PATIENCE_S = 0.3  # how long a window waits for the past of foam that lives, where it jumped to another time
@@ -46,6 +48,7 @@ class Simulation:
         self._key = None
         self._asked = None  # what scene was made from
         self._job = None
+        self._warned, self._warnings = None, ()  # of which scene
         self._last = None  # the frame that was last asked for, the step to it, the view
         self.is_behind = False  # whether the mesh waits for the past of its foam
 
@@ -56,8 +59,10 @@ class Simulation:
 
     @property
     def warnings(self):
-        """What an artist should know of the sea, a sentence each."""
-        return self._built.warnings if self._built else ()
+        """What an artist should know of the sea of the settings, a sentence each. A matter of milliseconds, for panels."""
+        if self._warned is not self.scene:
+            self._warned, self._warnings = self.scene, () if self.scene.validate() else tuple(self.scene.warnings())
+        return self._warnings
 
     @property
     def needs_view(self):
@@ -100,16 +105,16 @@ class Simulation:
         """Brings the sea to the object's settings, or begins to. obj: the original. Returns the view that it is seen by,
         None where that doesn't matter."""
         settings = settings_of(obj.evaluated_get(depsgraph))
-        asked = (settings, frame_rate(bpy_scene))
         try:
             surface_key, make_surface, view = _surface_of(obj, settings, bpy_scene, depsgraph)
+            asked = (settings, frame_rate(bpy_scene), surface_key)  # a cage is a part of its scene
             if asked != self._asked:
                 self.scene = scene_of(obj, bpy_scene, depsgraph, settings)
                 self._asked = asked
         except (ValueError, OSError) as error:
             self._refuse(None, str(error))
             return None
-        loop = asked[1:] + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] else ()
+        loop = (asked[1],) + tuple(settings[place] for place in CLOCK_FIELDS) if settings[PLACE["shot.loop_s"]] else ()
         key = (tuple(settings[place] for place in SEA_FIELDS), loop, surface_key)
         if key != self._key or (view is not None and self._built and not self._built.serves(view)):
             self._seek(key, make_surface, view, wait)
@@ -177,8 +182,15 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
         if signature.split(" ")[:2] != ["own", str(len(mesh.vertices))] or meshes.REST not in mesh.attributes:
             signature = meshes.capture(mesh)
         return signature, lambda: surfaces.own_mesh(meshes.rest_of(mesh), meshes.edges_of(mesh), signature), None
-    if settings[PLACE["surface.kind"]] == "planet":
-        raise ValueError("A planet is baked, not shown: bake it, or choose another kind of surface to look at")
+    if settings[PLACE["surface.kind"]] in BAKED_ALONE:
+        name = BAKED_ALONE[settings[PLACE["surface.kind"]]]
+        raise ValueError(f"{name} is baked, not shown: bake it, or choose another kind of surface to look at")
+    if settings[PLACE["surface.kind"]] == "cage":
+        level = settings[PLACE["surface.cage_level"]]
+        if level == "adaptive":
+            raise ValueError("An adaptive cage is baked, not shown: bake it, or give its level to look at it")
+        cage = cage_of(obj, settings[PLACE["surface.cage_file"]] or "", depsgraph)
+        return f"cage {level} {cage.content}", lambda: surfaces.cage(cage, level), None
     if settings[PLACE["surface.kind"]] == "projected-grid":
         pinhole = pinhole_of(obj, bpy_scene, depsgraph)
         if pinhole is None:
@@ -308,8 +320,10 @@ def _on_update(bpy_scene, depsgraph):
     changed = {update.id.original for update in depsgraph.updates}
     if any(isinstance(each, bpy.types.Scene) for each in changed):
         _forget_deleted()
-    elif not any(is_ocean(each) or each == bpy_scene.camera for each in changed if isinstance(each, bpy.types.Object)):
-        return
+    else:
+        watched = {bpy_scene.camera} | {obj.pelagic.cage for obj in oceans()}
+        if not any(is_ocean(each) or each in watched for each in changed if isinstance(each, bpy.types.Object)):
+            return
     for obj in _driven(bpy.data.objects, depsgraph):
         _show(obj, bpy_scene, depsgraph, False)
 

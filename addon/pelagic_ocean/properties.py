@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of an ocean, `Object.pelagic`: a group for each table of a shot file, made from pelagic.keys().
 
-Key sea.wind_speed_mps is obj.pelagic.sea.wind_speed_mps, in the key's own unit. Where a key may be absent or infinite,
+Key sea.wind_speed_mps is obj.pelagic.sea.wind_speed_mps, in the key's own unit. Where a key may be absent, infinite or a word,
 the property use_NAME beside it says whether it has a number. What Blender itself knows (frames, camera) has none.
 """
 
@@ -22,6 +22,7 @@ FROM_BLENDER = {"shot.name", "shot.frames", "shot.fps"}  # and the camera's: the
 
 # Keys that the core refuses unless another key has a value: they are shown, and count, only then.
 ONLY_WITH = {"sea.spectrum_file": ("sea.spectrum", "file"), "sea.spectrum_time": ("sea.spectrum", "file"),
+             "surface.cage_file": ("surface.kind", "cage"), "surface.cage_level": ("surface.kind", "cage"),
              "waves.trains": ("waves.model", "trochoid"), "waves.shortest_m": ("waves.model", "trochoid"),
              "waves.longest_m": ("waves.model", "trochoid")}
 
@@ -58,7 +59,7 @@ class Field:
     name: str
     table: str
     key: dict
-    absent: object = 0  # what the key is without a number, None or inf; 0: it always has one
+    absent: object = 0  # what the key is without a number, None, inf or a word; 0: it always has one
 
     @property
     def switch(self):
@@ -77,7 +78,7 @@ class Field:
 
     def check(self, value):
         """ValueError if a property of Blender's can't hold the value."""
-        if self.key["type"] == "integer" and value is not None and value > INTEGER_LIMIT:
+        if self.key["type"] == "integer" and isinstance(value, int) and value > INTEGER_LIMIT:
             raise ValueError(f"{self.path} = {value}: Blender's integers end at {INTEGER_LIMIT}")
 
     def write(self, group, value):
@@ -123,6 +124,8 @@ def _field(key):
     if key["type"] in ("number", "integer"):
         if key["default"] is None and not key["required"]:
             absent = None
+        elif key["type"] == "integer" and key["other_word"]:
+            absent = key["other_word"]
         elif key["default"] is not None and math.isinf(key["default"]):
             absent = math.inf
     return Field(key["path"], key["name"], table, key, absent)
@@ -236,11 +239,11 @@ def _annotations(fields, classes):
     made = {}
     for field in fields:
         if field.switch:
-            what = "finite" if field.absent else "given"
+            what, otherwise = {None: ("given", "chosen"), math.inf: ("finite", "infinite")}.get(
+                field.absent, ("a number", field.absent))
             made[field.switch] = BoolProperty(
-                name=field.key["label"], default=False, update=_touched,
-                description=f"Whether {field.key['label'].lower()} is {what}; otherwise it is "
-                            f"{'infinite' if field.absent else 'chosen'}")
+                name=field.key["label"], default=field.key["default"] not in (None, field.absent), update=_touched,
+                description=f"Whether {field.key['label'].lower()} is {what}; otherwise it is {otherwise}")
         if field.key["type"] == "entries":
             entry = _group(field.path.replace(".", "_"), _annotations(entry_fields(field), classes), field.key["help"])
             classes.append(entry)
@@ -259,6 +262,9 @@ def _ocean_annotations():
         "own_mesh": BoolProperty(
             name="Own mesh", options={"HIDDEN"}, update=_touched,
             description="The object's own vertices are the sea at rest; their places are in the attribute rest_position"),
+        "cage": PointerProperty(
+            name="Cage", type=bpy.types.Object, update=_touched, poll=lambda _group, other: other.type == "MESH",
+            description="The mesh whose smooth limit surface the sea lies on, with its creases. Without one it is the cage's file"),
         "horizon": BoolProperty(
             name="To the horizon", default=True, update=_touched,
             description="Rings of ever larger quads round the patch, out to 30 km. A bake leaves them out"),

@@ -76,10 +76,10 @@ class BuiltSea:
             ladder_m = surface.ladder_m()
             return [pelagic.Sea.begin(scene, products, cell_m=ladder_m, pixel_m=ladder_m, lattice=surface.lattice)]
 
-        return Job(key, begin, lambda sea: BuiltSea(sea, surface, scene.surface.size_m, scene.warnings()), view)
+        return Job(key, begin, lambda sea: BuiltSea(sea, surface, scene.surface.size_m), view)
 
-    def __init__(self, sea, surface, uv_m, warnings):
-        self.sea, self.warnings = sea, warnings
+    def __init__(self, sea, surface, uv_m):
+        self.sea = sea
         self._fixed, self._uv_m = surface, uv_m
         self._lock = threading.RLock()  # a render has a thread of its own
         self._frame = pelagic.Frame(self.sea)
@@ -149,7 +149,7 @@ class BuiltSea:
         self._surface, self._seen_from = surface, (moment.view, moment.share)
         self._task = self._frame.begin(moment.time_s, surface.rest, surface.origin_m, cell_m=surface.cell_m,
                                        pixel_m=surface.cell_m, cell_axis_m=surface.cell_axis_m,
-                                       pixel_axis_m=surface.cell_axis_m, **self._arrays)
+                                       pixel_axis_m=surface.cell_axis_m, rest_normal=surface.normal, **self._arrays)
         self._coming = moment
 
     def _drop(self):

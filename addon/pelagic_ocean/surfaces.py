@@ -22,7 +22,7 @@ class Surface:
     distance to the neighbours, or a number for all. cell_axis_m: float32 (n, 2), the cells' long sides where they have
     such, cell_m then being the short ones, or None. faces: a function that gives (corners, starts), int32: the faces'
     vertices one after another, and where each face begins; None for a mesh that has its own. height_m: float32 (n,),
-    what is added to z, or None. uv_m: the length that is 1 in the UV map. moves: whether the next frame has other points.
+    what is added to z, or None; normal: float32 (n, 3), of the surface that the sea lies on there, or None. uv_m: the length that is 1 in the UV map. moves: whether the next frame has other points.
     lattice: (first_m, spacing_m, last_m) where all points lie at first + i·spacing in x and in y, up to last.
     """
 
@@ -36,6 +36,7 @@ class Surface:
     moves: bool = False
     lattice: tuple = None
     cell_axis_m: np.ndarray = None
+    normal: np.ndarray = None
 
     def __len__(self):
         return len(self.rest)
@@ -107,6 +108,19 @@ def _with_rings(rest, quads, size_m, resolution):
                              np.repeat(np.maximum(steps_m, spacing_m * scale), len(edge))])
     return (np.concatenate([rest, rings.reshape(-1, 2)]).astype(np.float32),
             np.concatenate([quads, ring_quads.reshape(-1, 4)]).astype(np.int32), cell_m.astype(np.float32))
+
+
+def cage(cage, level):
+    """The limit surface of a pelagic.Cage, each of whose edges is halved so often."""
+    surface = pelagic.CageSurface(cage, level)
+    made = surface.limit()
+
+    def faces():
+        counts = surface.face_counts
+        return surface.indices, np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int32)
+
+    return Surface(f"cage {level} {cage.content}", made["rest_m"], made["cell_m"], faces, made["origin_m"],
+                   made["height_m"], normal=made["normal"])
 
 
 def own_mesh(rest, edges, signature):

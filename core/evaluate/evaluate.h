@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "core/base/strided.h"
 #include "core/evaluate/results.h"
@@ -23,6 +24,9 @@ struct Points {
     // Footprints that are ellipses: the direction of the long axis times its length [m], cell_m or pixel_m being
     // the length of the short one. Empty, or no longer than the short axis: round.
     Strided<const glm::vec<2, T>> cell_axis_m{}, pixel_axis_m{};
+    // Normals, of any length, of the surface that the sea lies on, where that isn't flat: normals of the sea are then
+    // those of the waves on it (core/evaluate/rest_normal.inl). All else is that of a flat sea over the same (x, y).
+    Strided<const glm::vec<3, T>> rest_normal{};
 };
 
 // `query`: index into the plan's queries; decides what is computed and how finely. Sums the components, then

@@ -20,6 +20,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 namespace {  // names are this file's own
 
 #include "core/evaluate/surface.inl"
+// After surface.inl, of which it is made.
+#include "core/evaluate/rest_normal.inl"
 #include "core/plan/filter.inl"
 #include "core/waves/whitecaps.inl"
 // After filter.inl, of which it is made.
@@ -189,6 +191,32 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
         cover([&](std::size_t) HWY_ATTR { return N(args.whitecap_threshold); });
 }
 
+// Normals where the surface at rest has its own.
+template <class T>
+void DeriveNormalsOn(const DeriveArgs<T>& args) {
+    using D = hn::ScalableTag<T>;
+    using N = Pack<D>;
+    const D d;
+    const Chunk<T>& chunk = *args.chunk;
+    const auto out = args.results.vectors(Product::Normal);
+    if (!out) return;
+    alignas(64) typename Chunk<T>::Values x{}, y{}, z{};
+    for (std::size_t i = 0; i < chunk.count; ++i) {
+        const glm::vec<3, T> normal = args.rest_normal[i];
+        x[i] = normal.x, y[i] = normal.y, z[i] = normal.z;
+    }
+    for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
+        const auto at = [&](Field field)
+                            HWY_ATTR { return N(hn::LoadU(d, chunk.sums[index(field)].data() + i)); };
+        const SurfaceNormal<N> rest(N(hn::LoadU(d, x.data() + i)), N(hn::LoadU(d, y.data() + i)),
+                                    N(hn::LoadU(d, z.data() + i)));
+        const SurfaceNormal<N> normal =
+            normal_on(rest, at(Field::SlopeX), at(Field::SlopeY), at(Field::Dxx), at(Field::Dyy),
+                      at(Field::Dxy), at(Field::Dxy) + N(hn::LoadU(d, chunk.turn.data() + i)));
+        Put(d, out, i, chunk.count, std::array<N, 3>{normal.x, normal.y, normal.z});
+    }
+}
+
 template <class T>
 void Derive(const DeriveArgs<T>& args) {
     using D = hn::ScalableTag<T>;
@@ -216,12 +244,15 @@ void Derive(const DeriveArgs<T>& args) {
     each(results.vectors(Product::Velocity), [&](std::size_t i) HWY_ATTR {
         return Vector{at(Field::VelocityX, i), at(Field::VelocityY, i), at(Field::VelocityZ, i)};
     });
-    each(results.vectors(Product::Normal), [&](std::size_t i) HWY_ATTR {
-        const SurfaceNormal<N> normal =
-            surface_normal(at(Field::SlopeX, i), at(Field::SlopeY, i), at(Field::Dxx, i), at(Field::Dyy, i),
-                           at(Field::Dxy, i), dyx(i));
-        return Vector{normal.x, normal.y, normal.z};
-    });
+    if (args.rest_normal)
+        DeriveNormalsOn(args);
+    else
+        each(results.vectors(Product::Normal), [&](std::size_t i) HWY_ATTR {
+            const SurfaceNormal<N> normal =
+                surface_normal(at(Field::SlopeX, i), at(Field::SlopeY, i), at(Field::Dxx, i),
+                               at(Field::Dyy, i), at(Field::Dxy, i), dyx(i));
+            return Vector{normal.x, normal.y, normal.z};
+        });
     const Hidden<T> hidden(args);
     const auto at_rest = [&](std::size_t i) HWY_ATTR {
         return SlopeVariances<N>{hidden.moment_at(0, i), hidden.moment_at(2, i), hidden.moment_at(1, i)};

@@ -93,6 +93,7 @@ struct DeriveArgs {
     T whitecap_threshold = T(0);
     const T* whitecap_threshold_of = nullptr;  // by point, where gusts make them differ
     bool third_moment = true;
+    Strided<const glm::vec<3, T>> rest_normal{};  // as in Points, beginning at the chunk's first point
 };
 
 template <class T>

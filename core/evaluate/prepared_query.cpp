@@ -290,7 +290,9 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
                      .hidden_of = call.wants_hidden && call.differ_in_hidden ? &work.hidden_of : nullptr,
                      .whitecap_threshold = static_cast<T>(frame_->sea().whitecap_threshold()),
                      .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
-                     .third_moment = plan.knobs.third_moment});
+                     .third_moment = plan.knobs.third_moment,
+                     .rest_normal = call.points.rest_normal ? from_point(call.points.rest_normal, first)
+                                                            : call.points.rest_normal});
     const auto hidden = call.results.vectors(Product::SlopeVariance);
     if (has_gusts && hidden)
         for (std::size_t i = 0; i < chunk.count; ++i) hidden[first + i] *= work.gusts.factor[i];

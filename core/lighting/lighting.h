@@ -29,13 +29,14 @@ enum class FresnelFit {
 struct LightingChoice {
     bool sun = true, sky = true, water = true, whitecaps = true;
     bool air = true;  // between eye and sea (air.h): shade_sea() itself knows no distance, see_through() does
+    bool spray = false;  // likewise (spray.h), where the scene has it
     SkyQuality sky_quality = SkyQuality::Nine;
     FresnelFit fresnel = FresnelFit::Exact;
     bool operator==(const LightingChoice&) const = default;
 };
 
 // Radiance towards the eye by source: reflected sun, reflected sky, light from the water, foam, and what the air before
-// them adds (air.h). Each is weighted by its share of the pixel already; their sum is the radiance.
+// them adds (air.h), and the spray (spray.h). Each is weighted by its share of the pixel already; their sum is the radiance.
 struct SeaRadiance {
     glm::vec3 sun{0.0f}, sky{0.0f}, sea{0.0f}, foam{0.0f}, air{0.0f};
 };

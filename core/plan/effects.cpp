@@ -19,6 +19,7 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      [](Scene& scene) {
          scene.effects.whitecaps = false;
          std::erase(scene.output.maps, MapKind::Whitecaps);  // would be a contradiction
+         std::erase(scene.output.volumes, VolumeKind::Spray);
      },
      [] { return FieldSet(); }, [] { return products(Product::JacobianMoments, Product::Coverage); },
      kNothing},
@@ -27,6 +28,13 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      "effects.foam_decay_s is 0, or there are no whitecaps",
      [](Scene& scene) { scene.effects.foam_decay_s = 0.0; }, [] { return FieldSet(); },
      [] { return ProductSet(); }, kNothing},
+    {"spray", [](const Scene& scene) { return scene.effects.spray && scene.effects.whitecaps; },
+     "effects.spray is false, or there are no whitecaps",
+     [](Scene& scene) {
+         scene.effects.spray = false;
+         std::erase(scene.output.volumes, VolumeKind::Spray);
+     },
+     [] { return FieldSet(); }, [] { return ProductSet(); }, kNothing},
     {"gusts",
      [](const Scene& scene) { return scene.sea.gust_strength > 0.0 && scene.sea.wind_speed_mps > 0.0; },
      "sea.gust_strength is 0, or there is no wind", [](Scene& scene) { scene.sea.gust_strength = 0.0; },

@@ -112,7 +112,7 @@ std::string explain(const Plan& plan) {
                 "    %-18s   %.3g times that at rest, by area of sea\n", "",
                 hidden_slope_gain(spectrum, plan.filter, planned.query.pixel_m.front(), plan.choppiness));
     }
-    if (plan.queries.empty()) page += "  none: no mesh and no maps are asked for\n";
+    if (plan.queries.empty()) page += "  none: no mesh, no maps and no volumes are asked for\n";
     for (const PlannedOutput& output : plan.outputs)
         if (output.has_surface) page += "  the mesh is " + plan.surface->describe() + "\n";
     if (scene.output.mesh != MeshFormat::None) {

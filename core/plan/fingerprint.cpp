@@ -1,7 +1,5 @@
 #include "core/plan/fingerprint.h"
 
-#include <cstdio>
-
 #include "core/plan/products.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
@@ -16,17 +14,9 @@ void add_vector(std::string& text, const glm::dvec3& v) {
 }  // namespace
 
 Fingerprint& Fingerprint::add(std::string_view text) {
-    // Fowler, Noll, Vo: FNV-1a. The zero byte keeps two texts apart from one that is both.
-    const auto take = [&](unsigned char byte) { hash_ = (hash_ ^ byte) * 0x100000001b3u; };
-    for (const char c : text) take(static_cast<unsigned char>(c));
-    take(0);
+    for (const char c : text) hash_.add(static_cast<unsigned char>(c));
+    hash_.add(0);  // keeps two texts apart from one that is both
     return *this;
-}
-
-std::string Fingerprint::text() const {
-    char digits[17];
-    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(hash_));
-    return digits;
 }
 
 std::string plan_text(const Plan& plan, int query_index) {
@@ -39,7 +29,7 @@ std::string plan_text(const Plan& plan, int query_index) {
     if (query.products[index(Product::Coverage)])
         text += "third " + std::to_string(plan.knobs.third_moment) + '\n';
     // The history has grids of its own, which aren't in this plan.
-    if (query.products[index(Product::Coverage)] && plan.foam && !query.only_cascade)
+    if (query.products[index(Product::Coverage)] && plan.foam && !query.only_cascade && !query.breaking_alone)
         text += "history, oversampling " + number_text(plan.knobs.oversampling) + '\n';
     const std::string spline = " spline of " + std::to_string(plan.knobs.spline_taps) + '\n';
     if (plan.trains && !query.only_cascade)

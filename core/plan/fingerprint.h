@@ -6,23 +6,23 @@
 // made of anything else: not of the range of frames, of other outputs or of the program's version.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "core/base/hash.h"
 #include "core/plan/plan.h"
 #include "core/surface/view.h"
 
 namespace pelagic {
 
-// 16 hexadecimal digits, the hash of texts added one after another (FNV-1a, 64 bits).
+// 16 hexadecimal digits, the hash of texts added one after another (core/base/hash.h).
 class Fingerprint {
   public:
     Fingerprint& add(std::string_view text);
-    std::string text() const;
+    std::string text() const { return hash_.text(); }
 
   private:
-    std::uint64_t hash_ = 0xcbf29ce484222325u;
+    ByteHash hash_;
 };
 
 // Of an output, for all frames alike.

@@ -124,7 +124,7 @@ std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Sce
                                                  const std::vector<Query>& queries, bool are_pictures) {
     std::array<double, FoamPlan::kLevels> tiles{};
     for (const Query& query : queries) {
-        if (!query.products[index(Product::Coverage)] || query.only_cascade)
+        if (!query.products[index(Product::Coverage)] || query.only_cascade || query.breaking_alone)
             continue;  // a cascade's tile has no history
         const bool is_view = query.is_view && !query.lattice;
         const double points = static_cast<double>(query.points);

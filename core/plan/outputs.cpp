@@ -33,6 +33,8 @@ void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<Ou
     for (const MeshAttribute attribute : output.attributes)
         for (const AttributeRow& at : kAttributeTable)
             if (at.attribute == attribute) query.products.set(index(at.product));
+    if (context.surface.fitted())
+        query.products.reset(index(Product::Normal));  // a limit surface has its own
     query.products &= ~context.gone;
     const SurfaceNeeds needs = context.surface.needs(context.frames);
     if (needs.own_footprints) {
@@ -108,10 +110,35 @@ void add_tiles(const OutputRow& row, const OutputContext& context, std::vector<O
                  requests);
 }
 
+const std::array kVolumeTable = std::to_array<VolumeRow>({
+    {VolumeKind::Spray, [] { return products(Product::Displacement, Product::Coverage); }, feeds(Feed::Spray),
+     true},
+    {VolumeKind::LevelSet, [] { return products(Product::Displacement); }, FeedSet(), false},
+});
+
+// Over the patch's square in the world, whatever the mesh is: waves shorter than two voxels are left out.
+void add_volumes(const OutputRow& row, const OutputContext& context, std::vector<OutputRequest>& requests) {
+    const Scene& scene = context.prepared.scene;
+    const auto voxels = static_cast<std::size_t>(voxels_a_side(scene));
+    for (const VolumeKind volume : scene.output.volumes)
+        for (const VolumeRow& at : kVolumeTable) {
+            if (at.volume != volume) continue;
+            Query query;
+            query.name = "volume " + std::string(word_of(volume));
+            query.products = at.needs();
+            query.cell_m = query.pixel_m = {scene.output.voxel_m};
+            const std::size_t points = at.is_of_columns ? voxels : voxels + 1;
+            query.points = points * points;
+            query.breaking_alone = true;
+            requests.push_back({.row = &row, .volume = volume, .query = std::move(query)});
+        }
+}
+
 const std::array kOutputTable = std::to_array<OutputRow>({
     {OutputKind::Mesh, feeds(Feed::Clock, Feed::Waves, Feed::Mesh), 9, add_mesh},
     {OutputKind::Map, feeds(Feed::Clock, Feed::Waves, Feed::Maps), 7, add_patch_maps},
     {OutputKind::Tile, feeds(Feed::Clock, Feed::Waves), 8, add_tiles},
+    {OutputKind::Volume, feeds(Feed::Clock, Feed::Waves, Feed::Volumes), 1, add_volumes},
 });
 
 }  // namespace
@@ -124,6 +151,16 @@ std::span<const AttributeRow> attribute_table() {
 }
 std::span<const MapRow> map_table() {
     return kMapTable;
+}
+std::span<const VolumeRow> volume_table() {
+    return kVolumeTable;
+}
+
+int voxels_a_side(const Scene& scene) {
+    const double voxels = scene.surface.size_m / scene.output.voxel_m;
+    // A quotient that should be whole may come out a little above it.
+    constexpr double kRounding = 1e-9;
+    return std::max(static_cast<int>(std::ceil(voxels * (1.0 - kRounding))), 1);
 }
 
 }  // namespace pelagic

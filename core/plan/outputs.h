@@ -1,7 +1,8 @@
 // What a bake leaves, as the plan sees it: each output is a query, the keys that feed it, and a revision. Its
 // encoder and its files are a part of plugin/bake.
 //
-// There are the mesh, maps over the patch's square, and the same maps over each cascade's own periodic tile.
+// There are the mesh, maps over the patch's square, the same maps over each cascade's own periodic tile, and volumes
+// over the patch's square.
 #pragma once
 
 #include <optional>
@@ -19,13 +20,14 @@ namespace pelagic {
 
 struct OutputRow;
 
-enum class OutputKind { Mesh, Map, Tile };
+enum class OutputKind { Mesh, Map, Tile, Volume };
 
 // One output of a scene, and what it asks of the sea.
 struct OutputRequest {
     const OutputRow* row = nullptr;
     std::optional<MapKind> map{};          // of maps and tiles
     std::optional<int> cascade{};          // of a tile: which, counting from the largest
+    std::optional<VolumeKind> volume{};    // of volumes
     const RestSurface* surface = nullptr;  // of the mesh
     Query query;
 };
@@ -65,10 +67,23 @@ struct MapRow {
 };
 std::span<const MapRow> map_table();
 
+// What a volume asks for.
+struct VolumeRow {
+    VolumeKind volume;
+    ProductSet (*needs)();
+    FeedSet feeds;  // besides those of all volumes
+    bool
+        is_of_columns;  // points above the middles of columns of voxels, or above the corners of as many cells
+};
+std::span<const VolumeRow> volume_table();
+// Of volumes: columns along a side of the patch's square, the last of which may reach beyond it. The scene must be valid.
+int voxels_a_side(const Scene& scene);
+
 struct PlannedOutput {
     const OutputRow* row = nullptr;
     std::optional<MapKind> map{};
     std::optional<int> cascade{};
+    std::optional<VolumeKind> volume{};
     int query = 0;             // into Plan::queries, whose name is the output's: "mesh", "map normal", …
     bool has_surface = false;  // its points are Plan::surface's
     FeedSet feeds;             // the row's, the surface's, and the foam's where it holds coverage

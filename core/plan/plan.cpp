@@ -391,10 +391,13 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
         PlannedOutput output{.row = request.row,
                              .map = request.map,
                              .cascade = request.cascade,
+                             .volume = request.volume,
                              .query = static_cast<int>(queries.size()),
                              .has_surface = request.surface != nullptr,
                              .feeds = request.row->feeds};
         if (output.has_surface) output.feeds |= surface->feeds();
+        for (const VolumeRow& row : volume_table())
+            if (output.volume == row.volume) output.feeds |= row.feeds;
         if ((request.query.products & products(Product::JacobianMoments, Product::Coverage)).any())
             output.feeds |= feeds(Feed::Foam);
         if (!request.cascade && (request.query.products & gusty_products()).any())

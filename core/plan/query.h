@@ -26,6 +26,8 @@ struct Query {
     // Of a camera, whose place must not decide which wave trains there are: pictures from near and far, and
     // bakes, are of one sea.
     bool is_view = false;
+    // Where foam lives, its coverage is what breaks now alone: nobody adds what earlier breaking has left.
+    bool breaking_alone = false;
 };
 
 }  // namespace pelagic

@@ -31,7 +31,8 @@ std::string canonical(const Scene& scene, FeedSet parts) {
         if (!key.has_value() || (key.feeds & parts).none()) continue;
         std::string value;
         if (key.type == KeyType::DataFile) {
-            if (scene.sea.measured) value = content_text(*scene.sea.measured);
+            if (scene.sea.measured && key.path == kSpectrumFile) value = content_text(*scene.sea.measured);
+            if (scene.surface.cage && key.path == kCageFile) value = scene.surface.cage->content();
         } else if (key.type != KeyType::DataTime) {  // in its file's line
             value = value_text(key, value_of(scene, key));
         }

@@ -154,6 +154,25 @@ struct MemberValue<std::array<int, 2>> {
     }
 };
 
+// A whole number, or the word in its place.
+template <>
+struct MemberValue<CageLevel> {
+    static constexpr KeyType kType = KeyType::Integer;
+    static constexpr std::int64_t kLeast = MemberValue<int>::kLeast, kLargest = MemberValue<int>::kLargest;
+    static constexpr const char* kOtherWord = "adaptive";
+    static KeyValue value(const CageLevel& member) {
+        if (member.is_adaptive) return std::string(kOtherWord);
+        return MemberValue<int>::value(member.splits);
+    }
+    static bool take(const KeyValue& value, CageLevel& member) {
+        const auto* word = std::get_if<std::string>(&value);
+        int splits = CageLevel{}.splits;
+        if (word ? *word != kOtherWord : !MemberValue<int>::take(value, splits)) return false;
+        member = {.splits = splits, .is_adaptive = word != nullptr};
+        return true;
+    }
+};
+
 template <>
 struct MemberValue<glm::ivec2> {
     static constexpr KeyType kType = KeyType::Pair;
@@ -184,7 +203,7 @@ struct About {
     bool may_be_infinite = false;
     bool is_built = true;
     std::vector<std::string> unbuilt_choices = {};
-    const char* empty_word = "";
+    const char* other_word = "";
     std::size_t most_entries = ~std::size_t{0};
     bool are_entries_independent = true;
     const char* entry_name = "";
@@ -223,6 +242,8 @@ Key key_of_member(const About& about) {
         key.largest = MemberValue<Value>::kLargest;
     }
     key.is_optional = std::same_as<Value, std::optional<double>>;
+    if constexpr (requires { MemberValue<Value>::kOtherWord; })
+        key.other_word = MemberValue<Value>::kOtherWord;
     const auto add_choices = [&]<class Choice>(Choice) {
         for (const Word<Choice>& entry : words_of(Choice{})) {
             const bool is_built = std::find(about.unbuilt_choices.begin(), about.unbuilt_choices.end(),

@@ -11,8 +11,8 @@ namespace pelagic {
 namespace {
 
 constexpr std::array<std::string_view, kFeeds> kFeedWords{
-    "name", "range", "clock", "waves",   "foam", "gusts", "surface", "grid",
-    "view", "light", "water", "quality", "mesh", "maps",  "volumes", "choice"};
+    "name", "range", "clock", "waves",   "foam", "gusts", "surface", "cage",  "grid",
+    "view", "light", "water", "quality", "mesh", "maps",  "volumes", "spray", "choice"};
 
 constexpr std::array<std::string_view, 11> kTypeWords{"truth",   "integer",   "number",   "text",
                                                       "word",    "point",     "pair",     "words",
@@ -96,7 +96,8 @@ std::string accepted_text(const Key& key, const About& about) {
         case KeyType::Truth:
             return "true or false";
         case KeyType::Integer:
-            return "an integer" + and_range;
+            return "an integer" + and_range +
+                   (key.other_word.empty() ? "" : ", or " + quoted_text(key.other_word));
         case KeyType::Number:
             return "a number" + and_range;
         case KeyType::Word:
@@ -108,7 +109,7 @@ std::string accepted_text(const Key& key, const About& about) {
         case KeyType::Pair:
             return about.form + range;
         case KeyType::Entries:
-            return (key.empty_word.empty() ? "" : quoted_text(key.empty_word) + ", or ") + "a list of { " +
+            return (key.other_word.empty() ? "" : quoted_text(key.other_word) + ", or ") + "a list of { " +
                    names_text(key.entry_keys) + " }";
         case KeyType::Text:
         case KeyType::DataFile:
@@ -146,7 +147,7 @@ Key key_about(const About& about, KeyType type) {
     key.may_be_infinite = about.may_be_infinite;
     key.most_entries = about.most_entries;
     key.are_entries_independent = about.are_entries_independent;
-    key.empty_word = about.empty_word;
+    key.other_word = about.other_word;
     key.entry_name = about.entry_name;
     key.feeds = about.feeds;
     key.is_built = about.is_built;
@@ -187,6 +188,9 @@ std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& v
         if (first != words->end())
             return unknown_word(key, key.path + '[' + std::to_string(first - words->begin()) + ']', *first);
     }
+    if (std::holds_alternative<std::string>(value) && key.type == KeyType::Integer && !key.other_word.empty())
+        return Problem{key.path, value_text(key, value), "is not the word " + quoted_text(key.other_word),
+                       key.accepted};
     if (std::holds_alternative<std::int64_t>(value) && key.type == KeyType::Integer)
         return Problem{key.path, value_text(key, value), "is outside the range", key.accepted};
     return Problem{key.path, value_text(key, value), "is " + type_text(value), key.accepted};
@@ -210,7 +214,7 @@ std::string value_text(const Key& key, const KeyValue& value) {
             return list_text(list, [](const std::string& word) { return quoted_text(word); });
         }
         std::string operator()(const std::vector<KeyEntry>& list) const {
-            if (list.empty() && !key.empty_word.empty()) return quoted_text(key.empty_word);
+            if (list.empty() && !key.other_word.empty()) return quoted_text(key.other_word);
             return list_text(list, [&](const KeyEntry& entry) {
                 std::string out = "{ ";
                 for (const auto& [name, inner] : entry.values)
@@ -240,15 +244,17 @@ std::vector<DescribedKey> described(const Scene& scene, FeedSet parts) {
     for (const Key& key : keys()) {
         if (!key.has_value() || (key.feeds & parts).none()) continue;
         if (key.type == KeyType::DataFile) {
-            if (const auto& measured = scene.sea.measured)
+            if (const auto& cage = scene.surface.cage; cage && key.path == kCageFile)
+                out.push_back({"surface.cage", cage->content(), quoted_text(cage->content())});
+            if (const auto& measured = scene.sea.measured; measured && key.path == kSpectrumFile)
                 out.push_back({"sea.spectrum_station", measured->station, quoted_text(measured->station)});
             continue;
         }
         KeyValue value = value_of(scene, key);
         if (std::holds_alternative<std::monostate>(value)) continue;
         const auto* entries = std::get_if<std::vector<KeyEntry>>(&value);
-        const bool is_word = entries && entries->empty() && !key.empty_word.empty();
-        std::string text = is_word ? key.empty_word : value_text(key, value);
+        const bool is_word = entries && entries->empty() && !key.other_word.empty();
+        std::string text = is_word ? key.other_word : value_text(key, value);
         if (auto* path = std::get_if<std::string>(&value)) *path = utf8_text(*path);
         out.push_back({key.path, std::move(value), std::move(text)});
     }

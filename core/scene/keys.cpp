@@ -205,7 +205,7 @@ void add_waves(Built& out) {
              .help = "the tiles; auto: four, from the spectrum's peak down, and none with trochoid. "
                      "Their bands depend on the sizes alone; a resolution that leaves a gap is refused",
              .feeds = kWaves,
-             .empty_word = "auto",
+             .other_word = "auto",
              .most_entries = limits::kCascades,
              .are_entries_independent = false,
              .entry_name = "CascadeSize"},
@@ -275,25 +275,37 @@ void add_waves(Built& out) {
 
 void add_surface(Built& out) {
     constexpr FeedSet kSurface = feeds(Feed::Surface);
-    constexpr const char* kMeanwhile = "use kind = \"patch\"";
+    // A cage is two members and one key; the host that read the file has set it.
+    Row<Surface, 2> cage_file{
+        key_about(
+            {.name = "cage_file",
+             .help = "with kind = \"cage\": the mesh whose limit surface (Catmull–Clark) the sea lies on",
+             .accepted = "a string, the path of a Wavefront OBJ, from the shot file's folder",
+             .feeds = feeds(Feed::Cage)},
+            KeyType::DataFile),
+        [](const Surface& surface) { return surface.cage ? KeyValue(surface.cage_file) : KeyValue(); },
+        {}};
+    cage_file.key.is_optional = true;
     add_table<&Scene::surface>(
         out.tables, out.keys, {"surface", "where the sea is looked at", {}, {}},
         row<&Surface::kind>(
             {.name = "kind",
              .help =
-                 "what is baked: a square patch, or the projected grid of the camera, or "
-                 "that on a sphere that touches z = 0 at the origin. Pictures show the sea to the horizon, whatever stands here; "
+                 "what is baked: a square patch, or the projected grid of the camera, or a mesh round the camera that is "
+                 "fine below it and goes to the horizon with faces that stay, or the projected grid "
+                 "on a sphere that touches z = 0 at the origin, or the limit surface of a cage. Pictures show the open sea to the horizon, whatever stands here; "
                  "of a planet, with the camera's z as its height",
-             .feeds = feeds(Feed::Surface, Feed::Mesh),
-             .unbuilt_choices = {"near-far", "cage"}}),
-        row<&Surface::size_m>({.name = "size_m",
-                               .help = "side of the patch, centred on the origin, and of the maps",
-                               .unit = "m",
-                               .range = limits::kSurfaceSize_m,
-                               .soft = SoftRange{10.0, 5000.0, true},
-                               .feeds = feeds(Feed::Surface, Feed::Maps)}),
+             .feeds = feeds(Feed::Surface, Feed::Mesh)}),
+        row<&Surface::size_m>(
+            {.name = "size_m",
+             .help = "side of the patch, centred on the origin, and of maps and volumes; with near-far of "
+                     "the finest part, below the camera",
+             .unit = "m",
+             .range = limits::kSurfaceSize_m,
+             .soft = SoftRange{10.0, 5000.0, true},
+             .feeds = feeds(Feed::Surface, Feed::Maps, Feed::Volumes)}),
         row<&Surface::resolution>({.name = "resolution",
-                                   .help = "quads a side",
+                                   .help = "quads a side; with near-far of the finest part, at most 4096",
                                    .range = limits::kSurfaceResolution,
                                    .soft = SoftRange{1.0, 2048.0, true},
                                    .feeds = kSurface}),
@@ -304,15 +316,18 @@ void add_surface(Built& out) {
                                 .range = limits::kCell_px,
                                 .soft = SoftRange{2.0, 32.0},
                                 .feeds = feeds(Feed::Grid)}),
-        row<&Surface::earth_curvature>({.name = "earth_curvature",
-                                        .help =
-                                            "whether the projected grid lies on the earth's sphere: the far "
-                                            "sea bends away, and the horizon has its dip",
-                                        .feeds = feeds(Feed::Grid)}),
-        not_built<Surface>({.name = "cage_file", .help = "a coarse surface to refine", .feeds = kSurface},
-                           kMeanwhile),
-        not_built<Surface>({.name = "cage_level", .help = "how often it is refined", .feeds = kSurface},
-                           kMeanwhile));
+        row<&Surface::earth_curvature>(
+            {.name = "earth_curvature",
+             .help = "whether the projected grid, or near-far, lies on the earth's sphere: the far "
+                     "sea bends away, and the horizon has its dip",
+             .feeds = feeds(Feed::Grid, Feed::Surface)}),
+        cage_file,
+        row<&Surface::cage_level>(
+            {.name = "cage_level",
+             .help = "of a cage: how often each of its edges is halved, or adaptive: as finely as the camera "
+                     "sees it, in cells of cell_px",
+             .range = limits::kCageLevel,
+             .feeds = feeds(Feed::Cage)}));
 }
 
 void add_camera(Built& out) {
@@ -471,13 +486,13 @@ void add_effects_and_quality(Built& out) {
                                      .range = limits::kFoamStreaks,
                                      .feeds = feeds(Feed::Water)}),
         row<&Effects::spray>({.name = "spray",
-                              .help = "droplets over breaking crests",
-                              .feeds = feeds(Feed::Volumes),
-                              .is_built = false}),
+                              .help = "droplets over breaking crests; none without whitecaps",
+                              .feeds = feeds(Feed::Spray)}),
         row<&Effects::spray_gain>({.name = "spray_gain",
-                                   .help = "how much spray there is; 1 is nature's",
-                                   .feeds = feeds(Feed::Volumes),
-                                   .is_built = false}));
+                                   .help = "how much spray there is; 1 is nature's, too thin to be seen",
+                                   .range = limits::kSprayGain,
+                                   .soft = SoftRange{1.0, 100.0, true},
+                                   .feeds = feeds(Feed::Spray)}));
     add_table<&Scene::quality>(
         out.tables, out.keys, {"quality", "accuracy against time", {}, {}},
         row<&Quality::level>({.name = "level", .help = "how much time accuracy may take", .feeds = kQuality}),
@@ -507,18 +522,19 @@ void add_output(Built& out) {
         row<&Output::cascade_tiles>(
             {.name = "cascade_tiles", .help = "each cascade's own periodic tile as well", .feeds = kChoice}),
         row<&Output::mesh_scheme>({.name = "mesh_scheme",
-                                   .help = "none: every vertex lies on the sea; catmullClark: a cage of it",
-                                   .feeds = kMesh,
-                                   .unbuilt_choices = {"catmullClark"}}),
-        row<&Output::volumes>({.name = "volumes",
-                               .help = "spray as droplets' density, and the sea as a level set",
-                               .feeds = kChoice,
-                               .unbuilt_choices = {"spray", "level-set"}}),
+                                   .help = "none: every vertex lies on the sea; catmullClark, of a patch: a "
+                                           "cage whose limit surface is the sea, without normals",
+                                   .feeds = kMesh}),
+        row<&Output::volumes>(
+            {.name = "volumes",
+             .help = "OpenVDB files over the patch's square, one a frame: spray, and the sea as a level set",
+             .feeds = kChoice}),
         row<&Output::voxel_m>({.name = "voxel_m",
-                               .help = "of the volumes",
+                               .help = "side of the volumes' voxels",
                                .unit = "m",
-                               .feeds = feeds(Feed::Volumes),
-                               .is_built = false}));
+                               .range = limits::kVoxel_m,
+                               .soft = SoftRange{0.05, 10.0, true},
+                               .feeds = feeds(Feed::Volumes)}));
 }
 
 Built build() {

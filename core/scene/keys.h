@@ -34,7 +34,8 @@ enum class Feed {
     Waves,    // the sea's motion
     Foam,     // whitecaps
     Gusts,    // how the wind varies over the surface: hidden slopes and whitecaps
-    Surface,  // the points of the baked surface, where they don't follow the camera
+    Surface,  // the points of the baked surface, where its needs don't say them and no grid is projected
+    Cage,     // the mesh of a surface of its own, and how finely it is refined
     Grid,     // the cells of projected grids, baked and in pictures
     View,     // the camera: pictures, and grids that are projected from it
     Light,    // sun and sky
@@ -42,10 +43,11 @@ enum class Feed {
     Quality,  // the accuracy of waves and light
     Mesh,     // what a mesh is of and what it carries, and the format of its files
     Maps,     // what is in a map, besides the sea
-    Volumes,  // spray and level sets
+    Volumes,  // what a volume covers and how finely, besides the sea
+    Spray,    // the droplets over breaking crests
     Choice,   // whether an output exists; what is in it does not depend on the key
 };
-inline constexpr std::size_t kFeeds = 16;
+inline constexpr std::size_t kFeeds = 18;
 using FeedSet = std::bitset<kFeeds>;
 
 template <class... Feeds>
@@ -126,7 +128,8 @@ struct Key {
     std::string entry_name;          // of entries: "Swell"
     std::size_t most_entries = ~std::size_t{0};
     bool are_entries_independent = true;  // none is judged by another one
-    std::string empty_word;               // of entries: the word that stands for none of them, "auto"
+    std::string other_word;               // of entries: the word that stands for none of them, "auto"; of an
+                                          // integer: a word that may stand in its place, "adaptive"
 
     KeyValue fallback;  // the value that a Scene begins with
     FeedSet feeds;
@@ -155,6 +158,9 @@ std::span<const Key> keys();
 
 // The key of a path, "sea.fetch_m", "sea.swell[].height_m"; null: there is none.
 const Key* find_key(std::string_view path);
+
+// The keys of data files: what hosts read from them is a member of the scene.
+inline constexpr std::string_view kSpectrumFile = "sea.spectrum_file", kCageFile = "surface.cage_file";
 
 // The same for a path that is known to be one. Throws std::logic_error.
 const Key& key_of(std::string_view path);
@@ -187,8 +193,8 @@ struct DescribedKey {
     std::variant<double, std::string> number_or_text() const;
 };
 
-// The keys that feed these parts and have a value. A measured spectrum is described by its station and time,
-// not by its file.
+// The keys that feed these parts and have a value. A measured spectrum is described by its station and time, a cage by
+// its content (Cage::content), not by their files.
 std::vector<DescribedKey> described(const Scene& scene, FeedSet parts);
 
 }  // namespace pelagic

@@ -4,6 +4,7 @@
 // with digits to spare; each is far outside what a shot wants.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "core/scene/cascade_bands.h"
@@ -69,7 +70,16 @@ inline constexpr Range kBreakingFrom_m{0.0, 1e3};
 
 inline constexpr Range kSurfaceSize_m{0.01, 1e6};
 inline constexpr Range kSurfaceResolution{1, 8192};
+inline constexpr int kNearFarResolution = 4096;  // with any size_m its faces' corners number less than 2^31
 inline constexpr Range kCell_px{1.0, 256.0};
+inline constexpr std::size_t kCageFaces = 1000000;
+inline constexpr std::size_t kCageCorners =
+    256;  // of a face, and faces round a point: work goes with the square
+inline constexpr std::size_t kCagePoints = 4000000;  // and texture coordinates: four for each face
+inline constexpr std::size_t kCageAllCorners = 8000000;
+inline constexpr Range kCagePoint_m{-1e6, 1e6};
+inline constexpr Range kCageTexture{-1e6, 1e6};
+inline constexpr Range kCageLevel{0, 6};
 
 inline constexpr Range kCameraCoordinate_m{-1e9, 1e9};  // beyond any orbit we draw
 inline constexpr double kOnTarget_m = 1e-6;  // nearer than this, rounding decides where a camera looks
@@ -83,6 +93,10 @@ inline constexpr Range kFoamStreaks{0.0, 1.0};
 inline constexpr Range kTurbidity{1.7, 10.0};            // from the clearest air that there is to haze
 inline constexpr Range kChlorophyll_mg_m3{0.01, 100.0};  // from the clearest gyres to a bloom
 inline constexpr Range kMapResolution{1, 8192};
+inline constexpr Range kVoxel_m{1e-3, 1e5};
+inline constexpr double kVoxelsASide =
+    1e5;  // ten kilometres in decimetres; counts of voxels stay far below 2⁶⁴
+inline constexpr Range kSprayGain{0.0, 1e6};
 
 }  // namespace limits
 

@@ -2,7 +2,7 @@
 //
 // Each struct mirrors a table of the shot file, each member the key of the same name (scene/keys.h describes
 // them); the defaults here *are* the shot file's defaults. Nothing in a Scene depends on a file: a measured
-// spectrum is in it as data, already parsed. validate() (scene/validate.h) says whether the values make sense
+// spectrum and a cage are in it as data, already parsed. validate() (scene/validate.h) says whether the values make sense
 // together.
 #pragma once
 
@@ -11,9 +11,12 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "core/scene/cage.h"
 
 namespace pelagic {
 
@@ -135,7 +138,10 @@ struct Surface {
     double size_m = 200.0;  // > 0
     int resolution = 256;   // quads a side, 1 … 8192; (N+1)² vertices
     double cell_px = 8.0;   // of the projected grid, which pictures of the sea always use: a cell's side
-    bool earth_curvature = true;  // of the projected grid: it lies on the earth's sphere
+    bool earth_curvature = true;  // of surfaces to the horizon: they lie on the earth's sphere
+    std::string cage_file;        // where the cage was read, or empty; what a shot depends on is the content
+    std::shared_ptr<const Cage> cage;  // with SurfaceKind::Cage
+    CageLevel cage_level;
 };
 
 struct CameraKey {

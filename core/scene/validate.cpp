@@ -413,6 +413,14 @@ void check_camera(Checker& check, const Camera& camera) {
     }
 }
 
+void check_near_far(Checker& check, const Scene& scene) {
+    if (scene.surface.kind != SurfaceKind::NearFar || !check.is_good("surface.resolution")) return;
+    if (scene.surface.resolution <= limits::kNearFarResolution) return;
+    check.refuse({"surface.resolution", std::to_string(scene.surface.resolution),
+                  "makes more corners of faces than files can count, with surface.kind = \"near-far\"",
+                  "1 … " + std::to_string(limits::kNearFarResolution)});
+}
+
 // A planet's points rest about the origin (azimuthal equidistant projection): nobody may see farther round it than a
 // quarter of the circle, where the projection stretches waves by half.
 void check_planet(Checker& check, const Scene& scene) {
@@ -436,6 +444,34 @@ void check_planet(Checker& check, const Scene& scene) {
         check_place(indexed("camera.keys", i) + ".position_m", scene.camera.keys[i].position_m);
 }
 
+// Each corner of a face becomes a square of quads. An index of their corners is an int.
+void check_refined(Checker& check, const Surface& surface) {
+    if (surface.cage_level.is_adaptive || !check.is_good("surface.cage_level")) return;
+    constexpr double kMostQuads = 1 << 28;
+    const double corners = static_cast<double>(surface.cage->mesh().indices.size());
+    const double quads = corners * std::exp2(2.0 * (surface.cage_level.splits - 1));
+    if (quads <= kMostQuads) return;
+    const double most = std::floor(0.5 * std::log2(kMostQuads / corners)) + 1.0;
+    check.refuse({"surface.cage_level", std::to_string(surface.cage_level.splits),
+                  "makes " + number_text(quads) + " quads of a cage of " +
+                      std::to_string(surface.cage->mesh().face_counts.size()) + " faces",
+                  "0 … " + number_text(most) + ", or \"adaptive\""});
+}
+
+void check_cage(Checker& check, const Surface& surface) {
+    if (!check.is_good("surface.kind")) return;
+    const bool wants_cage = surface.kind == SurfaceKind::Cage;
+    if (wants_cage && !surface.cage) {
+        check.refuse({"surface.kind", choice_text(surface.kind), "comes without a cage",
+                      "\"cage\" together with cage_file, or one of the other kinds"});
+    } else if (wants_cage) {
+        check_refined(check, surface);
+    } else if (surface.cage) {
+        check.refuse({"surface.kind", choice_text(surface.kind), "leaves a cage unused",
+                      "\"cage\" with a cage, or no cage"});
+    }
+}
+
 void check_light(Checker& check, const Light& light) {
     const auto is_exr = [](std::string_view path) {
         constexpr std::string_view kExr = ".exr";
@@ -449,6 +485,14 @@ void check_light(Checker& check, const Light& light) {
     }
 }
 
+// The fit needs an even grid, whose limit surface is a spline.
+void check_scheme(Checker& check, const Output& output, const Surface& surface) {
+    if (output.mesh_scheme != MeshScheme::CatmullClark || surface.kind == SurfaceKind::Patch) return;
+    check.refuse({"output.mesh_scheme", choice_text(output.mesh_scheme),
+                  "fits a cage to the even grid of a patch, and surface.kind is " + choice_text(surface.kind),
+                  "\"none\", or surface.kind = \"patch\""});
+}
+
 void check_tiles(Checker& check, const Output& output, const Waves& waves) {
     if (output.cascade_tiles && waves.model == WaveModel::Trochoid && waves.cascades.empty()) {
         check.refuse({"output.cascade_tiles", "true",
@@ -458,10 +502,10 @@ void check_tiles(Checker& check, const Output& output, const Waves& waves) {
 }
 
 void check_output(Checker& check, const Effects& effects, const Output& output) {
-    if (output.mesh == MeshFormat::None && output.maps.empty()) {
+    if (output.mesh == MeshFormat::None && output.maps.empty() && output.volumes.empty()) {
         check.refuse({"output.mesh", choice_text(output.mesh),
-                      "leaves nothing to bake: there are no maps either",
-                      "a mesh, or at least one map in output.maps"});
+                      "leaves nothing to bake: there are no maps and no volumes either",
+                      "a mesh, or at least one map in output.maps or volume in output.volumes"});
     }
     if (output.cascade_tiles && output.maps.empty()) {
         check.refuse({"output.cascade_tiles", "true", "asks for tiles of no map",
@@ -474,6 +518,33 @@ void check_output(Checker& check, const Effects& effects, const Output& output) 
                           "effects.whitecaps = true, or no such map"});
         }
     }
+}
+
+void check_volumes(Checker& check, const Scene& scene) {
+    const Output& output = scene.output;
+    for (std::size_t i = 0; i < output.volumes.size(); ++i) {
+        if (output.volumes[i] != VolumeKind::Spray) continue;
+        const std::string key = indexed("output.volumes", i);
+        if (!scene.effects.spray)
+            check.refuse({key, choice_text(output.volumes[i]), "asks for spray while effects.spray is false",
+                          "effects.spray = true, or no such volume"});
+        else if (!scene.effects.whitecaps)
+            check.refuse({key, choice_text(output.volumes[i]),
+                          "asks for spray, which comes from whitecaps, while effects.whitecaps is false",
+                          "effects.whitecaps = true, or no such volume"});
+    }
+    if (output.volumes.empty() || !check.is_good("output.voxel_m") || !check.is_good("surface.size_m"))
+        return;
+    const double size_m = scene.surface.size_m;
+    const auto refuse_size = [&](const std::string& problem, const std::string& accepted) {
+        check.refuse({"output.voxel_m", number_text(output.voxel_m), problem,
+                      accepted + number_text(size_m) + ", the patch's side (surface.size_m)"});
+    };
+    if (output.voxel_m > size_m) refuse_size("is wider than the patch that the volumes cover", "at most ");
+    if (size_m / output.voxel_m > limits::kVoxelsASide)
+        refuse_size("makes " + number_text(std::ceil(size_m / output.voxel_m)) + " voxels along a side",
+                    "at least " + number_text(size_m / limits::kVoxelsASide) + ", a " +
+                        number_text(limits::kVoxelsASide) + "th of ");
 }
 
 }  // namespace
@@ -495,10 +566,14 @@ std::vector<Problem> validate(const Scene& scene) {
     check_sea(check, scene.sea);
     check_waves(check, scene.waves);
     check_camera(check, scene.camera);
+    check_near_far(check, scene);
     check_planet(check, scene);
+    check_cage(check, scene.surface);
     check_light(check, scene.light);
     check_output(check, scene.effects, scene.output);
+    check_scheme(check, scene.output, scene.surface);
     check_tiles(check, scene.output, scene.waves);
+    check_volumes(check, scene);
     return check.take();
 }
 

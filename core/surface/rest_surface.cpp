@@ -11,7 +11,9 @@
 
 #include "core/scene/names.h"
 #include "core/scene/text.h"
+#include "core/surface/cage.h"
 #include "core/surface/earth.h"
+#include "core/surface/near_far.h"
 #include "core/surface/patch.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
@@ -19,19 +21,23 @@
 namespace pelagic {
 namespace {
 
-// A square of quads, centred on the origin.
-class Patch final : public RestSurface {
+// Points on a square lattice about the origin, `margin` of them outside the patch on each side.
+class SquareLattice : public RestSurface {
   public:
-    Patch(const Scene& scene, const SeaReach&)
+    SquareLattice(const Scene& scene, int margin)
         : quads_(scene.surface.resolution),
           size_m_(scene.surface.size_m),
-          lattice_{.per_side = quads_ + 1, .spacing_m = size_m_ / quads_, .first_m = -0.5 * size_m_} {}
+          lattice_{.per_side = quads_ + 1 + 2 * margin,
+                   .spacing_m = size_m_ / quads_,
+                   .first_m = -0.5 * size_m_ - margin * (size_m_ / quads_)} {}
 
     std::string describe() const override {
         const std::string quads = std::to_string(quads_);
         return "a patch of " + quads + " × " + quads + " quads over " + number_text(size_m_) + " m";
     }
+    std::string remedy() const override { return "lower surface.resolution"; }
     bool is_constant() const override { return true; }
+    bool has_constant_faces() const override { return true; }
     bool is_even() const override { return true; }
     std::optional<View> shaped_by(int) const override { return {}; }
     FeedSet feeds() const override { return {}; }
@@ -44,7 +50,9 @@ class Patch final : public RestSurface {
     }
     void points_at(int, RestPoints<float>& points) const override { lay_out(points); }
     void points_at(int, RestPoints<double>& points) const override { lay_out(points); }
-    void faces_at(int, Faces& faces) const override { set_grid_faces(quads_, quads_, faces); }
+
+  protected:
+    int quads() const { return quads_; }
 
   private:
     template <class T>
@@ -55,6 +63,34 @@ class Patch final : public RestSurface {
     int quads_;
     double size_m_;
     PatchLattice lattice_;
+};
+
+// A square of quads, centred on the origin.
+class Patch final : public SquareLattice {
+  public:
+    Patch(const Scene& scene, const SeaReach&) : SquareLattice(scene, 0) {}
+    void faces_at(int, Faces& faces) const override { set_grid_faces(quads(), quads(), faces); }
+};
+
+// The same as the limit surface of a cage.
+class FittedPatch final : public SquareLattice {
+  public:
+    FittedPatch(const Scene& scene, const SeaReach&) : SquareLattice(scene, FittedCage::kMargin) {}
+    std::string describe() const override {
+        return SquareLattice::describe() +
+               ", as the limit surface of a cage with a ring of vertices round it";
+    }
+    std::optional<FittedCage> fitted() const override { return FittedCage{quads()}; }
+    // st is 0 … 1 over the patch, and goes on in the ring.
+    void faces_at(int, Faces& faces) const override {
+        const int with_ring = quads() + 2 * FittedCage::kRing;
+        set_grid_faces(with_ring, with_ring, faces);
+        std::size_t vertex = 0;
+        for (int row = 0; row <= with_ring; ++row)
+            for (int column = 0; column <= with_ring; ++column)
+                faces.st[vertex++] = glm::dvec2(column - FittedCage::kRing, row - FittedCage::kRing) /
+                                     static_cast<double>(quads());
+    }
 };
 
 // What the camera sees. Each frame's grid has the size that its own pose asks for: a grid that served the
@@ -79,7 +115,9 @@ class CameraGrid : public RestSurface {
                                      : " at frame " + std::to_string(first_frame_) +
                                            ", each frame as many as its camera needs");
     }
+    std::string remedy() const override { return "raise surface.cell_px, lower camera.resolution"; }
     bool is_constant() const override { return false; }
+    bool has_constant_faces() const override { return false; }
     bool is_even() const override { return false; }
     std::optional<View> shaped_by(int frame) const override { return view_at(camera_, frame); }
     FeedSet feeds() const override { return pelagic::feeds(Feed::Grid); }
@@ -179,10 +217,17 @@ struct SurfaceRow {
     std::unique_ptr<const RestSurface> (*make)(const Scene&, const SeaReach&);
 };
 
+std::unique_ptr<const RestSurface> make_patch(const Scene& scene, const SeaReach& reach) {
+    return scene.output.mesh_scheme == MeshScheme::CatmullClark ? make<FittedPatch>(scene, reach)
+                                                                : make<Patch>(scene, reach);
+}
+
 constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
-    {SurfaceKind::Patch, make<Patch>},
+    {SurfaceKind::Patch, make_patch},
     {SurfaceKind::ProjectedGrid, make<CameraGrid>},
+    {SurfaceKind::NearFar, make<NearFar>},
     {SurfaceKind::Planet, make<Planet>},
+    {SurfaceKind::Cage, make<CageSurface>},
 });
 
 }  // namespace

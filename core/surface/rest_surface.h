@@ -16,6 +16,8 @@
 
 #include "core/scene/keys.h"
 #include "core/scene/scene.h"
+#include "core/surface/faces.h"
+#include "core/surface/fitted_cage.h"
 #include "core/surface/hidden_height.h"
 #include "core/surface/view.h"
 
@@ -42,7 +44,7 @@ struct SurfaceNeeds {
     // Whether each point has footprints of its own, up to any size; otherwise all have the finest.
     bool own_footprints = false;
     std::optional<Lattice> lattice{};
-    std::size_t points = 0;  // the most that a frame has
+    std::size_t points = 0;  // the most that a frame has; of faces there are hardly more
 };
 
 // The points of one frame, relative to an origin.
@@ -56,6 +58,9 @@ struct RestPoints {
     // Footprints as in Points (core/evaluate/evaluate.h); empty: the query's own.
     std::vector<T> cell_m{}, pixel_m{};
     std::vector<glm::vec<2, T>> cell_axis_m{}, pixel_axis_m{};
+    // Of surfaces that aren't flat: how high each point lies, and the surface's unit normal there. Empty: 0, and up.
+    std::vector<T> height_m{};
+    std::vector<glm::vec<3, T>> normal{};
 };
 
 // Where a mesh that floats hold has its origin: the world's own for points round a place near that, and otherwise a
@@ -63,12 +68,6 @@ struct RestPoints {
 // two, at most 4096 m: so long that the origin seldom moves, and so short that the finest cell, seen from the origin,
 // is rounded by no more than a hundredth of itself. finest_cell_m > 0.
 glm::dvec3 local_origin(glm::dvec3 place_m, double finest_cell_m);
-
-// Polygons over the points: counts[i] corners each, counter-clockwise seen from above.
-struct Faces {
-    std::vector<std::int32_t> counts, indices;
-    std::vector<glm::vec2> st;  // of each point, 0 … 1
-};
 
 // columns × rows quads over (columns + 1) × (rows + 1) points, columns fastest. The faces are counter-clockwise
 // where columns run to the right and rows upwards; st is (0, 0) at the first point and (1, 1) at the last. The
@@ -82,8 +81,16 @@ class RestSurface {
     virtual ~RestSurface() = default;
     // One line for people: "a patch of 256 × 256 quads over 200 m".
     virtual std::string describe() const = 0;
+    // What makes it smaller: "lower surface.resolution".
+    virtual std::string remedy() const = 0;
     // Whether every frame has the same points and faces.
     virtual bool is_constant() const = 0;
+    // Whether every frame has the same faces, wherever their points are.
+    virtual bool has_constant_faces() const = 0;
+    // Whether meshes of it have an origin of their own in each file, because their points may be far from the world's.
+    virtual bool has_origin() const { return !is_constant(); }
+    // Whether each corner of a face has its own texture coordinate (Faces::is_st_of_corners).
+    virtual bool has_st_of_corners() const { return false; }
     // Whether the points are spread evenly, so that their statistics are the sea's.
     virtual bool is_even() const = 0;
     // The camera's pose, where it shapes the frame's points: a frame depends on nothing else of the camera.
@@ -95,7 +102,10 @@ class RestSurface {
     // The memory of `points` is used again.
     virtual void points_at(int frame, RestPoints<float>& points) const = 0;
     virtual void points_at(int frame, RestPoints<double>& points) const = 0;
+    // Of the mesh's vertices: the points, or those of the cage.
     virtual void faces_at(int frame, Faces& faces) const = 0;
+    // Where the mesh is a cage that is fitted to the points.
+    virtual std::optional<FittedCage> fitted() const { return {}; }
 };
 
 // The surface of a valid scene. Throws std::invalid_argument for a kind that isn't built.

@@ -1,4 +1,5 @@
 #include "core/waves/folding.h"
+#include "core/plan/spray.h"
 
 #include <algorithm>
 #include <array>
@@ -142,6 +143,7 @@ std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
     for (auto* more : {&trough_warning, &repeats_warning, &copies_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
+    if (std::string thin = spray_warning(prepared.scene); !thin.empty()) warnings.push_back(std::move(thin));
     return warnings;
 }
 

@@ -14,7 +14,7 @@ double folded_share(const DirectionalSpectrum& spectrum, double choppiness);
 
 // What an artist should know of a sea before it is built, a sentence each: a surface that folds over itself on more than 5 %
 // of its area, and the choppiness that leaves that much; troughs deeper than the water; explicit tiles that repeat in
-// sight, or whose copies gain more than 5 % of slope by blending.
+// sight, or whose copies gain more than 5 % of slope by blending; spray that is too thin to be seen.
 std::vector<std::string> sea_warnings(const PreparedScene& prepared);
 
 }  // namespace pelagic

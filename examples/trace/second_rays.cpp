@@ -7,6 +7,7 @@
 #include "core/base/random.h"
 #include "core/lighting/air.h"
 #include "core/lighting/background.h"
+#include "core/lighting/spray.h"
 #include "tracer_impl.h"
 
 namespace pelagic::trace {
@@ -92,11 +93,12 @@ std::optional<glm::vec3> Tracer::Impl::facet(std::size_t i, glm::vec3 to_eye) co
     return std::nullopt;
 }
 
-// Of the air before each sample of the sea.
+// Of the air and the spray before each sample of the sea.
 std::vector<glm::vec3> Tracer::Impl::transmittances() const {
     std::vector<SeaRadiance> white(on_sea_.size());
     for (SeaRadiance& one : white) one.sea = glm::vec3(1.0f);
     if (options_.picture.lighting.air) see_through(air_, seen_.to_eye, seen_.distance_m, white);
+    see_through_spray(spray_, seen_.to_eye, seen_.distance_m, white);
     std::vector<glm::vec3> through(white.size());
     for (std::size_t i = 0; i < white.size(); ++i) through[i] = glm::max(white[i].sea, glm::vec3(1e-6f));
     return through;
@@ -210,22 +212,26 @@ void Tracer::Impl::light_second_sea(std::span<const RayQuery> rays, std::span<co
     }
     std::vector<SeaRadiance> lit(sea.size());
     light_.answer(seen);
-    light_.light(seen, light_.sky(), air_below_, lit);
+    light_.light(seen, light_.sky(), air_below_, {}, lit);
     // The sun that waves mirror onto the object is left out: few of the rays find it, and those would be white dots.
     for (std::size_t i = 0; i < sea.size(); ++i)
         light[sea[i]] = radiance_of(lit[i]) - (second_[sea[i]].replaces_sky ? glm::vec3(0.0f) : lit[i].sun);
 }
 
-// What rays have added, as the eye sees it. The air before the sea has added its own light already.
+// What rays have added, as the eye sees it. The air and the spray before the sea have added their own light already.
 void Tracer::Impl::through_air() {
-    const auto seen_through = [&](std::size_t sample, bool has_air) {
+    const auto seen_through = [&](std::size_t sample, bool is_object) {
         SeaRadiance more{.sea = added_[sample]};
         const glm::vec3 to_eye = -rays_[sample].towards;
         const float distance_m = answers_[sample].distance_m;
         if (options_.picture.lighting.air)
             see_through(air_, std::span(&to_eye, 1), std::span(&distance_m, 1), std::span(&more, 1));
+        if (is_object)
+            see_through_spray(spray_, -to_eye, distance_m, more);
+        else
+            see_through_spray(spray_, {&to_eye, 1}, {&distance_m, 1}, {&more, 1});
         radiance_[sample].sea += more.sea;
-        if (has_air) radiance_[sample].air += more.air;
+        if (is_object) radiance_[sample].air += more.air;
     };
     in_parallel(on_object_.size(), [&](std::size_t i) { seen_through(on_object_[i], true); });
     if (options_.traced) in_parallel(on_sea_.size(), [&](std::size_t i) { seen_through(on_sea_[i], false); });

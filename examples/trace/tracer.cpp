@@ -69,6 +69,7 @@ Tracer::Impl::Impl(const Scene& scene, const TraceOptions& options, Sky sky, int
     light_.prepare_foam(time_s, projected_grid(view_, grid_options_), {});
     air_ = light_.air_before(view_.position_m.z);
     air_below_ = light_.air_before(0.0);
+    spray_ = light_.spray_before(view_, grid_options_);
     unlit_ = light_.sky();
     unlit_.sun_radiance = unlit_.sun_irradiance = glm::vec3(0.0f);
 
@@ -146,6 +147,7 @@ void Tracer::Impl::light_background() {
         const auto cosine = static_cast<float>(glm::dot(glm::dvec3(rays_[i].towards), view_.forward));
         radiance_[i] = light_.behind(air_, rays_[i].towards,
                                      pixel_angle(static_cast<float>(view_.pixel_tangent()), cosine));
+        see_through_spray(spray_, rays_[i].towards, {}, radiance_[i]);
     });
 }
 
@@ -192,13 +194,13 @@ void Tracer::Impl::light_sea() {
     if (on_sea_.empty()) return;
     lit_.resize(on_sea_.size());
     light_.answer(seen_);
-    light_.light(seen_, light_.sky(), air_, lit_);
+    light_.light(seen_, light_.sky(), air_, spray_, lit_);
     if (options_.traced) {
         const auto [rays, met] = gathered(rays_, answers_, on_sea_);
         const std::vector<std::uint8_t> dark = in_shadow(rays, met);
         if (std::find(dark.begin(), dark.end(), 1) != dark.end()) {
             std::vector<SeaRadiance> unlit(on_sea_.size());
-            light_.light(seen_, unlit_, air_, unlit);
+            light_.light(seen_, unlit_, air_, spray_, unlit);
             for (std::size_t i = 0; i < dark.size(); ++i)
                 if (dark[i]) lit_[i] = unlit[i];
         }

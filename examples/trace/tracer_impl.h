@@ -108,6 +108,7 @@ class Tracer::Impl {
     ProjectedGridOptions grid_options_;
     SeaLight<float> light_;
     Air air_, air_below_;
+    Spray spray_;
     Sky unlit_;  // without the sun
     FrameHandle ray_frame_;
     std::optional<TracedScene> traced_;

@@ -119,6 +119,7 @@ std::optional<FrameJob> job_of(int frame, const Parts& parts, const FrameRecord*
     whole.files = std::move(job.kept.files);
     whole.coverage.reset();
     whole.mesh_significant_height_m.reset();
+    whole.spray.reset();
     job.kept = std::move(whole);
     job.is_whole = true;
     return job;
@@ -140,14 +141,15 @@ std::vector<FileCheck> files_to_check(std::span<const int> frames, const std::ma
     return checks;
 }
 
-// Adds the files that were kept to the frame's record, and the mean coverage and the mesh's height, each from the
-// first output that has it.
+// Adds the files that were kept to the frame's record, and the mean coverage, the mesh's height and the spray, each from
+// the first output that has it.
 void complete(FrameRecord& record, const FrameJob& job, const Parts& parts) {
     record.files.insert(job.kept.files.begin(), job.kept.files.end());
     for (const auto& part : parts) {
         const FileRecord& file = record.files.at(part->file(job.frame));
         if (!record.coverage) record.coverage = file.coverage;
         if (!record.mesh_significant_height_m) record.mesh_significant_height_m = file.significant_height_m;
+        if (!record.spray) record.spray = file.spray;
     }
 }
 
@@ -202,7 +204,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     report_progress(BakeStage::Planning);
     const Plan plan = plan_bake(prepare(scene), frames);
     if (plan.outputs.empty())
-        throw std::invalid_argument("the shot asks for no output: accepted: output.mesh, output.maps");
+        throw std::invalid_argument(
+            "the shot asks for no output: accepted: output.mesh, output.maps, output.volumes");
     require_memory(bake_memory(plan, frames.size(), tbb::this_task_arena::max_concurrency()),
                    machine::memory_limit_or(options.max_memory_bytes), "this bake");
     if (scene.output.mesh != MeshFormat::None) prepare_light(scene);
@@ -291,6 +294,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         }
         if (scene.output.mesh != MeshFormat::None) report.root = options.out / (scene.shot.name + ".usda");
         if (!scene.output.maps.empty()) report.maps = options.out / "maps";
+        if (!scene.output.volumes.empty()) report.volumes = options.out / "volumes";
         save();
         const auto first_frame = std::chrono::steady_clock::now();
         std::array<FrameSlot, kFramesInFlight> slots;

@@ -1,6 +1,6 @@
 // Runs a bake: plan, sea, and then frame after frame into files that are whole or not there.
 //
-//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/NAME.sky.exr, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/NAME.json
+//   DIR/NAME.usda, DIR/NAME.camera.usdc, DIR/NAME.sky.exr, DIR/mesh/…, DIR/maps/…, DIR/tiles/…, DIR/volumes/…, DIR/NAME.json
 //
 // Files that a former run left, with the fingerprint that they would get now and with the bytes that were written
 // (each is read, and its checksum compared), are kept; everything else that is asked for is done again.
@@ -57,8 +57,9 @@ struct BakeOptions {
 };
 
 struct BakeReport {
-    std::filesystem::path root, maps, record;  // DIR/NAME.usda and DIR/maps (empty without), DIR/NAME.json
-    int done = 0, kept = 0, total = 0;         // frames
+    std::filesystem::path root, maps, volumes;  // DIR/NAME.usda, DIR/maps, DIR/volumes (each empty without)
+    std::filesystem::path record;               // DIR/NAME.json
+    int done = 0, kept = 0, total = 0;          // frames
     bool cancelled = false;
     double seconds = 0.0;  // from the call to its end
     long executed_transforms = 0;

@@ -102,6 +102,10 @@ std::vector<MeasureItem> measure_items(const Scene& scene) {
         if (std::find(output.maps.begin(), output.maps.end(), row.map) != output.maps.end())
             add("map " + std::string(word_of(row.map)),
                 [&](Scene& without) { std::erase(without.output.maps, row.map); });
+    for (const VolumeRow& row : volume_table())
+        if (std::find(output.volumes.begin(), output.volumes.end(), row.volume) != output.volumes.end())
+            add("volume " + std::string(word_of(row.volume)),
+                [&](Scene& without) { std::erase(without.output.volumes, row.volume); });
     if (output.cascade_tiles) add("tiles", [](Scene& without) { without.output.cascade_tiles = false; });
     for (const EffectRow& row : effect_table())
         if (row.is_on(scene)) add(row.name, row.turn_off);

@@ -1,6 +1,8 @@
 // The mesh: a layer for each frame, as a crate or as text, and beside them the layers that say what varies.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "core/scene/names.h"
 #include "core/surface/earth.h"
@@ -22,6 +24,14 @@ double significant_height_of(const std::vector<glm::vec3>& points) {
     return 4.0 * std::sqrt(squares / static_cast<double>(points.size()));
 }
 
+// The surface's own heights; empty: it is flat.
+template <class T>
+void raise_by(std::vector<glm::vec3>& positions, const std::vector<T>& height_m) {
+    for (std::size_t i = 0; i < height_m.size(); ++i)
+        positions[i].z =
+            static_cast<float>(static_cast<double>(positions[i].z) + static_cast<double>(height_m[i]));
+}
+
 void move_by(std::vector<glm::vec3>& positions, const glm::dvec3& offset_m) {
     if (offset_m == glm::dvec3(0.0)) return;
     for (glm::vec3& p : positions) p = offset_m + glm::dvec3(p);
@@ -38,8 +48,15 @@ void scale_by(std::vector<glm::vec3>& velocities, double time_scale) {
     for (glm::vec3& v : velocities) v *= static_cast<float>(time_scale);
 }
 
+// What the vertices of a cage have.
+struct CageArrays {
+    std::vector<glm::vec3> points, velocities, slope_variance;
+    std::vector<float> coverage, foam_active, foam_age_s;
+};
+
 struct MeshSlot final : OutputSlot {
-    Faces faces;  // where they vary
+    Faces faces;      // where they vary
+    CageArrays cage;  // where the mesh is one; the values are then those of the points that it is fitted to
     glm::dvec3 origin_m{0.0};
     std::string text;  // of a mesh in text; a crate needs none, its arrays are the values
 };
@@ -48,13 +65,15 @@ class MeshPart final : public OutputPart {
   public:
     MeshPart(const Plan& plan, const PlannedOutput& output)
         : OutputPart(plan, output),
+          cage_(plan.surface->fitted()),
           attributes_{.normals = asks(Product::Normal),
                       .velocities = asks(Product::Velocity),
                       .slope_variance = asks(Product::SlopeVariance),
                       .whitecap_coverage = asks(Product::Coverage),
                       .foam_history = has_foam_history(),
-                      .faces = !plan.surface->is_constant(),
-                      .origin = !plan.surface->is_constant()} {}
+                      .faces = !plan.surface->has_constant_faces(),
+                      .origin = plan.surface->has_origin(),
+                      .st_of_corners = plan.surface->has_st_of_corners()} {}
 
     FilePattern pattern() const override {
         return {"mesh/" + scene().shot.name + '.', '.' + std::string(word_of(scene().output.mesh))};
@@ -75,17 +94,17 @@ class MeshPart final : public OutputPart {
         const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
         constexpr std::size_t kFace =
             5 * sizeof(std::int32_t) + sizeof(glm::vec2);  // a quad's count, corners, st
-        OutputMemory memory{.once = points * 2 * scalar, .remedy = {}};
-        if (plan_.surface->is_constant()) {
-            memory.fixed = points * kFace;
-            memory.remedy = "lower surface.resolution, or ask for fewer output.attributes";
-        } else {
-            // Footprints of each point, and the grid that they are taken from.
-            memory.once += points * (2 * scalar + sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double));
+        OutputMemory memory{.once = points * 2 * scalar,
+                            .remedy = plan_.surface->remedy() + ", or ask for fewer output.attributes"};
+        if (attributes_.faces)
             memory.slot = points * kFace;
-            memory.remedy = "raise surface.cell_px, or lower camera.resolution";
-        }
+        else
+            memory.fixed = points * kFace * (keeps_faces() ? 2 : 1);
+        // Footprints of each point, and the grid that they are taken from.
+        if (!plan_.surface->is_constant())
+            memory.once += points * (2 * scalar + sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double));
         if (has_foam_history()) memory.slot += points * 2 * sizeof(float);
+        if (cage_) memory.slot += points * numbers() * sizeof(float);  // beside the points' values
         if (is_text()) {
             memory.slot += points * kText * numbers();
             memory.encoding =
@@ -98,12 +117,15 @@ class MeshPart final : public OutputPart {
 
     void encode(int frame, OutputSlot& any_slot) const override {
         MeshSlot& slot = static_cast<MeshSlot&>(any_slot);
-        const auto& coverage = slot.values.numbers(Product::Coverage);
         slot.coverage.reset();
         slot.significant_height_m.reset();
-        if (!coverage.empty()) slot.coverage = mean_coverage(slot);
-        if (plan_.surface->is_even())
-            slot.significant_height_m = significant_height_of(slot.values.vectors(Product::Position));
+        if (cage_) {
+            take_statistics_of_patch(slot);
+            fit_cage(slot);
+        } else {
+            take_statistics(slot, slot.values.vectors(Product::Position),
+                            slot.values.numbers(Product::Coverage));
+        }
         slot.text.clear();
         if (!is_text()) return;
         usd::write_frame_text(sample(frame, fingerprint(frame), slot),
@@ -123,9 +145,12 @@ class MeshPart final : public OutputPart {
 
     void write_static(const FileSink& sink) const override {
         const Shot& shot = scene().shot;
-        usd::Topology topology{.fps = shot.fps, .attributes = attributes_};
+        usd::Topology topology{
+            .fps = shot.fps,
+            .scheme = cage_ ? usd::SubdivisionScheme::CatmullClark : usd::SubdivisionScheme::None,
+            .attributes = attributes_};
         Faces faces;
-        if (plan_.surface->is_constant()) {
+        if (!attributes_.faces) {
             plan_.surface->faces_at(shot.first_frame, faces);
             topology.face_vertex_counts = faces.counts;
             topology.face_vertex_indices = faces.indices;
@@ -164,6 +189,11 @@ class MeshPart final : public OutputPart {
     }
 
     bool asks(Product product) const { return query().products[index(product)]; }
+    // The mean coverage of a frame goes over faces. Those of a surface that never changes are known without a list.
+    bool keeps_faces() const {
+        const RestSurface& surface = *plan_.surface;
+        return surface.has_constant_faces() && !query().lattice && asks(Product::Coverage);
+    }
     bool is_text() const { return scene().output.mesh == MeshFormat::Usda; }
 
     template <class T>
@@ -172,14 +202,17 @@ class MeshPart final : public OutputPart {
         const RestSurface& surface = *plan_.surface;
         if (!state.is_laid_out || !surface.is_constant()) surface.points_at(frame, state.points);
         state.is_laid_out = true;
-        if (!surface.is_constant()) surface.faces_at(frame, slot.faces);
+        if (attributes_.faces) surface.faces_at(frame, slot.faces);
+        if (keeps_faces() && faces_.counts.empty()) surface.faces_at(frame, faces_);
         const RestPoints<T>& at = state.points;
         Points<T> points{.origin_m = at.origin_m, .count = at.rest_m.size(), .rest_m = {at.rest_m.data()}};
         if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};
         if (!at.pixel_m.empty()) points.pixel_m = {at.pixel_m.data()};
         if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
         if (!at.pixel_axis_m.empty()) points.pixel_axis_m = {at.pixel_axis_m.data()};
+        if (!at.normal.empty()) points.rest_normal = {at.normal.data()};
         state.runner.run(sea, output_.query, points, slot.values);
+        raise_by(slot.values.vectors(Product::Position), at.height_m);
         add_foam(foam, points, slot, watch);
         if (attributes_.origin) slot.origin_m = local_origin(place_of_origin(at), finest_of(at.cell_m));
         if (at.curvature_per_m != 0.0)
@@ -189,37 +222,66 @@ class MeshPart final : public OutputPart {
         scale_by(slot.values.vectors(Product::Velocity), scene().shot.time_scale);
     }
 
+    // Of the frame's record.
+    void take_statistics(MeshSlot& slot, const std::vector<glm::vec3>& positions,
+                         const std::vector<float>& coverage) const {
+        if (!coverage.empty()) slot.coverage = mean_coverage(slot, positions, coverage);
+        if (plan_.surface->is_even()) slot.significant_height_m = significant_height_of(positions);
+    }
+    // The same without what lies round the patch for the fit.
+    void take_statistics_of_patch(MeshSlot& slot) const {
+        std::vector<glm::vec3> positions;
+        std::vector<float> coverage;
+        cage_->crop<glm::vec3>(slot.values.vectors(Product::Position), FittedCage::kMargin, positions);
+        if (asks(Product::Coverage))
+            cage_->crop<float>(slot.values.numbers(Product::Coverage), FittedCage::kMargin, coverage);
+        take_statistics(slot, positions, coverage);
+    }
+
+    void fit_cage(MeshSlot& slot) const {
+        CageArrays& cage = slot.cage;
+        cage_->fit(slot.values.vectors(Product::Position), cage.points);
+        if (asks(Product::Velocity)) cage_->fit(slot.values.vectors(Product::Velocity), cage.velocities);
+        const auto keep = [&](const auto& values, auto& kept) {
+            if (!values.empty())
+                cage_->crop<typename std::decay_t<decltype(kept)>::value_type>(values, FittedCage::kReach,
+                                                                               kept);
+        };
+        keep(slot.values.vectors(Product::SlopeVariance), cage.slope_variance);
+        keep(slot.values.numbers(Product::Coverage), cage.coverage);
+        keep(slot.foam_active, cage.foam_active);
+        keep(slot.foam_age_s, cage.foam_age_s);
+    }
+
     // Over the faces, as seen from above; a face that is folded over lies under others.
-    double mean_coverage(const MeshSlot& slot) const {
-        const auto& positions = slot.values.vectors(Product::Position);
-        const auto& coverage = slot.values.numbers(Product::Coverage);
+    double mean_coverage(const MeshSlot& slot, const std::vector<glm::vec3>& positions,
+                         const std::vector<float>& coverage) const {
         AreaMean mean;
-        const auto add = [&](std::initializer_list<std::int32_t> corners) {
+        const auto add = [&](std::span<const std::int32_t> corners) {
             double twice_area = 0.0, sum = 0.0;
-            const std::int32_t* before = corners.end() - 1;
-            for (const std::int32_t* at = corners.begin(); at != corners.end(); before = at++) {
+            const std::int32_t* before = corners.data() + corners.size() - 1;
+            for (const std::int32_t* at = corners.data(); at != corners.data() + corners.size();
+                 before = at++) {
                 const glm::dvec2 a(positions[*before]), b(positions[*at]);
                 twice_area += a.x * b.y - a.y * b.x;
                 sum += static_cast<double>(coverage[*at]);
             }
             mean.add(sum / static_cast<double>(corners.size()), std::max(twice_area, 0.0));
         };
-        if (plan_.surface->is_constant()) {
+        if (query().lattice) {  // a square of quads
             const auto side =
                 static_cast<std::int32_t>(std::lround(std::sqrt(static_cast<double>(positions.size()))));
             for (std::int32_t y = 0; y + 1 < side; ++y)
                 for (std::int32_t x = 0; x + 1 < side; ++x) {
                     const std::int32_t i = y * side + x;
-                    add({i, i + 1, i + side + 1, i + side});
+                    add(std::array{i, i + 1, i + side + 1, i + side});
                 }
             return mean.value();
         }
-        const std::int32_t* corner = slot.faces.indices.data();
-        for (const std::int32_t count : slot.faces.counts) {
-            if (count == 3)
-                add({corner[0], corner[1], corner[2]});
-            else
-                add({corner[0], corner[1], corner[2], corner[3]});
+        const Faces& faces = attributes_.faces ? slot.faces : faces_;
+        const std::int32_t* corner = faces.indices.data();
+        for (const std::int32_t count : faces.counts) {
+            add({corner, static_cast<std::size_t>(count)});
             corner += count;
         }
         return mean.value();
@@ -260,14 +322,26 @@ class MeshPart final : public OutputPart {
                                .whitecap_coverage = slot.values.numbers(Product::Coverage),
                                .foam_active = slot.foam_active,
                                .foam_age_s = slot.foam_age_s};
+        if (cage_) {
+            sample.points = slot.cage.points;
+            sample.velocities = slot.cage.velocities;
+            sample.slope_variance = slot.cage.slope_variance;
+            sample.whitecap_coverage = slot.cage.coverage;
+            sample.foam_active = slot.cage.foam_active;
+            sample.foam_age_s = slot.cage.foam_age_s;
+        }
         if (attributes_.origin) sample.origin_m = slot.origin_m;
         if (attributes_.faces)
-            sample.faces =
-                usd::Faces{.counts = slot.faces.counts, .indices = slot.faces.indices, .st = slot.faces.st};
+            sample.faces = usd::Faces{.counts = slot.faces.counts,
+                                      .indices = slot.faces.indices,
+                                      .st = slot.faces.st,
+                                      .is_st_of_corners = slot.faces.is_st_of_corners};
         return sample;
     }
 
+    std::optional<FittedCage> cage_;
     usd::AttributeSet attributes_;
+    Faces faces_{};  // where all frames share them and they are no square of quads
     State<float> single_;
     State<double> wide_;
 };

@@ -25,6 +25,7 @@ std::vector<std::unique_ptr<OutputPart>> make_parts(const Plan& plan) {
         {OutputKind::Mesh, make_mesh_part},
         {OutputKind::Map, make_map_part},
         {OutputKind::Tile, make_map_part},
+        {OutputKind::Volume, make_volume_part},
     });
     const auto squares = std::make_shared<SquareCache>();
     std::vector<std::unique_ptr<OutputPart>> parts;

@@ -20,6 +20,7 @@
 #include "core/plan/plan.h"
 #include "core/surface/patch.h"
 #include "core/waves/frame.h"
+#include "plugin/bake/spray_record.h"
 
 namespace pelagic {
 
@@ -48,6 +49,7 @@ struct OutputSlot {
     std::vector<float> foam_active, foam_age_s;
     // Of the frame's record; absent where the output says nothing about it.
     std::optional<double> coverage, significant_height_m;
+    std::optional<SprayRecord> spray;
 };
 
 // What an output will hold [bytes].
@@ -73,7 +75,9 @@ class OutputPart {
     const std::string& fingerprint() const { return base_; }
 
     // Whether its coverage has a past.
-    bool has_foam_history() const { return plan_.foam && query().products[index(Product::Coverage)]; }
+    bool has_foam_history() const {
+        return plan_.foam && query().products[index(Product::Coverage)] && !query().breaking_alone;
+    }
 
     virtual std::unique_ptr<OutputSlot> make_slot() const { return std::make_unique<OutputSlot>(); }
     // The frame's values. One frame at a time. `foam`: at the frame's time; null where foam doesn't live. Throws
@@ -135,6 +139,8 @@ std::unique_ptr<OutputPart> make_mesh_part(const Plan& plan, const PlannedOutput
                                            const std::shared_ptr<SquareCache>&);
 std::unique_ptr<OutputPart> make_map_part(const Plan& plan, const PlannedOutput& output,
                                           const std::shared_ptr<SquareCache>& squares);
+std::unique_ptr<OutputPart> make_volume_part(const Plan& plan, const PlannedOutput& output,
+                                             const std::shared_ptr<SquareCache>&);
 
 // A mean whose parts count by the area of sea that they stand for [any unit, ≥ 0]. 0 without any area.
 class AreaMean {

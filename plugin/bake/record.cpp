@@ -62,11 +62,26 @@ Json settings(const Scene& scene) {
     return json;
 }
 
+Json to_json(const SprayRecord& spray) {
+    return {{"breaking_over_mean", spray.breaking_over_mean},
+            {"mass_flux_kg_per_s", spray.mass_flux_kg_per_s},
+            {"optical_thickness", spray.optical_thickness}};
+}
+
+std::optional<SprayRecord> spray_from_json(const Json& json) {
+    const auto spray = json.find("spray");
+    if (spray == json.end()) return {};
+    return SprayRecord{.breaking_over_mean = spray->at("breaking_over_mean").get<double>(),
+                       .mass_flux_kg_per_s = spray->at("mass_flux_kg_per_s").get<double>(),
+                       .optical_thickness = spray->at("optical_thickness").get<double>()};
+}
+
 Json to_json(const FileRecord& file) {
     Json json{{"bytes", file.bytes}, {"checksum", file.checksum}};
     if (!file.fingerprint.empty()) json["fingerprint"] = file.fingerprint;
     if (file.coverage) json["whitecap_coverage"] = *file.coverage;
     if (file.significant_height_m) json["hs_m"] = *file.significant_height_m;
+    if (file.spray) json["spray"] = to_json(*file.spray);
     return json;
 }
 
@@ -76,6 +91,7 @@ FileRecord file_from_json(const Json& json) {
                     .fingerprint = json.value("fingerprint", std::string())};
     if (json.contains("whitecap_coverage")) file.coverage = json.at("whitecap_coverage").get<double>();
     if (json.contains("hs_m")) file.significant_height_m = json.at("hs_m").get<double>();
+    file.spray = spray_from_json(json);
     return file;
 }
 
@@ -94,6 +110,7 @@ Json to_json(const FrameRecord& frame) {
     json["mss_residual"] = frame.mss_residual;
     if (frame.mesh_significant_height_m) json["mesh_hs_m"] = *frame.mesh_significant_height_m;
     if (frame.coverage) json["whitecap_coverage"] = *frame.coverage;
+    if (frame.spray) json["spray"] = to_json(*frame.spray);
     json["files"] = Json::object();
     for (const auto& [path, file] : frame.files) json["files"][path] = to_json(file);
     return json;
@@ -112,6 +129,7 @@ FrameRecord from_json(const Json& json) {
     frame.mss_residual = json.at("mss_residual").get<double>();
     if (json.contains("mesh_hs_m")) frame.mesh_significant_height_m = json.at("mesh_hs_m").get<double>();
     if (json.contains("whitecap_coverage")) frame.coverage = json.at("whitecap_coverage").get<double>();
+    frame.spray = spray_from_json(json);
     for (const auto& [path, file] : json.at("files").items()) frame.files[path] = file_from_json(file);
     return frame;
 }
@@ -262,6 +280,7 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
     shot["settings"] = settings(scene);
     shot["files"] = Json::object();
 
+    if (scene.surface.cage) shot["cage"] = scene.surface.cage->content();
     Json& spectrum = shot["spectrum"];
     spectrum["kind"] = word_of(scene.sea.spectrum);
     spectrum["hs_m"] = total.significant_height_m();

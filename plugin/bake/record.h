@@ -18,6 +18,7 @@
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/spectrum/spectral_moments.h"
+#include "plugin/bake/spray_record.h"
 #include "plugin/files/files.h"
 
 namespace pelagic {
@@ -34,6 +35,7 @@ struct FileRecord {
     std::string fingerprint{};  // of what it was made of; it carries the same; empty: none
     // What its output says about the frame.
     std::optional<double> coverage{}, significant_height_m{};
+    std::optional<SprayRecord> spray{};
 };
 
 // Of one frame. What nobody paid for is absent.
@@ -47,6 +49,7 @@ struct FrameRecord {
     double mss_residual = 0.0;                        // the spectrum's, of what the first output hides
     std::optional<double> mesh_significant_height_m;  // 4 × the standard deviation of the mesh's heights
     std::optional<double> coverage;                   // mean over the first output that has it
+    std::optional<SprayRecord> spray;
 };
 
 // What a record says about the whole shot.

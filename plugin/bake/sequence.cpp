@@ -70,7 +70,8 @@ class SequenceOf final : public Sequence {
                 slot.record.files[parts_[p]->file(slot.frame)] = {
                     .fingerprint = parts_[p]->fingerprint(slot.frame),
                     .coverage = slot.outputs[p]->coverage,
-                    .significant_height_m = slot.outputs[p]->significant_height_m};
+                    .significant_height_m = slot.outputs[p]->significant_height_m,
+                    .spray = slot.outputs[p]->spray};
     }
 
     void write(FrameSlot& slot, const FileSink& sink) const override {

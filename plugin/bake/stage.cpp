@@ -19,10 +19,12 @@
 #include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/surface/view.h"
+#include "plugin/bake/volumes.h"
 #include "plugin/exr/exr.h"
 #include "plugin/light/light.h"
 #include "plugin/usd/camera.h"
 #include "plugin/usd/text.h"
+#include "plugin/usd/volumes.h"
 
 namespace pelagic {
 namespace {
@@ -159,6 +161,18 @@ usd::Material material_of(const Plan& plan) {
             .whitecap_color = albedo.foam};
 }
 
+// The volumes of the shot; none: the plan has none.
+std::vector<usd::Volume> volumes_of(const Plan& plan) {
+    std::vector<usd::Volume> volumes;
+    for (const PlannedOutput& output : plan.outputs) {
+        if (!output.volume) continue;
+        usd::Volume volume = volume_prim(plan, *output.volume);
+        volume.file_prefix = volume_pattern(plan.from->scene, *output.volume).prefix;
+        volumes.push_back(std::move(volume));
+    }
+    return volumes;
+}
+
 usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optional<usd::Sun>& sun) {
     const Scene& scene = plan.from->scene;
     const Shot& shot = scene.shot;
@@ -173,11 +187,13 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
                         .slope_variance = products[index(Product::SlopeVariance)],
                         .whitecap_coverage = products[index(Product::Coverage)],
                         .foam_history = plan.foam && products[index(Product::Coverage)],
-                        .faces = !plan.surface->is_constant(),
-                        .origin = !plan.surface->is_constant()};
+                        .faces = !plan.surface->has_constant_faces(),
+                        .origin = plan.surface->has_origin(),
+                        .st_of_corners = plan.surface->has_st_of_corners()};
     stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));
     stage.material = material_of(plan);
     stage.has_camera = true;
+    stage.has_volumes = !volumes_of(plan).empty();
     stage.sun = sun;
     stage.sky = usd::Sky{.lat_long_file = "./" + usd::sky_file(shot.name)};
     stage.custom_data = {
@@ -208,6 +224,15 @@ void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink)
     sink({.path = usd::camera_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
               usd::write_camera_crate(camera_of(scene), take);
           }});
+    if (std::vector<usd::Volume> volumes = volumes_of(plan); !volumes.empty()) {
+        const usd::VolumeLayer layer{.fps = scene.shot.fps,
+                                     .first_frame = scene.shot.first_frame,
+                                     .last_frame = scene.shot.last_frame,
+                                     .volumes = std::move(volumes)};
+        sink({.path = usd::volumes_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
+                  usd::write_volumes_text(layer, take);
+              }});
+    }
     sink({.path = usd::root_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
               take(usd::root_text(stage_of(plan, mesh, light->sun)));
           }});

@@ -1,4 +1,4 @@
-// The stage of a bake: the root layer that people open, the camera's layer and the sky's picture beside it. They are
+// The stage of a bake: the root layer that people open, the layers of camera and volumes and the sky's picture beside it. They are
 // of the whole shot, whichever frames are baked. Sun, sky and water are those that pictures of the shot are lit by.
 #pragma once
 

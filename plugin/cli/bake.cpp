@@ -44,6 +44,7 @@ void print_damaged(const std::vector<std::string>& damaged, const std::string& o
 void print_done(const BakeReport& report, const std::string& out) {
     if (!report.root.empty()) std::cout << "stage:  " << report.root.string() << '\n';
     if (!report.maps.empty()) std::cout << "maps:   " << report.maps.string() << '\n';
+    if (!report.volumes.empty()) std::cout << "volumes: " << report.volumes.string() << '\n';
     std::cout << "record: " << report.record.string() << '\n';
     std::cout << count_text(report.done, "frame", "frames") << " baked";
     if (report.kept > 0) std::cout << ", " << report.kept << " kept as they were";

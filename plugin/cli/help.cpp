@@ -109,7 +109,7 @@ const char* const kSkyQuality =
     "How the sky's reflection is computed: one (lookup), nine, integral.\n"
     "Default: from the shot's quality.level: one for draft, integral for reference, otherwise nine";
 const char* const kTerms =
-    "The terms of the light: sun, sky, sea, foam, and the air before them, separated by commas.\n"
+    "The terms of the light: sun, sky, sea, foam, and the air and the spray before them, separated by commas.\n"
     "Default: all of them";
 
 const char* const kShutter =

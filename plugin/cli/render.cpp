@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/plan/spray.h"
 #include "core/scene/text.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/foreign.h"
@@ -60,22 +61,25 @@ struct WrongUsage : std::runtime_error {
 // "sun,sea": those alone.
 void parse_terms(const std::string& text, LightingChoice& choice) {
     choice.sun = choice.sky = choice.water = choice.air = false;
-    bool foam = false;
-    const std::array<std::pair<std::string_view, bool*>, 5> terms{{{"sun", &choice.sun},
+    bool foam = false, spray = false;
+    const std::array<std::pair<std::string_view, bool*>, 6> terms{{{"sun", &choice.sun},
                                                                    {"sky", &choice.sky},
                                                                    {"sea", &choice.water},
                                                                    {"foam", &foam},
-                                                                   {"air", &choice.air}}};
+                                                                   {"air", &choice.air},
+                                                                   {"spray", &spray}}};
     std::istringstream words(text + ',');  // an empty text is a word that is none
     for (std::string word; std::getline(words, word, ',');) {
         const auto term =
             std::find_if(terms.begin(), terms.end(), [&](const auto& t) { return t.first == word; });
         if (term == terms.end())
-            throw WrongUsage("terms \"" + text + "\": \"" + word +
-                             "\" is none; accepted: any of sun, sky, sea, foam, air with commas between");
+            throw WrongUsage(
+                "terms \"" + text + "\": \"" + word +
+                "\" is none; accepted: any of sun, sky, sea, foam, air, spray with commas between");
         *term->second = true;
     }
     choice.whitecaps = choice.whitecaps && foam;
+    choice.spray = choice.spray && spray;
 }
 
 SkyQuality parse_sky_quality(const std::string& text) {
@@ -286,6 +290,8 @@ int run(const Arguments& arguments) {
         return kWrongUsage;
     }
     const std::string out = job.out.string();
+    if (const std::string thin = spray_warning(job.scene); !thin.empty())
+        std::cerr << arguments.shot << ": note: " << thin << std::endl;
     StopSignals stop;
     Progress progress;
     Threads threads(arguments.threads);

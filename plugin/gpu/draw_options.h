@@ -22,7 +22,7 @@ struct DrawOptions {
     // Each term in a separate texture, for read_layers(). Otherwise only their sum is written, which is
     // faster.
     bool layers = false;
-    // Display values, for a host that has its own projection, textures without mip levels, and a function
+    // Display values, for a host that has its own projection, textures without mip levels, no spray, and a function
     // `vec4 host_colour(vec4)` before the fragment shaders, from sRGB to what it stores.
     bool for_host = false;
 };

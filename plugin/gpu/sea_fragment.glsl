@@ -34,6 +34,8 @@ void main() {
     if (kAir)
         path = air_path(-pixel_ray(), point_distance_m(),
                         AirView(air_azimuth, air_to_sun, air_reach_m.x, air_reach_m.y, air_reach_m.z, air_sky_rows.x, air_sky_rows.y));
-    write_terms(terms.sun * path.transmittance, terms.sky * path.transmittance, terms.sea * path.transmittance,
-                terms.foam * path.transmittance, path.scattered, 1.0);
+    vec4 spray = seen_spray(-pixel_ray(), point_distance_m(), true);
+    vec3 left = path.transmittance * spray.w;
+    write_terms(terms.sun * left, terms.sky * left, terms.sea * left, terms.foam * left,
+                path.scattered * spray.w + vec3(spray.x, spray.y, spray.z), 1.0);
 }

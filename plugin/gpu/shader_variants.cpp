@@ -33,6 +33,12 @@ std::vector<std::string_view> output_files(const DrawOptions& options) {
     return {"plugin/gpu/sea_outputs.glsl"};
 }
 
+// After air.glsl.
+std::vector<std::string_view> spray_files(const LightingChoice& lighting) {
+    if (!lighting.spray) return {"plugin/gpu/spray_none.glsl"};
+    return {"plugin/gpu/spray_map.glsl", "core/lighting/spray.glsl", "plugin/gpu/spray_seen.glsl"};
+}
+
 const char* vertex_file(const DrawOptions& options) {
     return options.for_host ? "plugin/gpu/host_vertex.glsl" : "plugin/gpu/sea_vertex.glsl";
 }
@@ -111,10 +117,10 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
                                                                  : 0;
     return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
            constant("kWhitecaps", choice.whitecaps) + constant("kAir", choice.air) +
-           constant("kFoamCell_m", kFoamCell_m) + constant("kAirColumns", Air::kColumns) +
-           constant("kAirRows", Air::kRows) + constant("kAirHorizonRow", Air::kHorizonRow) +
-           constant("kAirSkyRows", Air::kSkyRows) + constant("kSkyLookups", lookups) +
-           constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
+           constant("kSpray", choice.spray) + constant("kFoamCell_m", kFoamCell_m) +
+           constant("kAirColumns", Air::kColumns) + constant("kAirRows", Air::kRows) +
+           constant("kAirHorizonRow", Air::kHorizonRow) + constant("kAirSkyRows", Air::kSkyRows) +
+           constant("kSkyLookups", lookups) + constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
            "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
 }
 
@@ -140,6 +146,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
     LightingChoice lighting = options.lighting;
     lighting.whitecaps = lighting.whitecaps && layout.has_coverage();
     lighting.sky = lighting.sky && sky_map_size > 0;
+    lighting.spray = lighting.spray && !options.for_host;
     const bool coverage =
         layout.has_coverage() && (lighting.whitecaps || options.false_colour == FalseColour::Coverage);
     const bool lives = coverage && layout.has_living_foam();
@@ -151,8 +158,9 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
                     {lives ? "plugin/gpu/foam_history.glsl" : "plugin/gpu/foam_active.glsl"},
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
-                    {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "core/lighting/place.glsl",
-                     "plugin/gpu/foam_uniforms.glsl", "plugin/gpu/rays.glsl"},
+                    {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    spray_files(lighting),
+                    {"core/lighting/place.glsl", "plugin/gpu/foam_uniforms.glsl", "plugin/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/gpu/false_colour.glsl", points_file(options), "plugin/gpu/sea_fragment.glsl"}})};
 }
@@ -167,13 +175,15 @@ ShaderVariant ShaderVariant::of_points(const SeaLayout& layout) {
 ShaderVariant ShaderVariant::of_sky(const DrawOptions& options, int sky_map_size) {
     LightingChoice lighting = options.lighting;
     lighting.sky = lighting.sky && sky_map_size > 0;
+    lighting.spray = lighting.spray && !options.for_host;
     return {lighting_constants(lighting, sky_map_size) + picture_constants(options),
             {"plugin/gpu/full_vertex.glsl"},
             joined({{"core/lighting/special.glsl", "plugin/gpu/light_uniforms.glsl", sky_file(options),
                      "core/lighting/sky_map.glsl"},
                     lighting_files(),
-                    {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl", "core/lighting/background.glsl",
-                     "plugin/gpu/rays.glsl"},
+                    {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl"},
+                    spray_files(lighting),
+                    {"core/lighting/background.glsl", "plugin/gpu/rays.glsl"},
                     output_files(options),
                     {"plugin/gpu/sky_fragment.glsl"}})};
 }

@@ -1,4 +1,6 @@
 // The background where there is no sea: the sky and the sun's disc (core/lighting/background.glsl).
+const float kEndless_m = 1.0e30;
+
 void main() {
     if (kWireframe || kFalseColour != 0) {
         write_terms(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
@@ -17,5 +19,6 @@ void main() {
         if (share > 0.0 && sun_radiance != vec3(0.0))
             sky += share * disc_radiance(direction, sun_centre, sun_angular_radius, sun_low, sun_middle, sun_high);
     }
-    write_terms(vec3(0.0), sky, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+    vec4 spray = seen_spray(-direction, kEndless_m, false);
+    write_terms(vec3(0.0), sky * spray.w, vec3(0.0), vec3(0.0), vec3(spray.x, spray.y, spray.z), 0.0);
 }

@@ -66,4 +66,14 @@ std::vector<Uniform> air_uniforms(const Air& air) {
             {"air_sky_rows", 2, glm::vec4(air.dip, air.sky_span, 0.0f, 0.0f)}};
 }
 
+std::vector<Uniform> spray_uniforms(const Spray& spray) {
+    return {vector("spray_azimuth", glm::vec3(spray.azimuth, spray.columns_per_rad)),
+            {"spray_rows", 4, glm::vec4(spray.first_m, spray.row_step, spray.scale_m, spray.eye_m)},
+            number("spray_top_m", static_cast<double>(spray.top_m)),
+            vector("spray_to_sun", spray.to_sun),
+            vector("spray_sun", spray.sun),
+            vector("spray_above", spray.above),
+            vector("spray_below", spray.below)};
+}
+
 }  // namespace pelagic

@@ -8,6 +8,7 @@
 #include "core/lighting/air.h"
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/sky.h"
+#include "core/lighting/spray.h"
 #include "core/lighting/water.h"
 #include "plugin/gpu/sea_layout.h"
 
@@ -28,5 +29,7 @@ std::vector<Uniform> light_uniforms(const Sky& sky, const WaterBody& water);
 std::vector<Uniform> foam_uniforms(const FoamPattern& pattern);
 // Of air_table.glsl.
 std::vector<Uniform> air_uniforms(const Air& air);
+// Of spray_map.glsl.
+std::vector<Uniform> spray_uniforms(const Spray& spray);
 
 }  // namespace pelagic

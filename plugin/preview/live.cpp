@@ -7,12 +7,15 @@
 #include <utility>
 
 #include "core/waves/frame.h"
+#include "plugin/render/spray_map.h"
 #include "plugin/render/under_water.h"
 
 namespace pelagic {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr SprayMapSize kSprayMap{.columns = 112, .rows = 96};
 
 double milliseconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
@@ -56,13 +59,15 @@ void LiveSea::ask(const Scene& scene) {
     builder_.ask(scene);
 }
 
-void LiveSea::show(double time_s, const std::optional<View>& eye) {
+void LiveSea::show(double time_s, const std::optional<View>& eye, const std::optional<View>& spray_from) {
     auto built = builder_.take();
     {
         const std::lock_guard lock(mutex_);
         time_s_ = time_s;
         eye_ = eye;
         if (!eye) water_over_eye_m_.reset();
+        spray_from_ = spray_from;
+        if (!spray_from) spray_.reset();
         if (built) {
             build_.swap(built);
             ++seas_;
@@ -84,6 +89,11 @@ std::optional<double> LiveSea::water_over_eye() const {
     return water_over_eye_m_;
 }
 
+std::shared_ptr<const Spray> LiveSea::newest_spray() const {
+    const std::lock_guard lock(mutex_);
+    return spray_;
+}
+
 LiveStatus LiveSea::status() const {
     LiveStatus status{
         .building = builder_.is_busy(), .built = built_ ? built_->load() : 0.0, .error = builder_.error()};
@@ -99,20 +109,31 @@ void LiveSea::compute_frames() {
     // The request computed last, whether it succeeded or failed: not repeated.
     std::shared_ptr<const LiveBuild> tried;
     std::optional<double> tried_s;
-    std::optional<View> tried_eye;
+    std::optional<View> tried_eye, tried_spray;
+    const auto spray_before = [&](const View& view) {
+        return std::make_shared<const Spray>(make_spray_map(*frame, view, tried->grid, kSprayMap));
+    };
     std::unique_lock lock(mutex_);
     const auto wants_frame = [&] {
         return build_ != nullptr && time_s_ && (build_ != tried || time_s_ != tried_s);
     };
     for (;;) {
-        wake_.wait(lock, [&] { return stopping_ || wants_frame() || (frame && eye_ && eye_ != tried_eye); });
+        wake_.wait(lock, [&] {
+            return stopping_ || wants_frame() ||
+                   (frame && ((eye_ && eye_ != tried_eye) || (spray_from_ && spray_from_ != tried_spray)));
+        });
         if (stopping_) return;
         tried_eye = eye_;
+        tried_spray = spray_from_;
         if (!wants_frame()) {  // the eye has moved over a sea that stands still
             lock.unlock();
-            const auto water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
+            std::optional<double> water_m;
+            if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
+            std::shared_ptr<const Spray> spray;
+            if (tried_spray) spray = spray_before(*tried_spray);
             lock.lock();
             if (eye_) water_over_eye_m_ = water_m;
+            if (spray_from_) spray_ = spray;
             continue;
         }
         tried = build_;
@@ -121,6 +142,7 @@ void LiveSea::compute_frames() {
         lock.unlock();
         std::string error;
         std::optional<double> water_m;
+        std::shared_ptr<const Spray> spray;
         try {
             if (!frame || &frame->sea() != tried->sea.get()) {
                 frame.reset();  // before the new one is made: halves the peak memory
@@ -138,6 +160,7 @@ void LiveSea::compute_frames() {
             slot.transforms_ms = milliseconds(start, transformed);
             slot.packing_ms = milliseconds(transformed, Clock::now());
             if (tried_eye) water_m = surface_above_camera(*frame, *tried_eye, tried->grid);
+            if (tried_spray) spray = spray_before(*tried_spray);
         } catch (...) {
             error = message_of(std::current_exception());
             frame.reset();
@@ -147,6 +170,7 @@ void LiveSea::compute_frames() {
         frame_error_ = error;
         if (!error.empty()) continue;
         if (eye_) water_over_eye_m_ = water_m;
+        if (spray_from_) spray_ = spray;
         slot.number = ++frames_;
         std::swap(written_, waiting_);
         fresh_ = true;

@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "core/lighting/spray.h"
 #include "core/plan/memory.h"
 #include "core/scene/scene.h"
 #include "core/surface/projected_grid.h"
@@ -82,12 +83,15 @@ class LiveSea {
     void ask(const Scene& scene);
     // Requests a frame at this time [s], finite, of the latest sea that is ready; the latest request wins.
     // Must be called for every picture drawn: this call swaps in a sea that is ready. `eye`: a camera among the
-    // waves (is_among_waves()), of which water_over_eye() will tell.
-    void show(double time_s, const std::optional<View>& eye = {});
+    // waves (is_among_waves()), of which water_over_eye() will tell. `spray_from`: a camera of which newest_spray() will tell.
+    void show(double time_s, const std::optional<View>& eye = {}, const std::optional<View>& spray_from = {});
     // The latest finished frame; null before the first. Unchanged until the next call.
     const LiveFrame* newest();
     // The height z [m] of the surface above the eye, in the latest frame computed; nullopt for one in the air.
     std::optional<double> water_over_eye() const;
+    // Before the latest camera that was asked for, without light; null before the first. Of fewer texels than a picture of
+    // its own has.
+    std::shared_ptr<const Spray> newest_spray() const;
     LiveStatus status() const;
 
   private:
@@ -103,8 +107,9 @@ class LiveSea {
     std::condition_variable wake_;
     std::shared_ptr<const LiveBuild> build_;  // for the next frame
     std::optional<double> time_s_;            // for the next frame
-    std::optional<View> eye_;
+    std::optional<View> eye_, spray_from_;
     std::optional<double> water_over_eye_m_;
+    std::shared_ptr<const Spray> spray_;
     std::string frame_error_;
     long seas_ = 0, frames_ = 0;
     bool stopping_ = false;

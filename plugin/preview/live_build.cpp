@@ -55,10 +55,11 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
     const auto prepared = prepare(scene);
     LiveBuild made;
     made.scene = scene;
+    const bool has_spray = render_options(scene).lighting.spray;
     const auto plan_from = [&](double finest_m) {
-        return make_plan(prepared,
-                         {view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m})},
-                         {.double_precision = false, .living_foam = true});
+        Query query = view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m});
+        if (has_spray) query.products |= products(Product::Displacement);
+        return make_plan(prepared, {query}, {.double_precision = false, .living_foam = true});
     };
     for (const std::string& warning : sea_warnings(*prepared))
         made.note += (made.note.empty() ? "" : "\n") + warning;
@@ -89,7 +90,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
 }
 
 bool same_sea(const Scene& a, const Scene& b) {
-    const FeedSet sea = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Gusts, Feed::Quality);
+    const FeedSet sea = feeds(Feed::Waves, Feed::Clock, Feed::Foam, Feed::Gusts, Feed::Quality, Feed::Spray);
     return canonical(a, sea) == canonical(b, sea);
 }
 

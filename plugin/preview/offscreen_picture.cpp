@@ -16,12 +16,14 @@
 #include "core/surface/projected_grid.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/gpu/packed_foam.h"
 #include "plugin/gpu/packed_frame.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/preview/offscreen.h"
+#include "plugin/render/spray_map.h"
 #include "plugin/render/under_water.h"
 
 namespace pelagic {
@@ -129,6 +131,9 @@ MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
              static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * (kDrawnBytes + kReadBytes),
              "ask for a smaller picture (--size)");
     need.add("the camera's grid of points", planned.grid.rest_m.size() * kPointBytes, smaller());
+    if (render_options(planned.scene).lighting.spray)
+        need.add("the map of the spray", spray_map_bytes(spray_map_size(size.x)),
+                 "set effects.spray to false");
     need.add("the driver", kDriverBytes, smaller());
     return need;
 }
@@ -145,13 +150,14 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     const View view = view_at(planned.scene.camera, frame);
     const ProjectedGridOptions options = projected_grid_options(*prepared);
     const ProjectedGridNeeds needs = projected_grid_needs(view, options);
-    const auto plan_for = [&](ProductSet products, double finest_pixel_m) {
-        return make_plan(prepared,
-                         {view_query(*prepared, {.products = products,
-                                                 .finest_cell_m = needs.finest_cell_m,
-                                                 .finest_pixel_m = finest_pixel_m,
-                                                 .points = points_of(needs.size)})},
-                         {.double_precision = false, .living_foam = true});
+    const bool has_spray = render_options(planned.scene).lighting.spray;
+    const auto plan_for = [&](ProductSet wanted, double finest_pixel_m) {
+        Query query = view_query(*prepared, {.products = wanted,
+                                             .finest_cell_m = needs.finest_cell_m,
+                                             .finest_pixel_m = finest_pixel_m,
+                                             .points = points_of(needs.size)});
+        if (has_spray) query.products |= products(Product::Displacement);
+        return make_plan(prepared, {query}, {.double_precision = false, .living_foam = true});
     };
     // Positions alone, by waves no shorter than the cells: little beside what pixels show. But which pixels are there
     // follows from them. A low camera has points nearby that a crest might bring into view and that no pixel shows:
@@ -201,6 +207,8 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     const auto sea = std::make_shared<const Sea<float>>(planned.plan, watch.sea);
     SeaRenderer renderer;
     renderer.set_sky(sky, make_water(planned.scene));
+    const View view = view_at(planned.scene.camera, planned.frame);
+    const LightingChoice lighting = render_options(planned.scene).lighting;
     {
         PackedFrame packed(sea, 0);
         {
@@ -209,11 +217,15 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
             refuse_under_water(state, planned.scene, planned.frame,
                                projected_grid_options(*planned.plan.from));
             packed.pack(state);
+            if (lighting.spray) {
+                Spray spray = make_spray_map(state, view, projected_grid_options(*planned.plan.from),
+                                             spray_map_size(view.resolution.x));
+                light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
+                renderer.set_spray(spray);
+            }
         }
         renderer.upload_once(packed);
     }
-    const View view = view_at(planned.scene.camera, planned.frame);
-    const LightingChoice lighting = render_options(planned.scene).lighting;
     const bool lives = planned.plan.foam && lighting.whitecaps;
     if (lives)
         upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.grid,

@@ -28,7 +28,7 @@ namespace pelagic {
 namespace {
 
 // Texture units. SeaTextures has the first ones.
-enum Unit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kDither, kPictures };
+enum Unit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kSprayMap, kDither, kPictures };
 
 constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
@@ -93,6 +93,8 @@ struct SeaRenderer::Implementation {
     GlTexture air_table;
     std::optional<double> air_height_m;  // of the eye that the table is for
     std::vector<Uniform> air;
+    GlTexture spray_map;
+    std::vector<Uniform> spray;  // empty: there is none
 
     GlVertexArray grid_array, no_array;
     GlBuffer grid_vertices, grid_indices;
@@ -142,6 +144,7 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     program.use();
     glUniform1i(program.uniform("sky_map"), kSkyMap);
     glUniform1i(program.uniform("air_table"), kAirTable);
+    glUniform1i(program.uniform("spray_map"), kSprayMap);
     glUniform1i(program.uniform("dither"), kDither);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
     // No program reads both kinds.
@@ -246,6 +249,9 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     glUniform1f(program.uniform("view_pixel_tangent"), static_cast<float>(tangent));
     bind_texture(kSkyMap, sky_map);
     set_uniforms(program, light);
+    if (spray.empty()) return;
+    bind_texture(kSprayMap, spray_map);
+    set_uniforms(program, spray);
 }
 
 void SeaRenderer::Implementation::set_air(double height_m) {
@@ -388,6 +394,20 @@ void SeaRenderer::set_sky(const Sky& sky, const WaterBody& water) {
                      GL_RGB, GL_FLOAT, sky.map.level(level).data());
 }
 
+void SeaRenderer::set_spray(const Spray& spray) {
+    Implementation& of = *implementation_;
+    of.spray.clear();
+    if (spray.empty()) return;
+    of.spray = spray_uniforms(spray);
+    edit_texture(of.spray_map);
+    texels_as_they_are();
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    const TexelFormat format = float_texels(2);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format.internal), spray.columns, spray.rows, 0,
+                 format.format, GL_FLOAT, spray.texels.data());
+}
+
 void SeaRenderer::upload(const PackedFrame& frame) {
     Implementation& of = *implementation_;
     const GlStageTimer::Measured measured(of.timer, GlStageTimer::Upload);
@@ -441,6 +461,7 @@ void SeaRenderer::draw(const View& view, const ProjectedGrid& grid, const DrawOp
     const KeptFramebuffer kept;
     DrawOptions drawn = options;
     drawn.lighting.air = options.lighting.air && of.air_model;
+    drawn.lighting.spray = options.lighting.spray && !of.spray.empty();
     drawn.sky_from_air = of.air_model && of.air_model->has_sky();
     if (of.air_model) of.set_air(view.position_m.z);
     of.begin_picture(view.resolution, options.layers);

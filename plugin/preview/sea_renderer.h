@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/lighting/lighting.h"
+#include "core/lighting/spray.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/gpu/draw_options.h"
@@ -55,6 +56,8 @@ class SeaRenderer {
     bool is_software() const;
 
     void set_sky(const Sky& sky, const WaterBody& water);
+    // What the next pictures have between their eye and the sea; none before the first call.
+    void set_spray(const Spray& spray);
     // Sets the frame of the next pictures. A frame of another sea replaces that sea: textures are made again,
     // shaders only if the number of cascades or footprints changed. Returns before the copy is done. Throws
     // PreviewError if the driver's textures are too small for the sea.

@@ -25,6 +25,7 @@
 #include "core/scene/shot_text.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/files/files.h"
 #include "plugin/gpu/foam_worker.h"
 #include "plugin/light/exposure.h"
@@ -447,7 +448,9 @@ class Preview {
         sea_.ask(controls_.scene);
         const View view = view_now();
         const bool may_be_wet = frame_ == nullptr || is_among_waves(view, frame_->build->grid);
-        sea_.show(shot_.shot.time_s(controls_.frame), may_be_wet ? std::optional<View>(view) : std::nullopt);
+        const auto only_if = [&](bool wanted) { return wanted ? std::optional<View>(view) : std::nullopt; };
+        has_spray_ = render_options(controls_.scene).lighting.spray;
+        sea_.show(shot_.shot.time_s(controls_.frame), only_if(may_be_wet), only_if(has_spray_));
         frame_ = sea_.newest();
         const LiveStatus status = sea_.status();
         if (!std::exchange(readout_.building_sea, status.building)) asked_at_ = Clock::now();
@@ -517,11 +520,22 @@ class Preview {
         controls_.draw.foam =
             make_foam(controls_.scene,
                       sea.plan().foam ? active_foam(frame_->build->scene, sea.residual_coverage()) : 1.0);
+        controls_.draw.lighting.spray = has_spray_;
+        if (has_spray_) show_spray();
         renderer_.draw(view, *grid, controls_.draw);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         glViewport(0, 0, size.x, size.y);
         renderer_.show(exposure_ * static_cast<float>(std::exp2(controls_.exposure_stops)));
         readout_.times.gpu = renderer_.times();
+    }
+
+    // As the last camera had it that it was ready for.
+    void show_spray() {
+        const std::shared_ptr<const Spray> ready = sea_.newest_spray();
+        if (!ready || !sky_) return;
+        Spray spray = *ready;
+        light_spray(spray, controls_.draw.lighting, sky_->sky, sky_->water, law_coverage(controls_.scene));
+        renderer_.set_spray(spray);
     }
 
     // Living foam comes when it is ready: until then a picture has what there is.
@@ -598,7 +612,7 @@ class Preview {
     std::optional<FoamWorker> foam_worker_;  // of foam_of_, where its foam lives
     std::optional<View> foam_view_;          // what it was asked for last
     double foam_time_s_ = 0.0;
-    bool is_flying_ = false, save_picture_ = false, is_under_water_ = false;
+    bool is_flying_ = false, save_picture_ = false, is_under_water_ = false, has_spray_ = false;
     std::string upload_error_, save_error_, note_;
     LiveWorker<Scene, LiveSky> skies_;
     LiveSea sea_{LiveLimits{.memory = machine::memory_limit_or(options_.max_memory_bytes),

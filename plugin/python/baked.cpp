@@ -87,7 +87,7 @@ void add_baked(py::module_& module) {
         "What a mesh file of a bake holds, DIR/mesh/NAME.####.usdc or .usda, NAME.topology.usdc: a "
         "dict of those that are there, float32 but for the origin and the faces.\n\n"
         "origin_m: float64 (3,), of each frame: where in the world the positions' origin is [m]. origin_m + position "
-        "are the places. (0, 0, 0) but for a camera's grid far from the world's origin.\n"
+        "are the places. (0, 0, 0) but for what follows a camera far from the world's origin.\n"
         "position: (n, 3) [m]. normal: (n, 3). velocity: (n, 3) [m/s of the screen]. slope_variance: (n, 3), xx, yy, "
         "xy. coverage: (n,); of foam that lives foam_active: (n,), what of it breaks now, and foam_age: (n,) [s]. st: (n, 2), "
         "0 to 1.\n"

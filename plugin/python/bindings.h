@@ -9,6 +9,7 @@
 
 namespace pelagic::python {
 
+void add_cage(pybind11::module_& module);
 void add_scene(pybind11::module_& module);
 void add_presets(pybind11::module_& module, pybind11::class_<Scene, std::shared_ptr<Scene>>& scene);
 void add_watch(pybind11::module_& module);

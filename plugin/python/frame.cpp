@@ -36,7 +36,7 @@ namespace py = pybind11;
 constexpr Range kRest_m = limits::kCameraCoordinate_m;
 
 struct Arguments {
-    py::object cell_m, pixel_m, cell_axis_m, pixel_axis_m;
+    py::object cell_m, pixel_m, cell_axis_m, pixel_axis_m, rest_normal;
     std::array<py::object, kOutputs.size()> arrays;  // in the order of kOutputs
     std::optional<std::vector<std::string>> outputs;
 };
@@ -158,7 +158,8 @@ class PythonFrame {
                 frame.run(*asked, watch_of(task));
                 return {};
             },
-            py::make_tuple(self, rest, given.cell_m, given.pixel_m, given.cell_axis_m, given.pixel_axis_m),
+            py::make_tuple(self, rest, given.cell_m, given.pixel_m, given.cell_axis_m, given.pixel_axis_m,
+                           given.rest_normal),
             written);
     }
 
@@ -269,6 +270,8 @@ class PythonFrame {
         asked.points.pixel_m = asked.pixel.view;
         asked.points.cell_axis_m = axes(given.cell_axis_m, {"cell_axis_m", count});
         asked.points.pixel_axis_m = axes(given.pixel_axis_m, {"pixel_axis_m", count});
+        if (!given.rest_normal.is_none())
+            asked.points.rest_normal = readable_vectors(given.rest_normal, {"rest_normal", count}).view;
 
         const auto arrays = with_fresh(given, count);
         py::dict written;
@@ -372,7 +375,9 @@ const std::string kEvaluateDoc =
     "cell_m, pixel_m: footprints [m], a number or float32 (n,), held within the sea's ladder; default its "
     "first.\n"
     "cell_axis_m, pixel_axis_m: float32 (n, 2), for footprints that are ellipses: the long axis [m], where it is "
-    "longer than cell_m or pixel_m, which then is the short one's length.\n" +
+    "longer than cell_m or pixel_m, which then is the short one's length.\n"
+    "rest_normal: float32 (n, 3), normals of the surface that the sea lies on, where that isn't flat: then normals are those of "
+    "the waves on it.\n" +
     output_lines() +
     "Velocities are per second of the frame's time; shot.time_scale of those make a second of the screen.\n"
     "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
@@ -399,30 +404,32 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kRows...>)
         "evaluate",
         [](const PythonFrame& self, const py::object& rest, std::array<double, 2> origin,
            const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
-           const py::object& pixel_axis_m, ArrayArgument<kRows>... arrays,
+           const py::object& pixel_axis_m, const py::object& rest_normal, ArrayArgument<kRows>... arrays,
            const std::optional<std::vector<std::string>>& outputs, const py::object& progress,
            const py::object& cancel) {
-            return self.evaluate(rest, origin,
-                                 {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs}, progress,
-                                 cancel);
+            return self.evaluate(
+                rest, origin, {cell_m, pixel_m, cell_axis_m, pixel_axis_m, rest_normal, {arrays...}, outputs},
+                progress, cancel);
         },
         py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(), py::arg("cell_m") = none(),
         py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(), py::arg("pixel_axis_m") = none(),
-        (py::arg(kOutputs[kRows].identifier) = none())..., py::arg("outputs") = none(),
-        py::arg("progress") = none(), py::arg("cancel") = none(), kEvaluateDoc.c_str());
+        py::arg("rest_normal") = none(), (py::arg(kOutputs[kRows].identifier) = none())...,
+        py::arg("outputs") = none(), py::arg("progress") = none(), py::arg("cancel") = none(),
+        kEvaluateDoc.c_str());
     frame.def(
         "begin",
         [](const py::object& self, double t, const py::object& rest, std::array<double, 2> origin,
            const py::object& cell_m, const py::object& pixel_m, const py::object& cell_axis_m,
-           const py::object& pixel_axis_m, ArrayArgument<kRows>... arrays,
+           const py::object& pixel_axis_m, const py::object& rest_normal, ArrayArgument<kRows>... arrays,
            const std::optional<std::vector<std::string>>& outputs) {
-            return PythonFrame::begin(self, t, rest, origin,
-                                      {cell_m, pixel_m, cell_axis_m, pixel_axis_m, {arrays...}, outputs});
+            return PythonFrame::begin(
+                self, t, rest, origin,
+                {cell_m, pixel_m, cell_axis_m, pixel_axis_m, rest_normal, {arrays...}, outputs});
         },
         py::arg("t"), py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(),
         py::arg("cell_m") = none(), py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(),
-        py::arg("pixel_axis_m") = none(), (py::arg(kOutputs[kRows].identifier) = none())...,
-        py::arg("outputs") = none(),
+        py::arg("pixel_axis_m") = none(), py::arg("rest_normal") = none(),
+        (py::arg(kOutputs[kRows].identifier) = none())..., py::arg("outputs") = none(),
         "Begins set(t) and evaluate() with the rest: a Task whose result is evaluate()'s, and whose progress is what that "
         "calls progress with. It keeps the arrays alive; nobody may write to them meanwhile.");
 }

@@ -79,6 +79,7 @@ PYBIND11_MODULE(pelagic, module) {
 
     pelagic::python::add_watch(module);
     pelagic::python::add_task(module);
+    pelagic::python::add_cage(module);
     pelagic::python::add_scene(module);
     pelagic::python::add_surfaces(module);
     pelagic::python::add_sea(module);

@@ -20,6 +20,7 @@
 #include "plugin/files/files.h"
 #include "plugin/light/light.h"
 #include "plugin/python/bindings.h"
+#include "plugin/python/cage.h"
 #include "plugin/python/values.h"
 #include "plugin/python/watch.h"
 #include "plugin/shot/shot.h"
@@ -59,6 +60,21 @@ void add_methods(const std::string& table, const py::object& base, py::dict& mem
             py::name("time_s"), py::is_method(base), py::arg("frame"),
             "The sea's time that a frame shows [s], also between frames: "
             "t = time_offset_s + time_scale (frame - 1)/fps, whatever the range.");
+    if (table == "surface")
+        members["cage"] = property(
+            py::cpp_function([](const TableOfScene& self) -> py::object {
+                const Surface& surface = self.scene->surface;
+                if (!surface.cage) return py::none();
+                return py::cast(PythonCage{surface.cage, surface.cage_file});
+            }),
+            py::cpp_function([](const TableOfScene& self, const py::object& given) {
+                if (!given.is_none() && !py::isinstance<PythonCage>(given))
+                    throw py::type_error("surface.cage: accepted: a Cage, or None");
+                const PythonCage cage = given.is_none() ? PythonCage() : given.cast<PythonCage>();
+                self.scene->surface.cage = cage.cage;
+                self.scene->surface.cage_file = cage.file;
+            }),
+            "With kind = \"cage\": the Cage whose limit surface the sea lies on, from cage_file or from arrays; otherwise None.");
     if (table != "sea") return;
     members["is_measured"] = property(
         py::cpp_function([](const TableOfScene& self) { return self.scene->sea.measured.has_value(); }),
@@ -155,6 +171,7 @@ py::dict described_key(const Key& key) {
     out["built"] = key.is_built;
     out["keys"] = inner;
     out["entry"] = key.entry_name;
+    out["other_word"] = key.other_word;
     return out;
 }
 
@@ -170,14 +187,23 @@ std::string text_of_shot(const Scene& scene) {
     const auto absolute = [](std::string& path) { path = std::filesystem::absolute(path).string(); };
     if (placed.light.sky != Light{}.sky) absolute(placed.light.sky);
     if (placed.sea.measured) absolute(placed.sea.measured->file);
-    const auto require_utf8 = [](const char* key, const std::string& path) {
+    if (placed.surface.cage) {
+        if (placed.surface.cage_file.empty())
+            throw std::invalid_argument(
+                text_of(Problem{std::string(kCageFile), quoted_text(placed.surface.cage->content()),
+                                "is a cage that came from no file, which no shot file can name",
+                                "a cage that was read from a file"}));
+        absolute(placed.surface.cage_file);
+    }
+    const auto require_utf8 = [](std::string_view key, const std::string& path) {
         if (utf8_text(path) != path)
             throw std::invalid_argument(text_of(
-                Problem{key, quoted_text(path), "has bytes that aren't UTF-8, which no shot file can have",
-                        "a path in UTF-8"}));
+                Problem{std::string(key), quoted_text(path),
+                        "has bytes that aren't UTF-8, which no shot file can have", "a path in UTF-8"}));
     };
     require_utf8("light.sky", placed.light.sky);
-    if (placed.sea.measured) require_utf8("sea.spectrum_file", placed.sea.measured->file);
+    if (placed.sea.measured) require_utf8(kSpectrumFile, placed.sea.measured->file);
+    if (placed.surface.cage) require_utf8(kCageFile, placed.surface.cage_file);
     return shot_text(placed);
 }
 
@@ -284,7 +310,8 @@ void add_scene(py::module_& module) {
         "keys", &described_keys,
         "Every key of a shot file as a dictionary: path, name, label, type, unit, help, accepted, default, "
         "required, range, soft_range (of a slider), logarithmic, choices, feeds (what depends on it), built, "
-        "the keys of a list's entries, and the entries' class.");
+        "the keys of a list's entries, the entries' class, and other_word (that may stand in the place of a list or an "
+        "integer).");
 }
 
 }  // namespace pelagic::python

@@ -17,23 +17,26 @@ PROGRESS, CANCEL = "Callable[..., object] | None", "Cancel | Callable[[], bool] 
 # Parameters that are objects to pybind11, by name.
 PARAMETERS = {
     "progress": PROGRESS, "cancel": CANCEL, "rest": ARRAY, "xy": "ArrayLike", "directions": ARRAY, "to_eye": ARRAY,
+    **{name: "ArrayLike" for name in ("face_counts", "indices")},
+    **{name: "ArrayLike | None" for name in ("points", "creases", "crease_sharpness", "corners", "corner_sharpness", "holes", "st",
+                                             "st_indices")},
     **{name: f"float | {ARRAY} | None" for name in ("cell_m", "pixel_m", "footprint_m")},
-    **{name: f"{ARRAY} | None" for name in ("cell_axis_m", "pixel_axis_m", "out", "sun_layer", "sky_layer", "sea_layer",
+    **{name: f"{ARRAY} | None" for name in ("cell_axis_m", "pixel_axis_m", "rest_normal", "out", "sun_layer", "sky_layer", "sea_layer",
                                             "foam_layer", "displacement", "position", "velocity", "jacobian", "coverage")},
 }
 # The same where a name means another thing in one place.
-PARAMETERS_OF = {("shade", name): ARRAY for name in ("normal", "slope_variance")} | {
+PARAMETERS_OF = {("__init__", "points"): "ArrayLike"} | {("shade", name): ARRAY for name in ("normal", "slope_variance")} | {
     (function, name): f"{ARRAY} | None" for function in ("evaluate", "begin")
     for name in ("normal", "slope_variance", "slope_variance_at_rest", "foam_active", "foam_age")}
 
 # Results that are objects, dictionaries and tuples to pybind11, by the name after the last dot.
 RESULTS = {
     "patch": f"tuple[{ARRAY}, NDArray[np.int32]]", "grid_quads": "NDArray[np.int32]", "quads": "NDArray[np.int32]",
-    "rest_m": ARRAY, "cell_m": ARRAY, "pixel_m": ARRAY, "cell_axis_m": ARRAY, "pixel_axis_m": ARRAY, "image": ARRAY, "radiance": ARRAY, "faces": "NDArray[np.int32]",
+    "rest_m": ARRAY, "face_counts": "NDArray[np.int32]", "indices": "NDArray[np.int32]", "st": ARRAY, "cell_m": ARRAY, "pixel_m": ARRAY, "cell_axis_m": ARRAY, "pixel_axis_m": ARRAY, "image": ARRAY, "radiance": ARRAY, "faces": "NDArray[np.int32]",
     "evaluate": f"dict[str, {ARRAY}]", "heights": f"dict[str, {ARRAY}]", "shade": f"dict[str, {ARRAY}]",
     "render": "dict[str, NDArray[Any]]", "read_mesh": "dict[str, NDArray[Any]]", "at": f"tuple[dict[str, {ARRAY}], "
     f"list[dict[str, {ARRAY}]]]", "keys": "list[dict[str, Any]]", "presets": "list[dict[str, Any]]",
-    "uniforms": "dict[str, Any]", "foam": "dict[str, Any]", "textures": "dict[str, Any]", "take_foam": "dict[str, Any]", "shaders": "dict[str, tuple[str, str]]", "vertices": ARRAY,
+    "uniforms": "dict[str, Any]", "foam": "dict[str, Any]", "textures": "dict[str, Any]", "limit": "dict[str, Any]", "take_foam": "dict[str, Any]", "shaders": "dict[str, tuple[str, str]]", "vertices": ARRAY,
     "triangles": "NDArray[np.uint32]", "size": "tuple[int, int]", "at_origin": f"tuple[NDArray[np.uint8], {ARRAY} | None]",
     "products": "tuple[str, ...]", "origin_m": "tuple[float, float]", "resolution": "tuple[int, int]",
     "air": f"tuple[dict[str, Any], {ARRAY}]", "progress": "tuple[Any, ...] | None", "result": "Any",
@@ -41,6 +44,9 @@ RESULTS = {
        ("position_m", "right", "up", "forward", "sun_direction", "sun_radiance", "sun_irradiance", "sky_irradiance",
         "reflectance", "absorption_per_m", "backscatter_per_m")},
 }
+
+# Attributes of a scene's tables that aren't keys and can be set.
+SETTABLE = {"cage": "Cage | None"}
 
 HEADER = '''\
 """{doc}"""
@@ -161,6 +167,8 @@ def kind_of(key):
         kind = "Literal[" + ", ".join(f'"{choice["word"]}"' for choice in key["choices"]) + "]"
     else:
         kind = KINDS[key["type"]]
+    if key["type"] == "integer" and key["other_word"]:
+        kind += f' | Literal["{key["other_word"]}"]'
     return kind if key["required"] or key["default"] is not None else f"{kind} | None"
 
 
@@ -180,6 +188,8 @@ def table(name, made, keys):
             text += indented(f"{member}: {kind_of(key)}", 1) + docstring(value.__doc__, 1)
         elif key is not None:
             text += read_only(member, kind_of(key), value.__doc__)
+        elif isinstance(value, property) and value.fset is not None:
+            text += indented(f"{member}: {SETTABLE[member]}", 1) + docstring(value.__doc__, 1)
         elif isinstance(value, property):
             signature = value.fget.__doc__.partition("\n")[0]
             text += read_only(member, result(signature.rpartition("-> ")[2], member), value.__doc__)

@@ -95,6 +95,7 @@ KeyValue from_python(const Key& key, const std::string& path, py::handle given) 
         case KeyType::Truth:
             return cast_to<bool>(key, path, given, false);
         case KeyType::Integer:
+            if (!key.other_word.empty() && py::isinstance<py::str>(given)) return given.cast<std::string>();
             return cast_to<std::int64_t>(key, path, given);
         case KeyType::Number:
             return cast_to<double>(key, path, given);
@@ -114,8 +115,8 @@ KeyValue from_python(const Key& key, const std::string& path, py::handle given) 
                 return std::string(given.attr("encode")("utf-8", "surrogateescape").cast<py::bytes>());
             return cast_to<std::string>(key, path, given);
     }
-    if (!key.empty_word.empty() && py::isinstance<py::str>(given) &&
-        std::string(py::str(given)) == key.empty_word)
+    if (!key.other_word.empty() && py::isinstance<py::str>(given) &&
+        std::string(py::str(given)) == key.other_word)
         return std::vector<KeyEntry>();
     if (py::isinstance<py::str>(given) || !py::isinstance<py::sequence>(given)) refuse_type(key, path, given);
     std::vector<KeyEntry> entries;

@@ -36,6 +36,7 @@ template <class T>
 struct Batch {
     std::vector<std::uint32_t> triangles;  // by sample
     std::vector<SeaRadiance> radiance;     // by sample
+    std::vector<float> spray;              // by sample: what it hides of the sky; empty where nobody asks
     std::vector<std::size_t> sea;          // which samples show the sea, rising
     SeenSea<T> seen;                       // from here on by entry of `sea`
     std::vector<SeaRadiance> lit;

@@ -59,7 +59,7 @@ inline constexpr auto kPictureLayers = std::to_array<PictureLayerRow>({
     {PictureLayer::Foam, "foam", &SeaRadiance::foam, false, 3, {"foam.R", "foam.G", "foam.B"},
      "light from whitecaps"},
     {PictureLayer::Air, "air", &SeaRadiance::air, false, 3, {"air.R", "air.G", "air.B"},
-     "light that the air before the sea scatters into view; it has dimmed the other layers"},
+     "light that the air and the spray before the sea scatter into view; they have dimmed the other layers"},
     {PictureLayer::Depth, "depth", nullptr, false, 1, {"Z"},
      "along the camera's axis [m]; 1e10 in the sky"},
     {PictureLayer::Position, "position", nullptr, false, 3, {"P.X", "P.Y", "P.Z"},

@@ -10,11 +10,13 @@
 
 #include "core/base/precision.h"
 #include "core/plan/quality.h"
+#include "core/plan/spray.h"
 #include "core/scene/text.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "plugin/render/batch.h"
 #include "plugin/render/render.h"
+#include "plugin/render/spray_map.h"
 
 namespace pelagic {
 
@@ -22,6 +24,7 @@ RenderOptions render_options(const Scene& scene) {
     const QualityRow& quality = quality_of(scene.quality.level);
     RenderOptions options;
     options.lighting.whitecaps = !products_gone(scene)[index(Product::Coverage)];
+    options.lighting.spray = spray_law(scene).extinction_per_m > 0.0;
     switch (quality.sky) {
         case SkyLookups::One:
             options.lighting.sky_quality = SkyQuality::One;
@@ -71,6 +74,7 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
                                          .points = points_of(needs->size)});
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
+    if (options.lighting.spray) query.products |= products(Product::Displacement);
     return make_plan(std::move(prepared), {query}, {.living_foam = true});
 }
 
@@ -137,6 +141,9 @@ MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::
         need.add("the pixels at hand", rows * static_cast<std::size_t>(samples.x) * kSampleBytes<T>,
                  "ask for a smaller picture (--size) or fewer --samples");
     });
+    if (options.lighting.spray)
+        need.add("the map of the spray", spray_map_bytes(spray_map_size(sampled.camera.resolution.x)),
+                 "set effects.spray to false");
     const auto pixels = static_cast<std::size_t>(scene.camera.resolution.x) *
                         static_cast<std::size_t>(scene.camera.resolution.y);
     need.add("pictures",

@@ -49,12 +49,18 @@ struct Ranges {
     exr::PixelType sun, whole;
 };
 
-Ranges ranges_of(const Scene& scene, const Sky& sky) {
+// Radiance over the sun's and its radius squared: π times the largest value of what droplets scatter ahead.
+constexpr float kMostOfSpray = 20.6f;
+
+Ranges ranges_of(const Scene& scene, const Sky& sky, bool has_spray) {
     if (sees_other_suns(scene, sky)) return {.sun = exr::PixelType::Float, .whole = exr::PixelType::Float};
     const auto type = [](float most) {
         return most < kLargestHalf ? exr::PixelType::Half : exr::PixelType::Float;
     };
     float most = largest(sky.sun_irradiance + sky.sky_irradiance);
+    // Before the sun itself it is brighter than a white surface.
+    if (has_spray)
+        most += kMostOfSpray * largest(sky.sun_radiance) * sky.sun_angular_radius * sky.sun_angular_radius;
     if (sky.map.level_count() > 0)
         for (const glm::vec3& texel : sky.map.level(0)) most = std::max(most, largest(texel));
     // The air takes less from the disc's upper limb than from the mean.
@@ -63,8 +69,12 @@ Ranges ranges_of(const Scene& scene, const Sky& sky) {
 }
 
 // What a picture depends on, besides the camera at its frame.
-constexpr FeedSet kFeedsBesideTheView =
-    feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts, Feed::Grid, Feed::Light, Feed::Water);
+FeedSet feeds_beside_the_view(const RenderOptions& options) {
+    FeedSet fed =
+        feeds(Feed::Clock, Feed::Waves, Feed::Foam, Feed::Gusts, Feed::Grid, Feed::Light, Feed::Water);
+    if (options.lighting.spray) fed |= feeds(Feed::Spray);
+    return fed;
+}
 
 std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
@@ -95,7 +105,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
     for (exr::Attribute& attribute : seal_attributes(picture_file(scene.shot, frame, "exr")))
         attributes.push_back(std::move(attribute));
     // The camera is described above, as it is at this frame.
-    for (const DescribedKey& key : described(scene, kFeedsBesideTheView))
+    for (const DescribedKey& key : described(scene, feeds_beside_the_view(context.options)))
         std::visit(
             [&](const auto& value) {
                 attributes.push_back({"pelagic." + key.path, value});
@@ -122,7 +132,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
     hash.add(source.drawn_by_gpu ? "drawn picture" : "picture")
         .add("revision " + std::to_string(kPictureRevision))
         .add(source.scene.shot.name)  // a picture says its own file's name
-        .add(canonical(portable(source.scene), kFeedsBesideTheView))
+        .add(canonical(portable(source.scene), feeds_beside_the_view(options_)))
         .add(plan_text(plan, 0))
         .add(source.sky_content)
         .add("samples " + std::to_string(options_.samples) + " terms " + digit(lighting.sun) +
@@ -130,7 +140,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
              " sky " + digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
         .add("exposure " + number_text(source.exposure_stops))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
-             " layers " + options_.layers.to_string());
+             " layers " + options_.layers.to_string() + (lighting.spray ? " spray" : ""));
     for (const View& view : metered_views(source.scene))
         hash.add(pose_text(view));  // what the exposure comes from
     source_ = hash.text();
@@ -196,7 +206,7 @@ std::string encode_exr(const PictureContext& context, const Picture& picture, in
     std::vector<glm::vec3> sum(picture.layers.size());
     std::transform(picture.layers.begin(), picture.layers.end(), sum.begin(), radiance_of);
 
-    const Ranges ranges = ranges_of(context.scene, context.sky);
+    const Ranges ranges = ranges_of(context.scene, context.sky, context.options.lighting.spray);
     exr::Image image{.width = picture.resolution.x, .height = picture.resolution.y, .channels = {}};
     // Rows from the top, where the writer counts from the bottom: from the last row backwards.
     const auto add = [&](std::span<const char* const> names, const float& first, std::ptrdiff_t pixel_bytes,

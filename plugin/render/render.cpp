@@ -146,6 +146,7 @@ class RendererOf final : public Impl {
         if (air_.empty() || view_.position_m.z != height_m) air_ = sea_.air_before(view_.position_m.z);
         lay_out_grid();
         sea_.prepare_foam(scene_.shot.time_s(moment), grid_, watch);
+        spray_ = sea_.spray_before(view_, grid_options_);
     }
 
     void lay_out_grid() {
@@ -252,21 +253,27 @@ class RendererOf final : public Impl {
 
     void light_sky(int first_row) {
         const LightingChoice& lighting = options_.lighting;
-        if ((!lighting.sky && !lighting.sun) || options_.alpha) return;
+        const bool has_sky = (lighting.sky || lighting.sun) && !options_.alpha, has_spray = !spray_.empty();
+        batch_.spray.assign(has_spray && options_.alpha ? batch_.triangles.size() : 0, 0.0f);
+        if (!has_sky && !has_spray) return;
         in_parallel(batch_.triangles.size(), [&](std::size_t i) {
             if (batch_.triangles[i] != Rasteriser::kNone) return;
             const glm::dvec3 direction = view_.direction(seen_at(first_row, i));
             const auto cos_off_axis = static_cast<float>(glm::dot(direction, view_.forward));
-            batch_.radiance[i] =
-                sea_.behind(air_, glm::vec3(direction),
-                            pixel_angle(static_cast<float>(view_.pixel_tangent()), cos_off_axis));
+            if (has_sky)
+                batch_.radiance[i] =
+                    sea_.behind(air_, glm::vec3(direction),
+                                pixel_angle(static_cast<float>(view_.pixel_tangent()), cos_off_axis));
+            if (!has_spray) return;
+            const float left = see_through_spray(spray_, glm::vec3(direction), {}, batch_.radiance[i]);
+            if (options_.alpha) batch_.spray[i] = 1.0f - left;
         });
     }
 
     void light_sea() {
         if (batch_.sea.empty()) return;
         batch_.lit.resize(batch_.sea.size());
-        sea_.light(batch_.seen, sea_.sky(), air_, batch_.lit);
+        sea_.light(batch_.seen, sea_.sky(), air_, spray_, batch_.lit);
         for (std::size_t i = 0; i < batch_.sea.size(); ++i) batch_.radiance[batch_.sea[i]] = batch_.lit[i];
     }
 
@@ -335,6 +342,7 @@ class RendererOf final : public Impl {
             for (std::size_t x = 0; x < width; ++x) {
                 SeaRadiance sum;
                 int of_sea = 0;
+                float of_spray = 0.0f;  // before the sky
                 for (int y = 0; y < n; ++y)
                     for (int i = 0; i < n; ++i) {
                         const std::size_t at = sample_width * (row * n + y) + x * n + i;
@@ -345,6 +353,7 @@ class RendererOf final : public Impl {
                         sum.foam += sample.foam;
                         sum.air += sample.air;
                         of_sea += batch_.triangles[at] != Rasteriser::kNone;
+                        if (!batch_.spray.empty()) of_spray += batch_.spray[at];
                     }
                 SeaRadiance& pixel = picture.layers[to + x];
                 pixel.sun += sum.sun * share;
@@ -352,7 +361,7 @@ class RendererOf final : public Impl {
                 pixel.sea += sum.sea * share;
                 pixel.foam += sum.foam * share;
                 pixel.air += sum.air * share;
-                if (options_.alpha) picture.alpha[to + x] += static_cast<float>(of_sea) * share;
+                if (options_.alpha) picture.alpha[to + x] += (static_cast<float>(of_sea) + of_spray) * share;
             }
         });
     }
@@ -434,6 +443,7 @@ class RendererOf final : public Impl {
     ProjectedGridOptions grid_options_;
     View view_;
     Air air_;  // before that view's eye
+    Spray spray_;
     Sampling sampling_;
     ProjectedGrid grid_;
     T first_pixel_m_ = T(0);  // the finest rung that the frame reads

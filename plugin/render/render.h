@@ -42,7 +42,7 @@ struct Picture {
     glm::ivec2 resolution{0};
     std::vector<SeaRadiance> layers;
     std::vector<std::uint8_t> sea;  // 1: sea in the middle of the pixel, 0: sky
-    // What RenderOptions ask for, otherwise empty. Alpha is the sea's share of the pixel. Layers that aren't light
+    // What RenderOptions ask for, otherwise empty. Alpha is the sea's share of the pixel, and what spray before the sky hides of that. Layers that aren't light
     // (kPictureLayers) hold their row's components side by side; they are those of the sample in the middle of the
     // pixel at the frame's own time, since a mean of depths or of normals is none that is there.
     std::vector<float> alpha{};
@@ -60,7 +60,8 @@ struct RenderOptions {
     // How long the shutter is open [frames], around the frame's own time: 0 … 4. Beyond 0 each of the N × N samples
     // has a moment of its own, with the sea and the camera as they are then.
     double shutter_frames = 0.0;
-    bool alpha = false;  // transparent where there is no sea; the light is then multiplied by alpha
+    bool alpha =
+        false;  // transparent where there is no sea, nor spray; the light is then multiplied by alpha
     PictureLayerSet layers = light_layers();
 };
 

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "core/lighting/background.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
+#include "plugin/render/spray_map.h"
 
 namespace pelagic {
 
@@ -27,6 +29,14 @@ SeaLight<T>::SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, c
 template <class T>
 Air SeaLight<T>::air_before(double height_m) const {
     return sky_.air ? sky_.air->seen_from(height_m) : Air{};
+}
+
+template <class T>
+Spray SeaLight<T>::spray_before(const View& view, const ProjectedGridOptions& grid) const {
+    if (!choice_.spray) return {};
+    Spray spray = make_spray_map(frame_, view, grid, spray_map_size(view.resolution.x));
+    light_spray(spray, choice_, sky_, water_, law_coverage(plan().from->scene));
+    return spray;
 }
 
 template <class T>
@@ -56,7 +66,8 @@ SeaRadiance SeaLight<T>::behind(const Air& air, const glm::vec3& direction, floa
 template <class T>
 void SeaLight<T>::answer(const SeenSea<T>& seen) {
     ProductSet wanted = plan().queries[kQuery].query.products;
-    wanted &= ~products(Product::Position, Product::Velocity);  // whoever found the places has them
+    wanted &= ~products(Product::Position, Product::Displacement,
+                        Product::Velocity);  // whoever found the places has them
     const Points<T> points = seen.points();
     runner_.run(frame_, kQuery, points, wanted, answers_);
     if (!history_) return;
@@ -69,7 +80,8 @@ void SeaLight<T>::answer(const SeenSea<T>& seen) {
 }
 
 template <class T>
-void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, std::span<SeaRadiance> lit) {
+void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, const Spray& spray,
+                        std::span<SeaRadiance> lit) {
     const std::vector<glm::vec3>& normal = answers_.vectors(Product::Normal);
     const std::vector<glm::vec3>& slope_variance = answers_.vectors(Product::SlopeVariance);
     const std::vector<glm::vec3>& at_rest = answers_.vectors(Product::SlopeVarianceAtRest);
@@ -99,6 +111,7 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                           shade_sea(choice_, sky, water_, part(points_), part(lit), &air, foam);
                           if (choice_.air)
                               see_through(air, part(seen.to_eye), part(seen.distance_m), part(lit));
+                          see_through_spray(spray, part(seen.to_eye), part(seen.distance_m), part(lit));
                       });
 }
 

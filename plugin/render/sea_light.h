@@ -16,6 +16,7 @@
 #include "core/lighting/foam_structure.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
+#include "core/lighting/spray.h"
 #include "core/lighting/water.h"
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
@@ -74,17 +75,20 @@ class SeaLight {
     void set(double time_s) { frame_.set(time_s); }
     // The air before an eye at this height above the sea at rest [m]; none where the light has none.
     Air air_before(double height_m) const;
+    // The spray before a camera at the frame's time, with its light; none where the light or the scene has none.
+    Spray spray_before(const View& view, const ProjectedGridOptions& grid) const;
     // The foam of all that a picture of this time shows, so that its parts don't each go through the earlier times: of the grid of
     // its view. Before the first answer. Throws BuildCancelled.
     void prepare_foam(double time_s, const ProjectedGrid& grid, const BuildWatch& watch);
 
-    // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad].
+    // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
 
     // What the places hold beside their position: kept until the next call. All threads of the calling arena, as light().
     void answer(const SeenSea<T>& seen);
-    // The light of the places that were answered last, under a sky, through the air before the eye.
-    void light(const SeenSea<T>& seen, const Sky& sky, const Air& air, std::span<SeaRadiance> lit);
+    // The light of the places that were answered last, under a sky, through the air and the spray before the eye.
+    void light(const SeenSea<T>& seen, const Sky& sky, const Air& air, const Spray& spray,
+               std::span<SeaRadiance> lit);
 
     const Values& answers() const { return answers_; }
     bool foam_lives() const { return history_.has_value(); }

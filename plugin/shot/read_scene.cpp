@@ -198,9 +198,9 @@ KeyEntry read_entry(Reader& reader, const toml::table& table, const std::string&
 // An entry that was refused stays, as its default, so that the others keep their numbers in messages.
 std::optional<KeyValue> read_entries(Reader& reader, const Asked& asked) {
     const Key& key = asked.key;
-    if (!key.empty_word.empty() && asked.node.is_string()) {
-        if (asked.node.as_string()->get() == key.empty_word) return std::vector<KeyEntry>();
-        return refuse(reader, asked, "is not the word " + quoted_text(key.empty_word));
+    if (!key.other_word.empty() && asked.node.is_string()) {
+        if (asked.node.as_string()->get() == key.other_word) return std::vector<KeyEntry>();
+        return refuse(reader, asked, "is not the word " + quoted_text(key.other_word));
     }
     const auto* list = asked.node.as_array();
     if (!list) return refuse_type(reader, asked);
@@ -230,7 +230,7 @@ std::optional<KeyValue> read_entries(Reader& reader, const Asked& asked) {
         if (reader.problem_count() > problems_before)
             reader.mark_failed(key.are_entries_independent ? path : asked.path);
     }
-    if (entries.empty() && !key.empty_word.empty()) {
+    if (entries.empty() && !key.other_word.empty()) {
         reader.refuse(asked.node.source().begin,
                       {asked.path, "[]", "is a sea without waves", key.accepted + ", at least one"});
         return std::nullopt;
@@ -245,6 +245,10 @@ std::optional<KeyValue> read_value(Reader& reader, const Asked& asked) {
             if (const auto* truth = asked.node.as_boolean()) return truth->get();
             return refuse_type(reader, asked);
         case KeyType::Integer:
+            if (const auto* word = asked.node.as_string(); word && !asked.key.other_word.empty()) {
+                if (word->get() == asked.key.other_word) return word->get();
+                return refuse(reader, asked, "is not the word " + quoted_text(asked.key.other_word));
+            }
             return value(read_integer(reader, asked));
         case KeyType::Number:
             return value(read_number(reader, asked));
@@ -312,7 +316,8 @@ void read_key(Reader& reader, const Asked& asked, Scene& scene) {
     const std::optional<KeyValue> value = read_value(reader, asked);
     if (!value) return;
     if (asked.key.type == KeyType::DataFile) {
-        reader.spectrum_file = std::get<std::string>(*value);
+        (asked.key.path == kCageFile ? reader.cage_file : reader.spectrum_file) =
+            std::get<std::string>(*value);
         return;
     }
     if (const std::optional<Problem> problem = set_value(scene, asked.key, *value))

@@ -8,8 +8,8 @@
 
 namespace pelagic {
 
-// Values that can't be used are told to the reader, and stay at their defaults. A measured spectrum and a
-// sky's picture are not loaded here.
+// Values that can't be used are told to the reader, and stay at their defaults. A measured spectrum, a
+// cage and a sky's picture are not loaded here.
 void read_scene(Reader& reader, const toml::table& root, Scene& scene);
 
 }  // namespace pelagic

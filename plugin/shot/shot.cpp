@@ -3,9 +3,11 @@
 
 #include <toml++/toml.h>
 
+#include "core/scene/keys.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
+#include "plugin/obj/obj.h"
 #include "plugin/shot/bounds.h"
 #include "plugin/shot/ndbc.h"
 #include "plugin/shot/read_scene.h"
@@ -56,6 +58,39 @@ void load_measured(Reader& reader, const std::filesystem::path& folder, SeaState
     }
 }
 
+// A cage is data of the scene like a measured spectrum.
+void load_cage(Reader& reader, const std::filesystem::path& folder, Surface& surface) {
+    const std::string key(kCageFile);
+    if (reader.has_failed("surface.kind")) return;
+    if (surface.kind != SurfaceKind::Cage) {
+        if (reader.cage_file && !reader.has_failed(key))
+            reader.refuse({key, quoted_text(*reader.cage_file),
+                           "is given, but kind is " + quoted_text(word_of(surface.kind)),
+                           "this key together with kind = \"cage\""});
+        return;
+    }
+    if (!reader.cage_file) {
+        if (!reader.has_failed(key))
+            reader.refuse(
+                {"surface.kind", "\"cage\"", "comes without cage_file", "\"cage\" together with cage_file"});
+        return reader.mark_failed("surface.kind");
+    }
+    const std::filesystem::path file = folder / *reader.cage_file;
+    const auto refuse = [&](std::string problem, std::string accepted) {
+        reader.refuse({key, quoted_text(*reader.cage_file), std::move(problem), std::move(accepted)});
+        reader.mark_failed("surface.kind");
+    };
+    try {
+        surface.cage = std::make_shared<const Cage>(
+            parse_obj(read_text_file(file, kMostObjBytes), line_text(file.filename().string())));
+        surface.cage_file = file.string();
+    } catch (const TextFileError& error) {
+        refuse("the cage " + std::string(error.what()), "a Wavefront OBJ of at most 256 MiB");
+    } catch (const ObjError& error) {
+        refuse(error.problem(), error.accepted());
+    }
+}
+
 // Whether there is a file of that name. The system takes a path up to its first NUL.
 bool is_file(const std::filesystem::path& file) {
     std::error_code ignored;
@@ -95,6 +130,7 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     Scene scene;
     read_scene(reader, root, scene);
     load_measured(reader, file.parent_path(), scene.sea);
+    load_cage(reader, file.parent_path(), scene.surface);
     find_sky(reader, file.parent_path(), scene.light);
     for (Problem& problem : validate(scene)) reader.refuse_value(std::move(problem));
     if (!reader.has_failed("light.sky"))

@@ -31,7 +31,7 @@ inline constexpr std::size_t kMostShotBytes = std::size_t{16} << 20;  // 100 000
 // can't be. plugin/light has the check for hosts, check_scene().
 using SceneCheck = std::function<std::vector<Problem>(const Scene&)>;
 
-// The scene that a shot file describes, a measured spectrum that it names included; it has passed validate(), and
+// The scene that a shot file describes, a measured spectrum and a cage that it names included; it has passed validate(), and
 // the files that it names have been looked at. The file's first problems and the number of the others are collected
 // into one ShotError; of errors in the TOML itself the first.
 Scene load_shot(const std::filesystem::path& file, const SceneCheck& check_scene);

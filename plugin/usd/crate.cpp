@@ -29,6 +29,11 @@ Crate topology_layer(const Topology& topology) {
     Crate crate;
     crate.add_layer(kMeshName, topology.fps, {});
     const Crate::Fields per_vertex{{"interpolation", crate.token(interpolation(topology.scheme))}};
+    const auto interpolated = [&](const VaryingAttribute& attribute) {
+        const std::string_view own = interpolation(attribute, topology);
+        return own == interpolation(topology.scheme) ? per_vertex
+                                                     : Crate::Fields{{"interpolation", crate.token(own)}};
+    };
     std::vector<Crate::Attribute> attributes{
         {"doubleSided", "bool", Variability::Uniform, {{"default", crate.boolean(true)}}}};
     const auto add_token = [&](std::string_view name, Variability variability, std::string_view text) {
@@ -41,7 +46,7 @@ Crate topology_layer(const Topology& topology) {
     for (const VaryingAttribute& varying : varying_attributes(topology.attributes)) {
         attributes.push_back({.name = varying.name,
                               .type = array_type(varying),
-                              .more = varying.interpolates ? per_vertex : Crate::Fields{}});
+                              .more = varying.interpolates ? interpolated(varying) : Crate::Fields{}});
     }
     if (topology.attributes.origin) {
         attributes.push_back({.name = kOrigin, .type = std::string(kOriginType)});
@@ -51,7 +56,7 @@ Crate topology_layer(const Topology& topology) {
                               .more = {{"default", crate.token_array(std::array{kOrigin})}}});
     }
     if (!topology.st.empty()) {
-        Crate::Fields fields = per_vertex;
+        Crate::Fields fields = interpolated(kTextureCoordinates);
         fields.push_back({"default", crate.array(ValueType::Vec2f, topology.st, topology.st.size())});
         attributes.push_back({.name = "primvars:st", .type = "texCoord2f[]", .more = fields});
     }

@@ -164,11 +164,13 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
         if (attribute.name == kFoamActive.name) values = sample.foam_active;
         if (attribute.name == kFoamAge.name) values = sample.foam_age_s;
         const VaryingValues& varying = result.emplace_back(VaryingValues{attribute, values});
-        if (attribute.name != kExtent.name && varying.count() != sample.points.size()) {
+        const bool is_of_corners = attribute.name == kSt.name && faces.is_st_of_corners;
+        const std::size_t wanted = is_of_corners ? faces.indices.size() : sample.points.size();
+        if (attribute.name != kExtent.name && varying.count() != wanted) {
             throw std::invalid_argument(
                 "USD: " + std::string(attribute.name) + " has " + std::to_string(varying.count()) +
-                " values for " + std::to_string(sample.points.size()) + " points; it must have as many" +
-                (attribute.name == kSt.name ? "" : ", or none"));
+                " values for " + std::to_string(wanted) + (is_of_corners ? " corners" : " points") +
+                "; it must have as many" + (attribute.name == kSt.name ? "" : ", or none"));
         }
         check_finite(attribute.name, values, attribute.components);
     }
@@ -182,6 +184,13 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
 
 std::string_view interpolation(SubdivisionScheme scheme) {
     return scheme == SubdivisionScheme::None ? "vertex" : "varying";
+}
+
+const VaryingAttribute kTextureCoordinates = kSt;
+
+std::string_view interpolation(const VaryingAttribute& attribute, const Topology& topology) {
+    if (attribute.name == kSt.name && topology.attributes.st_of_corners) return "faceVarying";
+    return interpolation(topology.scheme);
 }
 
 void check_rate(double fps) {
@@ -200,9 +209,15 @@ void check(const Topology& topology) {
         }
         return;
     }
+    const bool is_of_corners = topology.attributes.st_of_corners;
+    if (is_of_corners && topology.st.size() != topology.face_vertex_indices.size())
+        throw std::invalid_argument("USD: primvars:st has " + std::to_string(topology.st.size()) +
+                                    " values for " + std::to_string(topology.face_vertex_indices.size()) +
+                                    " corners of faces");
+    const bool is_known = !topology.st.empty() && !is_of_corners;
     check_faces({topology.face_vertex_counts, topology.face_vertex_indices, topology.st},
                 {"a vertex that has primvars:st",
-                 topology.st.empty() ? std::numeric_limits<std::size_t>::max() : topology.st.size()});
+                 is_known ? topology.st.size() : std::numeric_limits<std::size_t>::max()});
 }
 
 }  // namespace pelagic::usd

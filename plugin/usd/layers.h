@@ -5,6 +5,7 @@
 //   DIR/NAME.usda                  the root: stage metadata, mesh with its clips, material, lights, camera
 //   DIR/NAME.sky.exr               the dome's image, which someone else writes
 //   DIR/NAME.camera.usdc           the camera's lens and its pose at each frame (camera.h)
+//   DIR/NAME.volumes.usda          volumes and their files (volumes.h)
 //   DIR/mesh/NAME.topology.EXT     faces and st, and declarations of the attributes that vary
 //   DIR/mesh/NAME.manifest.usda    names and types of the attributes that vary
 //   DIR/mesh/NAME.####.EXT         one frame's values, as time samples at the frame's number
@@ -60,16 +61,18 @@ struct AttributeSet {
     bool velocities = false;
     bool slope_variance = false;
     bool whitecap_coverage = false;
-    bool foam_history = false;  // primvars:foamActive and primvars:foamAge, both
-    bool faces = false;         // faceVertexCounts, faceVertexIndices and primvars:st, all three
-    bool origin = false;        // kOrigin
+    bool foam_history = false;   // primvars:foamActive and primvars:foamAge, both
+    bool faces = false;          // faceVertexCounts, faceVertexIndices and primvars:st, all three
+    bool origin = false;         // kOrigin
+    bool st_of_corners = false;  // primvars:st has a value for each corner of each face (faceVarying)
 };
 
 // The faces of a mesh, by reference.
 struct Faces {
     std::span<const std::int32_t> counts{};   // vertices of each face, 3 or more
     std::span<const std::int32_t> indices{};  // counter-clockwise seen from above
-    std::span<const glm::vec2> st{};          // one for each vertex
+    std::span<const glm::vec2> st{};          // one for each vertex, or for each index
+    bool is_st_of_corners = false;            // the latter
 };
 
 // One frame of the mesh. An array other than points is as long as points, or empty: then it is not written.
@@ -94,7 +97,8 @@ struct MeshSample {
                 .whitecap_coverage = !whitecap_coverage.empty(),
                 .foam_history = !foam_age_s.empty(),
                 .faces = faces.has_value(),
-                .origin = origin_m.has_value()};
+                .origin = origin_m.has_value(),
+                .st_of_corners = faces && faces->is_st_of_corners};
     }
 };
 
@@ -104,7 +108,8 @@ struct Topology {
     SubdivisionScheme scheme = SubdivisionScheme::None;
     std::span<const std::int32_t> face_vertex_counts{};
     std::span<const std::int32_t> face_vertex_indices{};  // counter-clockwise seen from above
-    std::span<const glm::vec2> st{};                      // one for each vertex; empty: not written
+    // One for each vertex, or with attributes.st_of_corners for each index; empty: not written.
+    std::span<const glm::vec2> st{};
     AttributeSet attributes{};
 };
 
@@ -153,7 +158,8 @@ struct Stage {
     std::string frame_extension = "usda";     // without the dot
     std::string topology_extension = "usda";  // without the dot
     Material material{};
-    bool has_camera = false;  // camera_file() is beside the root
+    bool has_camera = false;   // camera_file() is beside the root
+    bool has_volumes = false;  // volumes_file() is
     std::optional<Sun> sun{};
     std::optional<Sky> sky{};
     // The entries of customLayerData's dictionary "pelagic", in this order. A key is an identifier:
@@ -214,6 +220,10 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
 // cage. Subdivision smooths "vertex" primvars, so that they overshoot; it interpolates "varying" ones
 // linearly.
 std::string_view interpolation(SubdivisionScheme scheme);
+// The same for an attribute of a topology: "faceVarying" of primvars:st where each corner has its own.
+std::string_view interpolation(const VaryingAttribute& attribute, const Topology& topology);
+// primvars:st.
+extern const VaryingAttribute kTextureCoordinates;
 
 // Throws std::invalid_argument unless the frames per second are finite and above 0.
 void check_rate(double fps);

@@ -10,6 +10,7 @@
 
 #include "plugin/usd/page.h"
 #include "plugin/usd/text.h"
+#include "plugin/usd/volumes.h"
 
 namespace pelagic::usd {
 
@@ -113,7 +114,12 @@ void write_mesh(Page& page, const Stage& stage, const std::string& material_path
         page.line(
             {"doc = \"Points are relative to ", kOrigin,
              ", which follows the camera in steps: far from the world's origin floats are too coarse for places. ",
-             "A step is no motion; velocities leave it out.\""});
+             "A step is no motion; velocities leave it out.",
+             stage.attributes.faces
+                 ? ""
+                 : " Points follow the camera in steps, too, from place to place of a sea that stays: "
+                   "blur by velocities.",
+             "\""});
     page.line({"prepend references = @./", topology_file(stage.name, stage.topology_extension), "@"});
     page.close(")");
     page.open({"{"});
@@ -339,6 +345,15 @@ void write_camera(Page& page, const Stage& stage) {
     page.line({"}"});
 }
 
+void write_volumes(Page& page, const Stage& stage) {
+    page.gap();
+    page.open({"def Scope \"", kVolumesName, "\" ("});
+    page.line({"prepend references = @./", volumes_file(stage.name), "@"});
+    page.close(")");
+    page.line({"{"});
+    page.line({"}"});
+}
+
 }  // namespace
 
 std::string root_text(const Stage& stage) {
@@ -363,6 +378,7 @@ std::string root_text(const Stage& stage) {
     if (stage.sun) write_sun(page, *stage.sun);
     if (stage.sky) write_sky(page, *stage.sky);
     if (stage.has_camera) write_camera(page, stage);
+    if (stage.has_volumes) write_volumes(page, stage);
     page.close("}");
     return page.text();
 }

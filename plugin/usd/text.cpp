@@ -64,8 +64,8 @@ class ArrayWriter {
     std::size_t used_ = 0;
 };
 
-std::string metadata(SubdivisionScheme scheme) {
-    return " (interpolation = \"" + std::string(interpolation(scheme)) + "\")";
+std::string metadata(const VaryingAttribute& attribute, const Topology& topology) {
+    return " (interpolation = \"" + std::string(interpolation(attribute, topology)) + "\")";
 }
 
 template <class Write>
@@ -102,7 +102,7 @@ void write_topology_text(const Topology& topology, const Sink& sink) {
     // Clips ignore metadata, so it is declared here. A value here would hide those of the clips.
     for (const VaryingAttribute& attribute : varying_attributes(topology.attributes)) {
         page.line({attribute.type, "[] ", attribute.name,
-                   attribute.interpolates ? metadata(topology.scheme) : std::string()});
+                   attribute.interpolates ? metadata(attribute, topology) : std::string()});
     }
     if (topology.attributes.origin) {
         page.line({kOriginType, " ", kOrigin});
@@ -114,7 +114,7 @@ void write_topology_text(const Topology& topology, const Sink& sink) {
     if (!topology.st.empty()) {
         writer.text("    texCoord2f[] primvars:st = ");
         writer.array(std::span<const float>(&topology.st[0].x, 2 * topology.st.size()), 2);
-        writer.text(metadata(topology.scheme) + "\n");
+        writer.text(metadata(kTextureCoordinates, topology) + "\n");
     }
     if (!topology.attributes.faces) {
         writer.text("    int[] faceVertexCounts = ");

@@ -84,6 +84,43 @@ with checking("frames outside the bake show its ends; an offset moves it"):
     scene.frame_set(105)
     assert not np.array_equal(numbers(from_disk.data), last)
 
+with checking("a fitted cage plays as the sea: every vertex on it, at the cage's own and between them"):
+    fresh_file()
+    coarse = PATCH.replace("48", "32") + '[output]\nmesh_scheme = "catmullClark"\n'
+    there, fine = bake(shot_file("cage", coarse)), bake(shot_file("fine", PATCH.replace("48", "128")))
+    from_disk = played(there)
+    bpy.context.scene.frame_set(4)
+    wanted, plain = (pelagic.read_mesh(fine / "mesh" / "fine.0004.usdc"), pelagic.read_mesh(there / "mesh" / "cage.0004.usdc"))
+    assert len(plain["position"]) == 35**2 and len(from_disk.data.vertices) == 129**2
+
+    # Waves that 32 quads hold are in both; the rest, which only the finer mesh has, is as large for points as between them.
+    def error(mesh, every=1):
+        mine, sea = (values.reshape(129, 129, 3)[::every, ::every] for values in (numbers(mesh), wanted["position"]))
+        return np.sqrt(np.mean((mine - sea)[..., 2]**2))
+
+    on_cage, between = error(from_disk.data, 4), error(from_disk.data)
+    print(f"    the sea's waves are {wanted['position'][:, 2].std():.2f} m, what the coarser one leaves out {on_cage:.3f} m, between "
+          f"its vertices {between:.3f} m")
+    assert between < 1.1 * on_cage < 0.2 * wanted["position"][:, 2].std()
+    # OpenSubdiv's limit of the same cage, whose outermost faces only shape the others.
+    told = pelagic.read_mesh(there / "mesh" / "cage.topology.usdc")
+    limit = pelagic.CageSurface(pelagic.Cage(plain["position"], told["face_counts"], told["face_corners"], boundary="none"),
+                                2).limit()
+    limit = np.column_stack([limit["rest_m"] + np.array(limit["origin_m"]), limit["height_m"]])
+    farthest = max(np.linalg.norm(limit - point, axis=1).min() for point in numbers(from_disk.data)[::7])
+    assert len(limit) == 129**2 and farthest < 1e-4, farthest  # metres in single precision
+    st = np.array([entry.uv for entry in from_disk.data.uv_layers["UVMap"].data])
+    assert (st.min(), st.max()) == (0.0, 1.0), "the ring is no part of it"
+    assert len(numbers(from_disk.data, "whitecap_coverage")) == 129**2 and not from_disk.data.validate(verbose=True)
+    from_disk.pelagic_baked.halvings = 0
+    assert len(from_disk.data.vertices) == 33**2
+    sharp = pelagic.Scene.from_file(folder / "cage.toml")
+    frame = pelagic.Frame(pelagic.Sea(sharp))
+    frame.set(sharp.shot.time_s(4))
+    core = frame.evaluate(pelagic.patch(90.0, 32)[0])
+    for name, product in (("position", "position"), ("velocity", "velocity"), ("whitecap_coverage", "coverage")):
+        assert np.abs(numbers(from_disk.data, name) - core[product]).max() < 1e-4, name
+
 with checking("a camera's grid has other faces in each frame"):
     fresh_file()
     there = bake(shot_file("grid", GRID))

@@ -98,10 +98,11 @@ camera = scene.camera
 camera.location, camera.rotation_euler = (0, 0, 9), (1.4, 0, 0)
 sea = add_ocean(surface__kind="projected-grid", sea__wind_speed_mps=3.0)
 
-with checking("a planet is for bakes: the object says so, and shows what it showed"):
+with checking("planets and meshes from near to far are for bakes: the object says so, and shows what it showed"):
     shown = numbers(sea.data)
-    change(sea, surface__kind="planet")
-    assert "bake" in play.simulation_of(sea).problem and (numbers(sea.data) == shown).all()
+    for kind in ("planet", "near-far"):
+        change(sea, surface__kind=kind)
+        assert "bake" in play.simulation_of(sea).problem and (numbers(sea.data) == shown).all(), kind
     change(sea, surface__kind="projected-grid")
     assert not play.simulation_of(sea).problem
 

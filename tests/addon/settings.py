@@ -42,6 +42,10 @@ def ends(key):
     return ("", "no such file.exr")
 
 
+def words_of(path):
+    return [choice["word"] for choice in properties.BY_PATH[path].key["choices"] if choice["built"]]
+
+
 def kind(key, value):
     return int(value) if key["type"] == "integer" else value
 
@@ -56,7 +60,8 @@ with checking("the defaults are the core's"):
         assert now == core, f"{field.path}: {now!r}, {core!r}"
 
 # A property that feeds none of these must be one that the sea takes: otherwise moving it would show nothing.
-ONLY_SHOWN = {"name", "range", "clock", "view", "light", "water", "mesh", "maps", "volumes", "choice"}
+ONLY_SHOWN = {"name", "range", "clock", "view", "light", "water", "mesh", "maps", "spray", "volumes", "choice",
+              "cage"}  # which is part of what identifies its surface
 with checking("what feeds the sea makes another one"):
     for place, field in enumerate(properties.FIELDS):
         assert set(field.key["feeds"]) <= ONLY_SHOWN or place in play.SEA_FIELDS, field.path
@@ -69,6 +74,9 @@ with checking("every property at both ends"):
             continue
         before = getattr(group, field.name)
         other, needed = properties.ONLY_WITH.get(field.path, ("waves.model", "fft"))
+        if needed not in words_of(other):
+            continue  # nobody can choose what it is for
+        obj.pelagic.surface.cage_file = str(ROOT / "examples" / "pool.obj")
         change(obj, **{other.replace(".", "__"): needed})
         if field.switch:
             setattr(group, field.switch, True)
@@ -79,12 +87,12 @@ with checking("every property at both ends"):
             why = settle()
             tried += 1
             if why is not None:
-                assert field.name in why or "sea.spectrum" in why, f"{field.path} = {value!r}: {why!r}"
+                assert field.name in why or "sea.spectrum" in why or "adaptive" in why, f"{field.path} = {value!r}: {why!r}"
                 refusals.append(f"{field.path} = {value!r}: {why}")
         setattr(group, field.name, before)
         if field.switch:
             setattr(group, field.switch, False)
-        change(obj, sea__spectrum="jonswap", waves__model="fft")
+        change(obj, sea__spectrum="jonswap", waves__model="fft", surface__kind="patch")
         assert settle() is None, field.path
     print(f"{tried} values; refused:", *refusals, sep="\n  ")
     assert tried > 60

@@ -40,7 +40,8 @@ constexpr int kN = 1024;
 Scene million_vertices(int frames) {
     Scene scene;
     scene.shot.last_frame = frames;
-    scene.surface = {.size_m = 400.0, .resolution = kN};
+    scene.surface.size_m = 400.0;
+    scene.surface.resolution = kN;
     scene.waves.cascades = {{.size_m = 400.0, .resolution = kN}};
     scene.output.mesh = MeshFormat::Usdc;
     scene.output.maps = {MapKind::Displacement, MapKind::Normal};

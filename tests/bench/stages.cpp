@@ -21,7 +21,8 @@ namespace {
 
 void table(int n) {
     Scene scene;
-    scene.surface = {.size_m = 400.0, .resolution = n};
+    scene.surface.size_m = 400.0;
+    scene.surface.resolution = n;
     scene.waves.cascades = {{.size_m = 400.0, .resolution = n}};
     const auto make_frame = [&](std::vector<Query> queries) {
         // The plain cost of a whole cascade: nothing filtered away.

@@ -280,6 +280,25 @@ def read_json(path):
         raise Failure(f"{path}: {error}") from None
 
 
+def check_volume(path):
+    """Its grids as OpenVDB's own module reads them: finite, spray never below 0."""
+    import pyopenvdb  # most campaigns need none
+
+    held = {}
+    for grid in pyopenvdb.readAllGridMetadata(str(path)):
+        full = pyopenvdb.read(str(path), grid.name)
+        low, high = full.evalMinMax()
+        numbers = np.array([low, high], "f8")
+        if not np.isfinite(numbers).all():
+            raise Failure(f"{path}: {grid.name} from {low} to {high}")
+        if grid.name == "density" and low < 0:
+            raise Failure(f"{path}: a density of {low}")
+        held[grid.name] = full.activeVoxelCount()
+    if sorted(held) not in (["density", "velocity"], ["surface"]):
+        raise Failure(f"{path} holds {sorted(held)}")
+    return held
+
+
 def check_folder(pelagic, folder):
     """Every file of a bake or of pictures. Returns what the meshes and the full levels hold, by path below."""
     held = {}
@@ -293,6 +312,8 @@ def check_folder(pelagic, folder):
             held[name] = read_png(path)
         elif path.suffix == ".json":
             held[name] = read_json(path)
+        elif path.suffix == ".vdb":
+            held[name] = check_volume(path)
         elif path.suffix == ".usda" and re.search(r"^mesh/.*\.-?\d+\.usda$|^mesh/.*\.topology\.usda$", name):
             check_text(path)
             held[name] = check_mesh(pelagic, path)

@@ -19,6 +19,9 @@ _SMALL = {
     "sea.spectrum_time": None,
     "waves.trains": lambda draw: draw.choice([1, 2, 7, 60, 150]),
     "waves.cascades": lambda draw: _cascades(draw),
+    "surface.kind": lambda draw: draw.choice([word for word in _words("surface.kind") if word != "cage"]),
+    "surface.cage_file": None,
+    "surface.cage_level": lambda draw: draw.choice([0, 1, 2, 3, "adaptive"]),
     "surface.size_m": lambda draw: draw.choice([0.01, 30.0, 200.0, 200.0, 3e4, 1e6]),
     "surface.resolution": lambda draw: draw.choice([1, 2, 3, 8, 17, 32]),
     "surface.cell_px": lambda draw: draw.choice([6.0, 8.0, 16.0, 50.0, 256.0]),
@@ -145,6 +148,18 @@ def shot_text(keys):
     return "".join(f"[{table}]\n" + "".join(lines) for table, lines in tables.items())
 
 
+def write_cage(path, draw):
+    """A few faces of any size and slope, among them triangles, with a crease and a corner, and perhaps a hole."""
+    size, far = draw.choice([0.0, 0.1, 10.0, 300.0, 1e5]), draw.choice([0.0, 0.0, 9e5])
+    lines = [f"v {far + size * (x + draw.uniform(-0.2, 0.2))} {size * y} {size * draw.choice([0.0, draw.uniform(-2, 2)])}"
+             for y in range(3) for x in range(3)]
+    lines += ["f 1 2 5 4", "f 2 3 6 5", "f 4 5 8 7", "f 5 6 9", "f 5 9 8",
+              f"t crease 2/1/0 3 4 {draw.choice([0.0, 1.5, 10.0])}", f"t corner 1/1/0 4 {draw.choice([0.0, 3.0])}"]
+    if draw.random() < 0.3:
+        lines.append("t hole 1/0/0 0")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 def write_sky(path, draw=None):
     """A small lat-long picture of a sky, brighter towards the zenith."""
     height = 8
@@ -165,7 +180,12 @@ def _make_fit(draw, keys):
             keys.pop(f"waves.{name}", None)
     if keys.get("output.cascade_tiles"):
         keys["output.maps"] = keys.get("output.maps") or ["normal", "whitecaps"]
-    if keys.get("output.mesh") == "none":
+    if volumes := keys.get("output.volumes"):
+        if "spray" in volumes:
+            keys["effects.spray"] = True
+            keys.pop("effects.whitecaps", None)
+        keys["output.voxel_m"] = max(keys.get("surface.size_m", 200.0) / draw.choice([1, 1.7, 5, 20, 40]), 1e-3)
+    elif keys.get("output.mesh") == "none":
         keys["output.maps"] = keys.get("output.maps") or ["displacement"]
 
 
@@ -194,6 +214,9 @@ def shot(draw, folder, each=0.35):
         keys["shot.time_scale"] = draw.choice([1.0, 0.5])
         keys["shot.loop_s"] = draw.choice([1, 24, 100]) / keys["shot.fps"]
         keys["shot.frames"] = [1, 2]
+    if draw.random() < 0.15:
+        keys["surface.kind"], keys["surface.cage_file"] = "cage", str(folder / "cage.obj")
+        write_cage(folder / "cage.obj", draw)
     if draw.random() < 0.05:
         keys["sea.spectrum"] = "file"
         keys["sea.spectrum_file"] = str(BUOY)

@@ -11,7 +11,8 @@ def shot_text(draw):
     """A small shot: any mesh, any maps, cascades or trains, a patch or what a camera sees."""
     name = draw.choice(["sea", "sea-2", "S_1", "7th", "normal"])
     maps = draw.sample(["displacement", "normal", "slope-variance", "whitecaps"], draw.randint(0, 4))
-    mesh = draw.choice(["usda", "usdc", "usdc", "none"]) if maps else draw.choice(["usda", "usdc"])
+    volumes = draw.sample(["spray", "level-set"], draw.choice([0, 0, 1, 2]))
+    mesh = draw.choice(["usda", "usdc", "usdc", "none"]) if maps or volumes else draw.choice(["usda", "usdc"])
     grid = mesh != "none" and draw.random() < 0.3
     lines = ["[shot]", f'name = "{name}"', f"frames = [1, {draw.randint(2, 4)}]", f"seed = {draw.randint(1, 999)}",
              "[sea]", f"wind_speed_mps = {draw.uniform(3, 18):.2f}", "[waves]"]
@@ -21,9 +22,9 @@ def shot_text(draw):
         lines.append("cascades = [ { size_m = 90.0, resolution = 128 }, { size_m = 23.0, resolution = 32 } ]")
     lines += ["[surface]", 'kind = "projected-grid"\ncell_px = 40' if grid
               else f"size_m = 60\nresolution = {draw.choice([2, 5, 16])}",
-              "[camera]", "resolution = [64, 36]", "[quality]", 'level = "draft"',
+              "[effects]", "spray = true", "[camera]", "resolution = [64, 36]", "[quality]", 'level = "draft"',
               "[output]", f'mesh = "{mesh}"', f"maps = {maps}".replace("'", '"'),
-              f"map_resolution = {draw.choice([8, 16])}"]
+              f"map_resolution = {draw.choice([8, 16])}", f"volumes = {volumes}".replace("'", '"'), "voxel_m = 4"]
     if maps and draw.random() < 0.4 and "model" not in "".join(lines):
         lines.append("cascade_tiles = true")
     return name, "\n".join(lines) + "\n"

@@ -29,8 +29,13 @@ BASES = [
     ("bake", {**SMALL, **ALL_MAPS, "waves.model": "trochoid", "waves.trains": 12, "output.mesh": "usda",
               "waves.cascades": [{"size_m": 20.0, "resolution": 32}]}),
     ("bake", {**SMALL, **DESCENDS, "surface.kind": "projected-grid", "output.maps": ["slope-variance"]}),
+    ("bake", {**SMALL, **DESCENDS, "surface.kind": "near-far", "surface.size_m": 20.0}),
+    ("bake", {**SMALL, "surface.kind": "cage", "surface.cage_file": "cage.obj"}),
+    ("bake", {**SMALL, **DESCENDS, "surface.kind": "cage", "surface.cage_file": "cage.obj",
+              "surface.cage_level": "adaptive"}),
     ("bake", {**SMALL, "sea.spectrum": "file", "sea.spectrum_file": "buoy-1w2024.txt", "output.maps": ["normal"],
               "sea.spectrum_time": "2024-10-03T06:00:00Z"}),
+    ("bake", {**SMALL, "effects.spray": True, "output.volumes": ["spray", "level-set"], "output.voxel_m": 5.0}),
     ("render", {**SMALL, "camera.resolution": [24, 14], "quality.level": "draft"}),
     ("render", {**SMALL, **DESCENDS, "camera.resolution": [24, 14], "quality.level": "draft", "light.sky": "sky.exr"}),
 ]
@@ -38,6 +43,7 @@ BASES = [
 CHOICES = {
     "shot.loop_s": [1.0, 2.0],
     "light.sky": ["daylight", "sky.exr", "other.exr"],
+    "surface.cage_file": ["cage.obj", "other.obj"],
     "sea.spectrum_file": ["buoy-1w2024.txt", "other-1w2024.txt"],
     "sea.spectrum_time": ["2024-10-03T06:00:00Z", "2024-10-03T07:00:00Z"],
 }
@@ -49,6 +55,10 @@ def lay_out(draw, folder):
     """The files that shots name."""
     common_shots.write_sky(folder / "sky.exr")
     common_shots.write_sky(folder / "other.exr", draw)
+    for name, height in (("cage", 0), ("other", 3)):
+        (folder / f"{name}.obj").write_text(
+            f"v -20 -20 0\nv 20 -20 {height}\nv 20 20 0\nv -20 20 0\nv 40 0 2\nf 1 2 3 4\nf 2 5 3\nt crease 2/1/0 1 2 1.5\n",
+            encoding="utf-8")
     for kind in "wdijk":
         source = common_shots.BUOY.with_name(common_shots.BUOY.name.replace("99002w", f"99002{kind}"))
         if source.exists():

@@ -40,6 +40,7 @@ CASES = [
                      "output.cascade_tiles": True, "output.map_resolution": 64}),
     ("bake", [], 3, {"surface.kind": "projected-grid", "surface.cell_px": 1.0, "camera.resolution": [1280, 720],
                      "quality.level": "draft"}),
+    ("bake", [], 3, patch(400, **SMALL_WAVES, **{"surface.kind": "near-far"})),
     ("render", ["--samples", 1], 1, {"sea.wind_speed_mps": 20.0, "camera.resolution": [64, 36]}),
     ("render", ["--samples", 1], 1, {"quality.level": "draft", "camera.resolution": [4096, 2304]}),
     ("render", ["--samples", 1], 3, {"quality.level": "draft", "camera.resolution": [2048, 1152]}),

@@ -17,7 +17,8 @@ LONGEST_S = 120
 def shot(draw, name, seed):
     frames = draw.randint(2, 6)
     maps = [f'"{each}"' for each in MAPS if draw.random() < 0.3]
-    mesh = draw.choice(("usda", "usdc", "none") if maps else ("usda", "usdc"))
+    volumes = [f'"{each}"' for each in ("spray", "level-set") if draw.random() < 0.3]
+    mesh = draw.choice(("usda", "usdc", "none") if maps or volumes else ("usda", "usdc"))
     trains = draw.random() < 0.25
     return f"""
 [shot]
@@ -29,17 +30,21 @@ seed = {seed}
 {'model = "trochoid"' if trains else "cascades = [ { size_m = 60.0, resolution = 32 } ]"}
 {"trains = 12" if trains else ""}
 [surface]
-kind = "{draw.choice(("patch", "patch", "projected-grid")) if not maps else "patch"}"
+kind = "{draw.choice(("patch", "near-far", "projected-grid")) if not maps else "patch"}"
 size_m = 40
 resolution = {draw.choice((8, 24, 64))}
 [camera]
 resolution = [{draw.randint(2, 6) * 8}, {draw.randint(2, 4) * 8}]
+[effects]
+spray = true
 [quality]
 level = "{draw.choice(("draft", "preview"))}"
 [output]
 mesh = "{mesh}"
 maps = [{", ".join(maps)}]
 map_resolution = {draw.choice((8, 32))}
+volumes = [{", ".join(volumes)}]
+voxel_m = 2
 cascade_tiles = {"true" if maps and not trains and draw.random() < 0.3 else "false"}
 """
 

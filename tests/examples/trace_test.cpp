@@ -70,6 +70,40 @@ TEST(Trace, RaysThatDecideWhatHidesWhatGiveTheRenderedPicture) {
     EXPECT_LE(other, 160u);  // the skyline, by a pixel
 }
 
+// Rays end elsewhere than on the mesh by less than a pixel: the spray before both is the same.
+TEST(Trace, RaysGoThroughTheRenderedPicturesSpray) {
+    Scene scene = small_scene();
+    scene.sea.wind_speed_mps = 22.0;
+    scene.effects.spray = true;
+    scene.effects.spray_gain = 30.0;
+    scene.camera.position_m.z = 14.0;
+    scene.surface.cell_px = 1.0;
+    Picture rendered;
+    Renderer(scene, options_of(scene), make_sky(scene), std::array{1}).render(1, rendered);
+    const trace::FloatingObject object = boat();
+    const trace::TracedPicture by_rays = traced(scene, false, &object),
+                               mirrored = traced(scene, true, &object);
+    double sum = 0.0, expected = 0.0;
+    std::vector<float> off;
+    for (std::size_t i = 0; i < rendered.layers.size(); ++i) {
+        if (by_rays.object[i]) continue;
+        const float of = rendered.layers[i].air.y;
+        sum += static_cast<double>(by_rays.picture.layers[i].air.y);
+        expected += static_cast<double>(of);
+        off.push_back(std::abs(by_rays.picture.layers[i].air.y - of) / std::max(of, 1e-3f));
+        ASSERT_EQ(mirrored.picture.layers[i].air, by_rays.picture.layers[i].air);
+    }
+    std::sort(off.begin(), off.end());
+    EXPECT_NEAR(sum / expected, 1.0, 0.01);
+    EXPECT_LE(test::at_share(off, 0.5), 2e-3f);
+    scene.effects.spray = false;
+    Picture clear;
+    Renderer(scene, options_of(scene), make_sky(scene), std::array{1}).render(1, clear);
+    double without = 0.0;
+    for (const SeaRadiance& light : clear.layers) without += static_cast<double>(light.air.y);
+    EXPECT_GT(expected, 1.5 * without);
+}
+
 TEST(Trace, NoWaterIsSeenInAHull) {
     Scene scene = small_scene();
     scene.camera.position_m = glm::dvec3(kByCamera.at_m - glm::dvec2(0.0, 8.0), 10.0);  // looks into it

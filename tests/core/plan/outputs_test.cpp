@@ -18,8 +18,10 @@ class CountingSurface final : public RestSurface {
   public:
     explicit CountingSurface(const Scene& scene)
         : surface_(make_surface(scene, {.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0})) {}
+    std::string remedy() const override { return surface_->remedy(); }
     std::string describe() const override { return surface_->describe(); }
     bool is_constant() const override { return surface_->is_constant(); }
+    bool has_constant_faces() const override { return surface_->has_constant_faces(); }
     bool is_even() const override { return surface_->is_even(); }
     std::optional<View> shaped_by(int frame) const override { return surface_->shaped_by(frame); }
     FeedSet feeds() const override { return surface_->feeds(); }

@@ -268,6 +268,44 @@ TEST(Keys, AMeasuredSpectrumIsDescribedByItsStationAndCountsByItsContent) {
     EXPECT_NE(canonical(elsewhere, feeds(Feed::Waves)), canonical(scene, feeds(Feed::Waves)));
 }
 
+TEST(Keys, ACageCountsAndIsDescribedByItsContent) {
+    CageMesh mesh;
+    mesh.points_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+    mesh.face_counts = {3};
+    mesh.indices = {0, 1, 2};
+    Scene scene;
+    scene.surface.cage = std::make_shared<const Cage>(mesh);
+    scene.surface.cage_file = "folder/pool.obj";
+    std::map<std::string, std::string> said;
+    for (const DescribedKey& key : described(scene, feeds(Feed::Cage))) said[key.path] = key.text;
+    EXPECT_TRUE(said.at("surface.cage").starts_with("\"1 face, 3 points, ")) << said.at("surface.cage");
+    EXPECT_FALSE(said.contains("surface.cage_file") || said.contains("sea.spectrum_station"));
+    Scene elsewhere = scene;
+    elsewhere.surface.cage_file = "pool.obj";
+    EXPECT_EQ(canonical(elsewhere), canonical(scene));
+    mesh.points_m[0].z = 1e-9;
+    elsewhere.surface.cage = std::make_shared<const Cage>(mesh);
+    EXPECT_NE(canonical(elsewhere, feeds(Feed::Cage)), canonical(scene, feeds(Feed::Cage)));
+    EXPECT_EQ(canonical(elsewhere, ~feeds(Feed::Cage)), canonical(scene, ~feeds(Feed::Cage)));
+    EXPECT_EQ(canonical(Scene{}).find("cage_file"), std::string::npos);
+}
+
+// A number, or the word that may stand in its place.
+TEST(Keys, AnIntegerMayHaveAnotherWord) {
+    const Key& level = key_of("surface.cage_level");
+    Scene scene;
+    EXPECT_FALSE(set_value(scene, level, std::string("adaptive")).has_value());
+    EXPECT_TRUE(scene.surface.cage_level.is_adaptive);
+    EXPECT_EQ(value_text(level, value_of(scene, level)), "\"adaptive\"");
+    EXPECT_EQ(shot_text(scene), "[surface]\ncage_level = \"adaptive\"\n");
+    const auto problem = set_value(scene, level, std::string("adaptiv"));
+    ASSERT_TRUE(problem);
+    EXPECT_EQ(problem->problem, "is not the word \"adaptive\"");
+    EXPECT_EQ(problem->accepted, "an integer, 0 … 6, or \"adaptive\"");
+    EXPECT_FALSE(set_value(scene, level, std::int64_t{5}).has_value());
+    EXPECT_EQ(scene.surface.cage_level, (CageLevel{.splits = 5, .is_adaptive = false}));
+}
+
 TEST(ShotText, NothingDiffersIsNoText) {
     EXPECT_EQ(shot_text(Scene{}), "");
     Scene scene;

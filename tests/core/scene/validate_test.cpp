@@ -448,18 +448,115 @@ TEST(Validate, TilesOfTrainsAreThoseOfTheCascadesBesideThem) {
     expect_good(tiles);
 }
 
-TEST(Validate, WhatIsNotBuiltYetIsRefused) {
-    for (const auto& [kind, word] :
-         {std::pair{SurfaceKind::NearFar, "\"near-far\""}, std::pair{SurfaceKind::Cage, "\"cage\""}}) {
-        expect_refused([&, k = kind](Scene& s) { s.surface.kind = k; }, {"surface.kind", word, "\"patch\""});
+TEST(Validate, NearFarHasAsManyQuadsASideAsFilesCanCount) {
+    const auto near_far = [](int resolution) {
+        return [resolution](Scene& s) {
+            s.surface.kind = SurfaceKind::NearFar;
+            s.surface.resolution = resolution;
+        };
+    };
+    expect_good(near_far(1));
+    expect_good(near_far(4096));
+    expect_refused(near_far(4097), {"surface.resolution", "4097", "1 … 4096"});
+    expect_refused(near_far(8193), {"surface.resolution", "8193", "1 … 8192"});  // as everywhere, and once
+}
+
+TEST(Validate, Volumes) {
+    const auto spray = [](Scene& s) {
+        s.effects.spray = true;
+        s.output.volumes = {VolumeKind::LevelSet, VolumeKind::Spray};
+    };
+    expect_good(spray);
+    expect_good([](Scene& s) {
+        s.output.mesh = MeshFormat::None;
+        s.output.volumes = {VolumeKind::LevelSet};
+    });
+    expect_refused(
+        [](Scene& s) {
+            s.output.volumes = {VolumeKind::LevelSet, VolumeKind::Spray};
+        },
+        {"output.volumes[1]", "\"spray\"", "effects.spray = true"});
+    expect_refused(
+        [&](Scene& s) {
+            spray(s);
+            s.effects.whitecaps = false;
+        },
+        {"output.volumes[1]", "\"spray\"", "effects.whitecaps = true"});
+    expect_good([](Scene& s) {  // nothing breaks, nothing flies
+        s.effects.spray = true;
+        s.effects.whitecaps = false;
+    });
+    expect_refused([](Scene& s) { s.effects.spray_gain = -1.0; },
+                   {"effects.spray_gain", "-1", "0 … 1000000"});
+    // One voxel at least, and no more than can be counted.
+    const auto voxels = [](double size_m, double voxel_m) {
+        return [=](Scene& s) {
+            s.surface.size_m = size_m;
+            s.output.volumes = {VolumeKind::LevelSet};
+            s.output.voxel_m = voxel_m;
+        };
+    };
+    expect_good(voxels(2.0, 2.0));
+    expect_refused(voxels(2.0, 2.5), {"output.voxel_m", "2.5", "at most 2, the patch's side"});
+    expect_good(voxels(1e5, 1.0));
+    expect_refused(voxels(1e6, 1.0), {"output.voxel_m", "1", "at least 10, a 100000th of 1000000"});
+    expect_good([](Scene& s) { s.output.voxel_m = 1e4; });  // nobody asks for volumes
+    expect_refused([](Scene& s) { s.output.voxel_m = 0.0; }, {"output.voxel_m", "0", "0.001 … 100000"});
+}
+
+TEST(Validate, ACageIsFittedToAPatch) {
+    const auto cage = [](SurfaceKind kind) {
+        return [kind](Scene& s) {
+            s.output.mesh_scheme = MeshScheme::CatmullClark;
+            s.surface.kind = kind;
+        };
+    };
+    expect_good(cage(SurfaceKind::Patch));
+    for (const SurfaceKind kind : {SurfaceKind::ProjectedGrid, SurfaceKind::Planet})
+        expect_refused(cage(kind), {"output.mesh_scheme", "\"catmullClark\"", "surface.kind = \"patch\""});
+}
+
+TEST(Validate, ACageComesWithItsKindAndIsNotRefinedWithoutEnd) {
+    CageMesh square;
+    square.points_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    square.face_counts = {4};
+    square.indices = {0, 1, 2, 3};
+    const auto with_cage = [&](Scene& s) {
+        s.surface.kind = SurfaceKind::Cage;
+        s.surface.cage = std::make_shared<const Cage>(square);
+        s.surface.cage_level.splits = 6;
+    };
+    expect_good(with_cage);
+    expect_refused([](Scene& s) { s.surface.kind = SurfaceKind::Cage; },
+                   {"surface.kind", "\"cage\"", "together with cage_file"});
+    expect_refused(
+        [&](Scene& s) {
+            with_cage(s);
+            s.surface.kind = SurfaceKind::Patch;
+        },
+        {"surface.kind", "\"patch\"", "no cage"});
+    // 200 000 quads of 4⁶ each; as the camera sees them they are as many as fit.
+    CageMesh many;
+    for (std::int32_t i = 0; i < 200000; ++i) {
+        for (const glm::dvec3& point : square.points_m)
+            many.points_m.push_back(point + glm::dvec3(2.0 * i, 0.0, 0.0));
+        for (const std::int32_t k : square.indices) many.indices.push_back(4 * i + k);
+        many.face_counts.push_back(4);
     }
-    expect_refused([](Scene& s) { s.output.mesh_scheme = MeshScheme::CatmullClark; },
-                   {"output.mesh_scheme", "\"catmullClark\"", "\"none\""});
-    expect_refused([](Scene& s) { s.output.volumes = {VolumeKind::LevelSet}; },
-                   {"output.volumes[0]", "\"level-set\"", "[]"});
-    expect_refused([](Scene& s) { s.output.voxel_m = 0.25; }, {"output.voxel_m", "0.25", "0.5"});
-    expect_refused([](Scene& s) { s.effects.spray = true; }, {"effects.spray", "true", "false"});
-    expect_refused([](Scene& s) { s.effects.spray_gain = 2.0; }, {"effects.spray_gain", "2", "1"});
+    const auto cage = std::make_shared<const Cage>(std::move(many));
+    const auto with_many = [&](Scene& s) {
+        with_cage(s);
+        s.surface.cage = cage;
+    };
+    expect_refused(with_many, {"surface.cage_level", "6", "0 … 5"});
+    expect_good([&](Scene& s) {
+        with_many(s);
+        s.surface.cage_level.splits = 5;
+    });
+    expect_good([&](Scene& s) {
+        with_many(s);
+        s.surface.cage_level.is_adaptive = true;
+    });
 }
 
 TEST(Validate, TheSkyIsDaylightOrAPicture) {

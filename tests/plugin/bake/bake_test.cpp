@@ -50,7 +50,8 @@ class Bakes : public ::testing::Test {
 Scene small_scene() {
     Scene scene;
     scene.shot.last_frame = 3;
-    scene.surface = {.size_m = 100.0, .resolution = 8};
+    scene.surface.size_m = 100.0;
+    scene.surface.resolution = 8;
     return scene;
 }
 
@@ -209,7 +210,9 @@ TEST_F(Bakes, AProjectedGridIsTheCamerasOwn) {
     EXPECT_EQ(bake(scene, again).kept, 2);
     scene.camera.keys.back().position_m.z += 1.0;
     EXPECT_EQ(bake(scene, again).kept, 1);
-    scene.surface = {.size_m = 100.0, .resolution = 8};
+    scene.surface.kind = SurfaceKind::Patch;
+    scene.surface.size_m = 100.0;
+    scene.surface.resolution = 8;
     bake(scene, again);
     scene.camera.keys.back().position_m.z += 1.0;
     EXPECT_EQ(bake(scene, again).kept, 2);
@@ -232,7 +235,8 @@ void expect_the_buoys_sea(const std::function<nlohmann::json(const Scene&)>& bak
         "spectrum = \"file\"\nspectrum_file = \"" + w_file.string() + "\"\nspectrum_time = " + hour + "\n";
     Scene scene = parse_shot("[sea]\n" + text, "buoy.toml", check_scene);
     scene.shot.last_frame = 1;
-    scene.surface = {.size_m = 100.0, .resolution = 200};
+    scene.surface.size_m = 100.0;
+    scene.surface.resolution = 200;
     scene.output.attributes = {};
     const MeasuredSpectrum& buoy = *scene.sea.measured;
     // The buoy's own numbers, by the rule that NDBC states: each bin counts over half the way to its

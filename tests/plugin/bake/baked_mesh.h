@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 struct Mesh {
     glm::dvec3 origin_m{0.0};
     std::vector<glm::vec3> points, normals, velocities;
-    std::vector<std::int32_t> corners;  // four a face
+    std::vector<std::int32_t> counts, corners;  // of faces
 
     glm::dvec3 place_m(std::int32_t i) const {
         return origin_m + glm::dvec3(points[static_cast<std::size_t>(i)]);
@@ -57,6 +57,7 @@ inline void add_layer(const fs::path& file, Mesh& mesh) {
         if (array.name == "points") mesh.points = vectors(array);
         if (array.name == "normals") mesh.normals = vectors(array);
         if (array.name == "velocities") mesh.velocities = vectors(array);
+        if (array.name == "faceVertexCounts") mesh.counts = std::get<std::vector<std::int32_t>>(array.values);
         if (array.name == "faceVertexIndices")
             mesh.corners = std::get<std::vector<std::int32_t>>(array.values);
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -39,7 +40,8 @@ inline Scene small_shot() {
     scene.shot.last_frame = 3;
     scene.sea.swell = {{.height_m = 1.0, .period_s = 9.0, .direction_deg = 40.0}};
     scene.waves.cascades = {{.size_m = 80.0, .resolution = 64}, {.size_m = 24.0, .resolution = 32}};
-    scene.surface = {.size_m = 80.0, .resolution = 8};
+    scene.surface.size_m = 80.0;
+    scene.surface.resolution = 8;
     scene.camera.resolution = {64, 36};
     scene.quality.level = QualityLevel::Preview;
     scene.output.map_resolution = 8;
@@ -51,6 +53,17 @@ inline BaseShot patch_shot() {
     base.scene.output.maps = {MapKind::Displacement, MapKind::Normal, MapKind::SlopeVariance,
                               MapKind::Whitecaps};
     base.scene.output.cascade_tiles = true;
+    return base;
+}
+
+// Volumes, and foam that lives where nobody asks for what it leaves.
+inline BaseShot volumes_shot() {
+    BaseShot base{.name = "volumes", .scene = small_shot()};
+    base.scene.shot.last_frame = 2;
+    base.scene.effects.spray = true;
+    base.scene.output.mesh = MeshFormat::None;
+    base.scene.output.volumes = {VolumeKind::Spray, VolumeKind::LevelSet};
+    base.scene.output.voxel_m = 5.0;
     return base;
 }
 
@@ -95,6 +108,15 @@ inline BaseShot grid_shot() {
     return base;
 }
 
+inline BaseShot near_far_shot() {
+    BaseShot base{.name = "near to far, of a camera that descends", .scene = small_shot()};
+    descend(base.scene);
+    base.scene.surface.kind = SurfaceKind::NearFar;
+    base.scene.surface.size_m = 20.0;
+    base.tables = {"shot", "surface", "camera", "output"};
+    return base;
+}
+
 // The cascades are as fine as the shot needs them: the next one may need finer ones.
 inline BaseShot automatic_shot() {
     BaseShot base{.name = "projected grid over automatic cascades", .scene = small_shot()};
@@ -136,6 +158,39 @@ inline BaseShot sky_shot(std::vector<std::string> skies) {
     base.scene.light.sky = skies.front();
     base.skies = std::move(skies);
     base.tables.clear();
+    return base;
+}
+
+// A basin of quads and a triangle with a fairly sharp edge, whose limit surface the sea lies on.
+inline CageMesh small_cage() {
+    CageMesh mesh;
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 4; ++x)
+            mesh.points_m.emplace_back(12.0 * x - 18.0, 12.0 * y - 12.0, y == 2 ? 3.0 : 0.5 * x);
+    mesh.points_m.emplace_back(24.0, 6.0, 1.0);
+    mesh.face_counts = {4, 4, 4, 4, 4, 4, 3};
+    mesh.indices = {0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 4, 5, 9, 8, 5, 6, 10, 9, 6, 7, 11, 10, 7, 12, 11};
+    mesh.creases = {{5, 6, 2.5}};
+    mesh.holes = {1};
+    return mesh;
+}
+
+inline BaseShot cage_shot() {
+    BaseShot base{.name = "a cage", .scene = small_shot()};
+    base.scene.surface.kind = SurfaceKind::Cage;
+    base.scene.surface.cage_file = "basin.obj";
+    base.scene.surface.cage = std::make_shared<const Cage>(small_cage());
+    base.tables = {"sea", "surface", "camera"};
+    return base;
+}
+
+inline constexpr std::string_view kAdaptiveCageShot = "a cage as a camera that descends sees it";
+inline BaseShot adaptive_cage_shot() {
+    BaseShot base = cage_shot();
+    base.name = kAdaptiveCageShot;
+    descend(base.scene);
+    base.scene.surface.cage_level.is_adaptive = true;
+    base.tables = {"shot", "surface", "camera"};
     return base;
 }
 
@@ -218,6 +273,7 @@ inline std::vector<KeyValue> chosen_values(const std::string& path, const BaseSh
         return {value_of(slower, key_of(path)), value_of(between, key_of(path))};
     }
     if (path == "light.sky") return {base.skies.begin(), base.skies.end()};
+    if (path == "surface.cage_level") return {std::int64_t{1}, std::int64_t{3}, std::string("adaptive")};
     return {};
 }
 
@@ -233,6 +289,20 @@ inline std::vector<Edit> edits_of(const BaseShot& base) {
         const auto add = [&](Scene changed, const std::string& what) {
             if (validate(changed).empty()) edits.push_back({key.path, what, std::move(changed)});
         };
+        if (key.path == kCageFile) {
+            if (!base.scene.surface.cage) continue;
+            Scene changed = base.scene;
+            changed.surface.cage_file += ".moved";
+            add(changed, "moved");
+            CageMesh mesh = changed.surface.cage->mesh();
+            mesh.points_m.front().z += 0.5;
+            changed.surface.cage = std::make_shared<const Cage>(mesh);
+            add(changed, "other points");
+            mesh.creases.front().sharpness = 1.0;
+            changed.surface.cage = std::make_shared<const Cage>(std::move(mesh));
+            add(changed, "other sharpness");
+            continue;
+        }
         if (!key.set) {
             if (!base.scene.sea.measured) continue;
             Scene changed = base.scene;

@@ -72,10 +72,15 @@ void write_expected(const std::string& shot_file, const std::string& file) {
     std::ofstream out(file);
     out << R"json({"stage": {"startTimeCode": 1, "endTimeCode": 3, "timeCodesPerSecond": 24},
 "prims": {"/a_stage": "Xform", "/a_stage/Sea": "Mesh", "/a_stage/Camera": "Camera", "/a_stage/Sun": "DistantLight",
-  "/a_stage/Sky": "DomeLight", "/a_stage/Materials/Water": "Material"},
+  "/a_stage/Sky": "DomeLight", "/a_stage/Materials/Water": "Material", "/a_stage/Volumes": "Scope",
+  "/a_stage/Volumes/Spray": "Volume", "/a_stage/Volumes/Spray/density": "OpenVDBAsset",
+  "/a_stage/Volumes/Spray/velocity": "OpenVDBAsset", "/a_stage/Volumes/LevelSet": "Volume",
+  "/a_stage/Volumes/LevelSet/surface": "OpenVDBAsset"},
 "root": ["defaultPrim = \"a_stage\"", "upAxis = \"Z\"", "metersPerUnit = 1"],
 "flattened": ["1: (90, 0, 0),", "2: (90, 0, 45),", "3: (90, 0, 90),", "1: (0, -60, 4),", "2: (20, -60, 4),",
-  "3: (40, -60, 4),"],
+  "3: (40, -60, 4),", "rel field:density = </a_stage/Volumes/Spray/density>",
+  "rel field:surface = </a_stage/Volumes/LevelSet/surface>", "token fieldClass = \"fogVolume\"",
+  "token fieldClass = \"levelSet\""],
 "frames": {)json"
         << frames << "}}\n";
     if (!out.flush()) throw std::runtime_error("cannot write " + file);

@@ -60,8 +60,9 @@ TEST(BakeDisk, AReadOnlyFileSystemIsSaid) {
 
 TEST(BakeDisk, AFullDiskLosesNothingAndMoreRoomFinishesTheShot) {
     const TempFolder folder;
-    // About 200 kB a frame: a few fit into a megabyte, twelve don't.
-    write_file(folder.path() / "shot.toml", text_of({.frames = 12, .quads = 32}));
+    // About 250 kB a frame: a few fit into a megabyte, twelve don't.
+    write_file(folder.path() / "shot.toml",
+               text_of({.frames = 12, .quads = 32, .volumes = "\"spray\", \"level-set\""}));
     fs::create_directory(folder.path() / "disk");
     const std::string problem = mount_disk({.folder = folder.path() / "disk", .size = "1m"});
     if (!problem.empty()) GTEST_SKIP() << "a small disk can't be mounted here: " << problem;

@@ -73,10 +73,10 @@ INSTANTIATE_TEST_SUITE_P(
                 "4:17", "sea.spectrum_time = 1999-02-06T00:40:00Z: ", ""},
         Refused{"CameraOnItsTarget", "[camera]\nposition_m = [1.0, 2.0, 3.0]\nlook_at_m = [1.0, 2.0, 3.0]\n",
                 "3:13", "camera.look_at_m = [1, 2, 3]: ", "a target"},
-        Refused{"ValueNotBuiltYet", "[surface]\nkind = \"near-far\"\n", "2:8",
-                "surface.kind = \"near-far\": is not built yet", "\"patch\""},
-        Refused{"KeyNotBuiltYet", "[surface]\ncage_level = 8\n", "2:1",
-                "surface.cage_level = 8: is not built yet", "a file without this key"},
+        Refused{"CageWithoutItsFile", "[surface]\nkind = \"cage\"\n", "2:8",
+                "surface.kind = \"cage\": comes without cage_file", "\"cage\" together with cage_file"},
+        Refused{"KeyNotBuiltYet", "[quality]\nframe_ms = 8\n", "2:1",
+                "quality.frame_ms = 8: is not built yet", "a file without this key"},
         Refused{"NoToml", "[output\nmesh = \"none\"\n", "1:8", "", "TOML"}),
     [](const auto& one) { return one.param.name; });
 

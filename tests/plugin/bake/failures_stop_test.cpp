@@ -120,11 +120,15 @@ TEST_P(BakeStopped, AtRandomMomentsNothingIsTornAndTheNextRunFinishes) {
 // Frames enough that what comes before the first, the same for any number of them, isn't most of a bake.
 const SmallShot kBoth{.frames = 12};
 const SmallShot kMapsOnly{.frames = 12, .mesh = false, .maps = "\"displacement\", \"slope-variance\""};
+const SmallShot kVolumes{
+    .frames = 12, .mesh = false, .maps = "\"displacement\"", .volumes = "\"spray\", \"level-set\""};
 
 INSTANTIATE_TEST_SUITE_P(Failures, BakeStopped,
                          ::testing::Values(Stop{"Killed", SIGKILL, kBoth},
                                            Stop{"KilledMapsOnly", SIGKILL, kMapsOnly},
+                                           Stop{"KilledVolumes", SIGKILL, kVolumes},
                                            Stop{"Interrupted", SIGINT, kBoth},
+                                           Stop{"InterruptedVolumes", SIGINT, kVolumes},
                                            Stop{"InterruptedMapsOnly", SIGINT, kMapsOnly}),
                          [](const auto& one) { return one.param.name; });
 

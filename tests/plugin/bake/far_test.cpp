@@ -32,33 +32,36 @@ namespace {
 using namespace pelagic;
 using namespace pelagic::test;
 
-// Twice the area of a quad, as a vector along its normal.
-glm::dvec3 doubled_area(const Mesh& mesh, std::size_t quad) {
-    const std::int32_t* c = &mesh.corners[4 * quad];
-    return glm::cross(mesh.place_m(c[2]) - mesh.place_m(c[0]), mesh.place_m(c[3]) - mesh.place_m(c[1]));
+// Twice the area of a triangle or a quad, as a vector along its normal.
+glm::dvec3 doubled_area(const Mesh& mesh, const std::int32_t* c, std::int32_t count) {
+    return glm::cross(mesh.place_m(c[count - 2]) - mesh.place_m(c[0]),
+                      mesh.place_m(c[count - 1]) - mesh.place_m(c[count - 3]));
 }
 
 struct Quality {
-    std::size_t quads = 0, without_area = 0;
+    std::size_t faces = 0, without_area = 0;
     double off_normal =
         0.0;  // root mean square of 1 − cosine between a face's own normal and those at its corners
 };
 
 Quality quality_of(const Mesh& mesh) {
-    Quality quality{.quads = mesh.corners.size() / 4};
-    for (std::size_t quad = 0; quad < quality.quads; ++quad) {
-        const glm::dvec3 area = doubled_area(mesh, quad);
+    Quality quality{.faces = mesh.counts.size()};
+    const std::int32_t* next = mesh.corners.data();
+    for (const std::int32_t count : mesh.counts) {
+        const std::int32_t* const corners = next;
+        next += count;
+        const glm::dvec3 area = doubled_area(mesh, corners, count);
         if (!(glm::length(area) > 0.0)) {
             ++quality.without_area;
             continue;
         }
         glm::dvec3 normal(0.0);
-        for (std::size_t i = 0; i < 4; ++i)
-            normal += glm::dvec3(mesh.normals[static_cast<std::size_t>(mesh.corners[4 * quad + i])]);
+        for (std::int32_t i = 0; i < count; ++i)
+            normal += glm::dvec3(mesh.normals[static_cast<std::size_t>(corners[i])]);
         const double off = 1.0 - glm::dot(glm::normalize(area), glm::normalize(normal));
         quality.off_normal += off * off;
     }
-    quality.off_normal = std::sqrt(quality.off_normal / static_cast<double>(quality.quads));
+    quality.off_normal = std::sqrt(quality.off_normal / static_cast<double>(quality.faces));
     return quality;
 }
 
@@ -77,12 +80,32 @@ Scene scene_at(glm::dvec2 place_m, double height_m = 4.0) {
     scene.shot.last_frame = 4;
     scene.sea.wind_speed_mps = 12.0;
     scene.waves.cascades = {{.size_m = 200.0, .resolution = 128}, {.size_m = 31.0, .resolution = 64}};
-    scene.surface = {.size_m = 100.0, .resolution = 32, .cell_px = 6.0, .earth_curvature = false};
+    scene.surface.size_m = 100.0;
+    scene.surface.resolution = 32;
+    scene.surface.cell_px = 6.0;
+    scene.surface.earth_curvature = false;
     scene.camera.resolution = {192, 108};
     scene.camera.position_m = glm::dvec3(place_m, height_m);
     scene.camera.look_at_m = glm::dvec3(place_m + glm::dvec2(10.0, 40.0), height_m - 3.0);
     scene.quality.level = QualityLevel::Preview;
     return scene;
+}
+
+// A flat cage of 24 × 24 faces, 4 m each, round a place; refined twice.
+std::shared_ptr<const Cage> flat_cage(glm::dvec2 middle_m) {
+    constexpr int kFaces = 24;
+    CageMesh mesh;
+    for (int y = 0; y <= kFaces; ++y)
+        for (int x = 0; x <= kFaces; ++x)
+            mesh.points_m.emplace_back(middle_m + 4.0 * (glm::dvec2(x, y) - 0.5 * kFaces), 0.0);
+    for (int y = 0; y < kFaces; ++y)
+        for (int x = 0; x < kFaces; ++x) {
+            const int corner = y * (kFaces + 1) + x;
+            mesh.face_counts.push_back(4);
+            mesh.indices.insert(mesh.indices.end(),
+                                {corner, corner + 1, corner + kFaces + 2, corner + kFaces + 1});
+        }
+    return std::make_shared<const Cage>(std::move(mesh));
 }
 
 // From the world's origin to the last place that a camera may have.
@@ -99,17 +122,21 @@ TEST_F(FarOut, EverySurfaceInEveryFormatIsAsExactAsAtTheOrigin) {
         for (const std::string& format : built_words("output.mesh")) {
             if (format == "none") continue;
             Quality near;
-            const bool is_planet = kind == word_of(SurfaceKind::Planet);
+            const bool is_planet = kind == word_of(SurfaceKind::Planet),
+                       is_cage = kind == word_of(SurfaceKind::Cage);
             for (const glm::dvec2 place_m : is_planet ? kPlacesOfAPlanet_m : kPlaces_m) {
                 SCOPED_TRACE(kind + " as " + format + ", camera at " + std::to_string(place_m.x) + ", " +
                              std::to_string(place_m.y));
                 Scene scene = scene_at(place_m);
                 ASSERT_FALSE(set_value(scene, key_of("surface.kind"), kind));
                 if (is_planet) to_planet(scene);
+                // No cage lies farther out.
+                if (is_cage && !limits::kCagePoint_m.holds(2.0 * glm::length(place_m))) continue;
+                if (is_cage) scene.surface.cage = flat_cage(place_m);
                 ASSERT_FALSE(set_value(scene, key_of("output.mesh"), format));
                 const Mesh mesh = baked(scene, 3);
                 const Quality quality = quality_of(mesh);
-                ASSERT_GT(quality.quads, 500u);
+                ASSERT_GT(quality.faces, 500u);
                 EXPECT_EQ(quality.without_area, 0u);
                 if (place_m == glm::dvec2(0.0)) near = quality;
                 // Of other waves of the same sea: 1 … 1.15, measured.

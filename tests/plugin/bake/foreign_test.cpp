@@ -24,7 +24,8 @@ class ForeignFiles : public ::testing::Test {
         fs::remove_all(folder_);
         fs::create_directories(folder_);
         scene_.shot.last_frame = 3;
-        scene_.surface = {.size_m = 100.0, .resolution = 4};
+        scene_.surface.size_m = 100.0;
+        scene_.surface.resolution = 4;
         scene_.waves.cascades = {{.size_m = 100.0, .resolution = 32}};
         scene_.output.map_resolution = 4;
     }

@@ -142,7 +142,8 @@ Scene small_scene() {
     scene.shot.name = "a-b";
     scene.shot.last_frame = 1;
     scene.waves.cascades = {{.size_m = 80.0, .resolution = 32}};
-    scene.surface = {.size_m = 80.0, .resolution = 4};
+    scene.surface.size_m = 80.0;
+    scene.surface.resolution = 4;
     return scene;
 }
 

@@ -34,7 +34,8 @@ class BakedMaps : public ::testing::Test {
         scene_.sea.wind_speed_mps = 12.0;
         scene_.waves.cascades = {{.size_m = 600.0, .resolution = 128}};
         scene_.waves.tiling = Tiling::Periodic;  // the patch is a period
-        scene_.surface = {.size_m = 600.0, .resolution = 4};
+        scene_.surface.size_m = 600.0;
+        scene_.surface.resolution = 4;
         scene_.output.mesh = MeshFormat::None;
         scene_.output.map_resolution = 128;
         folder_ = fs::temp_directory_path() / ("pelagic-maps-" + std::to_string(getpid()));

@@ -79,16 +79,47 @@ class RandomShot {
                      << ", resolution = " << pick({16, 32}) << " }";
             shot << " ]\n";
         }
-        shot << "[surface]\nsize_m = " << (own_cascades ? pick({0.5, 50.0, 400.0, 3e4}) : pick({200.0, 3e4}))
-             << "\nresolution = " << pick({1, 2, 3, 7, 8, 16}) << "\n";
-        shot << "[effects]\nwhitecaps = " << (chance(0.8) ? "true" : "false") << "\n";
+        const double size_m = own_cascades ? pick({0.5, 50.0, 400.0, 3e4}) : pick({200.0, 3e4});
+        shot << "[surface]\nsize_m = " << size_m << "\nresolution = " << pick({1, 2, 3, 7, 8, 16}) << "\n";
+        if (chance(0.3)) {
+            shot << "kind = \"near-far\"\nearth_curvature = " << (chance(0.5) ? "true" : "false") << "\n";
+            const double x_m = pick({0.0, -3.3, 1e5, 1e9}), z_m = pick({0.0, 0.1, 4.0, -2.0, 1e3, 1e5});
+            shot << "[camera]\nposition_m = [" << x_m << ", " << -x_m << ", " << z_m << "]\nlook_at_m = ["
+                 << x_m << ", " << -x_m << ", " << z_m - 100.0 << "]\n";
+        } else if (chance(0.2)) {
+            shot << "kind = \"cage\"\ncage_file = \"cage.obj\"\ncage_level = "
+                 << pick({"0", "1", "2", "\"adaptive\""}) << "\n";
+            if (chance(0.5)) shot << "cell_px = 64\n";
+        }
+        const bool whitecaps = chance(0.8), spray = chance(0.6);
+        shot << "[effects]\nwhitecaps = " << (whitecaps ? "true" : "false") << "\n";
+        if (spray) shot << "spray = true\nspray_gain = " << pick({1.0, 0.0, 30.0, 1e6}) << "\n";
         shot << "[quality]\nlevel = \"" << pick({"draft", "preview", "final", "reference"}) << "\"\n";
         shot << "[output]\nmesh = \"" << pick({"usda", "usda", "usdc", "none"}) << "\"\nattributes = ["
              << subset({"normal", "velocity", "slope-variance", "whitecaps"}) << "]\nmaps = ["
              << subset({"displacement", "normal", "slope-variance", "whitecaps"})
              << "]\nmap_resolution = " << pick({1, 2, 5, 8, 16}) << "\n";
         if (own_cascades && chance(0.3)) shot << "cascade_tiles = true\n";
+        if (chance(0.4))
+            shot << "volumes = ["
+                 << (whitecaps && spray ? subset({"spray", "level-set"}) : subset({"level-set"}))
+                 << "]\nvoxel_m = " << size_m / pick({1.0, 1.7, 5.0, 20.0}) << "\n";
         return shot.str();
+    }
+
+    // A few faces of any size and slope, among them triangles, with creases, a corner and a hole.
+    std::string cage() {
+        std::ostringstream obj;
+        const double size = pick({0.0, 0.1, 10.0, 1e5}), at = pick({0.0, 0.0, 9e5});
+        for (int y = 0; y < 3; ++y)
+            for (int x = 0; x < 3; ++x)
+                obj << "v " << at + size * (x + 0.2 * uniform(-1.0, 1.0)) << ' ' << size * y << ' '
+                    << pick({0.0, size * uniform(-2.0, 2.0)}) << '\n';
+        obj << "f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9\nf 5 9 8\nt crease 2/1/0 3 4 "
+            << pick({0.0, 1.5, 10.0}) << "\nt corner 1/1/0 4 " << pick({0.0, 3.0}) << "\n";
+        if (chance(0.3)) obj << "t hole 1/0/0 0\n";
+        if (chance(0.3)) obj << "t interpolateboundary 1/0/0 2\n";
+        return obj.str();
     }
 
   private:
@@ -180,11 +211,13 @@ TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
     int baked = 0;
     for (int i = 0; i < kEach; ++i) {
         const unsigned seed = static_cast<unsigned>(GetParam() * kEach + i);
-        const std::string text = RandomShot(seed).text();
+        RandomShot random(seed);
+        const std::string text = random.text();
         SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + text);
         fs::remove_all(folder);
         fs::create_directories(folder);
         std::ofstream(folder / "shot.toml") << text;
+        std::ofstream(folder / "cage.obj") << random.cage();
 
         std::vector<Files> results;
         bool refused = false;

@@ -49,7 +49,8 @@ Files files_in(const fs::path& folder) {
 Scene every_output(MeshFormat format) {
     Scene scene;
     scene.shot.last_frame = 3;
-    scene.surface = {.size_m = 100.0, .resolution = 4};
+    scene.surface.size_m = 100.0;
+    scene.surface.resolution = 4;
     scene.waves.cascades = {{.size_m = 100.0, .resolution = 128}, {.size_m = 17.0, .resolution = 32}};
     scene.output.mesh = format;
     scene.output.maps = {MapKind::Displacement, MapKind::Normal, MapKind::SlopeVariance, MapKind::Whitecaps};

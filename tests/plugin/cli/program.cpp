@@ -21,6 +21,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "tests/plugin/bake/read_vdb.h"
+
 namespace pelagic::test {
 namespace {
 
@@ -110,6 +112,15 @@ std::string why_torn_png(const std::string& bytes) {
     return "ends in the middle";
 }
 
+// OpenVDB reads all of it.
+std::string why_torn_vdb(const fs::path& file) {
+    try {
+        return read_vdb(file).empty() ? "holds no grid" : "";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
 std::string why_torn(const fs::path& file) {
     const std::string extension = file.extension();
     if (extension == ".usda") return why_torn_usd(read_file(file));
@@ -117,6 +128,7 @@ std::string why_torn(const fs::path& file) {
     if (extension == ".json") return nlohmann::json::accept(read_file(file)) ? "" : "is not JSON";
     if (extension == ".exr") return Imf::checkOpenEXRFile(file.c_str()) ? "is not a whole OpenEXR file" : "";
     if (extension == ".png") return why_torn_png(read_file(file));
+    if (extension == ".vdb") return why_torn_vdb(file);
     if (extension == ".toml") return {};  // written by the test
     return "is of an unknown kind";
 }

@@ -12,6 +12,7 @@ struct SmallShot {
     int quads = 8;  // per side
     bool mesh = true;
     std::string maps = "\"displacement\", \"whitecaps\"";
+    std::string volumes = "";  // of 20 × 20 voxels
 };
 std::string text_of(const SmallShot& shot);
 

@@ -198,6 +198,8 @@ TEST(LiveSea, EveryKeyOfTheWavesIsAnotherSea) {
         [](Scene& s) { s.shot.seed = 2; },
         [](Scene& s) { s.quality.level = QualityLevel::Draft; },
         [](Scene& s) { s.shot.loop_s = 1.0; },
+        [](Scene& s) { s.effects.spray = true; },
+        [](Scene& s) { s.effects.spray_gain = 3.0; },
     };
     for (std::size_t i = 0; i < changes.size(); ++i) {
         Scene changed = small_scene();
@@ -205,6 +207,30 @@ TEST(LiveSea, EveryKeyOfTheWavesIsAnotherSea) {
         changes[i](changed);
         EXPECT_FALSE(same_sea(changed, small_scene())) << i;
     }
+}
+
+// Its map follows the camera, over a sea that plays and over one that stands still.
+TEST(LiveSea, HasTheSprayBeforeTheLatestCamera) {
+    Scene scene = small_scene(20.0);
+    scene.effects.spray = true;
+    LiveSea sea([](const Scene& asked) { return build_live(asked, {}); });
+    sea.ask(scene);
+    View view = view_at(scene.camera, 1);
+    const auto is_seen_from = [&](double time_s, double height_m) {
+        view.position_m.z = height_m;
+        return wait_for([&] {
+            sea.show(time_s, {}, view);
+            const auto spray = sea.newest_spray();
+            return spray && spray->eye_m == static_cast<float>(height_m);
+        });
+    };
+    EXPECT_TRUE(is_seen_from(1.0, 8.0));
+    EXPECT_FALSE(sea.newest_spray()->empty());
+    EXPECT_TRUE(is_seen_from(1.0, 9.0));
+    EXPECT_TRUE(is_seen_from(2.0, 10.0));
+    sea.show(2.0);
+    EXPECT_EQ(sea.newest_spray(), nullptr);
+    EXPECT_EQ(sea.status().error, "");
 }
 
 TEST(LiveSea, TheFrameIsOfTheTimeAskedForAndOfItAlone) {

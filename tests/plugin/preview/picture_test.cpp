@@ -85,6 +85,22 @@ TEST(PreviewsPicture, IsTheCpusOfCopiesAtRandomOffsets) {
     scene.waves.tiling = Tiling::Random;
     compare_frame("of copies", scene, {320, 180});
 }
+// From among the crests, and over them.
+Scene sprayed_scene(glm::dvec3 position_m, glm::dvec3 look_at_m) {
+    Scene scene = scene_of(position_m, look_at_m);
+    scene.sea.wind_speed_mps = 20.0;
+    scene.effects.spray = true;
+    scene.effects.spray_gain = 20.0;
+    return scene;
+}
+TEST(PreviewsPicture, IsTheCpusOfSpray) {
+    compare_frame("of spray", sprayed_scene({0.0, -60.0, 12.0}, {0.0, 0.0, 8.0}), {320, 180});
+}
+TEST(PreviewsPicture, IsTheCpusOfSprayFromAPlane) {
+    compare_frame("of spray from a plane", sprayed_scene({1e6, -1e6, 400.0}, {1e6, -1e6 + 1500.0, 0.0}),
+                  {320, 180});
+}
+
 // What waves that broke before have left, near and far, in both hosts alike.
 Scene living_scene(glm::dvec3 position_m, glm::dvec3 look_at_m) {
     Scene scene = scene_of(position_m, look_at_m);

@@ -9,6 +9,7 @@
 
 #include "core/scene/canonical.h"
 #include "core/scene/presets.h"
+#include "core/scene/shot_text.h"
 #include "core/scene/text.h"
 #include "temporary_folder.h"
 #include "tests/plugin/shot/no_check.h"
@@ -391,15 +392,56 @@ TEST(Shot, WhatIsWrongInAPictureIsToldWithItsPlace) {
     EXPECT_EQ(lines(refused_with("[light]\nsky = \"dusk.exr\"\n")), 1u);
 }
 
+TEST(Shot, ACageIsReadFromItsFile) {
+    const TemporaryFolder folder;
+    folder.write("pool.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+    folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n");
+    const std::filesystem::path file = folder.path() / "s.toml";
+    const auto refused_with = [&](const std::string& text) -> std::string {
+        try {
+            parse_shot(text, file, no_check);
+        } catch (const ShotError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string cage = "[surface]\nkind = \"cage\"\n";
+    const Scene scene =
+        parse_shot(cage + "cage_file = \"pool.obj\"\ncage_level = \"adaptive\"\n", file, no_check);
+    EXPECT_EQ(scene.surface.cage->mesh().face_counts.size(), 1u);
+    EXPECT_TRUE(scene.surface.cage_level.is_adaptive);
+    EXPECT_EQ(scene.surface.cage_file, (folder.path() / "pool.obj").string());
+    EXPECT_EQ(canonical(parse_shot(shot_text(scene), "elsewhere.toml", no_check)), canonical(scene));
+    const std::string at = file.string();
+    EXPECT_EQ(
+        refused_with(cage + "cage_file = \"bad.obj\"\n"),
+        at +
+            ":3:13: surface.cage_file = \"bad.obj\": bad.obj:3: the point 3 is outside the range; accepted: 1 … 2 or "
+            "-1 … -2: so many stand above");
+    EXPECT_EQ(
+        refused_with(cage + "cage_file = \"none.obj\"\n"),
+        at +
+            ":3:13: surface.cage_file = \"none.obj\": the cage does not exist; accepted: a Wavefront OBJ of at most 256 "
+            "MiB");
+    EXPECT_EQ(
+        refused_with(cage),
+        at +
+            ":2:8: surface.kind = \"cage\": comes without cage_file; accepted: \"cage\" together with cage_file");
+    EXPECT_EQ(
+        refused_with("[surface]\ncage_file = \"pool.obj\"\n"),
+        at +
+            ":2:13: surface.cage_file = \"pool.obj\": is given, but kind is \"patch\"; accepted: this key together "
+            "with kind = \"cage\"");
+    EXPECT_EQ(
+        refused_with(cage + "cage_file = \"pool.obj\"\ncage_level = \"fine\"\n"),
+        at +
+            ":4:14: surface.cage_level = \"fine\": is not the word \"adaptive\"; accepted: an integer, 0 … 6, or "
+            "\"adaptive\"");
+    EXPECT_EQ(lines(refused_with(cage + "cage_file = 3\n")), 1u);
+}
+
 TEST(Shot, WhatIsNotBuiltYetIsRefused) {
-    expect_refused("[surface]\nkind = \"near-far\"\n", "2:8: surface.kind = \"near-far\": is not built yet",
-                   "\"patch\"");
-    expect_refused("[output]\nvolumes = [\"level-set\"]\n",
-                   "2:12: output.volumes[0] = \"level-set\": is not built yet", "[]");
-    for (const auto& [table, key] : {std::pair{"surface", "cage_file"},
-                                     {"surface", "cage_level"},
-                                     {"quality", "max_error"},
-                                     {"quality", "frame_ms"}}) {
+    for (const auto& [table, key] : {std::pair{"quality", "max_error"}, {"quality", "frame_ms"}}) {
         const std::string name = std::string(table) + '.' + key;
         expect_refused(name + " = 3\n",
                        "1:" + std::to_string(name.find('.') + 2) + ": " + name + " = 3: is not built yet",
@@ -623,9 +665,8 @@ TEST(Shot, HelpNamesEveryKey) {
     const std::string help = describe_keys();
     for (const char* part :
          {"[shot]", "  shot.fps = 24\n", "[1/s]", "sea.swell[].period_s", "camera.keys[].frame",
-          "waves.cascades = \"auto\"", "waves.trains = 60", "  waves.longest_m\n",
-          "not built yet: use kind = \"patch\"", "0 … 80",
-          "output.attributes = [\"normal\", \"velocity\", \"slope-variance\", \"whitecaps\"]"}) {
+          "waves.cascades = \"auto\"", "waves.trains = 60", "  waves.longest_m\n", "not built yet: use level",
+          "0 … 80", "output.attributes = [\"normal\", \"velocity\", \"slope-variance\", \"whitecaps\"]"}) {
         EXPECT_NE(help.find(part), std::string::npos) << part;
     }
 }

@@ -13,6 +13,8 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <tuple>
 
 namespace pelagic::usd {
 namespace {
@@ -294,6 +296,20 @@ def Xform "a_b"
 }
 )";
     EXPECT_EQ(text, expected);
+}
+
+// Where points follow the camera and faces stay, a point isn't the same place in the next frame.
+TEST(UsdText, SaysWhichPointsFollowTheCamera) {
+    const auto says = [](const AttributeSet& attributes, const char* what) {
+        return root_text({.attributes = attributes}).find(what) != std::string::npos;
+    };
+    for (const auto& [attributes, origin, points] :
+         {std::tuple(AttributeSet{}, false, false),
+          {AttributeSet{.faces = true, .origin = true}, true, false},
+          {AttributeSet{.origin = true}, true, true}}) {
+        EXPECT_EQ(says(attributes, "A step is no motion"), origin);
+        EXPECT_EQ(says(attributes, "blur by velocities"), points);
+    }
 }
 
 TEST(UsdText, MaterialReadsTheMeshsPrimvarsOnlyWhereTheyAre) {

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What isn't a surface: spray as a volume to look at, and the sea as a level set, which simulations of water start from.
+
+A bake writes OpenVDB files, one a frame, beside Blender's other work. A volume object shows them, below its ocean in the
+outliner: they lie in the ocean's own coordinates.
+"""
+
+import re
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+from bpy.props import EnumProperty, PointerProperty, StringProperty
+
+from . import compat, ocean
+from .baking import Bakes, draw_progress, folder_of
+from .nodes import Tree
+from .properties import FIELDS
+
+MARK = "pelagic_spray"  # on a material of the add-on
+FORWARD = 0.85  # mean cosine of what droplets scatter, which are much larger than light's wavelengths (Hansen & Travis 1974)
+
+# A change of keys that feed these makes files that were baked others' than the ocean's.
+FEEDS = {"waves", "gusts", "foam", "clock", "spray", "volumes", "quality"}
+PLACES = tuple(place for place, field in enumerate(FIELDS) if FEEDS & set(field.key["feeds"]))
+
+
+@dataclass(frozen=True)
+class Kind:
+    word: str  # in output.volumes, and in the names of files
+    label: str
+    grid: str
+    help: str
+
+
+KINDS = {kind.word: kind for kind in (
+    Kind("spray", "Spray", "density", "Droplets over breaking crests: how much they dim light, in 1/m, and how they fly"),
+    Kind("level-set", "Level Set", "surface",
+         "The distance from the sea's surface, below it negative: what a simulation of water starts from"))}
+
+
+def words_of(frames):
+    """Of sorted numbers: "3, 7-9"."""
+    ranges = []
+    for frame in frames:
+        if ranges and ranges[-1][1] == frame - 1:
+            ranges[-1][1] = frame
+        else:
+            ranges.append([frame, frame])
+    return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in ranges)
+
+
+def files_of(folder, name, kind):
+    """{frame: Path} of a bake's volumes."""
+    start, end = f"{name}.{kind}.", ".vdb"
+    found = {}
+    for file in (Path(folder) / "volumes").glob(f"{start}*{end}"):
+        number = file.name[len(start):-len(end)]
+        if re.fullmatch(r"\d{4,}", number):
+            found[int(number)] = file
+    return found
+
+
+def scene_of_volume(obj, bpy_scene, depsgraph, kind):
+    """The scene whose bake is this volume and nothing else. ValueError for what can't be baked."""
+    scene = ocean.scene_of(obj, bpy_scene, depsgraph)
+    # Volumes cover the patch's square in the world, whatever the surface is.
+    if scene.surface.kind == "cage":
+        scene.surface.cage = None
+    scene.surface.kind = "patch"
+    scene.output.mesh, scene.output.maps, scene.output.cascade_tiles = "none", (), False
+    scene.output.mesh_scheme, scene.output.volumes = "none", (kind,)
+    if kind == "spray":
+        scene.effects.spray = True
+    problems = scene.validate()
+    if problems:
+        raise ValueError("\n".join(problems))
+    return scene
+
+
+def volumes_of(obj):
+    """{word of a kind: volume object} of an ocean, or of a bake that is played."""
+    return {each.pelagic_volume.kind: each for each in bpy.data.objects
+            if each.type == "VOLUME" and each.pelagic_volume.of == obj}
+
+
+# ---- Objects
+
+
+def show(obj, kind, files, scene, offset=0, parented=True):
+    """Makes the volume object of an ocean, or brings the one that is there to these files. scene: of their bake, offset: by how
+    many frames later they are shown. Returns it."""
+    first, last = scene.shot.frames
+    made = volumes_of(obj).get(kind)
+    if made is None:
+        label = f"{obj.name} {KINDS[kind].label}"
+        made = bpy.data.objects.new(label, bpy.data.volumes.new(label))
+        for collection in obj.users_collection:
+            collection.objects.link(made)
+        made.pelagic_volume.kind, made.pelagic_volume.of = kind, obj
+        if parented:
+            made.parent = obj
+        made.data.render.precision = "FULL"  # nature's own density is too small a number for a half
+        made.data.velocity_unit = "SECOND"
+        if kind == "level-set":
+            _add_surface(obj, made)
+    else:
+        made.data.grids.unload()  # of files that were written anew
+    volume = made.data
+    volume.filepath = _shown_path(files[min(files)])
+    volume.is_sequence, volume.sequence_mode = True, "CLIP"
+    volume.frame_start, volume.frame_duration, volume.frame_offset = first + offset, last - first + 1, first - 1
+    made.delta_location = [-compat.VOXELS_OFF * scene.output.voxel_m] * 3  # its location is its user's
+    if kind == "spray" and not any(volume.materials):
+        volume.materials.clear()
+        volume.materials.append(_spray_material())
+    return made
+
+
+def _shown_path(file):
+    """Beside the .blend as // where it lies there, so that both can be moved together."""
+    if bpy.data.filepath:
+        folder = Path(bpy.data.filepath).parent
+        if folder in file.parents:
+            return bpy.path.relpath(str(file))
+    return str(file)
+
+
+def _add_surface(obj, volume):
+    """A level set is nothing to look at: a mesh of its zero stands for it, which Blender makes anew at each frame."""
+    volume.hide_render = True
+    made = bpy.data.objects.new(f"{volume.name} Surface", bpy.data.meshes.new(f"{volume.name} Surface"))
+    for collection in obj.users_collection:
+        collection.objects.link(made)
+    made.parent = volume
+    modifier = made.modifiers.new("Level Set", "VOLUME_TO_MESH")
+    modifier.object, modifier.grid_name, modifier.threshold = volume, KINDS["level-set"].grid, 0.0
+    modifier.resolution_mode, modifier.use_smooth_shade = "GRID", True
+
+
+def _spray_material():
+    """Droplets scatter light and absorb none; the grid is their extinction in 1/m."""
+    found = next((each for each in bpy.data.materials if MARK in each), None)
+    if found is not None:
+        return found
+    material = bpy.data.materials.new("Pelagic Spray")
+    material[MARK] = True
+    material.use_nodes = True
+    tree = Tree(material.node_tree)
+    tree.node("ShaderNodeOutputMaterial", {"Volume": tree.add("ShaderNodeVolumePrincipled", {
+        "Color": (1.0, 1.0, 1.0, 1.0), "Density": 1.0, "Density Attribute": KINDS["spray"].grid, "Anisotropy": FORWARD,
+        "Absorption Color": (0.0, 0.0, 0.0, 1.0)})})
+    return material
+
+
+# ---- What is wrong with them
+
+
+def _signature(obj):
+    """What an ocean's volumes depend on."""
+    settings = ocean.settings_of(obj)
+    return f"{zlib.crc32(repr([settings[place] for place in PLACES]).encode()):08x}"
+
+
+def problem_of(volume, frame):
+    """What is wrong with a volume object at a frame, in words; "" if nothing."""
+    data = volume.data
+    number = frame - data.frame_start + 1 + data.frame_offset
+    if not 1 <= frame - data.frame_start + 1 <= data.frame_duration:
+        return f"Nothing is baked for frame {frame}"
+    path = Path(bpy.path.abspath(data.filepath))
+    file = path.with_name(re.sub(r"\d+(?=\.vdb$)", f"{number:04}", path.name))
+    if not file.exists():
+        return f"{file}: is missing; bake again"
+    of = volume.pelagic_volume.of
+    told = volume.pelagic_volume.signature
+    if told and ocean.is_ocean(of) and told != _signature(of):
+        return f"{of.name}'s settings have changed since this was baked: bake again"
+    return ""
+
+
+# ---- Operator, panel
+
+
+class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
+    """Bake a volume of the ocean for the scene's frames, and show it. Esc stops it; the next bake goes on from there"""
+
+    bl_idname = "pelagic.bake_volume"
+    bl_label = "Bake Volume"
+    bl_options = {"UNDO"}
+
+    kind: EnumProperty(name="Volume", items=[(kind.word, kind.label, kind.help) for kind in KINDS.values()])
+
+    @classmethod
+    def description(cls, _context, properties):
+        return f"{KINDS[properties.kind].help}. Baked for the scene's frames, over the patch's square"
+
+    def order(self, context, obj):
+        scene = scene_of_volume(obj, context.scene, context.evaluated_depsgraph_get(), self.kind)
+        folder = folder_of(obj)
+        remarks = []
+        if obj.animation_data and obj.animation_data.action:
+            remarks.append(f"{obj.name} is animated: its volume has its settings at frame {context.scene.frame_current}")
+        return scene, folder.with_name(f"{folder.name}-{self.kind}"), remarks
+
+    def take(self, context, baking):
+        obj = bpy.data.objects.get(baking.ocean)
+        if not ocean.is_ocean(obj):
+            return f". {baking.ocean} isn't there any more: its volume isn't shown"
+        shot = baking.scene.shot
+        files = files_of(baking.folder, shot.name, self.kind)
+        files = {frame: file for frame, file in files.items() if shot.frames[0] <= frame <= shot.frames[1]}
+        if not files:
+            return ""
+        volume = show(obj, self.kind, files, baking.scene)
+        volume.pelagic_volume.signature = _signature(obj)
+        missing = words_of(frame for frame in range(shot.frames[0], shot.frames[1] + 1) if frame not in files)
+        return f". Missing on disk: {missing}" if missing else ""
+
+
+class PELAGIC_PG_volume(bpy.types.PropertyGroup):
+    kind: StringProperty()
+    of: PointerProperty(type=bpy.types.Object)
+    signature: StringProperty()  # of the settings that it was baked with
+
+
+class PELAGIC_PT_volume(bpy.types.Panel):
+    bl_label = "Pelagic Volume"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        return context.object is not None and context.object.type == "VOLUME" and bool(context.object.pelagic_volume.kind)
+
+    def draw(self, context):
+        volume = context.object
+        kind = KINDS[volume.pelagic_volume.kind]
+        of = volume.pelagic_volume.of
+        self.layout.label(text=f"{kind.label} of {of.name}" if of else kind.label)
+        problem = problem_of(volume, context.scene.frame_current)
+        if problem:
+            self.layout.label(text=problem, icon="ERROR")
+
+
+def _draw_one(layout, context, kind):
+    if draw_progress(layout):
+        return
+    text = f"Bake {KINDS[kind].label} Volume"
+    layout.operator(PELAGIC_OT_bake_volume.bl_idname, text=text, icon="VOLUME_DATA").kind = kind
+    volume = volumes_of(context.object).get(kind)
+    problem = problem_of(volume, context.scene.frame_current) if volume else ""
+    if problem:
+        layout.label(text=problem, icon="ERROR")
+
+
+def _draw_spray(self, context):
+    """The end of the Effects panels."""
+    if context.object.pelagic.effects.spray:
+        _draw_one(self.layout, context, "spray")
+
+
+def _draw_level_set(self, context):
+    """The end of the Output panels."""
+    _draw_one(self.layout, context, "level-set")
+
+
+CLASSES = (PELAGIC_PG_volume, PELAGIC_OT_bake_volume, PELAGIC_PT_volume)
+PANELS = (("effects", _draw_spray), ("output", _draw_level_set))
+PLACES_OF_PANELS = ("object", "view")
+
+
+def register():
+    for made in CLASSES:
+        bpy.utils.register_class(made)
+    bpy.types.Object.pelagic_volume = PointerProperty(type=PELAGIC_PG_volume, name="Pelagic Volume")
+    for where in PLACES_OF_PANELS:
+        for title, draw in PANELS:
+            getattr(bpy.types, f"PELAGIC_PT_{where}_{title}").append(draw)
+
+
+def unregister():
+    for where in PLACES_OF_PANELS:
+        for title, draw in PANELS:
+            getattr(bpy.types, f"PELAGIC_PT_{where}_{title}").remove(draw)
+    del bpy.types.Object.pelagic_volume
+    for made in reversed(CLASSES):
+        bpy.utils.unregister_class(made)

@@ -1,0 +1,98 @@
+#include "core/lighting/spray.h"
+
+#include <cmath>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <stdexcept>
+
+#include "core/base/constants.h"
+#include "core/lighting/air.h"
+
+namespace pelagic {
+namespace {
+
+namespace shading {
+using namespace glm;
+
+struct Shading {
+    static constexpr int kAirColumns = Air::kColumns, kAirRows = Air::kRows, kAirSkyRows = Air::kSkyRows,
+                         kAirHorizonRow = Air::kHorizonRow;
+    const Spray& map;
+
+    vec4 air_texel(int, int) const { return vec4(0.0f); }  // the air has been counted
+    vec2 spray_texel(int column, int row) const {
+        return map.texels[static_cast<std::size_t>(row) * map.columns + static_cast<std::size_t>(column)];
+    }
+
+// clang-format off
+#include "core/lighting/air.glsl"
+#include "core/lighting/spray.glsl"
+    // clang-format on
+};
+
+}  // namespace shading
+
+shading::Shading::SprayView view_of(const Spray& spray) {
+    return {spray.columns,  spray.rows,    spray.azimuth, spray.columns_per_rad, spray.first_m,
+            spray.row_step, spray.scale_m, spray.eye_m,   spray.top_m,           spray.to_sun,
+            spray.sun,      spray.above,   spray.below};
+}
+
+void take(SeaRadiance& radiance, const shading::Shading::SprayPath& path) {
+    for (glm::vec3* layer : {&radiance.sun, &radiance.sky, &radiance.sea, &radiance.foam, &radiance.air})
+        *layer *= path.transmittance;
+    radiance.air += path.scattered;
+}
+
+shading::Shading::SprayPath path_of(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m,
+                                    bool on_sea) {
+    shading::Shading shading{spray};
+    return shading.spray_path(-direction, distance_m.value_or(shading.kSprayEndless_m), on_sea,
+                              view_of(spray));
+}
+
+}  // namespace
+
+void light_spray(Spray& spray, const LightingChoice& choice, const Sky& sky, const WaterBody& water,
+                 double foam) {
+    constexpr auto kPi_f = static_cast<float>(kPi);
+    const float sun = choice.sun ? 1.0f : 0.0f, rest = choice.sky ? 1.0f : 0.0f;
+    spray.to_sun = sky.sun_direction;
+    spray.sun = sky.sun_radiance * (sun * kPi_f * sky.sun_angular_radius * sky.sun_angular_radius);
+    spray.above = sky.sky_irradiance * (rest / kPi_f);
+    constexpr float kSurface = 0.06751f;  // of a diffuse sky's light, as kDiffuseFresnel in fresnel.glsl
+    const SeaAlbedo albedo = sea_albedo(water);
+    const auto covered = choice.whitecaps ? static_cast<float>(foam) : 0.0f;
+    const glm::vec3 clear = kSurface + (choice.water ? albedo.water : glm::vec3(0.0f));
+    spray.below = (sun * sky.sun_irradiance + rest * sky.sky_irradiance) / kPi_f *
+                  ((1.0f - covered) * clear + covered * albedo.foam);
+}
+
+SpraySeen spray_before(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m,
+                       bool on_sea) {
+    if (spray.empty()) return {};
+    const auto path = path_of(spray, direction, distance_m, on_sea);
+    return {path.transmittance, path.scattered};
+}
+
+void see_through_spray(const Spray& spray, std::span<const glm::vec3> to_eye,
+                       std::span<const float> distance_m, std::span<SeaRadiance> radiance) {
+    if (to_eye.size() != radiance.size() || distance_m.size() != radiance.size())
+        throw std::invalid_argument(
+            "see_through_spray: give one direction and one distance for each SeaRadiance");
+    if (spray.empty()) return;
+    shading::Shading shading{spray};
+    const shading::Shading::SprayView view = view_of(spray);
+    for (std::size_t i = 0; i < radiance.size(); ++i)
+        take(radiance[i], shading.spray_path(to_eye[i], distance_m[i], true, view));
+}
+
+float see_through_spray(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m,
+                        SeaRadiance& radiance) {
+    if (spray.empty()) return 1.0f;
+    const auto path = path_of(spray, direction, distance_m, false);
+    take(radiance, path);
+    return path.transmittance;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,179 @@
+// The spray before an eye: droplets over breaking crests, which take light away from a ray and scatter light of the sun, the sky
+// and the sea into it (Darles et al. 2007, §4.2). Needs air.glsl before it. The includer defines
+//   vec2 spray_texel(int column, int row)   the map (spray.h): the surface's height [m], and the extinction there [1/m]
+//
+// Rows of the map are circles round the eye's nadir in geometric progression, columns are azimuths: a ray stays between two columns.
+// From row to row both its height above the surface and the extinction there are taken as linear, and extinction falls with that
+// height z as exp(−z/scale): the integral is known. Where the map has the ray below the surface, z counts as 0. Transmittances of
+// pieces multiply (the paper adds them).
+//
+// Droplets absorb nothing. They are much larger than light's wavelengths: all colours alike, and most goes on nearly straight.
+// One scattering is followed, with light that is as in the open: what comes from all sides is scattered to all sides, so that
+// under the same light from everywhere spray isn't seen. The sun is dimmed by the spray above a place, as if that were as thick all
+// round; what it loses comes from all sides.
+
+struct SprayView {
+    int columns;
+    int rows;
+    vec2 azimuth;           // unit, horizontal: of column 0
+    float columns_per_rad;  // counter-clockwise
+    float first_m;          // row 0's distance from the nadir
+    float row_step;         // the logarithm of the next row's over it
+    float scale_m;
+    float eye_m;            // heights: of the eye,
+    float top_m;            // and of the highest place in the map
+    vec3 to_sun;
+    vec3 sun;               // irradiance, on a plane across it
+    vec3 above;             // mean radiance: of the sky,
+    vec3 below;             // and of the sea
+};
+
+struct SprayPath {
+    float transmittance;
+    vec3 scattered;  // radiance
+};
+
+const float kSprayEndless_m = 1.0e30f;  // the distance where a ray meets nothing
+// The mean cosine of what spheres of water much larger than the wavelength scatter (Hansen and Travis 1974: 0.85). Its square is the
+// share that counts as not scattered in what dims the sun (Joseph, Wiscombe and Weinman 1976).
+const float kSprayForward = 0.85f;
+const float kSprayHigh = 12.0f;     // scale heights above which there is none to speak of: 6e-6
+const float kSprayLowSun = 0.1f;    // the sine of the lowest elevation that counts: farther off there are other crests
+
+// A place along the ray.
+struct SprayPoint {
+    float extinction;  // at the surface there [1/m]
+    float z;           // above it, in scale heights
+    float thinner;     // exp(−z), 1 below it
+};
+
+SprayPoint spray_point(float extinction, float z) { return SprayPoint(extinction, z, exp(-max(z, 0.0f))); }
+
+// The mean of the extinction between two places above the surface. The first integral of exp(−z), by the height's own difference, has no
+// digits where that is small.
+float spray_over(SprayPoint a, SprayPoint b) {
+    bool rises = a.z <= b.z;
+    float low = rises ? a.extinction : b.extinction;
+    float more = (rises ? b.extinction : a.extinction) - low;
+    float dense = max(a.thinner, b.thinner);
+    float thin = min(a.thinner, b.thinner);
+    float x = abs(b.z - a.z);
+    if (x < 0.25f) {
+        float first = 1.0f - x * (0.5f - x * (1.0f / 6.0f - x * (1.0f / 24.0f - x * (1.0f / 120.0f))));
+        float second = 0.5f - x * (1.0f / 3.0f - x * (0.125f - x * (1.0f / 30.0f - x * (1.0f / 144.0f))));
+        return dense * (low * first + more * second);
+    }
+    float first = (dense - thin) / x;
+    return low * first + more * ((first - thin) / x);
+}
+
+float spray_mean(SprayPoint a, SprayPoint b) {
+    if (a.z >= 0.0f && b.z >= 0.0f) return spray_over(a, b);
+    if (a.z <= 0.0f && b.z <= 0.0f) return 0.5f * (a.extinction + b.extinction);
+    float part = a.z / (a.z - b.z);
+    SprayPoint surface = SprayPoint(mix(a.extinction, b.extinction, part), 0.0f, 1.0f);
+    float before = a.z > 0.0f ? spray_over(a, surface) : 0.5f * (a.extinction + surface.extinction);
+    float behind = b.z > 0.0f ? spray_over(surface, b) : 0.5f * (b.extinction + surface.extinction);
+    return mix(behind, before, part);
+}
+
+// Light that a ray in this direction has scattered into it where the extinction is so much, over the extinction.
+vec3 spray_source(vec3 ray, float extinction_per_m, SprayView spray) {
+    float column = extinction_per_m * spray.scale_m;
+    float left = exp(-(1.0f - kSprayForward * kSprayForward) * column / max(spray.to_sun.z, kSprayLowSun));
+    float phase = phase_lobe(dot(ray, spray.to_sun), kSprayForward);
+    // Of light from all sides most comes from ahead.
+    vec3 around = mix(spray.below, spray.above, 0.5f + 0.5f * kSprayForward * ray.z);
+    return around + spray.sun * (left * phase + (1.0f - left) * 0.07957747f);
+}
+
+SprayPath spray_behind(SprayPath path, vec3 ray, float thickness, float extinction_per_m, SprayView spray) {
+    float left = exp(-thickness);
+    float lost = thickness < 1.0e-3f ? thickness * (1.0f - 0.5f * thickness) : 1.0f - left;
+    return SprayPath(path.transmittance * left,
+                     path.scattered + path.transmittance * lost * spray_source(ray, extinction_per_m, spray));
+}
+
+vec2 spray_between(float column, int row) {
+    int left = int(column);
+    return mix(spray_texel(left, row), spray_texel(left + 1, row), column - float(left));
+}
+
+// to_eye: unit, from the place towards the eye. on_sea: the place is on the surface, wherever the map has that.
+SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray) {
+    vec3 ray = -to_eye;
+    float across = max(length(vec2(ray.x, ray.y)), 1.0e-6f);
+    float slope = ray.z / across;
+    float along_first = ray.x * spray.azimuth.x + ray.y * spray.azimuth.y;
+    float beside_first = ray.y * spray.azimuth.x - ray.x * spray.azimuth.y;
+    float turn = along_first * along_first + beside_first * beside_first > 0.0f ? atan(beside_first, along_first) : 0.0f;
+    // A column's own direction may be rounded to the last one's.
+    if (turn < -0.5f / spray.columns_per_rad) turn += 6.2831853f;
+    float column = clamp(turn * spray.columns_per_rad, 0.0f, float(spray.columns) - 1.001f);
+
+    // Where the ray ends: behind this row, at this part of the way to the next.
+    bool is_endless = distance_m >= kSprayEndless_m;
+    int last = spray.rows - 1;
+    float end_m = is_endless ? 0.0f : distance_m * across;
+    int end = last;
+    if (!is_endless)
+        end = end_m < spray.first_m ? -1 : min(int(log(end_m / spray.first_m) / spray.row_step), last);
+    float ratio = exp(spray.row_step);
+    // The eye itself counts as a row before the first.
+    int row = -1;
+    float high_m = spray.top_m + kSprayHigh * spray.scale_m;
+    if (slope < 0.0f && spray.eye_m > high_m) {
+        float from_m = (high_m - spray.eye_m) / slope;
+        if (from_m > spray.first_m) row = min(int(log(from_m / spray.first_m) / spray.row_step), end);
+    }
+    float at_m = row < 0 ? 0.0f : spray.first_m * exp(spray.row_step * float(row));
+    vec2 here = spray_between(column, max(row, 0));
+    // The map's cells hide waves. A ray that ends on the surface ends at its height 0. The row before counts with it, and the one
+    // before that the more the nearer.
+    vec2 ends = vec2(0.0f);
+    float ends_z = 0.0f;
+    float astray = 0.0f;
+    float astray_before = 0.0f;
+    if (!is_endless) {
+        vec2 before = spray_between(column, max(end, 0));
+        vec2 behind = spray_between(column, min(end + 1, last));
+        float before_m = spray.first_m * exp(spray.row_step * float(max(end, 0)));
+        float part = end < 0 ? 0.0f : clamp((end_m - before_m) / (before_m * (ratio - 1.0f)), 0.0f, 1.0f);
+        ends = mix(before, behind, part);
+        ends_z = (spray.eye_m + slope * end_m - ends.x) / spray.scale_m;
+        if (on_sea) {
+            astray = end < last ? ends_z : 0.0f;
+            astray_before = astray * (1.0f - part);
+            ends_z = 0.0f;
+        }
+    }
+    float off = row < 0 || row < end - 1 ? 0.0f : row == end ? astray : astray_before;
+    SprayPoint a = spray_point(here.y, (spray.eye_m + slope * at_m - here.x) / spray.scale_m - off);
+    SprayPath path = SprayPath(1.0f, vec3(0.0f));
+    float rise_per_m = slope * across / spray.scale_m;
+    bool has_left = false;
+    while (row < end) {
+        ++row;
+        float next_m = row == 0 ? spray.first_m : at_m * ratio;
+        here = spray_between(column, row);
+        off = row < end - 1 ? 0.0f : row == end ? astray : astray_before;
+        SprayPoint b = spray_point(here.y, (spray.eye_m + slope * next_m - here.x) / spray.scale_m - off);
+        float length_m = (next_m - at_m) / across;
+        path = spray_behind(path, ray, spray_mean(a, b) * length_m,
+                            0.5f * (a.extinction * a.thinner + b.extinction * b.thinner), spray);
+        rise_per_m = (b.z - a.z) / length_m;
+        at_m = next_m;
+        a = b;
+        has_left = slope > 0.0f && spray.eye_m + slope * at_m > high_m;
+        if (has_left) break;
+    }
+    if (has_left) return path;
+    if (!is_endless) {
+        SprayPoint b = spray_point(ends.y, ends_z);
+        return spray_behind(path, ray, spray_mean(a, b) * max((end_m - at_m) / across, 0.0f),
+                            0.5f * (a.extinction * a.thinner + b.extinction * b.thinner), spray);
+    }
+    // Beyond the last row the ray goes on rising over a sea like that there.
+    float dense = a.extinction * a.thinner;
+    return spray_behind(path, ray, dense / max(rise_per_m, 1.0e-6f), 0.5f * dense, spray);
+}

@@ -1,0 +1,50 @@
+// Spray before an eye, as a map round its nadir: how high the sea is there, and how much the spray above it dims. spray.glsl says
+// how rays go through it.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/lighting/lighting.h"
+
+namespace pelagic {
+
+// Empty: there is none.
+struct Spray {
+    int columns = 0, rows = 0;  // at least 2 each
+    glm::vec2 azimuth{1.0f, 0.0f};
+    float columns_per_rad = 1.0f, first_m = 1.0f, row_step = 0.1f;
+    float scale_m = 1.0f;  // of the profile exp(−z/scale)
+    float eye_m = 0.0f, top_m = 0.0f;
+    // Its light (light_spray()).
+    glm::vec3 to_sun{0.0f, 0.0f, 1.0f}, sun{0.0f}, above{0.0f}, below{0.0f};
+    // columns × rows, columns fastest: the surface's height in the axes of the eye's nadir [m], and the extinction there [1/m].
+    std::vector<glm::vec2> texels{};
+    bool empty() const { return texels.empty(); }
+};
+
+// The light that falls on it, of the terms that are on: from the sun, from the sky, and from a sea of which so much is foam.
+void light_spray(Spray& spray, const LightingChoice& choice, const Sky& sky, const WaterBody& water,
+                 double foam);
+
+struct SpraySeen {
+    float transmittance = 1.0f;
+    glm::vec3 scattered{0.0f};
+};
+// Before what lies in a direction from the eye (unit), at a distance [m]; none: before the sky. on_sea: a place of the sea
+// itself. Finite.
+SpraySeen spray_before(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m, bool on_sea);
+
+// What an eye sees of radiance[i], of places of the sea, through the spray and the air before them, which see_through() (air.h) has
+// counted already. Spray counts as before the air: what it takes of the air's own light is what the air before the spray would have added.
+// Its light goes into the layer `air`. Throws std::invalid_argument if the spans differ in length. Without spray nothing changes.
+void see_through_spray(const Spray& spray, std::span<const glm::vec3> to_eye,
+                       std::span<const float> distance_m, std::span<SeaRadiance> radiance);
+// The same of one that is no sea: the sky, or with a distance something else. How much of it is left.
+float see_through_spray(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m,
+                        SeaRadiance& radiance);
+
+}  // namespace pelagic

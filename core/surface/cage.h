@@ -1,0 +1,99 @@
+// The surface of a cage: points at rest on its limit surface (cage_limit.h), uniformly or as finely as a camera sees it.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/surface/cage_limit.h"
+#include "core/surface/rest_surface.h"
+
+namespace pelagic {
+
+// How many segments each part of a cage gets so that they are about as long as a cell on the screen. A segment is judged by its
+// length over the distance from the eye, wherever the eye looks: nothing changes when a camera turns, and what is behind
+// it or seen from the side is as fine. All of an edge is as fine as its nearest place needs, and the inside of a face
+// likewise: a large face near the eye is fine as a whole.
+class CageAdaption {
+  public:
+    // cell_px: as long as segments may be on the screen [pixels]. significant_height_m: of the waves, which come nearer to
+    // the eye than the surface at rest.
+    CageAdaption(const CageLimit& limit, std::span<const glm::dvec3> points_m, double cell_px,
+                 double significant_height_m);
+
+    struct Result {
+        CageRates rates;
+        double finest_m = 0.0;  // no longer than half the shortest segment
+    };
+    Result at(const View& view) const;
+    Result uniform(int segments) const;
+
+    static constexpr int kMostSegments = 1024;  // of an edge
+    static constexpr std::size_t kMostPoints = std::size_t{1}
+                                               << 27;  // a frame; segments grow where there would be more
+
+  private:
+    struct Half {
+        glm::dvec3 from, to;
+    };
+    double distance_m(const glm::dvec3& eye_m, std::size_t face) const;
+    double finest_of(const CageRates& rates) const;
+
+    const CageLimit& limit_;
+    double cell_px_, half_height_m_;
+    std::vector<glm::dvec3> points_, middles_,
+        centres_;  // on the limit surface: of points, edges and faces [m]
+};
+
+class CageSurface final : public RestSurface {
+  public:
+    CageSurface(const Scene& scene, const SeaReach& reach);
+
+    std::string describe() const override;
+    std::string remedy() const override;
+    bool is_constant() const override { return !level_.is_adaptive; }
+    bool has_constant_faces() const override { return !level_.is_adaptive; }
+    bool has_origin() const override;
+    bool has_st_of_corners() const override { return limit_.has_seams(); }
+    bool is_even() const override { return false; }
+    std::optional<View> shaped_by(int frame) const override;
+    FeedSet feeds() const override;
+    SurfaceNeeds needs(std::span<const int> frames) const override;
+    void points_at(int frame, RestPoints<float>& points) const override { lay_out(frame, points); }
+    void points_at(int frame, RestPoints<double>& points) const override { lay_out(frame, points); }
+    void faces_at(int frame, Faces& faces) const override;
+
+  private:
+    // What a pose gives, kept until another pose is asked for: while neither cage nor camera move, frames cost nothing.
+    struct Laid {
+        std::optional<View> view;
+        std::vector<glm::dvec3> places_m, normals;
+        std::vector<double> cell_m;
+        Faces faces;
+    };
+    std::shared_ptr<const Laid> laid_at(int frame) const;
+    // How finely the same pose asks for it, and how many points that makes; kept likewise.
+    struct Fineness {
+        std::optional<View> view;
+        CageAdaption::Result rates;
+        std::size_t points = 0;
+    };
+    std::shared_ptr<const Fineness> fineness_at(int frame) const;
+    template <class T>
+    void lay_out(int frame, RestPoints<T>& points) const;
+
+    std::shared_ptr<const Cage> cage_;
+    CageLevel level_;
+    Camera camera_;
+    int first_frame_;
+    CageLimit limit_;
+    CageAdaption adaption_;
+    glm::dvec3 origin_m_;
+    mutable std::mutex laid_mutex_, fineness_mutex_;
+    mutable std::shared_ptr<const Laid> laid_;
+    mutable std::shared_ptr<const Fineness> fineness_;
+};
+
+}  // namespace pelagic

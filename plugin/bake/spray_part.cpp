@@ -1,0 +1,216 @@
+// Spray: how much droplets dim light, and how they fly, in voxels over the patch's square.
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <mutex>
+
+#include "core/base/constants.h"
+#include "core/effects/spray.h"
+#include "core/effects/wind_profile.h"
+#include "core/plan/spray.h"
+#include "plugin/bake/volume_part.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kH_m = SprayLaw::kScaleHeight_m;
+struct SpraySlot final : OutputSlot {
+    // By column: the sea's height, and how much spray beside the sea's mean.
+    std::vector<float> heights_m, shares;
+    std::string file;
+};
+
+// The profile's mean over [from_m, to_m] above the sea, none below it.
+double mean_profile(double from_m, double to_m) {
+    if (!(to_m > 0.0)) return 0.0;
+    return kH_m * (std::exp(-std::max(from_m, 0.0) / kH_m) - std::exp(-to_m / kH_m)) / (to_m - from_m);
+}
+
+class SprayPart final : public VolumePart {
+  public:
+    SprayPart(const Plan& plan, const PlannedOutput& output)
+        : VolumePart(plan, output), law_(spray_law(scene())), wind_(scene().sea.wind_speed_mps) {
+        const int columns = voxels_a_side(scene());
+        const double half_m = 0.5 * size_m();
+        for (int i = 0; i < columns; ++i) {
+            const double low_m = -half_m + i * voxel_m(), high_m = std::min(low_m + voxel_m(), half_m);
+            middles_m_.push_back(0.5 * (low_m + high_m));
+            widths_.push_back((high_m - low_m) / voxel_m());
+        }
+    }
+
+    std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<SpraySlot>(); }
+
+    void compute(const Frame<float>& sea, FoamHistory<float>*, int, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(sea, static_cast<SpraySlot&>(slot), watch);
+    }
+    void compute(const Frame<double>& sea, FoamHistory<double>*, int, OutputSlot& slot,
+                 const BuildWatch& watch) override {
+        compute_as(sea, static_cast<SpraySlot&>(slot), watch);
+    }
+
+    OutputMemory memory() const override {
+        // Blocks above eight by eight columns, if spray is everywhere and the sea as steep as it can stand.
+        const double block_m = vdb::kBlock * voxel_m();
+        const double relief_m = std::min(block_m, 2.0 * plan_.from->extent.height_m);
+        const auto high = static_cast<std::size_t>((top_m_ + relief_m) / block_m) + 2;
+        const std::size_t a_side = (columns() + vdb::kBlock - 1) / vdb::kBlock;
+        const std::size_t blocks = a_side * a_side * high;
+        const std::size_t block = vdb::bytes_a_block<float>() + vdb::bytes_a_block<glm::vec3>();
+        return {.slot = columns() * columns() * 2 * sizeof(float) + blocks * block,
+                .encoding = blocks * 2 * block + 2 * vdb::kTreeBytes,
+                .remedy = "raise output.voxel_m, or lower surface.size_m"};
+    }
+
+    void encode(int frame, OutputSlot& any_slot) const override {
+        SpraySlot& slot = static_cast<SpraySlot&>(any_slot);
+        slot.file = std::string();
+        // One frame's grids at a time: they are much larger than their file. The threads that help must not take up another
+        // frame, which would wait for this one.
+        const std::lock_guard lock(encoding_);
+        tbb::this_task_arena::isolate([&] { slot.file = encoded(frame, slot); });
+        slot.spray = spray_of(slot);
+    }
+
+    void write(int frame, const OutputSlot& any_slot, const FileSink& sink) const override {
+        const SpraySlot& slot = static_cast<const SpraySlot&>(any_slot);
+        sink({.path = file(frame), .fingerprint = fingerprint(frame), .content = [&](const auto& take) {
+                  take(slot.file);
+              }});
+    }
+
+  private:
+    std::size_t columns() const { return middles_m_.size(); }
+
+    template <class T>
+    void compute_as(const Frame<T>& sea, SpraySlot& slot, const BuildWatch& watch) const {
+        slot.heights_m.resize(columns() * columns());
+        slot.shares.resize(slot.heights_m.size());
+        const double mean = mean_breaking(sea.sea());
+        for_each_row<T>(sea, middles_m_, watch, [&](std::size_t first, const Row<T>& row) {
+            for (std::size_t i = 0; i < row.coverage.size(); ++i) {
+                slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
+                slot.shares[first + i] =
+                    mean > 0.0 ? static_cast<float>(static_cast<double>(row.coverage[i]) / mean) : 0.0f;
+            }
+        });
+    }
+
+    // The extinction at the surface below a column's voxels, as a mean over them where the square ends within.
+    double extinction_per_m(const SpraySlot& slot, std::size_t x, std::size_t y) const {
+        const auto share = static_cast<double>(slot.shares[y * columns() + x]);
+        return share < kNegligibleSpray ? 0.0 : law_.extinction_per_m * share * widths_[x] * widths_[y];
+    }
+
+    std::string encoded(int frame, const SpraySlot& slot) const {
+        const VoxelLattice lattice = voxels();
+        const auto grid_of = [&](const char* name, vdb::GridKind kind, const char* content,
+                                 const char* unit) {
+            return vdb::Grid({.name = name,
+                              .kind = kind,
+                              .voxel_m = lattice.voxel_m,
+                              .first_m = lattice.first_m,
+                              .attributes = attributes(frame, content, unit)});
+        };
+        std::vector<vdb::Grid> grids;
+        grids.push_back(
+            grid_of("density", vdb::GridKind::FogVolume, "extinction of spray, means over voxels", "1/m"));
+        grids.push_back(grid_of("velocity", vdb::GridKind::Velocity, "velocity of the air that carries it",
+                                "m/s, of the shot's seconds"));
+        const int a_side = static_cast<int>((columns() + vdb::kBlock - 1) / vdb::kBlock);
+        tbb::parallel_for(0, a_side * a_side, [&](int i) {
+            add_blocks(slot, {i % a_side, i / a_side}, grids[0], grids[1]);
+        });
+        return vdb::encode(grids, attributes(frame, "spray"), fingerprint(frame));
+    }
+
+    void add_blocks(const SpraySlot& slot, glm::ivec2 column, vdb::Grid& density, vdb::Grid& velocity) const {
+        const glm::ivec2 first = column * vdb::kBlock;
+        const glm::ivec2 end = glm::min(first + vdb::kBlock, static_cast<int>(columns()));
+        // Of voxels, over the columns that have any.
+        int low = std::numeric_limits<int>::max(), high = std::numeric_limits<int>::min();
+        for (int y = first.y; y < end.y; ++y)
+            for (int x = first.x; x < end.x; ++x) {
+                if (!(extinction_per_m(slot, x, y) > 0.0)) continue;
+                const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
+                low = std::min(low, static_cast<int>(std::floor(height_m / voxel_m())));
+                high = std::max(high, static_cast<int>(std::floor((height_m + top_m_) / voxel_m())));
+            }
+        if (low > high) return;
+        const auto block_of = [](int voxel) {
+            return static_cast<int>(std::floor(voxel / double{vdb::kBlock}));
+        };
+        for (int k = block_of(low); k <= block_of(high); ++k)
+            add_block(slot, {first, k * vdb::kBlock}, density, velocity);
+    }
+
+    void add_block(const SpraySlot& slot, glm::ivec3 first, vdb::Grid& density, vdb::Grid& velocity) const {
+        vdb::Block<float> thick{.first = first};
+        vdb::Block<glm::vec3> moved{.first = first};
+        const double towards = scene().sea.wind_direction_deg * kPi / 180.0;
+        const glm::dvec2 downwind(std::cos(towards), std::sin(towards));
+        const int count = static_cast<int>(columns());
+        for (int i = 0; i < vdb::kBlock && first.x + i < count; ++i)
+            for (int j = 0; j < vdb::kBlock && first.y + j < count; ++j) {
+                const auto x = static_cast<std::size_t>(first.x + i),
+                           y = static_cast<std::size_t>(first.y + j);
+                const double extinction = extinction_per_m(slot, x, y);
+                if (!(extinction > 0.0)) continue;
+                const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
+                for (int k = 0; k < vdb::kBlock; ++k) {
+                    const double from_m = (first.z + k) * voxel_m() - height_m, to_m = from_m + voxel_m();
+                    const auto value = static_cast<float>(extinction * mean_profile(from_m, to_m));
+                    if (!(value > 0.0f) || from_m > top_m_) continue;
+                    const std::size_t at = vdb::index_in_block(i, j, k);
+                    thick.active[at] = moved.active[at] = true;
+                    thick.values[at] = value;
+                    // In the middle of what of the voxel is air.
+                    const double speed_mps =
+                        wind_.at(0.5 * (std::max(from_m, 0.0) + to_m)) * scene().shot.time_scale;
+                    moved.values[at] = glm::vec3(glm::dvec3(downwind * speed_mps, 0.0));
+                }
+            }
+        if (thick.active.none()) return;
+        density.add(thick);
+        velocity.add(moved);
+    }
+
+    // Of what the file holds, but for the share, which is of all columns.
+    SprayRecord spray_of(const SpraySlot& slot) const {
+        SprayRecord spray;
+        double area = 0.0;  // in columns
+        for (std::size_t y = 0; y < columns(); ++y)
+            for (std::size_t x = 0; x < columns(); ++x) {
+                const double width = widths_[x] * widths_[y];
+                const auto share = static_cast<double>(slot.shares[y * columns() + x]);
+                area += width;
+                spray.breaking_over_mean += width * share;
+                if (share < kNegligibleSpray) continue;
+                spray.mass_flux_kg_per_s +=
+                    width * share * law_.mass_flux_kg_per_m2_s * voxel_m() * voxel_m();
+                const auto height_m = static_cast<double>(slot.heights_m[y * columns() + x]);
+                const double top_m =
+                    (std::floor((height_m + top_m_) / voxel_m()) + 1.0) * voxel_m() - height_m;
+                spray.optical_thickness +=
+                    width * share * law_.extinction_per_m * mean_profile(0.0, top_m) * top_m;
+            }
+        spray.breaking_over_mean /= area;
+        spray.optical_thickness /= area;
+        return spray;
+    }
+
+    SprayLaw law_;
+    WindProfile wind_;
+    double top_m_ = spray_top_m();
+    std::vector<double> middles_m_, widths_;  // of columns along a side, within the square; widths in voxels
+    mutable std::mutex encoding_;
+};
+
+}  // namespace
+
+std::unique_ptr<OutputPart> make_spray_part(const Plan& plan, const PlannedOutput& output) {
+    return std::make_unique<SprayPart>(plan, output);
+}
+
+}  // namespace pelagic

@@ -1,0 +1,199 @@
+#include "plugin/render/spray_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "core/base/constants.h"
+#include "core/effects/spray.h"
+#include "core/evaluate/places.h"
+#include "core/plan/spray.h"
+#include "core/surface/earth.h"
+#include "core/surface/rungs.h"
+
+namespace pelagic {
+namespace {
+
+constexpr int kQuery = 0;  // the plan's only one
+
+// Azimuths from the first, counter-clockwise; the whole circle where the span is 2π.
+struct Span {
+    double first_rad = 0.0, rad = kTwoPi;
+};
+
+bool sees(const View& view, const glm::dvec3& direction) {
+    const double ahead = glm::dot(direction, view.forward);
+    const double high = view.tan_half_width * view.resolution.y / view.resolution.x;
+    return ahead > 0.0 && std::abs(glm::dot(direction, view.right)) <= view.tan_half_width * ahead &&
+           std::abs(glm::dot(direction, view.up)) <= high * ahead;
+}
+
+// Without a pole in the picture the azimuth is continuous in it, and its extremes are on the edge.
+Span seen_azimuths(const View& view) {
+    constexpr Span kAll{};
+    constexpr int kSteps = 64;  // along each side
+    if (sees(view, {0.0, 0.0, 1.0}) || sees(view, {0.0, 0.0, -1.0})) return kAll;
+    const glm::dvec2 size(view.resolution);
+    const std::array<glm::dvec2, 5> corners{glm::dvec2(0.0), glm::dvec2(size.x, 0.0), size,
+                                            glm::dvec2(0.0, size.y), glm::dvec2(0.0)};
+    std::optional<double> before;
+    double turned = 0.0, least = 0.0, most = 0.0, first = 0.0;
+    for (std::size_t side = 0; side + 1 < corners.size(); ++side)
+        for (int i = 0; i <= kSteps; ++i) {
+            const glm::dvec3 to =
+                view.direction(glm::mix(corners[side], corners[side + 1], double(i) / kSteps));
+            constexpr double kBesideAPole = 0.02;
+            if (std::hypot(to.x, to.y) < kBesideAPole) return kAll;
+            const double azimuth = std::atan2(to.y, to.x);
+            if (before)
+                turned += std::remainder(azimuth - *before, kTwoPi);
+            else
+                first = azimuth;
+            before = azimuth;
+            least = std::min(least, turned);
+            most = std::max(most, turned);
+        }
+    const double margin = 0.02 * (most - least) + 1e-3;
+    if (most - least + 2.0 * margin >= kTwoPi) return kAll;
+    return {first + least - margin, most - least + 2.0 * margin};
+}
+
+// The steepest way down that the picture shows, as a slope.
+double steepest(const View& view) {
+    if (sees(view, {0.0, 0.0, -1.0})) return std::numeric_limits<double>::infinity();
+    const glm::dvec2 size(view.resolution);
+    double most = 1e-3;
+    for (const glm::dvec2 corner : {glm::dvec2(0.0), glm::dvec2(size.x, 0.0), size, glm::dvec2(0.0, size.y),
+                                    glm::dvec2(0.5 * size.x, 0.0), glm::dvec2(0.5 * size.x, size.y)}) {
+        const glm::dvec3 to = view.direction(corner);
+        most = std::max(most, -to.z / std::max(std::hypot(to.x, to.y), 1e-9));
+    }
+    return most;
+}
+
+// Horizontal distances of the rows.
+struct Radii {
+    double first_m, last_m;
+};
+Radii radii_of(const View& view, double curvature_per_m) {
+    const double eye_m = view.position_m.z;
+    constexpr double kNearest_m = 0.5, kPart = 0.2;  // of the eye's height: rays nearer by are steep
+    constexpr double kLayer_m = 20.0;                // crests and the spray over them
+    constexpr double kFlat_m = 2.5e4, kOfHeight = 20.0;
+    const double height_m = std::max(eye_m, 0.0);
+    double last_m = std::max(kFlat_m, kOfHeight * height_m);
+    if (curvature_per_m > 0.0) {
+        const auto horizon_rad = [&](double above_m) {
+            return std::acos(1.0 / (1.0 + above_m * curvature_per_m));
+        };
+        constexpr double kMost_rad = 1.4;  // beyond it rows would lie one above the other
+        last_m =
+            std::sin(std::min(horizon_rad(height_m) + horizon_rad(kLayer_m), kMost_rad)) / curvature_per_m;
+    }
+    double first_m = std::max(kPart * height_m, kNearest_m);
+    // An eye above the layer sees nothing of it nearer than what its steepest ray meets.
+    constexpr double kAbove_m = 2.0 * kLayer_m, kSlack = 0.5;
+    if (height_m > kAbove_m) first_m = std::max(first_m, kSlack * height_m / steepest(view));
+    return {std::min(first_m, 0.1 * last_m), last_m};
+}
+
+}  // namespace
+
+SprayMapSize spray_map_size(int picture_width) {
+    // A patch that breaks is seen from the side: more rows than columns tell it apart.
+    constexpr double kColumns = 0.25, kRows = 0.4;  // of the picture's width
+    constexpr int kNarrowest = 160, kWidest = 1280;
+    const int width = std::clamp(picture_width, kNarrowest, kWidest);
+    return {.columns = static_cast<int>(kColumns * width), .rows = static_cast<int>(kRows * width)};
+}
+
+std::size_t spray_map_bytes(SprayMapSize size) {
+    // In double: places, points at rest, footprints and their axes, displacement, coverage, a residual; and the texel.
+    return static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows) *
+           (12 * sizeof(double) + sizeof(glm::vec2));
+}
+
+template <class T>
+Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGridOptions& options,
+                     SprayMapSize size) {
+    const double extinction = spray_extinction_per_coverage(frame.sea());
+    if (!(extinction > 0.0)) return {};
+    const double curvature = options.curvature_per_m;
+    const Span span = seen_azimuths(view);
+    const Radii radii = radii_of(view, curvature);
+    const double step = std::log(radii.last_m / radii.first_m) / (size.rows - 1);
+    const double turn = span.rad / (size.columns - 1);
+    Spray spray{.columns = size.columns,
+                .rows = size.rows,
+                .azimuth = glm::vec2(glm::dvec2(std::cos(span.first_rad), std::sin(span.first_rad))),
+                .columns_per_rad = static_cast<float>(1.0 / turn),
+                .first_m = static_cast<float>(radii.first_m),
+                .row_step = static_cast<float>(step),
+                .scale_m = static_cast<float>(SprayLaw::kScaleHeight_m),
+                .eye_m = static_cast<float>(view.position_m.z)};
+
+    const auto count = static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows);
+    using Vec = glm::vec<2, T>;
+    std::vector<Vec> places(count), axes(count), rest(count);
+    std::vector<T> widths(count), spreads(count), coverage(count);
+    std::vector<glm::vec<3, T>> displacement(count);
+    double finest_m = 0.0;
+    if (frame.sea().plan().queries[kQuery].query.cell_m.size() > 1) {
+        // The same rungs whichever other frames the plan is for.
+        const ProjectedGridNeeds own = projected_grid_needs(view, options);
+        finest_m = first_rung_m(std::max(own.finest_cell_m, own.finest_pixel_m));
+    }
+    for (int row = 0; row < size.rows; ++row) {
+        const double radius_m = radii.first_m * std::exp(step * row);
+        // Along the earth.
+        const double arc_m = curvature > 0.0 ? std::asin(radius_m * curvature) / curvature : radius_m;
+        const double away_m = arc_m * step, beside_m = arc_m * turn;
+        const auto width = static_cast<T>(std::max(std::min(away_m, beside_m), finest_m));
+        for (int column = 0; column < size.columns; ++column) {
+            const double azimuth = span.first_rad + turn * column;
+            const Vec away(glm::dvec2(std::cos(azimuth), std::sin(azimuth)));
+            const std::size_t i = static_cast<std::size_t>(row) * size.columns + column;
+            places[i] = static_cast<T>(arc_m) * away;
+            widths[i] = width;
+            spreads[i] = std::max(width, static_cast<T>(SprayLaw::kScaleHeight_m));
+            axes[i] = away_m >= beside_m ? static_cast<T>(away_m) * away
+                                         : static_cast<T>(beside_m) * Vec(-away.y, away.x);
+        }
+    }
+    Points<T> points{.origin_m = glm::dvec2(view.position_m),
+                     .count = count,
+                     .rest_m = {places.data()},
+                     .cell_m = {widths.data()},
+                     .pixel_m = {spreads.data()},
+                     .cell_axis_m = {axes.data()},
+                     .pixel_axis_m = {axes.data()}};
+    const PreparedQuery<T> query(frame, kQuery, products(Product::Displacement, Product::Coverage),
+                                 points.origin_m);
+    // Texels are metres wide but beside the camera.
+    constexpr PlaceSearch kSearch{.tolerance_m = 0.02, .most_steps = 16};
+    find_rest(query, points, kSearch, Strided<Vec>{rest.data()}, Strided<T>{});
+    points.rest_m = {rest.data()};
+    Results<T> results;
+    results.set(Product::Displacement, {displacement.data()});
+    results.set(Product::Coverage, {coverage.data()});
+    query.evaluate(points, results);
+
+    spray.texels.resize(count);
+    spray.top_m = -std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::dvec3 at(glm::dvec2(places[i]), static_cast<double>(displacement[i].z));
+        spray.texels[i] = {static_cast<float>(on_earth(at, curvature).z),
+                           static_cast<float>(extinction * static_cast<double>(coverage[i]))};
+        spray.top_m = std::max(spray.top_m, spray.texels[i].x);
+    }
+    return spray;
+}
+
+template Spray make_spray_map(const Frame<float>&, const View&, const ProjectedGridOptions&, SprayMapSize);
+template Spray make_spray_map(const Frame<double>&, const View&, const ProjectedGridOptions&, SprayMapSize);
+
+}  // namespace pelagic

@@ -1,0 +1,111 @@
+#include "plugin/vdb/vdb.h"
+
+#include <dlfcn.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+#include "plugin/vdb/openvdb_writer.h"
+
+// The library's bytes (openvdb_writer.h), as they lie in this program. PELAGIC_OPENVDB_WRITER is its file's path.
+asm(".pushsection .rodata\n"
+    ".balign 16\n"
+    "pelagic_openvdb_begin:\n"
+    ".incbin \"" PELAGIC_OPENVDB_WRITER
+    "\"\n"
+    "pelagic_openvdb_end:\n"
+    ".byte 0\n"
+    ".popsection\n");
+extern "C" {
+[[gnu::visibility("hidden")]] extern const char pelagic_openvdb_begin[];
+[[gnu::visibility("hidden")]] extern const char pelagic_openvdb_end[];
+}
+
+namespace pelagic::vdb {
+namespace {
+
+// A file in memory, which the loader takes as any other: the program needs no file beside it.
+class MemoryFile {
+  public:
+    MemoryFile() : descriptor_(memfd_create("pelagic-openvdb", MFD_CLOEXEC)) {
+        if (descriptor_ < 0) fail("can't be made");
+        for (const char* at = pelagic_openvdb_begin; at != pelagic_openvdb_end;) {
+            const ssize_t written =
+                ::write(descriptor_, at, static_cast<std::size_t>(pelagic_openvdb_end - at));
+            if (written < 0 && errno == EINTR) continue;
+            if (written <= 0) fail("can't be written");
+            at += written;
+        }
+    }
+    ~MemoryFile() { ::close(descriptor_); }
+    MemoryFile(const MemoryFile&) = delete;
+    MemoryFile& operator=(const MemoryFile&) = delete;
+
+    std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+  private:
+    [[noreturn]] static void fail(const char* problem) {
+        throw std::system_error(
+            errno, std::generic_category(),
+            std::string("the file in memory that OpenVDB's writer is loaded from ") + problem);
+    }
+
+    int descriptor_;
+};
+
+// For as long as the process lives: OpenVDB's threads can't be taken away.
+const OpenVdbWriter& writer() {
+    static const OpenVdbWriter& loaded = []() -> const OpenVdbWriter& {
+        const MemoryFile file;
+        void* const library = ::dlopen(file.path().c_str(), RTLD_NOW | RTLD_LOCAL);
+        void* const symbol = library ? ::dlsym(library, "pelagic_openvdb_writer") : nullptr;
+        if (!symbol)
+            throw std::runtime_error(std::string("OpenVDB can't be loaded: ") + ::dlerror() +
+                                     "; volumes need the library that Pelagic was built with (libopenvdb)");
+        return *reinterpret_cast<decltype(&pelagic_openvdb_writer)>(symbol)();
+    }();
+    return loaded;
+}
+
+// "8-4-4-4-12", as a file's identifier is written.
+std::string identifier_of(const std::string& fingerprint) {
+    constexpr std::size_t kDigits = 16;
+    if (fingerprint.size() != kDigits ||
+        fingerprint.find_first_not_of("0123456789abcdef") != std::string::npos)
+        throw std::invalid_argument("a fingerprint has sixteen hexadecimal digits");
+    return "00000000-0000-0000-" + fingerprint.substr(0, 4) + '-' + fingerprint.substr(4);
+}
+
+}  // namespace
+
+struct Grid::Impl {
+    std::unique_ptr<GridWriter> writer;
+};
+
+Grid::Grid(const GridOptions& options) : impl_(std::make_unique<Impl>(writer().make_grid(options))) {}
+Grid::~Grid() = default;
+Grid::Grid(Grid&&) noexcept = default;
+Grid& Grid::operator=(Grid&&) noexcept = default;
+
+void Grid::add(const Block<float>& block) {
+    impl_->writer->add(block);
+}
+void Grid::add(const Block<glm::vec3>& block) {
+    impl_->writer->add(block);
+}
+std::size_t Grid::active_voxels() const {
+    return impl_->writer->active_voxels();
+}
+
+std::string encode(std::span<const Grid> grids, const std::vector<Attribute>& attributes,
+                   const std::string& fingerprint) {
+    const std::string identifier = identifier_of(fingerprint);
+    std::vector<const GridWriter*> writers;
+    for (const Grid& grid : grids) writers.push_back(grid.impl_->writer.get());
+    return writer().encode(writers, attributes, identifier);
+}
+
+}  // namespace pelagic::vdb

@@ -1,0 +1,255 @@
+// Rays through spray against numeric integrals in double along the same map, and their limits.
+#include "core/lighting/spray.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "core/base/constants.h"
+
+namespace pelagic {
+namespace {
+
+constexpr int kColumns = 33, kRows = 96;
+constexpr double kScale_m = 2.0, kFirst_m = 0.5, kLast_m = 2e4;
+
+// Height of the surface [m] and extinction there [1/m], by distance.
+using Sea = std::function<glm::dvec2(double distance_m)>;
+
+double radius_m(int row) {
+    return kFirst_m * std::exp(std::log(kLast_m / kFirst_m) / (kRows - 1) * row);
+}
+
+Spray spray_of(double eye_m, const Sea& sea) {
+    Spray spray{.columns = kColumns,
+                .rows = kRows,
+                .columns_per_rad = static_cast<float>((kColumns - 1) / kTwoPi),
+                .first_m = static_cast<float>(kFirst_m),
+                .row_step = static_cast<float>(std::log(kLast_m / kFirst_m) / (kRows - 1)),
+                .scale_m = static_cast<float>(kScale_m),
+                .eye_m = static_cast<float>(eye_m)};
+    spray.top_m = -1e30f;
+    for (int row = 0; row < kRows; ++row)
+        for (int column = 0; column < kColumns; ++column) {
+            spray.texels.emplace_back(glm::vec2(sea(radius_m(row))));
+            spray.top_m = std::max(spray.top_m, spray.texels.back().x);
+        }
+    return spray;
+}
+
+const Sea kFlat = [](double) { return glm::dvec2(0.0, 0.05); };
+// Crests of 4 m, with spray over them alone.
+const Sea kWaves = [](double distance_m) {
+    const double phase = kTwoPi * std::log(distance_m) * 2.0, crest = 0.5 + 0.5 * std::cos(phase);
+    return glm::dvec2(4.0 * std::cos(phase), 0.2 * crest * crest * crest);
+};
+
+glm::dvec3 towards(double elevation, double azimuth = 0.3) {
+    return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+            std::sin(elevation)};
+}
+
+// What the map says along a ray, in small steps: between rows all is linear in distance.
+double thickness(double eye_m, const Sea& sea, double elevation, double distance_m) {
+    const double across = std::cos(elevation);
+    std::vector<double> ends{0.0};
+    for (int row = 0; row < kRows; ++row)
+        if (radius_m(row) < distance_m * across) ends.push_back(radius_m(row) / across);
+    ends.push_back(distance_m);
+    const auto at = [&](double s_m) {
+        const double r_m = s_m * across;
+        if (r_m <= kFirst_m) return sea(kFirst_m);
+        const int row =
+            std::min(static_cast<int>(std::log(r_m / kFirst_m) / std::log(kLast_m / kFirst_m) * (kRows - 1)),
+                     kRows - 2);
+        const double part = (r_m - radius_m(row)) / (radius_m(row + 1) - radius_m(row));
+        return glm::mix(sea(radius_m(row)), sea(radius_m(row + 1)), part);
+    };
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        constexpr int kSteps = 2000;
+        const double step_m = (ends[i + 1] - ends[i]) / kSteps;
+        for (int j = 0; j < kSteps; ++j) {
+            const double s_m = ends[i] + (j + 0.5) * step_m;
+            const glm::dvec2 here = at(s_m);
+            const double z = eye_m + s_m * std::sin(elevation) - here.x;
+            sum += here.y * std::exp(-std::max(z, 0.0) / kScale_m) * step_m;
+        }
+    }
+    return sum;
+}
+
+double seen_thickness(const Spray& spray, double elevation, double distance_m, bool on_sea = false) {
+    return -std::log(static_cast<double>(
+        spray_before(spray, glm::vec3(towards(elevation)), static_cast<float>(distance_m), on_sea)
+            .transmittance));
+}
+
+TEST(SprayBefore, RaysAreTheIntegralOverTheMap) {
+    for (const Sea* sea : {&kFlat, &kWaves})
+        for (const double eye_m : {1.0, 4.5, 12.0, 200.0})
+            for (const double elevation : {-0.5, -0.05, -0.003, 0.0, 0.003, 0.1}) {
+                const Spray spray = spray_of(eye_m, *sea);
+                for (const double distance_m : {0.3, 7.0, 60.0, 900.0}) {
+                    const double expected = thickness(eye_m, *sea, elevation, distance_m);
+                    if (expected > 8.0) continue;  // too little is left to tell
+                    // Single precision along some hundred rows, and what the first of a high eye's skip: e^−12.
+                    EXPECT_NEAR(seen_thickness(spray, elevation, distance_m), expected,
+                                1e-3 * expected + 3e-6)
+                        << eye_m << " m, " << elevation << ", " << distance_m << " m";
+                }
+            }
+}
+
+// Straight through the whole layer it is as thick as the law says, wherever the ray begins and ends.
+TEST(SprayBefore, ALayerHasItsOwnThickness) {
+    for (const double eye_m : {20.0, 1e3, 1e5})
+        for (const double elevation : {-0.5 * kPi, -1.0, -0.3}) {
+            const double distance_m = eye_m / -std::sin(elevation);
+            EXPECT_NEAR(seen_thickness(spray_of(eye_m, kFlat), elevation, distance_m, true),
+                        0.05 * kScale_m / -std::sin(elevation), 1e-3)
+                << eye_m << " m, " << elevation;
+        }
+    // From its bottom up, to the sky.
+    for (const double elevation : {0.5 * kPi, 1.0, 0.2, 0.02}) {
+        const auto up = spray_before(spray_of(0.0, kFlat), glm::vec3(towards(elevation)), {}, false);
+        EXPECT_NEAR(-std::log(up.transmittance) / (0.05 * kScale_m / std::sin(elevation)), 1.0, 2e-3)
+            << elevation;
+    }
+}
+
+// Where cells hide waves, a ray that ends on the surface still goes through the whole layer over it.
+TEST(SprayBefore, ARayToTheSeaEndsOnIt) {
+    const Spray spray = spray_of(1e3, kFlat);
+    for (const double crest_m : {-5.0, 0.0, 5.0}) {
+        const double elevation = -0.4, distance_m = (1e3 - crest_m) / std::sin(0.4);
+        EXPECT_NEAR(seen_thickness(spray, elevation, distance_m, true), 0.05 * kScale_m / std::sin(0.4), 2e-3)
+            << crest_m;
+    }
+    // It moves with the end, without a jump, over the rows, where the map lies 1 m too low.
+    const Spray low = spray_of(12.0, kFlat);
+    const auto to_crest = [&](double elevation) {
+        return seen_thickness(low, elevation, 11.0 / std::sin(-elevation), true);
+    };
+    for (int i = 0; i < 1000; ++i) {
+        const double elevation = -0.02 - 4e-5 * i;
+        EXPECT_NEAR(to_crest(elevation - 4e-5), to_crest(elevation), 6e-3 * to_crest(elevation)) << elevation;
+    }
+}
+
+// Under the same light from everywhere there is no spray to be seen: what is dimmed comes back.
+TEST(SprayBefore, AWhiteFurnaceStaysWhite) {
+    Spray spray = spray_of(3.0, kWaves);
+    spray.above = spray.below = glm::vec3(1.0f);
+    double least = 1.0;
+    for (const double elevation : {-0.3, -0.02, 0.0, 0.02, 0.7}) {
+        for (const double distance_m : {1.0, 100.0, 1e4}) {
+            const auto seen =
+                spray_before(spray, glm::vec3(towards(elevation)), static_cast<float>(distance_m), false);
+            EXPECT_NEAR(seen.scattered.y + seen.transmittance, 1.0f, 2e-5f);
+            least = std::min(least, static_cast<double>(seen.transmittance));
+        }
+        SeaRadiance sky{.sky = glm::vec3(1.0f)};
+        see_through_spray(spray, glm::vec3(towards(elevation)), {}, sky);
+        EXPECT_NEAR(sky.sky.y + sky.air.y, 1.0f, 2e-5f);
+    }
+    EXPECT_LT(least, 1e-3);  // through thick spray as well
+}
+
+TEST(SprayBefore, ThinSprayIsLinearAndThickSprayIsItsOwnLight) {
+    const auto times = [](double factor) {
+        Spray spray = spray_of(3.0, kWaves);
+        for (glm::vec2& texel : spray.texels) texel.y *= static_cast<float>(factor);
+        spray.to_sun = glm::vec3(0.0f, 0.6f, 0.8f);
+        spray.sun = glm::vec3(100.0f);
+        spray.above = glm::vec3(5.0f);
+        spray.below = glm::vec3(1.0f);
+        return spray_before(spray, glm::vec3(towards(-0.02)), 100.0f, true);
+    };
+    const auto thin = times(1e-4), twice = times(2e-4);
+    EXPECT_NEAR(twice.scattered.y / thin.scattered.y, 2.0, 1e-3);
+    EXPECT_NEAR((1.0 - twice.transmittance) / (1.0 - thin.transmittance), 2.0, 5e-3);
+    EXPECT_EQ(times(0.0).transmittance, 1.0f);
+    EXPECT_EQ(times(0.0).scattered, glm::vec3(0.0f));
+    const auto thick = times(1e6);
+    EXPECT_EQ(thick.transmittance, 0.0f);
+    // The sun's light comes from all sides there.
+    EXPECT_NEAR(thick.scattered.y, 100.0 / (4.0 * kPi) + 3.0 - 0.85 * 0.02 * 2.0, 0.01);
+}
+
+// The sun's light goes on nearly straight: spray before the sun shines, spray behind the viewer doesn't.
+TEST(SprayBefore, ScattersAhead) {
+    Spray spray = spray_of(3.0, kFlat);
+    spray.to_sun = glm::vec3(towards(0.1, 0.0));
+    spray.sun = glm::vec3(1.0f);
+    for (glm::vec2& texel : spray.texels) texel.y = 1e-6f;
+    const auto light = [&](double azimuth) {
+        return spray_before(spray, glm::vec3(towards(0.0, azimuth)), 100.0f, false).scattered.y;
+    };
+    EXPECT_GT(light(0.0), 20.0f * light(0.5 * kPi));
+    EXPECT_GT(light(0.5 * kPi), 1.5f * light(kPi));
+}
+
+TEST(SprayBefore, IsFiniteEverywhere) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (const double eye_m : {-8.0, 0.0, 1e-3, 3.0, 60.0, 1e5, 1e8})
+        for (const double factor : {0.0, 1e-6, 1.0, 1e6}) {
+            Spray spray = spray_of(eye_m, kWaves);
+            for (glm::vec2& texel : spray.texels) texel.y *= static_cast<float>(factor);
+            spray.to_sun = glm::vec3(towards(-0.01));
+            spray.sun = spray.above = spray.below = glm::vec3(100.0f);
+            const auto check = [&](glm::vec3 direction, std::optional<float> distance_m) {
+                for (const bool on_sea : {false, true}) {
+                    const SpraySeen seen = spray_before(spray, direction, distance_m, on_sea && distance_m);
+                    ASSERT_TRUE(seen.transmittance >= 0.0f && seen.transmittance <= 1.0f) << eye_m;
+                    ASSERT_TRUE(seen.scattered.x >= 0.0f && std::isfinite(seen.scattered.x)) << eye_m;
+                }
+            };
+            for (const float distance_m : {0.0f, 1e-3f, 5.0f, 1e3f, 1e6f, 1e9f}) {
+                check({0.0f, 0.0f, -1.0f}, distance_m);
+                check({0.0f, 0.0f, 1.0f}, distance_m);
+                check({1.0f, 0.0f, 0.0f}, distance_m);
+                for (int i = 0; i < 50; ++i)
+                    check(glm::vec3(towards((unit(random) - 0.5) * kPi, kTwoPi * unit(random))), distance_m);
+            }
+            for (int i = 0; i < 50; ++i)
+                check(glm::vec3(towards((unit(random) - 0.5) * 0.1, kTwoPi * unit(random))), {});
+            check({0.0f, 0.0f, 1.0f}, {});
+            check({0.0f, 0.0f, -1.0f}, {});
+        }
+}
+
+// Between two columns it is their mean; the circle has no seam.
+TEST(SprayBefore, GoesRoundTheCircleWithoutASeam) {
+    Spray spray = spray_of(3.0, kFlat);
+    for (int row = 0; row < kRows; ++row)
+        for (int column = 0; column < kColumns; ++column)
+            spray.texels[static_cast<std::size_t>(row * kColumns + column)].y =
+                0.05f * (1.0f + 0.5f * std::sin(static_cast<float>(kTwoPi * column / (kColumns - 1))));
+    const auto left = [&](double azimuth) {
+        return spray_before(spray, glm::vec3(towards(-0.02, azimuth)), 100.0f, false).transmittance;
+    };
+    for (int i = 0; i < 1000; ++i)
+        EXPECT_NEAR(left(kTwoPi * i / 1000.0), left(kTwoPi * (i + 1) / 1000.0), 0.02f) << i;
+    EXPECT_NEAR(left(-1e-6), left(1e-6), 1e-4f);
+}
+
+TEST(SprayBefore, WithoutSprayNothingChanges) {
+    const glm::vec3 to_eye(0.0f, 0.0f, 1.0f);
+    const float distance_m = 5.0f;
+    SeaRadiance light{.sun = glm::vec3(1.0f), .air = glm::vec3(2.0f)};
+    see_through_spray({}, {&to_eye, 1}, {&distance_m, 1}, {&light, 1});
+    EXPECT_EQ(see_through_spray({}, -to_eye, {}, light), 1.0f);
+    EXPECT_EQ(light.sun, glm::vec3(1.0f));
+    EXPECT_EQ(light.air, glm::vec3(2.0f));
+    EXPECT_THROW(see_through_spray({}, {&to_eye, 1}, {}, {&light, 1}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace pelagic

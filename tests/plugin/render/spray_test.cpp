@@ -1,0 +1,241 @@
+// Spray in pictures: against small steps through the sea itself, and what it must not change.
+#include "plugin/light/light.h"
+#include "plugin/render/picture_files.h"
+#include "plugin/render/render.h"
+#include "plugin/render/spray_map.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <numeric>
+#include <vector>
+
+#include "tests/plugin/render/exact_spray.h"
+#include "tests/plugin/render/uniform_sky.h"
+
+namespace pelagic {
+namespace {
+
+// A storm, from among its crests.
+Scene storm(double gain) {
+    Scene scene;
+    scene.sea.wind_speed_mps = 22.0;
+    scene.waves.cascades = {{1200.0, 256}, {180.0, 128}, {31.0, 128}};
+    scene.quality.level = QualityLevel::Draft;
+    scene.effects.spray = gain > 0.0;
+    scene.effects.spray_gain = gain;
+    scene.camera.resolution = {96, 54};
+    scene.camera.position_m = {0.0, -60.0, 12.0};
+    scene.camera.look_at_m = {0.0, 0.0, 8.0};
+    return scene;
+}
+
+RenderOptions options_of(const Scene& scene) {
+    RenderOptions options = render_options(scene);
+    options.samples = 1;
+    return options;
+}
+
+Picture picture_of(const Scene& scene, const RenderOptions& options, const Sky& sky = uniform_sky()) {
+    Picture picture;
+    EXPECT_TRUE(Renderer(scene, options, sky, std::array{1}).render(1, picture));
+    return picture;
+}
+Picture picture_of(const Scene& scene) {
+    return picture_of(scene, options_of(scene));
+}
+
+bool same_bits(const Picture& a, const Picture& b) {
+    return a.sea == b.sea && a.alpha == b.alpha && a.layers.size() == b.layers.size() &&
+           std::memcmp(a.layers.data(), b.layers.data(), a.layers.size() * sizeof(SeaRadiance)) == 0;
+}
+
+double radiance_at(const Picture& picture, std::size_t i) {
+    return static_cast<double>(radiance_of(picture.layers[i]).y);
+}
+
+TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {
+    const double gain = 10.0;
+    // From higher up the map's cells tell fewer of the patches apart that break. Each of those is so dense that spray spread evenly over
+    // a cell takes more light than they do.
+    struct Case {
+        double height_m, most_error, most_rms;
+    };
+    for (const auto [height_m, most_error, most_rms] :
+         {Case{12.0, 0.06, 0.06}, Case{40.0, 0.2, 0.12}, Case{400.0, 0.4, 0.25}}) {
+        Scene scene = storm(gain);
+        scene.camera.position_m.z = height_m;
+        scene.camera.look_at_m = {0.0, 10.0 * height_m, 0.0};
+        RenderOptions options = options_of(scene);
+        options.layers = light_layers();
+        options.layers.set(index(PictureLayer::Position));
+        const Picture picture = picture_of(scene, options);
+        const View view = view_at(scene.camera, 1);
+        Frame<float> frame(std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}, options)));
+        frame.set(scene.shot.time_s(1));
+        const ProjectedGridOptions grid = projected_grid_options(*frame.sea().plan().from);
+        const Spray spray = make_spray_map(frame, view, grid, spray_map_size(640));
+        std::vector<test::SprayRay> rays;
+        for (std::size_t i = 0; i < picture.sea.size(); i += 13) {
+            if (!picture.sea[i]) continue;
+            const float* at = &picture.data[index(PictureLayer::Position)][3 * i];
+            const glm::dvec3 way = glm::dvec3(at[0], at[1], at[2]) - view.position_m;
+            const double length_m = glm::length(way);
+            if (length_m < 8e3) rays.push_back({way / length_m, length_m});
+        }
+        rays = test::exact_rays(frame, view.position_m, grid.curvature_per_m, 0.5, rays);
+        ASSERT_GT(rays.size(), 100u);
+        double mean = 0.0, exact_mean = 0.0, square = 0.0;
+        for (const test::SprayRay& ray : rays) {
+            const double left = std::exp(-ray.thickness);
+            const auto seen = static_cast<double>(
+                spray_before(spray, glm::vec3(ray.direction), static_cast<float>(ray.length_m), true)
+                    .transmittance);
+            mean += (1.0 - seen) / static_cast<double>(rays.size());
+            exact_mean += (1.0 - left) / static_cast<double>(rays.size());
+            square += (seen - left) * (seen - left) / static_cast<double>(rays.size());
+        }
+        std::printf("    from %.0f m: %.4f of the light is dimmed, exactly %.4f; rms of a ray %.4f\n",
+                    height_m, mean, exact_mean, std::sqrt(square));
+        EXPECT_GT(exact_mean, 0.002);
+        EXPECT_NEAR(mean / exact_mean, 1.0, most_error);
+        EXPECT_LE(std::sqrt(square), most_rms);
+    }
+}
+
+TEST(RenderedSpray, IsNoneWithoutTheKeyAndWithoutWind) {
+    const Scene without = storm(0.0);
+    const Picture expected = picture_of(without);
+    EXPECT_FALSE(options_of(without).lighting.spray);
+    // A scene without spray has none, whatever the options say; and none of its light.
+    RenderOptions options = options_of(without);
+    options.lighting.spray = true;
+    EXPECT_TRUE(same_bits(picture_of(without, options), expected));
+    Scene with = storm(10.0);
+    options = options_of(with);
+    EXPECT_TRUE(options.lighting.spray);
+    options.lighting.spray = false;
+    EXPECT_TRUE(same_bits(picture_of(with, options), expected));
+    EXPECT_FALSE(same_bits(picture_of(with), expected));
+    with.sea.wind_speed_mps = 0.0;
+    EXPECT_FALSE(options_of(with).lighting.spray);
+    with = storm(10.0);
+    with.effects.whitecaps = false;
+    EXPECT_FALSE(options_of(with).lighting.spray);
+}
+
+// The plan, and so the transforms and bytes of a picture without spray, know nothing of it.
+TEST(RenderedSpray, CostsNoTransform) {
+    const Scene with = storm(10.0), without = storm(0.0);
+    const Plan more = picture_plan(with, std::array{1}, options_of(with)),
+               less = picture_plan(without, std::array{1}, options_of(without));
+    EXPECT_EQ(more.transforms_per_frame(), less.transforms_per_frame());
+    EXPECT_EQ(more.frame_bytes(), less.frame_bytes());
+    EXPECT_EQ(less.queries[0].query.products, picture_plan(without, std::array{1}).queries[0].query.products);
+    const auto bytes = [](const Scene& scene) {
+        return render_memory(scene, options_of(scene), std::array{1}, {}, 2).bytes();
+    };
+    EXPECT_EQ(bytes(with), bytes(without) + spray_map_bytes(spray_map_size(storm(1.0).camera.resolution.x)));
+}
+
+// Under one radiance everywhere nothing gets brighter than that: the furnace, with a sea that reflects less.
+TEST(RenderedSpray, AddsNoMoreThanItTakes) {
+    for (const double gain : {1.0, 30.0, 1e4}) {
+        const Picture picture = picture_of(storm(gain));
+        for (std::size_t i = 0; i < picture.layers.size(); ++i)
+            ASSERT_LE(radiance_at(picture, i), static_cast<double>(kSkyRadiance) * (1.0 + 2e-5)) << gain;
+    }
+    // Nature's own is far too thin to be seen.
+    const Picture natural = picture_of(storm(1.0)), none = picture_of(storm(0.0));
+    double least = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < none.layers.size(); ++i) {
+        least += std::abs(radiance_at(natural, i) - radiance_at(none, i));
+        sum += radiance_at(none, i);
+    }
+    EXPECT_GT(least, 0.0);
+    EXPECT_LT(least, 0.02 * sum);
+}
+
+TEST(RenderedSpray, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyRun) {
+    const Scene scene = storm(20.0);
+    const Picture expected = picture_of(scene);
+    oneapi::tbb::task_arena alone(1);
+    EXPECT_TRUE(same_bits(alone.execute([&] { return picture_of(scene); }), expected));
+    // The last of many frames, whose camera comes nearer.
+    Scene moves = scene;
+    moves.shot.last_frame = 3;
+    moves.camera.keys = {
+        {.frame = 1, .position_m = scene.camera.position_m, .look_at_m = scene.camera.look_at_m},
+        {.frame = 3, .position_m = {0.0, 0.0, 9.0}, .look_at_m = {0.0, 60.0, 5.0}}};
+    Picture first, alone_first;
+    Renderer run(moves, options_of(moves), uniform_sky(), std::array{1, 2, 3});
+    run.render(3, first);
+    run.render(1, first);
+    Renderer(moves, options_of(moves), uniform_sky(), std::array{1}).render(1, alone_first);
+    EXPECT_TRUE(same_bits(first, alone_first));
+}
+
+TEST(RenderedSpray, HidesWhatATransparentSkyWouldShow) {
+    const Scene scene = storm(30.0);
+    RenderOptions options = options_of(scene);
+    const Picture opaque = picture_of(scene, options);
+    options.alpha = true;
+    const Picture picture = picture_of(scene, options);
+    double most = 0.0;
+    for (std::size_t i = 0; i < picture.sea.size(); ++i) {
+        const double alpha = static_cast<double>(picture.alpha[i]);
+        if (picture.sea[i]) {
+            EXPECT_EQ(alpha, 1.0);
+        } else {
+            // Over the sky it is the picture that has the sky.
+            EXPECT_NEAR(radiance_at(picture, i) + (1.0 - alpha) * static_cast<double>(kSkyRadiance),
+                        radiance_at(opaque, i), 1e-4);
+            most = std::max(most, alpha);
+        }
+    }
+    EXPECT_GT(most, 0.05);
+    EXPECT_LT(picture.alpha.front(), 0.01f);
+}
+
+TEST(RenderedSpray, IsFiniteFromAnywhere) {
+    Scene scene = storm(100.0);
+    scene.camera.resolution = {24, 16};
+    const Sky sky = make_sky(scene);
+    const auto check = [&](glm::dvec3 from, glm::dvec3 to) {
+        scene.camera.position_m = from;
+        scene.camera.look_at_m = to;
+        RenderOptions options = options_of(scene);
+        options.shutter_frames = from.z < 100.0 ? 1.0 : 0.0;
+        const Picture picture = picture_of(scene, options, sky);
+        for (const SeaRadiance& light : picture.layers)
+            for (const glm::vec3& layer : {light.sun, light.sky, light.sea, light.foam, light.air})
+                ASSERT_TRUE(std::isfinite(layer.x) && layer.x >= 0.0f) << from.z;
+    };
+    for (const bool round : {true, false}) {
+        scene.surface.earth_curvature = round;
+        check({0.0, 0.0, 20.0}, {0.0, 0.0, 0.0});         // straight down
+        check({0.0, 0.0, 20.0}, {0.0, 0.0, 40.0});        // straight up
+        check({0.0, 0.0, 20.0}, {0.0, 100.0, 20.0});      // level
+        check({1e6, -1e6, 1e5}, {1e6, -1e6 + 1e5, 0.0});  // far
+        check({0.0, 0.0, 1e5}, {0.0, 1e6, 0.0});
+        check({0.0, 0.0, 1500.0}, {0.0, 0.1, 0.0});
+    }
+}
+
+TEST(RenderedSpray, MakesOtherPicturesAndIsInTheirFingerprint) {
+    const auto made_of = [](const Scene& scene) {
+        return PictureFingerprint(
+                   {.scene = scene, .options = options_of(scene), .sky_content = "", .exposure_stops = 0.0})
+            .of(1);
+    };
+    EXPECT_NE(made_of(storm(0.0)), made_of(storm(1.0)));
+    EXPECT_NE(made_of(storm(1.0)), made_of(storm(2.0)));
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -14,7 +14,7 @@ class WindProfile {
     // wind_speed_mps: at 10 m, ≥ 0.
     explicit WindProfile(double wind_speed_mps) {
         if (!(wind_speed_mps > 0.0)) return;
-        // u* = κ U/ln(10/z0) changes slowly with z0: each step gains a digit or more up to 80 m/s.
+        // u* = κ U/ln(10/z0) changes slowly with z0: a step leaves 0.16 of the error at 5 m/s, 0.39 at 80.
         friction_mps_ = 0.04 * wind_speed_mps;
         for (int i = 0; i < 30; ++i)
             friction_mps_ = kKarman * wind_speed_mps / std::log(kReference_m / roughness_m());

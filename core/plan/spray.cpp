@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/scene/limits.h"
 #include "core/scene/text.h"
 
 namespace pelagic {
@@ -43,15 +44,21 @@ SprayLaw spray_law(const Scene& scene) {
 }
 
 std::string spray_warning(const Scene& scene) {
+    if (!scene.effects.spray || !scene.effects.whitecaps || !(scene.sea.wind_speed_mps > 0.0)) return {};
+    if (!(scene.effects.spray_gain > 0.0)) return "effects.spray_gain = 0 leaves no spray";
     constexpr double kSeen = 0.01;  // of the light straight up, on average: over crests it is ten times that
-    const double lost = 1.0 - std::exp(-spray_law(scene).optical_thickness());
-    if (!(lost > 0.0 && lost < kSeen)) return {};
-    const double needed = kSeen / spray_law(scene.sea.wind_speed_mps).optical_thickness();
+    const double seen_thickness = -std::log1p(-kSeen), thickness = spray_law(scene).optical_thickness();
+    if (thickness >= seen_thickness) return {};
+    const double needed = seen_thickness / spray_law(scene.sea.wind_speed_mps).optical_thickness();
     const double digit = std::pow(10.0, std::floor(std::log10(needed)));
-    const double percent = 100.0 * lost, scale = std::pow(10.0, 1.0 - std::floor(std::log10(percent)));
+    const double gain = std::ceil(needed / digit) * digit;
+    const double percent = -100.0 * std::expm1(-thickness),
+                 scale = std::pow(10.0, 1.0 - std::floor(std::log10(percent)));
     return "the spray takes " + number_text(std::round(percent * scale) / scale) +
-           " % of the light that falls through it, too little to be seen; a picture shows it from effects.spray_gain = " +
-           number_text(std::ceil(needed / digit) * digit) + " on";
+           " % of the light that falls through it, too little to be seen; " +
+           (limits::kSprayGain.holds(gain)
+                ? "a picture shows it from effects.spray_gain = " + number_text(gain) + " on"
+                : std::string("in so little wind no effects.spray_gain shows it"));
 }
 
 }  // namespace pelagic

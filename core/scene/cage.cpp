@@ -51,6 +51,7 @@ class Checker {
         check_fans();
         check_sharpness();
         check_holes();
+        check_surface();
     }
 
   private:
@@ -273,6 +274,32 @@ class Checker {
             ++holes;
         }
         if (holes == faces) refuse(Part::Mesh, 0, "has holes alone", "at least one face that is no hole");
+    }
+
+    // With CageBoundary::None a face whose corners touch the boundary only shapes the others.
+    void check_surface() const {
+        if (mesh_.boundary != CageBoundary::None) return;
+        std::vector<bool> is_on_boundary(mesh_.points_m.size());
+        for (std::size_t i = 0; i < sides_.size(); ++i) {
+            const bool is_shared = (i > 0 && sides_[i].is_beside(sides_[i - 1])) ||
+                                   (i + 1 < sides_.size() && sides_[i].is_beside(sides_[i + 1]));
+            if (is_shared) continue;
+            is_on_boundary[static_cast<std::size_t>(sides_[i].low)] = true;
+            is_on_boundary[static_cast<std::size_t>(sides_[i].high)] = true;
+        }
+        std::vector<bool> is_hole(mesh_.face_counts.size());
+        for (const std::int32_t face : mesh_.holes) is_hole[static_cast<std::size_t>(face)] = true;
+        std::size_t corner = 0;
+        for (std::size_t face = 0; face < mesh_.face_counts.size(); ++face) {
+            bool has_surface = !is_hole[face];
+            for (std::int32_t k = 0; k < mesh_.face_counts[face]; ++k)
+                if (is_on_boundary[static_cast<std::size_t>(mesh_.indices[corner++])]) has_surface = false;
+            if (has_surface) return;
+        }
+        refuse(
+            Part::Mesh, 0,
+            "has no surface: with no interpolation of the boundary, faces that touch it only shape the others",
+            "at least one face, no hole, whose points all lie inside; or a surface that ends at the boundary");
     }
 
     const CageMesh& mesh_;

@@ -1,5 +1,9 @@
 #include "core/surface/cage.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_reduce.h>
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -13,9 +17,6 @@
 
 namespace pelagic {
 namespace {
-
-// Cells count as no finer: a spectrum ends there, and faces may have no size at all.
-constexpr double kFinestCell_m = 1e-3;
 
 double distance_to_segment(const glm::dvec3& place, const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 along = to - from;
@@ -39,13 +40,21 @@ double distance_to_triangle(const glm::dvec3& place, const glm::dvec3& a, const 
 }
 
 int segments_for(double length, double cell) {
+    if (!(length > 0.0)) return 1;
     return static_cast<int>(
         std::clamp(std::ceil(length / cell), 1.0, static_cast<double>(CageAdaption::kMostSegments)));
 }
 
-glm::dvec3 centre_of(const CageMesh& mesh) {
-    glm::dvec3 low = mesh.points_m.front(), high = low;
-    for (const glm::dvec3& point : mesh.points_m) low = glm::min(low, point), high = glm::max(high, point);
+// The middle of the box round the points of the faces that have a surface.
+glm::dvec3 centre_of(const CageMesh& mesh, const CageLimit& limit) {
+    glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (std::size_t face = 0; face < limit.faces(); ++face) {
+        if (limit.face_edges(face).empty()) continue;
+        for (const std::int32_t index : limit.face_points(face)) {
+            const glm::dvec3& point = mesh.points_m[static_cast<std::size_t>(index)];
+            low = glm::min(low, point), high = glm::max(high, point);
+        }
+    }
     return 0.5 * (low + high);
 }
 
@@ -90,51 +99,46 @@ double CageAdaption::distance_m(const glm::dvec3& eye_m, std::size_t face) const
 }
 
 CageAdaption::Result CageAdaption::uniform(int segments) const {
-    Result result{limit_.uniform_rates(segments), 0.0};
+    Result result{limit_.uniform_rates(segments), 0.0, 0.0};
     result.finest_m = finest_of(result.rates);
     return result;
 }
 
 CageAdaption::Result CageAdaption::at(const View& view) const {
-    const auto cell_at = [&](double distance_m, double coarser) {
-        return coarser * cell_px_ * view.pixel_tangent() * std::hypot(distance_m, half_height_m_);
+    const auto cell_at = [&](double distance_m) {
+        return std::max(cell_px_ * view.pixel_tangent() * std::hypot(distance_m, half_height_m_),
+                        kFinestCell_m);
     };
-    Result result{limit_.uniform_rates(1), 0.0};
-    // Twice as coarse until it is few enough.
-    for (double coarser = 1.0;; coarser *= 2.0) {
-        double points = 0.0;
-        std::vector<bool> is_done(limit_.edges());
-        for (std::size_t face = 0; face < limit_.faces(); ++face) {
-            const auto edges = limit_.face_edges(face);
-            if (edges.empty()) continue;
-            const double cell_m = cell_at(distance_m(view.position_m, face), coarser);
-            std::array<double, 2> across_m{0.0, 0.0};
-            for (std::size_t k = 0; k < edges.size(); ++k) {
-                const auto edge = static_cast<std::size_t>(edges[k]);
-                // A half twice: what is nearest decides for the whole.
-                double& across = across_m[edges.size() == 4 ? (k + 1) % 2 : 0];
-                across = std::max(across, 2.0 * glm::distance(middles_[edge], centres_[face]));
-                if (is_done[edge]) continue;
-                is_done[edge] = true;
-                int segments = 1;
-                for (const std::int32_t end : limit_.edge_points(edge)) {
-                    const glm::dvec3& corner = points_[static_cast<std::size_t>(end)];
-                    const double half_cell_m =
-                        cell_at(distance_to_segment(view.position_m, corner, middles_[edge]), coarser);
-                    segments = std::max(
-                        segments, segments_for(2.0 * glm::distance(corner, middles_[edge]), half_cell_m));
-                }
-                result.rates.edges[edge] = segments;
-                points += segments;
+    Result result{limit_.uniform_rates(1), 0.0, 0.0};
+    std::vector<bool> is_done(limit_.edges());
+    for (std::size_t face = 0; face < limit_.faces(); ++face) {
+        const auto edges = limit_.face_edges(face);
+        if (edges.empty()) continue;
+        const double cell_m = cell_at(distance_m(view.position_m, face));
+        std::array<double, 2> across_m{0.0, 0.0};
+        for (std::size_t k = 0; k < edges.size(); ++k) {
+            const auto edge = static_cast<std::size_t>(edges[k]);
+            // A half twice: what is nearest decides for the whole.
+            double& across = across_m[edges.size() == 4 ? (k + 1) % 2 : 0];
+            across = std::max(across, 2.0 * glm::distance(middles_[edge], centres_[face]));
+            if (is_done[edge]) continue;
+            is_done[edge] = true;
+            int segments = 1;
+            for (const std::int32_t end : limit_.edge_points(edge)) {
+                const glm::dvec3& corner = points_[static_cast<std::size_t>(end)];
+                const double half_cell_m =
+                    cell_at(distance_to_segment(view.position_m, corner, middles_[edge]));
+                segments = std::max(segments,
+                                    segments_for(2.0 * glm::distance(corner, middles_[edge]), half_cell_m));
             }
-            for (std::size_t i = 0; i < 2; ++i)
-                result.rates.faces[face][i] = segments_for(across_m[i], cell_m);
-            const auto [u, v] = result.rates.faces[face];
-            points += edges.size() == 4
-                          ? static_cast<double>(u) * v
-                          : static_cast<double>(u) * u * static_cast<double>(edges.size()) / 4.0;
+            result.rates.edges[edge] = segments;
+            result.points += segments;
         }
-        if (points <= static_cast<double>(kMostPoints)) break;
+        for (std::size_t i = 0; i < 2; ++i) result.rates.faces[face][i] = segments_for(across_m[i], cell_m);
+        const auto [u, v] = result.rates.faces[face];
+        result.points += edges.size() == 4
+                             ? static_cast<double>(u) * v
+                             : static_cast<double>(u) * u * static_cast<double>(edges.size()) / 4.0;
     }
     result.finest_m = finest_of(result.rates);
     return result;
@@ -164,9 +168,10 @@ CageSurface::CageSurface(const Scene& scene, const SeaReach& reach)
       level_(scene.surface.cage_level),
       camera_(scene.camera),
       first_frame_(scene.shot.first_frame),
+      cell_px_(scene.surface.cell_px),
       limit_(cage_->mesh()),
       adaption_(limit_, cage_->mesh().points_m, scene.surface.cell_px, reach.significant_height_m) {
-    const glm::dvec3 centre_m = centre_of(cage_->mesh());
+    const glm::dvec3 centre_m = centre_of(cage_->mesh(), limit_);
     origin_m_ = local_origin({centre_m.x, centre_m.y, 0.0}, fineness_at(first_frame_)->rates.finest_m);
 }
 
@@ -183,15 +188,27 @@ FeedSet CageSurface::feeds() const {
     return level_.is_adaptive ? pelagic::feeds(Feed::Cage, Feed::Grid) : pelagic::feeds(Feed::Cage);
 }
 
+CageSurface::Fineness CageSurface::made_fineness(int frame) const {
+    Fineness made{.view = shaped_by(frame), .rates = {}, .points = 0};
+    made.rates = made.view ? adaption_.at(*made.view) : adaption_.uniform(1 << level_.splits);
+    constexpr auto kMost = static_cast<double>(CageAdaption::kMostPoints);
+    if (made.rates.points > kMost)
+        throw std::invalid_argument(
+            "surface.cell_px = " + number_text(cell_px_) + " makes " +
+            number_text(std::round(made.rates.points * 1e-6)) + " million points of the cage at frame " +
+            std::to_string(frame) + "; accepted: up to " + number_text(std::round(kMost * 1e-6)) +
+            " million: raise it to " +
+            number_text(std::ceil(11.0 * cell_px_ * std::sqrt(made.rates.points / kMost)) / 10.0));
+    made.points = limit_.count_points(made.rates.rates);
+    return made;
+}
+
 std::shared_ptr<const CageSurface::Fineness> CageSurface::fineness_at(int frame) const {
     const std::optional<View> view = shaped_by(frame);
     const std::lock_guard<std::mutex> lock(fineness_mutex_);
-    if (fineness_ && fineness_->view == view) return fineness_;
-    auto made = std::make_shared<Fineness>();
-    made->view = view;
-    made->rates = view ? adaption_.at(*view) : adaption_.uniform(1 << level_.splits);
-    made->points = limit_.count_points(made->rates.rates);
-    return fineness_ = std::move(made);
+    if (!fineness_ || fineness_->view != view)
+        fineness_ = std::make_shared<const Fineness>(made_fineness(frame));
+    return fineness_;
 }
 
 std::string CageSurface::describe() const {
@@ -208,15 +225,32 @@ std::string CageSurface::remedy() const {
 }
 
 SurfaceNeeds CageSurface::needs(std::span<const int> frames) const {
-    if (frames.empty()) return {.own_footprints = true};
-    SurfaceNeeds needs{.finest_cell_m = std::numeric_limits<double>::infinity(), .own_footprints = true};
-    for (const int frame : frames) {
-        const std::shared_ptr<const Fineness> fineness = fineness_at(frame);
-        needs.finest_cell_m = std::min(needs.finest_cell_m, fineness->rates.finest_m);
-        needs.points = std::max(needs.points, fineness->points);
-    }
+    SurfaceNeeds needs{.own_footprints = true};
+    if (frames.empty()) return needs;
+    // Of those in a row that see it alike, one.
+    std::vector<int> seen;
+    for (const int frame : frames)
+        if (seen.empty() || shaped_by(frame) != shaped_by(seen.back())) seen.push_back(frame);
+    struct Needed {
+        double finest_m = std::numeric_limits<double>::infinity();
+        std::size_t points = 0;
+    };
+    const Needed needed = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, seen.size(), 1), Needed{},
+        [&](const tbb::blocked_range<std::size_t>& range, Needed so_far) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                const Fineness fineness = made_fineness(seen[i]);
+                so_far.finest_m = std::min(so_far.finest_m, fineness.rates.finest_m);
+                so_far.points = std::max(so_far.points, fineness.points);
+            }
+            return so_far;
+        },
+        [](const Needed& a, const Needed& b) {
+            return Needed{std::min(a.finest_m, b.finest_m), std::max(a.points, b.points)};
+        });
+    needs.points = needed.points;
     // A file's vertices are its only samples: cells filter normals, too, as in a patch.
-    needs.finest_pixel_m = needs.finest_cell_m;
+    needs.finest_cell_m = needs.finest_pixel_m = needed.finest_m;
     return needs;
 }
 
@@ -229,21 +263,11 @@ std::shared_ptr<const CageSurface::Laid> CageSurface::laid_at(int frame) const {
     CageMeshing meshing = limit_.mesh(fineness->rates.rates);
     auto laid = std::make_shared<Laid>();
     laid->view = view;
-    limit_.place(meshing, cage_->mesh().points_m, laid->places_m, laid->normals);
+    // A thread that waits here must not take up other work that asks for this surface: it would wait for itself.
+    tbb::this_task_arena::isolate(
+        [&] { limit_.place(meshing, cage_->mesh().points_m, laid->places_m, laid->normals); });
     laid->faces = std::move(meshing.faces);
-    // A point's cell is as large as the farthest of its neighbours is away: no mesh can show more.
-    laid->cell_m.assign(meshing.points, first_rung_m(fineness->rates.finest_m));
-    const std::int32_t* corners = laid->faces.indices.data();
-    for (const std::int32_t count : laid->faces.counts) {
-        for (std::int32_t k = 0; k < count; ++k) {
-            const auto a = static_cast<std::size_t>(corners[k]),
-                       b = static_cast<std::size_t>(corners[(k + 1) % count]);
-            const double length_m = glm::distance(laid->places_m[a], laid->places_m[b]);
-            laid->cell_m[a] = std::max(laid->cell_m[a], length_m);
-            laid->cell_m[b] = std::max(laid->cell_m[b], length_m);
-        }
-        corners += count;
-    }
+    laid->cell_m = cells_of(laid->faces, laid->places_m, first_rung_m(fineness->rates.finest_m));
     return laid_ = std::move(laid);
 }
 
@@ -261,6 +285,15 @@ void CageSurface::lay_out(int frame, RestPoints<T>& points) const {
     for (const glm::dvec3& normal : laid->normals) points.normal.emplace_back(normal);
     points.cell_m.assign(laid->cell_m.begin(), laid->cell_m.end());
     points.pixel_m = points.cell_m;
+}
+
+std::size_t CageSurface::held_bytes(std::size_t points, std::size_t scalar) const {
+    // What a pose gives; the mesh that it is made from, with two samples at the points of the cage's edges; and of the
+    // points at rest the height, the normal and two footprints.
+    const std::size_t faces = kQuadFaceBytes + (limit_.has_seams() ? kQuadSeamBytes : 0);
+    constexpr std::size_t kLaid = 2 * sizeof(glm::dvec3) + sizeof(double);
+    constexpr std::size_t kMade = sizeof(CageMeshing::Sample) + sizeof(glm::dvec3);
+    return points * (kLaid + faces + kMade + 6 * scalar);
 }
 
 void CageSurface::faces_at(int frame, Faces& faces) const {

@@ -25,19 +25,16 @@ class CageAdaption {
 
     struct Result {
         CageRates rates;
-        double finest_m = 0.0;  // no longer than half the shortest segment
+        double points = 0.0;    // about; of a uniform cage 0
+        double finest_m = 0.0;  // half the shortest segment, as if each edge's were equally long
     };
     Result at(const View& view) const;
     Result uniform(int segments) const;
 
-    static constexpr int kMostSegments = 1024;  // of an edge
-    static constexpr std::size_t kMostPoints = std::size_t{1}
-                                               << 27;  // a frame; segments grow where there would be more
+    static constexpr int kMostSegments = 1024;                        // of an edge
+    static constexpr std::size_t kMostPoints = std::size_t{1} << 27;  // of a frame
 
   private:
-    struct Half {
-        glm::dvec3 from, to;
-    };
     double distance_m(const glm::dvec3& eye_m, std::size_t face) const;
     double finest_of(const CageRates& rates) const;
 
@@ -64,6 +61,7 @@ class CageSurface final : public RestSurface {
     void points_at(int frame, RestPoints<float>& points) const override { lay_out(frame, points); }
     void points_at(int frame, RestPoints<double>& points) const override { lay_out(frame, points); }
     void faces_at(int frame, Faces& faces) const override;
+    std::size_t held_bytes(std::size_t points, std::size_t scalar) const override;
 
   private:
     // What a pose gives, kept until another pose is asked for: while neither cage nor camera move, frames cost nothing.
@@ -80,6 +78,8 @@ class CageSurface final : public RestSurface {
         CageAdaption::Result rates;
         std::size_t points = 0;
     };
+    // Throws std::invalid_argument for more than CageAdaption::kMostPoints.
+    Fineness made_fineness(int frame) const;
     std::shared_ptr<const Fineness> fineness_at(int frame) const;
     template <class T>
     void lay_out(int frame, RestPoints<T>& points) const;
@@ -88,6 +88,7 @@ class CageSurface final : public RestSurface {
     CageLevel level_;
     Camera camera_;
     int first_frame_;
+    double cell_px_;
     CageLimit limit_;
     CageAdaption adaption_;
     glm::dvec3 origin_m_;

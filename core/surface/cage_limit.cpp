@@ -220,10 +220,12 @@ CageLimit::CageLimit(const CageMesh& mesh)
     }
     corner_st_.reserve(mesh.indices.size());
     if (mesh.st.empty()) {
-        // Seen from above: the box round the cage's points.
-        glm::dvec2 low(mesh.points_m.front()), high = low;
-        for (const glm::dvec3& point : mesh.points_m)
-            low = glm::min(low, glm::dvec2(point)), high = glm::max(high, glm::dvec2(point));
+        // Seen from above: the box round the points of its faces.
+        glm::dvec2 low(mesh.points_m[static_cast<std::size_t>(mesh.indices.front())]), high = low;
+        for (const std::int32_t index : mesh.indices) {
+            const glm::dvec2 point(mesh.points_m[static_cast<std::size_t>(index)]);
+            low = glm::min(low, point), high = glm::max(high, point);
+        }
         const glm::dvec2 size = high - low,
                          by(size.x > 0.0 ? 1.0 / size.x : 0.0, size.y > 0.0 ? 1.0 / size.y : 0.0);
         for (const std::int32_t index : mesh.indices)
@@ -291,6 +293,12 @@ CageMeshing CageLimit::mesh(const CageRates& rates) const {
     std::vector<std::int32_t> global;
     std::vector<std::array<int, 4>> facets;
     std::int32_t points = 0;
+    // There are hardly more facets than points.
+    const std::size_t all = count_points(rates);
+    out.samples.reserve(all);
+    out.faces.counts.reserve(all);
+    out.faces.indices.reserve(4 * all);
+    out.faces.st.reserve(has_seams_ ? 4 * all : all);
     for (std::size_t face = 0; face < faces(); ++face) {
         out.first_samples.push_back(out.samples.size());
         if (!has_surface_[face]) continue;
@@ -347,6 +355,22 @@ CageMeshing CageLimit::mesh(const CageRates& rates) const {
     out.first_samples.push_back(out.samples.size());
     out.points = static_cast<std::size_t>(points);
     return out;
+}
+
+std::vector<double> cells_of(const Faces& faces, std::span<const glm::dvec3> places_m, double finest_m) {
+    std::vector<double> cells_m(places_m.size(), finest_m);
+    const std::int32_t* corners = faces.indices.data();
+    for (const std::int32_t count : faces.counts) {
+        for (std::int32_t k = 0; k < count; ++k) {
+            const auto a = static_cast<std::size_t>(corners[k]),
+                       b = static_cast<std::size_t>(corners[(k + 1) % count]);
+            const double length_m = glm::distance(places_m[a], places_m[b]);
+            cells_m[a] = std::max(cells_m[a], length_m);
+            cells_m[b] = std::max(cells_m[b], length_m);
+        }
+        corners += count;
+    }
+    return cells_m;
 }
 
 void CageLimit::place(const CageMeshing& meshing, std::span<const glm::dvec3> points_m,

@@ -50,6 +50,13 @@ struct CageStencils {
     std::vector<std::array<double, 3>> weights;  // of the place and of its derivatives along u and v
 };
 
+// Cells count as no finer [m]: a spectrum ends there, and faces may have no size at all.
+inline constexpr double kFinestCell_m = 1e-3;
+
+// Of each point, how far the farthest of those is that a side of a face joins it to [m], and at least finest_m: no mesh can
+// show more.
+std::vector<double> cells_of(const Faces& faces, std::span<const glm::dvec3> places_m, double finest_m);
+
 class CageLimit {
   public:
     // Keeps what it needs of the mesh, which a Cage has checked.

@@ -1,6 +1,7 @@
 // Faces over a surface's points.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <vector>
@@ -13,5 +14,10 @@ struct Faces {
     std::vector<glm::vec2> st;      // of each point, 0 … 1 unless an artist gave others
     bool is_st_of_corners = false;  // st is of each corner of each face instead: the texture has seams
 };
+
+// [bytes] of a quad's count and corners, and of a point's texture coordinate; with seams, of its corners' besides: in meshes of
+// quads there are as many of them as points.
+inline constexpr std::size_t kQuadFaceBytes = 5 * sizeof(std::int32_t) + sizeof(glm::vec2);
+inline constexpr std::size_t kQuadSeamBytes = 3 * sizeof(glm::vec2);
 
 }  // namespace pelagic

@@ -3,8 +3,8 @@
 // Inside a regular grid of quads the limit surface of Catmull and Clark (1978) is the uniform bicubic B-spline of the
 // vertices. So the cage through whose limit surface a grid of points goes is the solution of the spline's interpolation:
 // along each axis (c₋₁ + 4 c₀ + c₁)/6 = p. Its inverse is c_i = √3 Σ z^|j| p_{i+j}, z = √3 − 2 (Unser, Aldroubi, Eden 1993).
-// Waves are smooth: such a surface errs by (kh)⁴/720 of a wave's height, h being the distance of the points, where a mesh
-// errs by (kh)²/8, and its normals by less than a mesh's. The points outside the patch that the sum asks for are the sea's,
+// Waves are smooth: such a surface errs by up to (kh)⁴/384 of a wave's amplitude, h being the distance of the points, where a
+// mesh errs by up to (kh)²/8, and its normals by less than a mesh's. The points outside the patch that the sum asks for are the sea's,
 // so that the edges fit as well as the rest.
 #pragma once
 

@@ -104,6 +104,9 @@ class RestSurface {
     virtual void points_at(int frame, RestPoints<double>& points) const = 0;
     // Of the mesh's vertices: the points, or those of the cage.
     virtual void faces_at(int frame, Faces& faces) const = 0;
+    // What it holds [bytes] for frames of so many points, beside their places at rest and a frame's faces, each number in
+    // `scalar` bytes.
+    virtual std::size_t held_bytes(std::size_t /*points*/, std::size_t /*scalar*/) const { return 0; }
     // Where the mesh is a cage that is fitted to the points.
     virtual std::optional<FittedCage> fitted() const { return {}; }
 };

@@ -92,14 +92,15 @@ class MeshPart final : public OutputPart {
     OutputMemory memory() const override {
         const std::size_t points = query().points;
         const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
-        constexpr std::size_t kFace =
-            5 * sizeof(std::int32_t) + sizeof(glm::vec2);  // a quad's count, corners, st
-        OutputMemory memory{.once = points * 2 * scalar,
+        const std::size_t face_bytes = kQuadFaceBytes + (attributes_.st_of_corners ? kQuadSeamBytes : 0);
+        const std::size_t surface = plan_.surface->held_bytes(points, scalar);
+        OutputMemory memory{.once = points * 2 * scalar + surface,
                             .remedy = plan_.surface->remedy() + ", or ask for fewer output.attributes"};
         if (attributes_.faces)
-            memory.slot = points * kFace;
+            memory.slot = points * face_bytes;
         else
-            memory.fixed = points * kFace * (keeps_faces() ? 2 : 1);
+            memory.fixed = points * face_bytes * (keeps_faces() ? 2 : 1) + surface;
+        if (keeps_faces()) memory.once += points * face_bytes;
         // Footprints of each point, and the grid that they are taken from.
         if (!plan_.surface->is_constant())
             memory.once += points * (2 * scalar + sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double));
@@ -109,7 +110,7 @@ class MeshPart final : public OutputPart {
             memory.slot += points * kText * numbers();
             memory.encoding =
                 points * kText * numbers() / 2;  // the string moves to a larger place as it grows
-            if (memory.fixed > 0) memory.fixed += points * kFace;
+            if (memory.fixed > 0) memory.fixed += points * face_bytes;
             memory.remedy += "; output.mesh = \"usdc\" needs a third";
         }
         return memory;

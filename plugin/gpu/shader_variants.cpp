@@ -117,10 +117,10 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
                                                                  : 0;
     return constant("kSun", choice.sun) + constant("kSky", choice.sky) + constant("kWater", choice.water) +
            constant("kWhitecaps", choice.whitecaps) + constant("kAir", choice.air) +
-           constant("kSpray", choice.spray) + constant("kFoamCell_m", kFoamCell_m) +
-           constant("kAirColumns", Air::kColumns) + constant("kAirRows", Air::kRows) +
-           constant("kAirHorizonRow", Air::kHorizonRow) + constant("kAirSkyRows", Air::kSkyRows) +
-           constant("kSkyLookups", lookups) + constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
+           constant("kFoamCell_m", kFoamCell_m) + constant("kAirColumns", Air::kColumns) +
+           constant("kAirRows", Air::kRows) + constant("kAirHorizonRow", Air::kHorizonRow) +
+           constant("kAirSkyRows", Air::kSkyRows) + constant("kSkyLookups", lookups) +
+           constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
            "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
 }
 

@@ -38,6 +38,9 @@ double number_of(std::string_view word) {
     const auto [stop, problem] = std::from_chars(word.data() + (has_plus ? 1 : 0), end, value);
     if (problem == std::errc::invalid_argument || stop != end)
         throw Refused{quoted(word) + " is no number", "numbers"};
+    if (const std::size_t e = word.find_first_of("eE");
+        problem == std::errc::result_out_of_range && e + 1 < word.size() && word[e + 1] == '-')
+        return 0.0;  // smaller than any double but 0
     if (problem != std::errc() || !std::isfinite(value))
         throw Refused{quoted(word) + " is not a finite number", "finite numbers"};
     return value;

@@ -137,6 +137,9 @@ void add_bake_report(py::module_& module) {
         .def_property_readonly(
             "maps", [](const BakeReport& self) { return path_or_none(self.maps); },
             "The folder of the maps; None without maps.")
+        .def_property_readonly(
+            "volumes", [](const BakeReport& self) { return path_or_none(self.volumes); },
+            "The folder of the volumes; None without volumes.")
         .def_readonly("record", &BakeReport::record, "DIR/NAME.json.")
         .def_readonly("done", &BakeReport::done, "Frames that were baked.")
         .def_readonly("kept", &BakeReport::kept, "Frames that were whole already.")

@@ -90,7 +90,7 @@ void add_baked(py::module_& module) {
         "are the places. (0, 0, 0) but for what follows a camera far from the world's origin.\n"
         "position: (n, 3) [m]. normal: (n, 3). velocity: (n, 3) [m/s of the screen]. slope_variance: (n, 3), xx, yy, "
         "xy. coverage: (n,); of foam that lives foam_active: (n,), what of it breaks now, and foam_age: (n,) [s]. st: (n, 2), "
-        "0 to 1.\n"
+        "0 to 1; where the texture has seams one for each of face_corners.\n"
         "face_counts: int32 (f,), corners of each face. face_corners: int32, their points.\n\n"
         "A frame of a camera's grid has its own faces; of other surfaces they and st are in the "
         "topology's file alone. FileError for a file that is missing, cut short, damaged or another "

@@ -151,7 +151,7 @@ class PythonCageSurface {
         const std::vector<glm::dvec3>& points_m = given.is_none() ? cage_->mesh().points_m : moved;
         std::vector<glm::dvec3> places_m, normals;
         std::vector<glm::vec2> rest;
-        std::vector<float> height, cell(meshing_.points, 0.0f);
+        std::vector<float> height, cell;
         std::vector<glm::vec3> normal;
         glm::dvec3 origin_m;
         {
@@ -159,23 +159,12 @@ class PythonCageSurface {
             // Made when they are first asked for.
             std::call_once(once_, [&] { stencils_ = limit_->stencils(meshing_); });
             CageLimit::place(meshing_, stencils_, points_m, places_m, normals);
-            const std::int32_t* corner = meshing_.faces.indices.data();
-            for (const std::int32_t count : meshing_.faces.counts) {
-                for (std::int32_t k = 0; k < count; ++k) {
-                    const auto a = static_cast<std::size_t>(corner[k]),
-                               b = static_cast<std::size_t>(corner[(k + 1) % count]);
-                    const auto length = static_cast<float>(glm::distance(places_m[a], places_m[b]));
-                    cell[a] = std::max(cell[a], length);
-                    cell[b] = std::max(cell[b], length);
-                }
-                corner += count;
-            }
+            const std::vector<double> cells_m = cells_of(meshing_.faces, places_m, kFinestCell_m);
+            cell.assign(cells_m.begin(), cells_m.end());
             glm::dvec3 low = places_m.front(), high = low;
             for (const glm::dvec3& place : places_m) low = glm::min(low, place), high = glm::max(high, place);
-            constexpr double kFinest_m = 1e-3;
-            for (float& each : cell) each = std::max(each, static_cast<float>(kFinest_m));
             origin_m = local_origin({0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.0},
-                                    static_cast<double>(*std::min_element(cell.begin(), cell.end())));
+                                    *std::min_element(cells_m.begin(), cells_m.end()));
             for (const glm::dvec3& place : places_m) {
                 rest.emplace_back(glm::dvec2(place) - glm::dvec2(origin_m));
                 height.push_back(static_cast<float>(place.z));

@@ -67,10 +67,15 @@ double steepest(const View& view) {
     if (sees(view, {0.0, 0.0, -1.0})) return std::numeric_limits<double>::infinity();
     const glm::dvec2 size(view.resolution);
     double most = 1e-3;
-    for (const glm::dvec2 corner : {glm::dvec2(0.0), glm::dvec2(size.x, 0.0), size, glm::dvec2(0.0, size.y),
-                                    glm::dvec2(0.5 * size.x, 0.0), glm::dvec2(0.5 * size.x, size.y)}) {
-        const glm::dvec3 to = view.direction(corner);
-        most = std::max(most, -to.z / std::max(std::hypot(to.x, to.y), 1e-9));
+    constexpr int kSteps =
+        16;  // along each side: without the nadir in the picture it is somewhere on the edge
+    for (int i = 0; i <= kSteps; ++i) {
+        const glm::dvec2 along = size * (static_cast<double>(i) / kSteps);
+        for (const glm::dvec2 at : {glm::dvec2(along.x, 0.0), glm::dvec2(along.x, size.y),
+                                    glm::dvec2(0.0, along.y), glm::dvec2(size.x, along.y)}) {
+            const glm::dvec3 to = view.direction(at);
+            most = std::max(most, -to.z / std::max(std::hypot(to.x, to.y), 1e-9));
+        }
     }
     return most;
 }

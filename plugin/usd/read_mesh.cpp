@@ -20,12 +20,18 @@ std::span<const Vector> vectors_of(const MeshLayer& layer, std::string_view name
 
 // By the writers' own rules.
 void check(const MeshLayer& layer) {
-    const Faces faces{.counts = values_of<std::int32_t>(layer, "faceVertexCounts"),
-                      .indices = values_of<std::int32_t>(layer, "faceVertexIndices"),
-                      .st = vectors_of<glm::vec2>(layer, "primvars:st")};
+    Faces faces{.counts = values_of<std::int32_t>(layer, "faceVertexCounts"),
+                .indices = values_of<std::int32_t>(layer, "faceVertexIndices"),
+                .st = vectors_of<glm::vec2>(layer, "primvars:st")};
+    // Frames don't say it: their topology does. Where there are as many of both, each is as good.
+    const std::size_t points = vectors_of<glm::vec3>(layer, "points").size();
+    faces.is_st_of_corners =
+        faces.st.size() == faces.indices.size() && (!layer.frame || faces.st.size() != points);
     if (!layer.frame) {
-        check(Topology{
-            .face_vertex_counts = faces.counts, .face_vertex_indices = faces.indices, .st = faces.st});
+        check(Topology{.face_vertex_counts = faces.counts,
+                       .face_vertex_indices = faces.indices,
+                       .st = faces.st,
+                       .attributes = {.st_of_corners = faces.is_st_of_corners}});
         return;
     }
     MeshSample sample{.origin_m = layer.origin_m,

@@ -149,7 +149,6 @@ class OpenVdbGrid final : public GridWriter {
         const std::lock_guard lock(mutex_);
         vectors_->tree().addLeaf(leaf.release());
     }
-    std::size_t active_voxels() const override { return grid()->activeVoxelCount(); }
 
     openvdb::GridBase::Ptr finished() const {
         if (kind_ == GridKind::LevelSet) openvdb::tools::signedFloodFill(floats_->tree());

@@ -14,7 +14,6 @@ class GridWriter {
     virtual ~GridWriter() = default;
     virtual void add(const Block<float>& block) = 0;
     virtual void add(const Block<glm::vec3>& block) = 0;
-    virtual std::size_t active_voxels() const = 0;
 };
 
 class OpenVdbWriter {

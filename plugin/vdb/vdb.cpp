@@ -96,10 +96,6 @@ void Grid::add(const Block<float>& block) {
 void Grid::add(const Block<glm::vec3>& block) {
     impl_->writer->add(block);
 }
-std::size_t Grid::active_voxels() const {
-    return impl_->writer->active_voxels();
-}
-
 std::string encode(std::span<const Grid> grids, const std::vector<Attribute>& attributes,
                    const std::string& fingerprint) {
     const std::string identifier = identifier_of(fingerprint);

@@ -79,8 +79,6 @@ class Grid {
     void add(const Block<float>& block);
     void add(const Block<glm::vec3>& block);
 
-    std::size_t active_voxels() const;
-
   private:
     friend std::string encode(std::span<const Grid>, const std::vector<Attribute>&, const std::string&);
     struct Impl;

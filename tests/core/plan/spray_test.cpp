@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/constants.h"
+#include "core/scene/limits.h"
 
 namespace pelagic {
 namespace {
@@ -52,6 +53,40 @@ TEST(Spray, SaysFromWhichGainOnAPictureShowsIt) {
     EXPECT_NE(spray_warning(scene), "");
     scene.sea.wind_speed_mps = 0.0;
     EXPECT_EQ(spray_warning(scene), "");
+}
+
+// In any wind the gain that is named is enough, is accepted, and half of it isn't enough.
+TEST(Spray, NamesAGainThatIsEnoughInAnyWind) {
+    Scene scene;
+    scene.effects.spray = true;
+    int named = 0, beyond = 0;
+    for (double wind_mps = 0.02; wind_mps < 80.0; wind_mps *= 1.037) {
+        scene.sea.wind_speed_mps = wind_mps;
+        scene.effects.spray_gain = 1.0;
+        const std::string warning = spray_warning(scene);
+        if (warning.empty()) {
+            EXPECT_GT(wind_mps, 30.0) << "nature's own is seen in a hurricane";
+            continue;
+        }
+        const std::string key = "effects.spray_gain = ";
+        if (const std::size_t at = warning.find(key); at != std::string::npos) {
+            const double gain = std::stod(warning.substr(at + key.size()));
+            EXPECT_TRUE(limits::kSprayGain.holds(gain)) << warning;
+            scene.effects.spray_gain = gain;
+            EXPECT_EQ(spray_warning(scene), "") << wind_mps;
+            scene.effects.spray_gain = 0.49 * gain;
+            EXPECT_NE(spray_warning(scene), "") << wind_mps;
+            ++named;
+        } else {
+            EXPECT_NE(warning.find("no effects.spray_gain shows it"), std::string::npos)
+                << wind_mps << warning;
+            ++beyond;
+        }
+    }
+    EXPECT_GT(named, 50);
+    EXPECT_GT(beyond, 20);
+    scene.effects.spray_gain = 0.0;
+    EXPECT_EQ(spray_warning(scene), "effects.spray_gain = 0 leaves no spray");
 }
 
 // 1e-4 at 10 m/s and 3e-3 at 25: far too thin to be seen.

@@ -152,6 +152,31 @@ TEST(Cage, AnyRatesOfEdgesMakeAMeshWithoutCracks) {
     }
 }
 
+// From a place to the nearest of a mesh's faces, as triangles.
+double distance_to_faces(const glm::dvec3& place, const Placed& mesh) {
+    double least = std::numeric_limits<double>::infinity();
+    const auto to_segment = [&](const glm::dvec3& a, const glm::dvec3& b) {
+        const double length2 = std::max(glm::dot(b - a, b - a), 1e-300);
+        return glm::distance(place, a + std::clamp(glm::dot(place - a, b - a) / length2, 0.0, 1.0) * (b - a));
+    };
+    const auto at = [&](std::int32_t i) { return mesh.places_m[static_cast<std::size_t>(i)]; };
+    const std::int32_t* corner = mesh.meshing.faces.indices.data();
+    for (const std::int32_t count : mesh.meshing.faces.counts) {
+        for (std::int32_t k = 2; k < count; ++k) {
+            const glm::dvec3 a = at(corner[0]), b = at(corner[k - 1]), c = at(corner[k]);
+            const glm::dvec3 normal = glm::cross(b - a, c - a);
+            const auto is_inside = [&](const glm::dvec3& from, const glm::dvec3& to) {
+                return glm::dot(glm::cross(to - from, place - from), normal) >= 0.0;
+            };
+            least = std::min({least, to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+            if (glm::length(normal) > 0.0 && is_inside(a, b) && is_inside(b, c) && is_inside(c, a))
+                least = std::min(least, std::abs(glm::dot(place - a, glm::normalize(normal))));
+        }
+        corner += count;
+    }
+    return least;
+}
+
 // A mesh with different rates lies on the same surface: its points are among those of a mesh that has all.
 TEST(Cage, MixedRatesLieOnTheSameSurface) {
     for (const Case& each : cases()) {
@@ -169,8 +194,12 @@ TEST(Cage, MixedRatesLieOnTheSameSurface) {
             for (std::size_t k = 0; k < fine.places_m.size(); ++k)
                 if (const double d = glm::distance(mixed.places_m[i], fine.places_m[k]); d < least)
                     least = d, at = k;
-            // Inside, points of such a pattern need not be halvings: those are within a facet of the fine mesh.
-            if (least > 1e-9) continue;
+            // Inside, points of such a pattern need not be halvings: those are near a facet of the fine mesh, whose sides are up
+            // to 2/16 long, by a curvature of less than 16.
+            if (least > 1e-9) {
+                EXPECT_LT(distance_to_faces(mixed.places_m[i], fine), 16.0 / 8.0 / 64.0);
+                continue;
+            }
             ++same;
             EXPECT_NEAR(glm::dot(mixed.normals[i], fine.normals[at]), 1.0, 1e-9);
         }
@@ -357,7 +386,33 @@ TEST(CageSurface, AnAdaptiveOneFollowsTheCamera) {
             corner += count;
         }
         EXPECT_LT(longest_px, 2.5 * scene.surface.cell_px) << "diagonals of cells are the longest";
-        EXPECT_EQ(edges_with_one_face(faces) > 0, true);
+        // All open edges are the cage's own: a crack would add to the length of the four sides.
+        double open_m = 0.0;
+        std::map<std::pair<std::int32_t, std::int32_t>, int> sides;
+        corner = faces.indices.data();
+        for (const std::int32_t count : faces.counts) {
+            for (std::int32_t k = 0; k < count; ++k) ++sides[std::minmax(corner[k], corner[(k + 1) % count])];
+            corner += count;
+        }
+        for (const auto& [ends, times] : sides) {
+            if (times != 1) continue;
+            const glm::dvec3 a = place(ends.first), b = place(ends.second);
+            const auto is_side = [](double v, double w) {
+                return std::abs(v - w) < 1e-9 && (std::abs(v) < 1e-9 || std::abs(v - 8.0) < 1e-9);
+            };
+            EXPECT_TRUE(is_side(a.x, b.x) || is_side(a.y, b.y))
+                << a.x << ' ' << a.y << ' ' << b.x << ' ' << b.y;
+            open_m += glm::distance(glm::dvec2(a), glm::dvec2(b));
+        }
+        EXPECT_NEAR(open_m, 32.0, 1e-9);
+        // From far away a few points to each face, and from nearby no more than the pixels ask for: a cell's side is at least a
+        // quarter of what it may be, where each edge is as fine as its nearest place needs.
+        if (frame == 1) {
+            EXPECT_GT(points.rest_m.size(), 1000u);
+            EXPECT_LT(points.rest_m.size(), 16u * static_cast<std::size_t>(640 * 360) / 64u);
+        } else {
+            EXPECT_LE(points.rest_m.size(), 200u) << "no more than two segments an edge";
+        }
         if (frame == 20) {
             EXPECT_EQ(points.rest_m.size(), before) << "the camera stands";
         }
@@ -382,6 +437,69 @@ TEST(CageSurface, ACameraInTheSurfaceIsNoSpecialCase) {
             EXPECT_TRUE(std::isfinite(points.rest_m[i].x + points.height_m[i] + points.normal[i].z) &&
                         points.cell_m[i] > 0.0f);
     }
+}
+
+// Without waves nothing keeps cells from 0 beside the eye: they are as fine as cells get, and faces without size have one segment.
+TEST(CageSurface, AnEyeAtAPointOfACalmCageEnds) {
+    CageMesh fan, collapsed = grid_cage(1, 1, [](int, int) { return 0.0; });
+    constexpr int kQuads = 8;
+    fan.points_m.emplace_back(0.0);
+    for (int i = 0; i < 2 * kQuads; ++i) {
+        const double turn = i * 3.14159265358979 / kQuads;
+        fan.points_m.emplace_back(std::cos(turn), std::sin(turn), 0.0);
+    }
+    for (std::int32_t i = 0; i < kQuads; ++i) {
+        fan.face_counts.push_back(4);
+        fan.indices.insert(fan.indices.end(), {0, 2 * i + 1, 2 * i + 2, (2 * i + 2) % (2 * kQuads) + 1});
+    }
+    for (glm::dvec3& point : collapsed.points_m) point = glm::dvec3(0.0);
+    for (const CageMesh& mesh : {fan, collapsed}) {
+        Scene scene = cage_scene(mesh);
+        scene.surface.cage_level.is_adaptive = true;
+        scene.surface.cell_px = 64.0;
+        scene.camera.position_m = glm::dvec3(0.0);
+        scene.camera.look_at_m = {0.0, 1.0, 0.0};
+        const auto surface = make_surface(scene, SeaReach{});
+        RestPoints<double> points;
+        surface->points_at(1, points);
+        EXPECT_GE(points.rest_m.size(), 4u);
+        for (const double cell_m : points.cell_m) EXPECT_TRUE(cell_m > 0.0 && std::isfinite(cell_m));
+    }
+}
+
+// A value that can't be honoured is refused, with one that can.
+TEST(CageSurface, CellsThatMakeTooManyPointsAreRefused) {
+    Scene scene = cage_scene(grid_cage(40, 40, [](int, int) { return 0.0; }));
+    scene.surface.cage_level.is_adaptive = true;
+    scene.surface.cell_px = 0.01;
+    scene.camera.position_m = {20.0, 20.0, 1.0};
+    scene.camera.look_at_m = {20.0, 30.0, 0.0};
+    const std::string key = "raise it to ";
+    std::string message;
+    try {
+        make_surface(scene, SeaReach{});
+    } catch (const std::invalid_argument& error) {
+        message = error.what();
+    }
+    ASSERT_NE(message.find("at frame 1"), std::string::npos) << message;
+    ASSERT_NE(message.find(key), std::string::npos) << message;
+    EXPECT_GT(std::stod(message.substr(message.find(key) + key.size())), 0.01) << message;
+}
+
+// Points that no face uses have no say in where the origin is.
+TEST(CageSurface, APointOfNoFaceMovesNothing) {
+    CageMesh mesh = grid_cage(2, 2, [](int, int) { return 0.0; });
+    for (glm::dvec3& point : mesh.points_m) point *= 0.1;
+    mesh.points_m.emplace_back(1e6, 0.0, 0.0);
+    const auto surface = make_surface(cage_scene(std::move(mesh)), kReach);
+    RestPoints<float> points;
+    surface->points_at(1, points);
+    EXPECT_EQ(points.origin_m, glm::dvec2(0.0));
+    Faces faces;
+    surface->faces_at(1, faces);
+    float most = 0.0f;
+    for (const glm::vec2& st : faces.st) most = std::max(most, st.x);
+    EXPECT_EQ(most, 1.0f);
 }
 
 TEST(CageSurface, FarFromTheOriginItHasItsOwn) {

@@ -62,8 +62,8 @@ TEST(FittedCage, TheLimitSurfaceMeetsEveryPointOfThePatch) {
     }
 }
 
-// A wave of a cell's wavenumber kh, at any angle, everywhere in the patch and on its edges: (kh)⁴/720 of its height at most,
-// by the spline's own error (kh)⁴/720 (1 + O(kh)²) where both axes have their worst.
+// A wave of a cell's wavenumber kh, at any angle, everywhere in the patch and on its edges: (kh)⁴/384 of its amplitude at
+// most, times 1 + O(kh)².
 TEST(FittedCage, AWaveIsRightBetweenThePointsAndOnTheEdges) {
     const FittedCage cage{24};
     for (const double wavenumber : {0.2, 0.5, 1.0, kPi / 2})

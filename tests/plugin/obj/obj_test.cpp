@@ -11,6 +11,8 @@
 namespace pelagic {
 namespace {
 
+using namespace std::string_view_literals;
+
 Cage read(const std::string& text) {
     return parse_obj(text, "c.obj");
 }
@@ -122,6 +124,8 @@ TEST(Obj, BadCagesAreRefusedWithTheirLine) {
          "a point of a face"},
         {square + "f 1 2 3\nt hole 1/0/0 1\n", "c.obj:6: the hole is the face 1", "faces 0 … 0"},
         {square + "f 1 2 3\nt hole 1/0/0 0\n", "c.obj: has holes alone", "no hole"},
+        {square + "f 1 2 3 4\nt interpolateboundary 1/0/0 0\n", "c.obj: has no surface",
+         "ends at the boundary"},
         {square + "t interpolateboundary 1/0/0 3\n", "c.obj:5: the boundary has one rule", "edge only"},
         {square + "t smooth 1/0/0 3\n", "c.obj:5: the tag \"smooth\" is not known", "crease, corner"},
         {square + "t\n", "c.obj:5: a tag has a name", "t crease"},
@@ -137,6 +141,13 @@ TEST(Obj, BadCagesAreRefusedWithTheirLine) {
 }
 
 // Refused where it begins to be too much, without the time that looking at it all would take.
+// Smaller than any double but 0.
+TEST(Obj, NumbersThatAreTooSmallAreZero) {
+    const auto cage = parse_obj("v 0 0 1e-400\nv 1 0 -2.5E-999\nv 1 1 0\nf 1 2 3\n", "c.obj");
+    EXPECT_EQ(cage.mesh().points_m[0].z, 0.0);
+    EXPECT_EQ(cage.mesh().points_m[1].z, 0.0);
+}
+
 TEST(Obj, TooManyFacesAreRefusedAtTheFirst) {
     std::string text = kSquare;
     for (std::size_t i = 0; i <= limits::kCageFaces; ++i) text += "f 1 2 3\n";
@@ -161,7 +172,7 @@ TEST(Obj, ContentCountsAndNotTheName) {
         EXPECT_EQ(read(other).content(), read(text).content()) << "−0 is 0";
     std::string last = read(text).content();
     for (const char* more :
-         {"t crease 2/1/0 0 1 1\n", "t corner 1/1/0 0 1\n", "t interpolateboundary 1/0/0 0\n"}) {
+         {"t crease 2/1/0 0 1 1\n", "t corner 1/1/0 0 1\n", "t interpolateboundary 1/0/0 1\n"}) {
         EXPECT_NE(read(text + more).content(), last);
         last = read(text + more).content();
     }
@@ -178,7 +189,7 @@ TEST(Obj, DamagedFilesAreReadOrRefused) {
     const auto below = [&](std::size_t n) {
         return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
     };
-    constexpr std::string_view kTelling = "vtf #\\/-+.eE0123456789\n\r\t\0naninf";
+    constexpr std::string_view kTelling = "vtf #\\/-+.eE0123456789\n\r\t\0naninf"sv;
     int read_well = 0, refused = 0;
     for (int round = 0; round < 4000; ++round) {
         std::string text = whole;

@@ -120,6 +120,26 @@ TEST(UsdReadMesh, TopologiesComeBack) {
     }
 }
 
+// With seams there is a texture coordinate for each corner of each face: more than points.
+TEST(UsdReadMesh, TextureCoordinatesOfCornersComeBack) {
+    const std::vector<glm::vec2> st{{0, 0},    {0.5f, 0}, {0.5f, 1}, {0, 1},
+                                    {0.1f, 0}, {1, 0},    {1, 1},    {0.1f, 1}};
+    const Faces seamed{.counts = kCounts, .indices = kCorners, .st = st, .is_st_of_corners = true};
+    for (const std::string& bytes : {frame_crate(frame(seamed)), frame_text(frame(seamed))}) {
+        const MeshLayer layer = read_mesh_layer(bytes);
+        expect_frame(layer);
+        expect(layer, "primvars:st", flat(st), 2);
+    }
+    Topology whole = topology();
+    whole.st = st;
+    whole.attributes.st_of_corners = true;
+    for (const std::string& bytes : {topology_crate(whole), topology_text(whole)})
+        expect(read_mesh_layer(bytes), "primvars:st", flat(st), 2);
+    // One for each corner is as many as that, and no other number.
+    const std::vector<glm::vec2> few(st.begin(), st.end() - 1);
+    EXPECT_THROW(frame_crate(frame(Faces{kCounts, kCorners, few, true})), std::invalid_argument);
+}
+
 TEST(UsdReadMesh, APointsOnlyFrameAndAnEmptyOneAreFrames) {
     EXPECT_EQ(read_mesh_layer(frame_crate({.points = kPoints})).arrays.size(), 1u);
     EXPECT_EQ(read_mesh_layer(frame_text({.points = kPoints})).arrays.size(), 1u);

@@ -22,6 +22,8 @@ struct FootprintFilter {
     }
     // Waves with larger k have weight 0 [rad/m]; infinite for a footprint of 0.
     double cutoff(double footprint_m) const { return kTwoPi / (n_min * footprint_m); }
+
+    bool operator==(const FootprintFilter&) const = default;
 };
 
 }  // namespace pelagic

@@ -176,7 +176,8 @@ void add_grids(Plan& plan, int cascade_index) {
 
 }  // namespace
 
-std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double finest_footprint_m) {
+std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double finest_footprint_m,
+                                          const FootprintFilter& filter) {
     const Scene& scene = prepared.scene;
     if (!scene.waves.cascades.empty() || scene.waves.model == WaveModel::Trochoid)
         return scene.waves.cascades;
@@ -203,7 +204,7 @@ std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double 
         } else if (finest_footprint_m > 0.0) {
             // The finest cascade goes as far as somebody looks. Modes don't depend on it: more only adds
             // detail.
-            const double modes = FootprintFilter{}.cutoff(finest_footprint_m) * sizes[i] / kTwoPi;
+            const double modes = filter.cutoff(finest_footprint_m) * sizes[i] / kTwoPi;
             resolution =
                 static_cast<int>(std::clamp(2.0 * (std::ceil(modes) + 1.0), 16.0, 1.0 * kLargestResolution));
         }
@@ -222,9 +223,9 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
             products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage) &
             ~products_gone(prepared.scene);
     query.points = options.points;
-    const FootprintFilter filter;
+    const FootprintFilter& filter = options.filter;
     const double finest_m = options.finest_pixel_m > 0.0 ? first_rung_m(options.finest_pixel_m) : 0.0;
-    const auto cascades = resolve_cascades(prepared, finest_m);
+    const auto cascades = resolve_cascades(prepared, finest_m, filter);
     // Trains see each point's own footprints, whatever the ladder.
     query.cell_m = query.pixel_m = {0.0};
     if (cascades.empty()) return query;
@@ -309,7 +310,8 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.from = std::move(from);
     const PreparedScene& prepared = *plan.from;
     const Scene& scene = prepared.scene;
-    plan.knobs = knobs_of(scene.quality.level);
+    plan.knobs = options.knobs.value_or(knobs_of(scene.quality.level));
+    plan.filter = options.filter;
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
     plan.choppiness = built_choppiness(scene);
     plan.breaking = breaking_of(scene, plan.filter);
@@ -331,7 +333,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     }
     const double finest_footprint_m = std::isfinite(finest_m) ? finest_m : 0.0;
     if (scene.waves.model == WaveModel::Trochoid) plan.trains = resolve_trains(prepared, trains_finest_m);
-    const auto sizes = resolve_cascades(prepared, finest_footprint_m);
+    const auto sizes = resolve_cascades(prepared, finest_footprint_m, plan.filter);
     std::vector<double> sizes_m;
     for (const CascadeSize& cascade : sizes) sizes_m.push_back(cascade.size_m);
     const auto edges = lower_edges(sizes_m);

@@ -82,6 +82,8 @@ struct Knobs {
     double oversampling = 2.0;
     bool third_moment = true;  // coverage from three moments of J, or from two (Dupuy and Bruneton)
     bool double_precision = false;
+
+    bool operator==(const Knobs&) const = default;
 };
 
 struct PlannedQuery {
@@ -143,6 +145,7 @@ struct ViewQueryOptions {
     // No point's footprints will be finer [m] (ProjectedGridNeeds); 0: nothing may be filtered.
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;
     std::size_t points = 0;
+    FootprintFilter filter{};
 };
 
 // A query for points at all distances from a camera: a ladder of footprints, each the double of the one
@@ -156,9 +159,11 @@ Query view_query(const PreparedScene&, const ViewQueryOptions& options = {});
 // The projected grid of the shot's camera, for pictures.
 ProjectedGridOptions projected_grid_options(const PreparedScene&);
 
-// The plan of these queries, and of what the scene's effects ask for. Without `double_precision` as the
-// quality level has it. Throws std::invalid_argument when a query is malformed.
+// The plan of these queries, and of what the scene's effects ask for. Without `knobs` or `double_precision` as the
+// quality level has them. Throws std::invalid_argument when a query is malformed.
 struct PlanOptions {
+    std::optional<Knobs> knobs{};
+    FootprintFilter filter{};  // to measure what another one would cost
     std::optional<bool> double_precision{};
     // Whoever asks keeps the foam's history (core/effects/foam_history.h). Without, all foam is where waves break now.
     bool living_foam = false;
@@ -179,7 +184,8 @@ Plan plan_bake(const Scene&);
 
 // The cascades in force, largest first: the scene's own, or "auto" resolved for the finest footprint asked
 // for; none for a sea of trains alone.
-std::vector<CascadeSize> resolve_cascades(const PreparedScene&, double finest_footprint_m);
+std::vector<CascadeSize> resolve_cascades(const PreparedScene&, double finest_footprint_m,
+                                          const FootprintFilter& filter = {});
 
 // The levels, of Plan::levels, from which the query's values are summed: none where they only count what is
 // hidden.

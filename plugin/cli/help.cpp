@@ -13,6 +13,7 @@ const char* const kProgramFooter =
     "  pelagic render storm.toml --out storm   pictures of it, OpenEXR and PNG\n"
     "  pelagic preview storm.toml              a window that plays it\n"
     "  pelagic explain storm.toml              what a bake will compute, and why\n"
+    "  pelagic accuracy storm.toml             what accuracy costs, measured\n"
     "  pelagic verify storm                    check the files that were written\n"
     "  pelagic validate shots/*.toml           check shot files without baking\n"
     "  pelagic keys                            every key of a shot file\n"
@@ -182,6 +183,33 @@ const char* const kMeasure =
     "bytes and milliseconds: a frame with it minus a frame without it";
 const char* const kMeasureThreads =
     "With --measure: how many threads, 1 to 256.\n"
+    "Default: one for each core that the process may use";
+
+const char* const kAccuracy =
+    "Measure what accuracy costs on a shot: error against time for each approximation.\n"
+    "Sweeps the knob of each, with errors against a named reference and times of the same run, and\n"
+    "writes DIR/accuracy.html with plots, accuracy.csv and accuracy.txt. Rows that were measured before\n"
+    "stay, with their age.";
+const char* const kAccuracyFooter =
+    "Examples:\n"
+    "  pelagic accuracy                             the default sea, every row: some minutes\n"
+    "  pelagic accuracy storm.toml --out storm-accuracy\n"
+    "  pelagic accuracy storm.toml --out storm-accuracy --rows sky,samples\n"
+    "                                               two rows again; the others stay\n"
+    "\n"
+    "Times are medians of settings that are measured in turn, so that they compare within a row, also on\n"
+    "a machine with other work.";
+const char* const kAccuracyShot = "The shot file. Default: the default sea";
+const char* const kAccuracyOut =
+    "The folder for the report; created if it is missing.\n"
+    "Default: NAME-accuracy in the working folder";
+const char* const kAccuracyRows =
+    "Measure only these rows, separated by commas (see --list).\n"
+    "Default: all of them";
+const char* const kAccuracyRepeats = "How often each setting is timed. Default: 5";
+const char* const kAccuracyList = "Print the rows with their knobs, and exit";
+const char* const kAccuracyThreads =
+    "How many threads compute, 1 to 256.\n"
     "Default: one for each core that the process may use";
 
 const char* const kVerify =

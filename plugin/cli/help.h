@@ -51,6 +51,15 @@ extern const char* const kExplainFooter;
 extern const char* const kMeasure;
 extern const char* const kMeasureThreads;
 
+extern const char* const kAccuracy;
+extern const char* const kAccuracyFooter;
+extern const char* const kAccuracyShot;
+extern const char* const kAccuracyOut;
+extern const char* const kAccuracyRows;
+extern const char* const kAccuracyRepeats;
+extern const char* const kAccuracyList;
+extern const char* const kAccuracyThreads;
+
 extern const char* const kVerify;
 extern const char* const kVerifyFooter;
 extern const char* const kFolders;

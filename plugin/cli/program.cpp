@@ -114,7 +114,7 @@ int run(int argc, const char* const* argv) {
     formatter->column_width(20);
     program.formatter(formatter);  // inherited by the verbs
     const std::vector<Verb> verbs{add_bake(program),    add_render(program), add_preview(program),
-                                  add_explain(program), add_verify(program), add_validate(program),
+                                  add_explain(program), add_accuracy(program), add_verify(program), add_validate(program),
                                   add_keys(program),    add_presets(program)};
 
     if (argc < 2) return usage_error("a verb is missing", "pelagic");

@@ -22,5 +22,6 @@ Verb add_verify(CLI::App& program);
 Verb add_validate(CLI::App& program);
 Verb add_keys(CLI::App& program);
 Verb add_presets(CLI::App& program);
+Verb add_accuracy(CLI::App& program);
 
 }  // namespace pelagic::cli

@@ -71,11 +71,13 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
     Query query = view_query(*prepared, {.products = {},
                                          .finest_cell_m = needs->finest_cell_m,
                                          .finest_pixel_m = needs->finest_pixel_m,
-                                         .points = points_of(needs->size)});
+                                         .points = points_of(needs->size),
+                                         .filter = options.filter});
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
     if (options.lighting.spray) query.products |= products(Product::Displacement);
-    return make_plan(std::move(prepared), {query}, {.living_foam = true});
+    return make_plan(std::move(prepared), {query},
+                     {.knobs = options.knobs, .filter = options.filter, .living_foam = true});
 }
 
 void check_render(const Scene& scene, const RenderOptions& options) {

@@ -63,6 +63,9 @@ struct RenderOptions {
     bool alpha =
         false;  // transparent where there is no sea, nor spray; the light is then multiplied by alpha
     PictureLayerSet layers = light_layers();
+    // Of the waves' sums, without as the quality level has them; and of footprints. To measure what others would cost.
+    std::optional<Knobs> knobs{};
+    FootprintFilter filter{};
 };
 
 inline constexpr double kLongestShutter_frames = 4.0;

@@ -1,0 +1,91 @@
+// What accuracy costs: each approximation of the program with its knob swept over a shot, the error against a named
+// reference and the time, both measured in one run.
+//
+// A new approximation is a row of approximation_table() with a function that lays out its trials. Timing, the table, the
+// page and the ages of what was recorded follow from the row.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace pelagic {
+
+// One setting of a knob, ready to be timed.
+struct Trial {
+    std::string setting;    // "cubic, 2 nodes a sample"
+    bool is_shots = false;  // what the shot has
+    std::function<void()> run;
+    // What the last run differs by from the reference, in the order of the row's `errors`. Finite, and 0 for the reference
+    // itself.
+    std::function<std::vector<double>()> errors;
+    std::size_t bytes = 0;  // of what the row's `bytes` says
+};
+
+struct Trials {
+    std::vector<Trial> trials;
+    std::string
+        why_none{};  // where the shot has nothing to sweep: the end of a sentence that begins with the row's name
+};
+
+struct SweepWatch {
+    std::function<void(const std::string& row, const std::string& setting)> progress{};  // may be empty
+    const std::atomic<bool>* cancel = nullptr;
+};
+
+struct ApproximationRow {
+    const char* name;                 // of the command line and of files: "sky"
+    const char* title;                // "Lookups of the sky"
+    const char* knob;                 // how a user sets it; or why nobody does
+    const char* reference;            // what errors are against
+    std::vector<const char*> errors;  // what they are, with their units; the first one is drawn
+    const char* time;                 // what is timed
+    const char* bytes;                // what bytes are of; null: none
+    const char* lesson;               // what to learn from it, in a sentence
+    Trials (*lay_out)(const Scene& shot);
+};
+
+std::span<const ApproximationRow> approximation_table();
+
+struct MeasuredSetting {
+    std::string setting;
+    bool is_shots = false;
+    std::vector<double> errors;
+    double ms = std::numeric_limits<double>::quiet_NaN();
+    std::size_t bytes = 0;
+};
+
+// A row as it was measured, now or in an earlier run.
+struct MeasuredRow {
+    std::string name;
+    std::string shot;     // a hash of its keys
+    std::string when;     // UTC, "2026-11-21T10:05:00Z"
+    std::string machine;  // instruction set and threads
+    std::vector<MeasuredSetting> settings;
+    std::string why_none{};
+};
+
+// A sweep that was cancelled.
+class SweepCancelled : public std::exception {
+  public:
+    const char* what() const noexcept override { return "the sweep was cancelled"; }
+};
+
+// Sweeps one row: each trial once to warm up and for its errors, then all in turn, `repeats` times, so that a machine whose
+// speed drifts slows all alike; times are medians. The shot must be valid. Throws SweepCancelled, std::bad_alloc, and
+// std::logic_error for errors that aren't finite.
+MeasuredRow sweep(const ApproximationRow& row, const Scene& shot, int repeats, const SweepWatch& watch);
+
+// The time of day, as MeasuredRow::when has it.
+std::string utc_now();
+
+// The shot's keys as a hash, by which a recorded row is known to be of this shot.
+std::string shot_hash(const Scene& shot);
+
+}  // namespace pelagic

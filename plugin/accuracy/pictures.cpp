@@ -1,0 +1,230 @@
+// Sweeps of pictures through the shot's camera.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "core/scene/text.h"
+#include "plugin/accuracy/rows.h"
+#include "plugin/accuracy/sea_answers.h"
+#include "plugin/light/light.h"
+#include "plugin/render/render.h"
+
+namespace pelagic::rows {
+namespace {
+
+// So small that the references take seconds.
+constexpr int kWidth = 320;
+
+Scene small(Scene shot) {
+    const double shape = static_cast<double>(shot.camera.resolution.y) / shot.camera.resolution.x;
+    shot.camera.resolution = {kWidth,
+                              std::clamp(static_cast<int>(std::lround(shape * kWidth)), 1, 4 * kWidth)};
+    return shot;
+}
+
+// A picture of the shot's middle frame, each run() anew.
+class SweepPicture {
+  public:
+    SweepPicture(const Scene& scene, const RenderOptions& options)
+        : frame_(middle_frame(scene)),
+          renderer_(std::make_unique<Renderer>(scene, options, make_sky(scene), std::span(&frame_, 1))) {}
+    void run() { renderer_->render(frame_, picture_); }
+    const Picture& picture() const { return picture_; }
+    std::size_t bytes() const { return renderer_->plan().sea_bytes() + renderer_->plan().frame_bytes(); }
+
+  private:
+    int frame_;
+    std::unique_ptr<Renderer> renderer_;
+    Picture picture_;
+};
+
+// Of the pixels of water in both: |L − L'|/|L'| of the radiance, L' being the reference's: the 95th percentile and the
+// mean. A reference without light counts what is there as it is.
+std::vector<double> relative_errors(const Picture& picture, const Picture& reference) {
+    std::vector<double> off;
+    double mean = 0.0;
+    for (std::size_t i = 0; i < reference.layers.size(); ++i) {
+        if (!picture.sea[i] || !reference.sea[i]) continue;
+        const glm::dvec3 seen(radiance_of(picture.layers[i])), exact(radiance_of(reference.layers[i]));
+        const double scale = glm::length(exact);
+        off.push_back(glm::length(seen - exact) / (scale > 0.0 ? scale : 1.0));
+        mean += off.back();
+    }
+    if (off.empty()) return {0.0, 0.0};
+    const auto at = off.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(off.size() - 1));
+    std::nth_element(off.begin(), at, off.end());
+    return {*at, mean / static_cast<double>(off.size())};
+}
+
+struct PictureSetting {
+    std::string name;
+    bool is_shots;
+    Scene scene;
+    RenderOptions options;
+};
+
+// The reference may be one of the settings.
+Trials against(const Scene& scene, const RenderOptions& options, std::vector<PictureSetting> settings) {
+    SweepPicture made(scene, options);
+    made.run();
+    const auto reference = std::make_shared<const Picture>(made.picture());
+    Trials trials;
+    for (PictureSetting& setting : settings) {
+        const auto picture = std::make_shared<SweepPicture>(setting.scene, setting.options);
+        trials.trials.push_back({.setting = std::move(setting.name),
+                                 .is_shots = setting.is_shots,
+                                 .run = [picture] { picture->run(); },
+                                 .errors = [=] { return relative_errors(picture->picture(), *reference); },
+                                 .bytes = picture->bytes()});
+    }
+    return trials;
+}
+
+constexpr int kReferenceSamples = 8;
+
+Knobs knobs_of_shot(const Scene& shot) {
+    return make_plan(shot, {}).knobs;
+}
+
+}  // namespace
+
+Trials sky_lookups(const Scene& shot) {
+    const Scene scene = small(shot);
+    const RenderOptions own = render_options(scene);
+    RenderOptions exact = own;
+    exact.samples = 1;
+    exact.lighting.sky_quality = SkyQuality::Integral;
+    exact.lighting.fresnel = FresnelFit::Exact;
+    std::vector<PictureSetting> settings;
+    for (const auto& [name, quality] :
+         {std::pair{"one", SkyQuality::One}, std::pair{"nine", SkyQuality::Nine},
+          std::pair{"integral", SkyQuality::Integral}}) {
+        RenderOptions options = exact;
+        options.lighting.sky_quality = quality;
+        settings.push_back({name, own.lighting.sky_quality == quality, scene, options});
+    }
+    return against(scene, exact, std::move(settings));
+}
+
+Trials fresnel_terms(const Scene& shot) {
+    const Scene scene = small(shot);
+    const RenderOptions own = render_options(scene);
+    RenderOptions exact = own;
+    exact.samples = 1;
+    exact.lighting.sky_quality = SkyQuality::Integral;
+    exact.lighting.fresnel = FresnelFit::Exact;
+    std::vector<PictureSetting> settings;
+    for (const auto& [name, quality, fresnel] :
+         {std::tuple{"one lookup, Eq. 26 of Schlick's term", SkyQuality::One, FresnelFit::Paper},
+          std::tuple{"one lookup, fit of the exact term", SkyQuality::One, FresnelFit::Exact},
+          std::tuple{"nine, Schlick's term", SkyQuality::Nine, FresnelFit::Paper},
+          std::tuple{"nine, exact term", SkyQuality::Nine, FresnelFit::Exact},
+          std::tuple{"integral, Schlick's term", SkyQuality::Integral, FresnelFit::Paper},
+          std::tuple{"integral, exact term", SkyQuality::Integral, FresnelFit::Exact}}) {
+        RenderOptions options = exact;
+        options.lighting.sky_quality = quality;
+        options.lighting.fresnel = fresnel;
+        settings.push_back(
+            {name, own.lighting.sky_quality == quality && own.lighting.fresnel == fresnel, scene, options});
+    }
+    return against(scene, exact, std::move(settings));
+}
+
+Trials samples(const Scene& shot) {
+    const Scene scene = small(shot);
+    const RenderOptions own = render_options(scene);
+    RenderOptions exact = own;
+    exact.samples = kReferenceSamples;
+    std::vector<PictureSetting> settings;
+    for (const int n : {1, 2, 3, 4, 6}) {
+        RenderOptions options = own;
+        options.samples = n;
+        settings.push_back({std::to_string(n) + " × " + std::to_string(n), own.samples == n, scene, options});
+    }
+    return against(scene, exact, std::move(settings));
+}
+
+Trials grid_cells(const Scene& shot) {
+    const Scene scene = small(shot);
+    RenderOptions options = render_options(scene);
+    options.samples = 1;
+    Scene exact = scene;
+    exact.surface.cell_px = 0.5;
+    std::vector<PictureSetting> settings;
+    for (const double cell_px : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) {
+        Scene at = scene;
+        at.surface.cell_px = cell_px;
+        settings.push_back({number_text(cell_px) + " px", scene.surface.cell_px == cell_px, at, options});
+    }
+    return against(exact, options, std::move(settings));
+}
+
+Trials footprint_filter(const Scene& shot) {
+    const Scene scene = small(shot);
+    RenderOptions exact = render_options(scene);
+    exact.samples = kReferenceSamples;
+    std::vector<PictureSetting> settings;
+    for (const FootprintFilter filter :
+         {FootprintFilter{0.5, 1.25}, FootprintFilter{1.0, 2.5}, FootprintFilter{1.5, 3.0},
+          FootprintFilter{2.0, 4.0}, FootprintFilter{3.0, 6.0}, FootprintFilter{4.0, 8.0}}) {
+        RenderOptions options = exact;
+        options.samples = 1;
+        options.filter = filter;
+        settings.push_back({number_text(filter.n_min) + " … " + number_text(filter.n_max) + " samples a wave",
+                            filter == FootprintFilter{}, scene, options});
+    }
+    return against(scene, exact, std::move(settings));
+}
+
+Trials picture_interpolation(const Scene& shot) {
+    const Scene scene = small(shot);
+    const Knobs own = knobs_of_shot(scene);
+    RenderOptions exact = render_options(scene);
+    exact.samples = 1;
+    exact.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0, .double_precision = true};
+    std::vector<PictureSetting> settings;
+    for (const auto& [taps, name] : {std::pair{4, "cubic"}, std::pair{6, "quintic"}})
+        for (const double oversampling : {1.0, 1.25, 1.5, 2.0}) {
+            RenderOptions options = exact;
+            options.knobs = Knobs{.spline_taps = taps, .oversampling = oversampling};
+            settings.push_back({std::string(name) + ", " + number_text(oversampling) + " nodes a sample",
+                                *options.knobs == own, scene, options});
+        }
+    return against(scene, exact, std::move(settings));
+}
+
+Trials foam_structure(const Scene& shot) {
+    const Scene scene = small(shot);
+    const RenderOptions own = render_options(scene);
+    if (!own.lighting.whitecaps) return {{}, "has nothing to sweep: the shot has no whitecaps"};
+    RenderOptions exact = own;
+    exact.samples = kReferenceSamples;
+    std::vector<PictureSetting> settings;
+    for (const double structure : {0.0, scene.effects.foam_structure}) {
+        Scene at = scene;
+        at.effects.foam_structure = structure;
+        for (const int n : {1, 2}) {
+            RenderOptions options = own;
+            options.samples = n;
+            settings.push_back({(structure > 0.0 ? "structure, " : "smooth, ") + std::to_string(n) + " × " +
+                                    std::to_string(n),
+                                structure == scene.effects.foam_structure && n == own.samples, at, options});
+        }
+        if (scene.effects.foam_structure == 0.0) break;
+    }
+    return against(scene, exact, std::move(settings));
+}
+
+Trials air(const Scene& shot) {
+    const Scene scene = small(shot);
+    RenderOptions with = render_options(scene);
+    with.samples = 1;
+    RenderOptions without = with;
+    without.lighting.air = false;
+    return against(scene, with, {{"with", true, scene, with}, {"without", false, scene, without}});
+}
+
+}  // namespace pelagic::rows

@@ -1,0 +1,327 @@
+// Sweeps of the sum of waves: how many, how they are read between their grids' nodes, and in which arithmetic.
+#include <hwy/highway.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "core/base/constants.h"
+#include "core/base/instruction_set.h"
+#include "core/plan/mode_lattice.h"
+#include "core/plan/prepared_scene.h"
+#include "core/scene/text.h"
+#include "core/waves/transform.h"
+#include "plugin/accuracy/rows.h"
+#include "plugin/accuracy/sea_answers.h"
+
+namespace pelagic::rows {
+namespace {
+
+const ProductSet kShape = products(Product::Position, Product::Normal);
+
+// Copies of a tile at random offsets are left out: where they blend, no sum of waves is the surface.
+Scene plain_tiles(Scene shot) {
+    shot.waves.tiling = Tiling::Periodic;
+    return shot;
+}
+
+const char* const kTrainsOnly = "has nothing to sweep: the shot's waves are trains alone";
+
+bool has_cascades(const Scene& shot) {
+    return shot.waves.model != WaveModel::Trochoid || !shot.waves.cascades.empty();
+}
+
+// The shot with its cascades in force, however it names them.
+Scene resolved(const Scene& shot) {
+    Scene scene = plain_tiles(shot);
+    scene.waves.cascades = resolve_cascades(*prepare(scene), 0.0);
+    return scene;
+}
+
+// Positions as the sum of all waves, one by one, in double precision (Tessendorf 2001, Eqs. 19 and 29, displaced towards
+// the crests): what grids and splines stand for.
+std::vector<glm::dvec3> summed_positions(const Scene& scene, const std::vector<glm::dvec2>& rest_m,
+                                         double time_s) {
+    Query query;
+    query.name = "sum";
+    query.products = products(Product::Position);
+    const Sea<double> sea(make_plan(scene, {query}, {.knobs = Knobs{.double_precision = true}}));
+    std::vector<glm::dvec3> positions(rest_m.size());
+    tbb::parallel_for(std::size_t{0}, rest_m.size(), [&](std::size_t p) {
+        const glm::dvec2 x = rest_m[p];
+        glm::dvec3 position(x, 0.0);
+        for (const Cascade<double>& cascade : sea.cascades()) {
+            if (cascade.radius == 0) continue;
+            const double step = kTwoPi / cascade.size_m;
+            // e^{i k·x} of a mode is the product of its row's and its column's.
+            std::vector<std::complex<double>> along_y(2 * static_cast<std::size_t>(cascade.radius) - 1);
+            for (int my = 1 - cascade.radius; my < cascade.radius; ++my)
+                along_y[static_cast<std::size_t>(my + cascade.radius - 1)] = std::polar(1.0, my * step * x.y);
+            for (int mx = 0; mx < cascade.radius; ++mx) {
+                const std::complex<double> along_x = std::polar(1.0, mx * step * x.x);
+                const int height = half_height(cascade.radius, mx);
+                for (int my = -height; my <= height; ++my) {
+                    if (!counts_as_wave(mx, my)) continue;
+                    const std::size_t mode = cascade.middle(mx) + my;
+                    const std::complex<double> turn =
+                        std::polar(1.0, -kTwoPi * std::fmod(cascade.cycles_per_s[mode] * time_s, 1.0));
+                    const std::complex<double> forward(cascade.forward_re[mode], cascade.forward_im[mode]),
+                        backward(cascade.backward_re[mode], cascade.backward_im[mode]);
+                    const std::complex<double> wave =
+                        2.0 * (forward * turn + backward * std::conj(turn)) * along_x *
+                        along_y[static_cast<std::size_t>(my + cascade.radius - 1)];
+                    const double across = cascade.chop.empty() ? 0.0 : cascade.chop[mode] * wave.imag();
+                    position += glm::dvec3(-mx * step * across, -my * step * across, wave.real());
+                }
+            }
+        }
+        positions[p] = position;
+    });
+    return positions;
+}
+
+// So many of the points, far from each other.
+SweepPoints some_of(const SweepPoints& all, std::size_t most) {
+    SweepPoints some = all;
+    some.rest_m.clear();
+    const std::size_t step = std::max<std::size_t>(all.rest_m.size() / most, 1) | 1;
+    for (std::size_t i = step / 2; i < all.rest_m.size(); i += step) some.rest_m.push_back(all.rest_m[i]);
+    return some;
+}
+
+std::vector<glm::dvec3> positions_at(const Scene& scene, const SweepPoints& at, const PlanOptions& options) {
+    SeaAnswers sea(scene, products(Product::Position), 0.0, at, options);
+    sea.run();
+    return sea.vectors(Product::Position);
+}
+
+// Of a frame of the grid of points: positions, against a reference at some of them.
+struct AgainstSum {
+    SweepPoints all, some;
+    std::vector<glm::dvec3> exact;
+    double height_m;
+};
+
+}  // namespace
+
+Trials cascade_resolution(const Scene& shot) {
+    if (!has_cascades(shot)) return {{}, kTrainsOnly};
+    const Scene own = resolved(shot);
+    constexpr int kReference = 4096;
+    Scene fine = own;
+    fine.waves.cascades.back().resolution = std::max(kReference, own.waves.cascades.back().resolution);
+    const auto at = std::make_shared<AgainstSum>();
+    at->all = sweep_points(own);
+    at->some = some_of(at->all, 64);
+    at->exact = summed_positions(fine, at->some.rest_m, at->all.time_s);
+    const auto prepared = prepare(own);
+    const SpectralMoments whole = moments(prepared->spectrum, 0.0, std::numeric_limits<double>::infinity());
+    at->height_m = std::max(whole.significant_height_m(), 1e-12);
+    Trials trials;
+    for (const int resolution : {32, 64, 128, 256, 512, 1024, 2048}) {
+        Scene scene = own;
+        scene.waves.cascades.back().resolution = resolution;
+        const auto sea = std::make_shared<SeaAnswers>(scene, kShape, 0.0, at->all);
+        trials.trials.push_back(
+            {.setting = std::to_string(resolution) + "²",
+             .is_shots = resolution == own.waves.cascades.back().resolution,
+             .run = [sea] { sea->run(); },
+             .errors =
+                 [=] {
+                     const double rms_m = rms(positions_at(scene, at->some, {}), at->exact);
+                     const SpectralMoments shown = sea->shown();
+                     return std::vector<double>{rms_m / at->height_m,
+                                                1.0 - shown.significant_height_m() / at->height_m,
+                                                whole.mss() > 0.0 ? 1.0 - shown.mss() / whole.mss() : 0.0};
+                 },
+             .bytes = sea->bytes()});
+    }
+    return trials;
+}
+
+Trials cascade_number(const Scene& shot) {
+    if (!has_cascades(shot)) return {{}, kTrainsOnly};
+    const Scene own = resolved(shot);
+    // All have the shot's largest period and shortest wave; what differs is where the grids in between lie.
+    const double largest_m = own.waves.cascades.front().size_m;
+    const CascadeSize finest = own.waves.cascades.back();
+    const double shortest_m = 2.0 * finest.size_m / finest.resolution;
+    const auto whole =
+        moments(prepare(own)->spectrum, 0.0, kTwoPi / shortest_m);  // of all waves that they could show
+    const SweepPoints at = sweep_points(own);
+    Trials trials;
+    for (const int count : {1, 2, 3, 4, 5}) {
+        Scene scene = own;
+        scene.waves.cascades.clear();
+        constexpr int kLargest = 4096;
+        const double ratio = std::pow(largest_m / finest.size_m, 1.0 / std::max(count - 1, 1));
+        double size_m = largest_m;
+        for (int i = 0; i < count; ++i, size_m /= ratio) {
+            const bool is_last = i + 1 == count;
+            // A cascade's band ends where the next one's begins, some modes from that one's longest wave.
+            const double ends_m = is_last ? shortest_m : size_m / ratio / 4.0;
+            const int resolution =
+                std::clamp(2 * static_cast<int>(std::ceil(size_m / ends_m)) + 2, 16, kLargest);
+            scene.waves.cascades.push_back({size_m, resolution + resolution % 2});
+        }
+        const auto sea = std::make_shared<SeaAnswers>(scene, kShape, 0.0, at);
+        trials.trials.push_back(
+            {.setting = std::to_string(count) + (count == 1 ? " cascade" : " cascades"),
+             .is_shots = count == static_cast<int>(own.waves.cascades.size()),
+             .run = [sea] { sea->run(); },
+             .errors =
+                 [=] {
+                     const SpectralMoments shown = sea->shown();
+                     const double height_m = std::max(whole.significant_height_m(), 1e-12);
+                     return std::vector<double>{
+                         whole.mss() > 0.0 ? std::abs(1.0 - shown.mss() / whole.mss()) : 0.0,
+                         std::abs(1.0 - shown.significant_height_m() / height_m)};
+                 },
+             .bytes = sea->bytes()});
+    }
+    return trials;
+}
+
+namespace {
+
+Trials against_double(const Scene& shot, const std::vector<std::pair<std::string, Knobs>>& settings) {
+    const Scene scene = resolved(shot);
+    const auto at = std::make_shared<AgainstSum>();
+    at->all = sweep_points(scene);
+    at->height_m = 1.0;
+    SeaAnswers exact(scene, kShape, 0.0, at->all,
+                     {.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0, .double_precision = true}});
+    exact.run();
+    at->exact = exact.vectors(Product::Position);
+    at->height_m = std::max(exact.significant_height_m(), 1e-12);
+    const auto normals = std::make_shared<std::vector<glm::dvec3>>(exact.vectors(Product::Normal));
+    const Knobs shots = make_plan(scene, {}).knobs;
+    Trials trials;
+    for (const auto& [name, knobs] : settings) {
+        const auto sea =
+            std::make_shared<SeaAnswers>(scene, kShape, 0.0, at->all, PlanOptions{.knobs = knobs});
+        trials.trials.push_back({.setting = name,
+                                 .is_shots = knobs == shots,
+                                 .run = [sea] { sea->run(); },
+                                 .errors =
+                                     [=] {
+                                         return std::vector<double>{
+                                             rms(sea->vectors(Product::Position), at->exact) / at->height_m,
+                                             rms(sea->vectors(Product::Normal), *normals)};
+                                     },
+                                 .bytes = sea->bytes()});
+    }
+    return trials;
+}
+
+}  // namespace
+
+Trials interpolation(const Scene& shot) {
+    if (!has_cascades(shot)) return {{}, kTrainsOnly};
+    std::vector<std::pair<std::string, Knobs>> settings;
+    for (const auto& [taps, name] : {std::pair{4, "cubic"}, std::pair{6, "quintic"}})
+        for (const double oversampling : {1.0, 1.25, 1.5, 2.0, 3.0})
+            settings.push_back({std::string(name) + ", " + number_text(oversampling) + " nodes a sample",
+                                {.spline_taps = taps, .oversampling = oversampling}});
+    return against_double(shot, settings);
+}
+
+Trials precision(const Scene& shot) {
+    if (!has_cascades(shot)) return {{}, kTrainsOnly};
+    return against_double(shot,
+                          {{"single", {.spline_taps = 6, .oversampling = 4.0}},
+                           {"double", {.spline_taps = 6, .oversampling = 4.0, .double_precision = true}}});
+}
+
+Trials train_number(const Scene& shot) {
+    Scene trains = shot;
+    trains.waves.model = WaveModel::Trochoid;
+    trains.waves.cascades.clear();
+    const SpectralMoments whole =
+        moments(prepare(trains)->spectrum, 0.0, std::numeric_limits<double>::infinity());
+    const SweepPoints at = sweep_points(trains, 128);
+    Trials trials;
+    for (const int count : {10, 20, 30, 60, 120, 240, 480}) {
+        Scene scene = trains;
+        scene.waves.trains = count;
+        const auto sea = std::make_shared<SeaAnswers>(scene, kShape, 0.0, at);
+        trials.trials.push_back(
+            {.setting = std::to_string(count) + " trains",
+             .is_shots = shot.waves.model == WaveModel::Trochoid && shot.waves.trains == count,
+             .run = [sea] { sea->run(); },
+             .errors =
+                 [=] {
+                     const SpectralMoments shown = sea->shown();
+                     const double height_m = std::max(whole.significant_height_m(), 1e-12);
+                     return std::vector<double>{
+                         whole.mss() > 0.0 ? std::abs(1.0 - shown.mss() / whole.mss()) : 0.0,
+                         std::abs(1.0 - shown.significant_height_m() / height_m)};
+                 },
+             .bytes = sea->bytes()});
+    }
+    return trials;
+}
+
+namespace {
+
+// Highway's choice of vectors, narrowed while this lives.
+class OnlyTarget {
+  public:
+    explicit OnlyTarget(std::int64_t target) {
+        hwy::DisableTargets(~target);
+        hwy::GetChosenTarget().DeInit();
+    }
+    ~OnlyTarget() {
+        hwy::DisableTargets(0);
+        hwy::GetChosenTarget().DeInit();
+    }
+    OnlyTarget(const OnlyTarget&) = delete;
+    OnlyTarget& operator=(const OnlyTarget&) = delete;
+};
+
+}  // namespace
+
+Trials instruction_sets(const Scene& shot) {
+    const Scene scene = plain_tiles(shot);
+    const SweepPoints at = sweep_points(scene);
+    const auto exact = std::make_shared<SeaAnswers>(
+        scene, kShape, 0.0, at,
+        PlanOptions{.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0, .double_precision = true}});
+    exact->run();
+    const auto positions = std::make_shared<std::vector<glm::dvec3>>(exact->vectors(Product::Position));
+    const auto normals = std::make_shared<std::vector<glm::dvec3>>(exact->vectors(Product::Normal));
+    const double height_m = std::max(exact->significant_height_m(), 1e-12);
+    const std::string best = instruction_set();
+    Trials trials;
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        std::shared_ptr<SeaAnswers> sea;
+        std::string name;
+        {
+            const OnlyTarget only(target);
+            name = instruction_set();
+            sea = std::make_shared<SeaAnswers>(
+                scene, kShape, 0.0, at, PlanOptions{.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0}});
+        }
+        trials.trials.push_back({.setting = name,
+                                 .is_shots = name == best,
+                                 .run =
+                                     [=] {
+                                         const OnlyTarget only(target);
+                                         sea->run();
+                                     },
+                                 .errors =
+                                     [=] {
+                                         return std::vector<double>{
+                                             rms(sea->vectors(Product::Position), *positions) / height_m,
+                                             rms(sea->vectors(Product::Normal), *normals)};
+                                     }});
+    }
+    return trials;
+}
+
+}  // namespace pelagic::rows

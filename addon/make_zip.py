@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
 """The add-on as one zip: a classic add-on for Blender 3.4 to 4.1, an extension for 4.2 and later.
 
-    make_zip.py MODULE.so OUT.zip
+    make_zip.py MODULE.so WRITER.so OUT.zip
 
 In it is one folder, pelagic_ocean, with the sources, the compiled module and the shared libraries that it needs, and
 the licences of all of them. The C library and the C++ runtime are the system's.
+
+WRITER.so is the library that writes volumes. It lies within the module (plugin/vdb), which loads it from there when the
+first volume is baked. So the module doesn't say what that needs, and the loader wouldn't look for it beside the module:
+lib/volumes.txt lists it for pelagic_ocean/module.py.
 """
 
 import re
@@ -20,9 +24,9 @@ OF_THE_SYSTEM = re.compile(r"(lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s)\.so|ld-linux
 DATE = (2020, 1, 1, 0, 0, 0)  # of everything: the same contents give the same zip
 
 
-def shared_libraries(module):
-    """Name → path of what the module is linked with, directly or not."""
-    lines = subprocess.run(["ldd", module], check=True, capture_output=True, text=True).stdout.splitlines()
+def shared_libraries(binary):
+    """Name → path of what a binary is linked with, directly or not."""
+    lines = subprocess.run(["ldd", binary], check=True, capture_output=True, text=True).stdout.splitlines()
     found = {}
     for line in lines:
         name, _, rest = line.strip().partition(" ")
@@ -30,9 +34,25 @@ def shared_libraries(module):
             continue
         path = rest.removeprefix("=> ").split(" (")[0]
         if not Path(path).is_file():
-            sys.exit(f"{module} needs {name}, which isn't there")
+            sys.exit(f"{binary} needs {name}, which isn't there")
         found[name] = Path(path)
     return found
+
+
+def in_loading_order(binary, libraries):
+    """The names of the libraries that a binary needs, each after those that it needs itself. libraries: as of
+    shared_libraries()."""
+    order = []
+
+    def add(file):
+        told = subprocess.run(["readelf", "-d", file], check=True, capture_output=True, text=True).stdout
+        for name in re.findall(r"\(NEEDED\).*\[(.+)\]", told):
+            if name in libraries and name not in order:
+                add(libraries[name])
+                order.append(name)
+
+    add(binary)
+    return order
 
 
 def licence_of(library):
@@ -54,14 +74,16 @@ def stripped(file):
         return Path(out.name).read_bytes()
 
 
-def contents(module):
+def contents(module, writer):
     """Path in the zip → bytes."""
     source = HERE / FOLDER
     files = {path.relative_to(HERE).as_posix(): path.read_bytes() for path in sorted(source.rglob("*"))
              if path.is_file() and "__pycache__" not in path.parts and "lib" not in path.relative_to(source).parts}
     files[f"{FOLDER}/LICENSE"] = (HERE.parent / "LICENSE").read_bytes()
     files[f"{FOLDER}/lib/{module.name}"] = stripped(module)
-    for name, path in shared_libraries(module).items():
+    of_writer = shared_libraries(writer)
+    files[f"{FOLDER}/lib/volumes.txt"] = "".join(f"{name}\n" for name in in_loading_order(writer, of_writer)).encode()
+    for name, path in (shared_libraries(module) | of_writer).items():
         files[f"{FOLDER}/lib/{name}"] = stripped(path)
         owner, licence = licence_of(path)
         files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()
@@ -69,8 +91,8 @@ def contents(module):
 
 
 def main():
-    module, out = Path(sys.argv[1]), Path(sys.argv[2])
-    files = contents(module)
+    module, writer, out = map(Path, sys.argv[1:])
+    files = contents(module, writer)
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as made:
         for name, data in files.items():
             info = zipfile.ZipInfo(name, DATE)

@@ -12,7 +12,7 @@ from bpy.props import PointerProperty, StringProperty
 
 from . import ocean
 from .exchange import PELAGIC_OT_export_shot, shot_of
-from .module import pelagic
+from .module import pelagic, ready_for_volumes
 from .operators import NeedsOcean
 
 TIMER_S = 0.1
@@ -33,6 +33,8 @@ class Baking:
     def __init__(self, obj, scene, out):
         """obj: the ocean. Its name is kept, since undo may make another object of it meanwhile."""
         self.ocean, self.scene, self.folder, self.report = obj.name, scene, out, None
+        if scene.output.volumes:
+            ready_for_volumes()
         self.task = pelagic.begin_bake(scene, out)
 
     @property
@@ -82,6 +84,9 @@ class Bakes(NeedsOcean):
         """What is done with a bake that has ended without an error: more words for the report."""
         return ""
 
+    def fail(self, context, baking):
+        """What is done after an error, which may have come in the middle."""
+
     def _begin(self, context):
         try:
             scene, folder, remarks = self.order(context, context.object)
@@ -97,6 +102,8 @@ class Bakes(NeedsOcean):
         kind, text = baking.outcome()
         if kind != "ERROR":
             text += self.take(context, baking)
+        else:
+            self.fail(context, baking)
         self.report({kind}, text)
         return {"CANCELLED"} if kind == "ERROR" else {"FINISHED"}
 

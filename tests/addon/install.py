@@ -1,10 +1,12 @@
-"""The zip is installed as a user does it, in a home of its own: enabled, disabled, enabled again.
+"""The zip is installed as a user does it, in a home of its own: enabled, disabled, enabled again; and it bakes a volume.
 
     install.py -- ZIP
 """
 
 import os
+import subprocess
 import sys
+import tempfile
 import tomllib
 import zipfile
 from pathlib import Path
@@ -46,6 +48,39 @@ with checking("the module's libraries come from the zip"):
     # Those that Blender itself has loaded already, by the same name, are shared with it.
     loaded = {line.split()[-1] for line in open("/proc/self/maps", encoding="utf-8") if str(folder) in line}
     assert any("libtomlplusplus" in path for path in loaded), loaded
+
+with checking("a volume is baked, and what writes it comes from the zip, also where nothing else has loaded OpenVDB"):
+    work = tempfile.mkdtemp()
+    sea = bpy.context.object
+    sea.pelagic_bake.folder = work
+    sea.pelagic.surface.size_m, sea.pelagic.output.voxel_m = 40.0, 2.0
+    bpy.context.scene.frame_start = bpy.context.scene.frame_end = 1
+    assert bpy.ops.pelagic.bake_volume(kind="level-set") == {"FINISHED"}
+    assert list(Path(work).rglob("*.vdb"))
+    # Blender itself has one, which is shared by its name. Another program has none.
+    script = """
+import sys
+def libraries():
+    return {line.split()[-1] for line in open("/proc/self/maps") if ".so" in line}
+sys.path.insert(0, sys.argv[1])
+before = libraries()
+from pelagic_ocean import module
+module.ready_for_volumes()
+pelagic = module.pelagic
+scene = pelagic.Scene()
+scene.shot.frames, scene.surface.size_m, scene.output.voxel_m = (1, 1), 40.0, 2.0
+scene.output.mesh, scene.output.volumes = "none", ("level-set",)
+pelagic.bake(scene, sys.argv[2])
+print(*libraries() - before, sep="\\n")
+"""
+    told = subprocess.run(["/usr/bin/python3", "-c", script, str(folder), f"{work}/alone"], check=True, capture_output=True,
+                          text=True, cwd=work).stdout.splitlines()
+    assert list(Path(work, "alone").rglob("*.vdb"))
+    there = Path(module.pelagic.__file__).parent
+    packed = tuple(name.split(".so")[0] for name in os.listdir(there))
+    ours = [Path(path) for path in told if Path(path).name.startswith(packed)]
+    assert len(ours) > 15 and any("libopenvdb" in path.name for path in ours)
+    assert not [path for path in ours if there not in path.parents], ours
 
 with checking("disabling: nothing is left, and the file stays usable"):
     bpy.ops.preferences.addon_disable(module="pelagic_ocean")

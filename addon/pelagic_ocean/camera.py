@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-from . import compat, ocean
+from . import cages, compat, ocean
 from .module import pelagic
 from .operators import CLIP_END_M
 from .properties import shortest, shortest_for
@@ -129,19 +129,20 @@ def _oceans_at_rest():
         yield
     finally:
         handlers[:] = before
+        cages.forget()  # nobody has said which of them have changed meanwhile
 
 
-def animated_poses(context, obj):
-    """{frame: Pose} of the scene's camera for every frame of its range."""
+def frames(context):
+    """Goes through the scene's range: of every frame its number and the depsgraph there. Then the frame is as before."""
     bpy_scene = context.scene
     now = bpy_scene.frame_current, bpy_scene.frame_subframe
-    poses = {}
-    with _oceans_at_rest():
-        for frame in range(bpy_scene.frame_start, bpy_scene.frame_end + 1):
-            bpy_scene.frame_set(frame)
-            poses[frame] = pose_of(obj, bpy_scene, context.evaluated_depsgraph_get())
-    bpy_scene.frame_set(now[0], subframe=now[1])
-    return poses
+    try:
+        with _oceans_at_rest():
+            for frame in range(bpy_scene.frame_start, bpy_scene.frame_end + 1):
+                bpy_scene.frame_set(frame)
+                yield frame, context.evaluated_depsgraph_get()
+    finally:
+        bpy_scene.frame_set(now[0], subframe=now[1])
 
 
 # ---- Into Blender

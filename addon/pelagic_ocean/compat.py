@@ -55,9 +55,11 @@ def can_denoise():
     return getattr(_cycles, "with_openimagedenoise", True)
 
 
-# How far Blender shows a volume's voxels from where their file has them, along each axis, in voxels: OpenVDB's transform
-# leads to the middle of a voxel, and Cycles and the Volume to Mesh modifier of 3.4 take it for the corner.
-VOXELS_OFF = 0.5
+def voxels_off(version=bpy.app.version):
+    """How far this Blender shows a volume's voxels from where their file has them, along each axis, in voxels: OpenVDB's
+    transform leads to the middle of a voxel, and Cycles and the Volume to Mesh modifier take it for the corner. That is
+    measured in 3.4.1; of versions that nobody has measured OpenVDB's own place is assumed."""
+    return 0.5 if tuple(version[:2]) == (3, 4) else 0.0
 
 
 def curves(owner):

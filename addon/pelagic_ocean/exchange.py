@@ -5,11 +5,12 @@ import math
 from pathlib import Path
 
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper, ImportHelper
 from mathutils import Vector
 
-from . import camera, light, ocean
+from . import cages, camera, light, ocean
 from .module import pelagic
 from .operators import GivesLook, NeedsModule, show_now
 from .query import first_ocean
@@ -39,6 +40,9 @@ def shot_of(context, obj):
         remarks.append(f"{lamp.name} was turned: the shot's sun is where the ocean's settings have it")
     if obj.animation_data and obj.animation_data.action:
         remarks.append(f"{obj.name} is animated: the shot has its settings at frame {bpy_scene.frame_current}")
+    poses, moving_cage = _animated(context, obj, scene)
+    if moving_cage:
+        remarks.append(f"{moving_cage} is animated: the shot has the cage as it is at frame {bpy_scene.frame_current}")
     if ocean.pinhole_of(obj, bpy_scene) is None:
         remarks.append("the scene has no perspective camera: the shot has the default one")
     else:
@@ -46,11 +50,32 @@ def shot_of(context, obj):
             remarks.append(f"{bpy_scene.camera.name} has a lens shift, which a shot can't say")
         if bpy_scene.render.pixel_aspect_x != bpy_scene.render.pixel_aspect_y:
             remarks.append("a shot can't say that pixels aren't square")
-        camera.set_poses(scene, camera.animated_poses(context, obj))
+        camera.set_poses(scene, poses)
     problems = scene.validate()
     if problems:
         raise ValueError("\n".join(problems))
     return scene, remarks
+
+
+def _animated(context, obj, scene):
+    """Over the scene's range {frame: Pose} of its camera, empty if it has none with perspective, and the name of the
+    ocean's cage if that isn't everywhere what it is now, or ""."""
+    has_camera = ocean.pinhole_of(obj, context.scene) is not None
+    cage = cages.mesh_of(obj) if scene.surface.kind == "cage" else None
+    poses, moving_cage = {}, ""
+    if cage is None and not has_camera:
+        return poses, moving_cage
+
+    def arrays(depsgraph):
+        return cages.arrays_of(cage, cages.to_ocean(obj, cage, depsgraph), depsgraph)
+
+    now = arrays(context.evaluated_depsgraph_get()) if cage else None
+    for frame, depsgraph in camera.frames(context):
+        if has_camera:
+            poses[frame] = camera.pose_of(obj, context.scene, depsgraph)
+        if cage and not moving_cage and not all(map(np.array_equal, arrays(depsgraph), now)):
+            moving_cage = cage.name
+    return poses, moving_cage
 
 
 def set_frame_rate(render, fps):

@@ -4,7 +4,7 @@
 import bpy
 from bpy.app.handlers import persistent
 
-from . import handlers, light, material, ocean, play
+from . import handlers, light, material, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import FIELDS
 from .query import first_ocean
@@ -52,12 +52,23 @@ def _follow(bpy_scene, depsgraph):
             continue
         _shown[key] = wanted
         try:
-            scene = ocean.scene_of(obj, bpy_scene, settings=settings)
+            scene = ocean.scene_of(obj, bpy_scene, depsgraph, settings)
             material.update_material(obj, scene, *of_sea)
             if first_ocean(bpy_scene) == obj:
                 light.update_light(bpy_scene, scene)
         except (ValueError, pelagic.ShotError) as error:
             print(f"{obj.name}: {error}")  # the panels say of each setting what is wrong with it
+
+
+@persistent
+def _follow_updates(bpy_scene, depsgraph):
+    """A setting, the frame rate, a sea that came into its mesh: without any of them nothing here changes."""
+    for update in depsgraph.updates:
+        changed = update.id
+        if (isinstance(changed, bpy.types.Scene) or isinstance(changed, bpy.types.Object) and ocean.is_ocean(changed)
+                or isinstance(changed, bpy.types.Mesh) and meshes.SIGNATURE in changed):
+            _follow(bpy_scene, depsgraph)
+            return
 
 
 @persistent
@@ -105,7 +116,7 @@ class PELAGIC_OT_add_material(bpy.types.Operator):
 
 
 CLASSES = (PELAGIC_OT_add_light, PELAGIC_OT_add_material)
-HANDLERS = (("frame_change_post", _follow), ("depsgraph_update_post", _follow), ("undo_post", _forget),
+HANDLERS = (("frame_change_post", _follow), ("depsgraph_update_post", _follow_updates), ("undo_post", _forget),
             ("redo_post", _forget), ("load_post", _forget))
 
 

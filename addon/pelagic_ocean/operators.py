@@ -4,7 +4,7 @@
 import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
-from . import compat, look, meshes, ocean, play
+from . import cages, compat, look, meshes, ocean, play
 from .module import pelagic, problem
 from .properties import BY_PATH
 
@@ -126,19 +126,23 @@ class PELAGIC_OT_use_cage(GivesLook, bpy.types.Operator):
 
     def execute(self, context):
         cage = context.object
+        depsgraph = context.evaluated_depsgraph_get()
+        try:
+            cages.of_mesh(cage, cage.evaluated_get(depsgraph).matrix_world, depsgraph)  # the new ocean is at the origin
+        except ValueError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         obj = ocean.make(f"{cage.name} Sea", context.collection)
         obj.pelagic.surface.kind, obj.pelagic.cage = "cage", cage
-        try:
-            self.give_look(context, obj)
-            simulation = show_now(context, obj)
-            problem = simulation.problem
-        except ValueError as error:
-            problem = str(error)
-        if problem:
-            self.report({"ERROR"}, problem)
-            bpy.data.objects.remove(obj)
+        self.give_look(context, obj)
+        simulation = show_now(context, obj)
+        if simulation.problem:
+            self.report({"ERROR"}, simulation.problem)
+            bpy.data.meshes.remove(obj.data)  # and with it the object
             return {"CANCELLED"}
-        cage.display_type, cage.hide_render = "WIRE", True
+        cages.hide_from_pictures(cage)
+        if context.scene.render.engine != "CYCLES":
+            self.report({"WARNING"}, f"{cage.name} is hidden from Cycles alone: {cages.OTHER_ENGINES}")
         ocean.select_only(context, obj)
         return {"FINISHED"}
 

@@ -16,9 +16,8 @@ import weakref
 import bpy
 from bpy.app.handlers import persistent
 
-from . import handlers, meshes, surfaces
+from . import cages, handlers, meshes, surfaces
 from .module import pelagic
-from .cages import cage_of
 from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of
 from .properties import FIELDS
 from .sea import BuiltSea, Moment
@@ -189,7 +188,7 @@ def _surface_of(obj, settings, bpy_scene, depsgraph):
         level = settings[PLACE["surface.cage_level"]]
         if level == "adaptive":
             raise ValueError("An adaptive cage is baked, not shown: bake it, or give its level to look at it")
-        cage = cage_of(obj, settings[PLACE["surface.cage_file"]] or "", depsgraph)
+        cage = cages.cage_of(obj, settings[PLACE["surface.cage_file"]] or "", depsgraph)
         return f"cage {level} {cage.content}", lambda: surfaces.cage(cage, level), None
     if settings[PLACE["surface.kind"]] == "projected-grid":
         pinhole = pinhole_of(obj, bpy_scene, depsgraph)
@@ -293,8 +292,10 @@ def show(obj, bpy_scene, depsgraph):
 
 
 def _forget_deleted():
-    for name in set(_simulations) - {obj.name_full for obj in oceans()}:
+    there = {obj.name_full for obj in oceans()}
+    for name in set(_simulations) - there:
         del _simulations[name]
+    cages.forget(there)
 
 
 # ---- Handlers
@@ -304,6 +305,7 @@ def _forget_deleted():
 def _on_frame(bpy_scene, depsgraph):
     with _turn:
         _forget_deleted()
+        cages.let_go(depsgraph)
         driven = _driven(bpy.data.objects, depsgraph)
         for obj in driven:
             _show(obj, bpy_scene, depsgraph, True)
@@ -315,15 +317,15 @@ def _on_frame(bpy_scene, depsgraph):
 @persistent
 def _on_update(bpy_scene, depsgraph):
     """A setting, the frame rate, an ocean shown again: whatever evaluates an ocean or the scene."""
+    cages.let_go(depsgraph)
     if _rendering:
         return
     changed = {update.id.original for update in depsgraph.updates}
     if any(isinstance(each, bpy.types.Scene) for each in changed):
         _forget_deleted()
-    else:
-        watched = {bpy_scene.camera} | {obj.pelagic.cage for obj in oceans()}
-        if not any(is_ocean(each) or each in watched for each in changed if isinstance(each, bpy.types.Object)):
-            return
+    elif not any(is_ocean(each) or each == bpy_scene.camera or cages.is_asked_for(each)
+                 for each in changed if isinstance(each, bpy.types.Object)):
+        return
     for obj in _driven(bpy.data.objects, depsgraph):
         _show(obj, bpy_scene, depsgraph, False)
 
@@ -331,6 +333,7 @@ def _on_update(bpy_scene, depsgraph):
 @persistent
 def _on_other_data(*_):
     """Undo, redo: meshes are of another moment now."""
+    cages.forget()
     for simulation in _simulations.values():
         simulation.shown = None
     for obj in oceans():
@@ -407,3 +410,4 @@ def unregister():
     if bpy.app.timers.is_registered(_poll):
         bpy.app.timers.unregister(_poll)
     _simulations.clear()
+    cages.forget()

@@ -14,6 +14,7 @@ import numpy as np
 from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty,
                        IntVectorProperty, PointerProperty, StringProperty)
 
+from . import cages
 from .module import pelagic
 
 VERSION = 1  # of the settings in a file; ocean.migrate() brings older ones here
@@ -254,6 +255,10 @@ def _annotations(fields, classes):
     return made
 
 
+def _can_be_cage(_group, other):
+    return cages.can_be(other)
+
+
 def _ocean_annotations():
     """What an ocean has in Blender alone. These don't need the module."""
     return {
@@ -263,7 +268,7 @@ def _ocean_annotations():
             name="Own mesh", options={"HIDDEN"}, update=_touched,
             description="The object's own vertices are the sea at rest; their places are in the attribute rest_position"),
         "cage": PointerProperty(
-            name="Cage", type=bpy.types.Object, update=_touched, poll=lambda _group, other: other.type == "MESH",
+            name="Cage", type=bpy.types.Object, update=_touched, poll=_can_be_cage,
             description="The mesh whose smooth limit surface the sea lies on, with its creases. Without one it is the cage's file"),
         "horizon": BoolProperty(
             name="To the horizon", default=True, update=_touched,

@@ -13,17 +13,18 @@ from pathlib import Path
 import bpy
 from bpy.props import EnumProperty, PointerProperty, StringProperty
 
-from . import compat, ocean
+from . import compat, links, ocean
 from .baking import Bakes, draw_progress, folder_of
 from .nodes import Tree
-from .properties import FIELDS
+from .properties import BY_PATH, FIELDS
 
 MARK = "pelagic_spray"  # on a material of the add-on
 FORWARD = 0.85  # mean cosine of what droplets scatter, which are much larger than light's wavelengths (Hansen & Travis 1974)
 
 # A change of keys that feed these makes files that were baked others' than the ocean's.
-FEEDS = {"waves", "gusts", "foam", "clock", "spray", "volumes", "quality"}
-PLACES = tuple(place for place, field in enumerate(FIELDS) if FEEDS & set(field.key["feeds"]))
+FEEDS = {"waves", "clock", "volumes", "quality"}
+PLACE = {field.path: place for place, field in enumerate(FIELDS)}
+UNFINISHED = "unfinished"  # instead of a signature
 
 
 @dataclass(frozen=True)
@@ -32,10 +33,12 @@ class Kind:
     label: str
     grid: str
     help: str
+    feeds: frozenset = frozenset()  # besides FEEDS
 
 
 KINDS = {kind.word: kind for kind in (
-    Kind("spray", "Spray", "density", "Droplets over breaking crests: how much they dim light, in 1/m, and how they fly"),
+    Kind("spray", "Spray", "density", "Droplets over breaking crests: how much they dim light, in 1/m, and how they fly",
+         frozenset({"spray", "foam", "gusts"})),
     Kind("level-set", "Level Set", "surface",
          "The distance from the sea's surface, below it negative: what a simulation of water starts from"))}
 
@@ -62,17 +65,22 @@ def files_of(folder, name, kind):
     return found
 
 
+def _settings_of(obj, kind):
+    """An ocean's settings as a volume takes them: it covers the patch's square in the world, whatever the surface is."""
+    settings = list(ocean.settings_of(obj))
+    settings[PLACE["surface.kind"]] = "patch"
+    for path in ("surface.cage_file", "surface.cage_level"):
+        settings[PLACE[path]] = BY_PATH[path].key["default"]
+    if kind == "spray":
+        settings[PLACE["effects.spray"]] = True
+    return tuple(settings)
+
+
 def scene_of_volume(obj, bpy_scene, depsgraph, kind):
     """The scene whose bake is this volume and nothing else. ValueError for what can't be baked."""
-    scene = ocean.scene_of(obj, bpy_scene, depsgraph)
-    # Volumes cover the patch's square in the world, whatever the surface is.
-    if scene.surface.kind == "cage":
-        scene.surface.cage = None
-    scene.surface.kind = "patch"
+    scene = ocean.scene_of(obj, bpy_scene, depsgraph, _settings_of(obj.evaluated_get(depsgraph), kind))
     scene.output.mesh, scene.output.maps, scene.output.cascade_tiles = "none", (), False
     scene.output.mesh_scheme, scene.output.volumes = "none", (kind,)
-    if kind == "spray":
-        scene.effects.spray = True
     problems = scene.validate()
     if problems:
         raise ValueError("\n".join(problems))
@@ -111,7 +119,7 @@ def show(obj, kind, files, scene, offset=0, parented=True):
     volume.filepath = _shown_path(files[min(files)])
     volume.is_sequence, volume.sequence_mode = True, "CLIP"
     volume.frame_start, volume.frame_duration, volume.frame_offset = first + offset, last - first + 1, first - 1
-    made.delta_location = [-compat.VOXELS_OFF * scene.output.voxel_m] * 3  # its location is its user's
+    made.delta_location = [-compat.voxels_off() * scene.output.voxel_m] * 3  # its location is its user's
     if kind == "spray" and not any(volume.materials):
         volume.materials.clear()
         volume.materials.append(_spray_material())
@@ -157,14 +165,15 @@ def _spray_material():
 # ---- What is wrong with them
 
 
-def _signature(obj):
-    """What an ocean's volumes depend on."""
-    settings = ocean.settings_of(obj)
-    return f"{zlib.crc32(repr([settings[place] for place in PLACES]).encode()):08x}"
+def signature_of(obj, bpy_scene, kind):
+    """What a volume of an ocean depends on. Of an object, original or evaluated, and the scene that gives the frame rate."""
+    feeds, settings = FEEDS | KINDS[kind].feeds, _settings_of(obj, kind)
+    told = [value for field, value in zip(FIELDS, settings) if feeds & set(field.key["feeds"])]
+    return f"{zlib.crc32(repr([ocean.frame_rate(bpy_scene), told]).encode()):08x}"
 
 
-def problem_of(volume, frame):
-    """What is wrong with a volume object at a frame, in words; "" if nothing."""
+def problem_of(volume, bpy_scene, frame):
+    """What is wrong with a volume object at a frame of the scene, in words; "" if nothing."""
     data = volume.data
     number = frame - data.frame_start + 1 + data.frame_offset
     if not 1 <= frame - data.frame_start + 1 <= data.frame_duration:
@@ -173,9 +182,10 @@ def problem_of(volume, frame):
     file = path.with_name(re.sub(r"\d+(?=\.vdb$)", f"{number:04}", path.name))
     if not file.exists():
         return f"{file}: is missing; bake again"
-    of = volume.pelagic_volume.of
-    told = volume.pelagic_volume.signature
-    if told and ocean.is_ocean(of) and told != _signature(of):
+    of, told = links.alive(volume.pelagic_volume.of), volume.pelagic_volume.signature
+    if told == UNFINISHED:
+        return "The bake wasn't finished: some frames may be of earlier settings. Bake again"
+    if told and ocean.is_ocean(of) and told != signature_of(of, bpy_scene, volume.pelagic_volume.kind):
         return f"{of.name}'s settings have changed since this was baked: bake again"
     return ""
 
@@ -196,8 +206,12 @@ class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
     def description(cls, _context, properties):
         return f"{KINDS[properties.kind].help}. Baked for the scene's frames, over the patch's square"
 
+    _signature = ""  # of the settings that were ordered: those of the ocean may change before the bake ends
+
     def order(self, context, obj):
-        scene = scene_of_volume(obj, context.scene, context.evaluated_depsgraph_get(), self.kind)
+        depsgraph = context.evaluated_depsgraph_get()
+        scene = scene_of_volume(obj, context.scene, depsgraph, self.kind)
+        self._signature = signature_of(obj.evaluated_get(depsgraph), context.scene, self.kind)
         folder = folder_of(obj)
         remarks = []
         if obj.animation_data and obj.animation_data.action:
@@ -214,9 +228,27 @@ class PELAGIC_OT_bake_volume(Bakes, bpy.types.Operator):
         if not files:
             return ""
         volume = show(obj, self.kind, files, baking.scene)
-        volume.pelagic_volume.signature = _signature(obj)
+        words = ""
+        if len(files) <= baking.report.done + baking.report.kept:
+            volume.pelagic_volume.signature = self._signature
+        elif self._leave_unfinished(volume):
+            words = ". The frames that it hasn't reached are of earlier settings"
         missing = words_of(frame for frame in range(shot.frames[0], shot.frames[1] + 1) if frame not in files)
-        return f". Missing on disk: {missing}" if missing else ""
+        return f"{words}. Missing on disk: {missing}" if missing else words
+
+
+    def fail(self, context, baking):
+        obj = bpy.data.objects.get(baking.ocean)
+        volume = volumes_of(obj).get(self.kind) if obj else None
+        if volume is not None:
+            self._leave_unfinished(volume)
+
+    def _leave_unfinished(self, volume):
+        """Returns whether some of its frames may be of other settings than those that were ordered."""
+        if volume.pelagic_volume.signature == self._signature:
+            return False
+        volume.pelagic_volume.signature = UNFINISHED
+        return True
 
 
 class PELAGIC_PG_volume(bpy.types.PropertyGroup):
@@ -238,9 +270,9 @@ class PELAGIC_PT_volume(bpy.types.Panel):
     def draw(self, context):
         volume = context.object
         kind = KINDS[volume.pelagic_volume.kind]
-        of = volume.pelagic_volume.of
+        of = links.alive(volume.pelagic_volume.of)
         self.layout.label(text=f"{kind.label} of {of.name}" if of else kind.label)
-        problem = problem_of(volume, context.scene.frame_current)
+        problem = problem_of(volume, context.scene, context.scene.frame_current)
         if problem:
             self.layout.label(text=problem, icon="ERROR")
 
@@ -251,7 +283,7 @@ def _draw_one(layout, context, kind):
     text = f"Bake {KINDS[kind].label} Volume"
     layout.operator(PELAGIC_OT_bake_volume.bl_idname, text=text, icon="VOLUME_DATA").kind = kind
     volume = volumes_of(context.object).get(kind)
-    problem = problem_of(volume, context.scene.frame_current) if volume else ""
+    problem = problem_of(volume, context.scene, context.scene.frame_current) if volume else ""
     if problem:
         layout.label(text=problem, icon="ERROR")
 

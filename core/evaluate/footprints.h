@@ -47,10 +47,11 @@ struct ChunkFootprints {
 
     // Of `count` points from `first` on.
     void take(const std::vector<double>& ladder_m, const Strided<const T>& width_m,
-              const Strided<const glm::vec<2, T>>& axis_m, std::size_t first, std::size_t count) {
+              const Strided<const glm::vec<2, T>>& axis_m, double longest_ellipse, std::size_t first,
+              std::size_t count) {
         any_round = any_ellipse = false;
         for (std::size_t i = 0; i < count; ++i) {
-            of[i] = footprint(ladder_m, width_m, axis_m, first + i);
+            of[i] = footprint(ladder_m, width_m, axis_m, longest_ellipse, first + i);
             (of[i].is_ellipse ? any_ellipse : any_round) = true;
         }
     }
@@ -69,7 +70,8 @@ struct ChunkFootprints {
 
   private:
     static Footprint<T> footprint(const std::vector<double>& ladder_m, const Strided<const T>& width_m,
-                                  const Strided<const glm::vec<2, T>>& axis_m, std::size_t point) {
+                                  const Strided<const glm::vec<2, T>>& axis_m, double longest_ellipse,
+                                  std::size_t point) {
         Footprint<T> out;
         if (!width_m || ladder_m.size() == 1) return out;
         if (axis_m) {
@@ -81,7 +83,7 @@ struct ChunkFootprints {
             if (length_m > own_m && std::isfinite(whole_m)) {
                 out.is_ellipse = true;
                 out.length_m = length_m;
-                out.width_m = std::max(own_m, length_m / static_cast<T>(kLongestEllipse));
+                out.width_m = std::max(own_m, length_m / static_cast<T>(longest_ellipse));
                 out.axis = axis / whole_m;
                 out.rung = rung_of(ladder_m, out.width_m);
                 return out;

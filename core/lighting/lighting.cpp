@@ -16,8 +16,12 @@ using namespace glm;
 // The shared source as members of a struct, one instance per variant, so that its constants fold.
 template <LightingChoice kChoice>
 struct Shading {
-    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr)
-        : map(sky_map), seen_air(of_air), kSkyMapSize(static_cast<float>(sky_map.size())) {}
+    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr, const LightingChoice& choice = kChoice)
+        : map(sky_map),
+          seen_air(of_air),
+          kSkyMapSize(static_cast<float>(sky_map.size())),
+          kSecondReflection(choice.second_reflection),
+          kMeshMasking(choice.mesh_masking) {}
 
     static constexpr int kAirColumns = Air::kColumns, kAirRows = Air::kRows, kAirSkyRows = Air::kSkyRows,
                          kAirHorizonRow = Air::kHorizonRow;
@@ -31,6 +35,7 @@ struct Shading {
     const SkyMap& map;
     const Air* seen_air;
     const float kSkyMapSize;
+    const bool kSecondReflection, kMeshMasking;  // seldom off: no variants of their own
 
     vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
     vec4 air_texel(int column, int row) const {
@@ -65,15 +70,15 @@ SeaAlbedo albedo(const WaterBody& water) {
         .water_index = shading.kWaterIndex};
 }
 
-using Batch = void (*)(const Sky&, const WaterBody&, std::span<const SeaPoint>, std::span<SeaRadiance>,
+using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>, std::span<SeaRadiance>,
                        const Air*, const FoamPattern&);
 
 template <LightingChoice kChoice>
-void shade_batch(const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
+void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
                  std::span<SeaRadiance> radiance, const Air* air, const FoamPattern& foam) {
     using Variant = Shading<kChoice>;
     const bool by_place = air && air->by_place > 0.0f;
-    Variant shading(sky.map, air);
+    Variant shading(sky.map, air, choice);
     const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
                                             by_place ? air->by_place : 0.0f};
     const typename Variant::SeaLight light{sky.sun_direction,  sky.sun_radiance,   sky.sun_angular_radius,
@@ -140,7 +145,7 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
         throw std::invalid_argument(
             "shade_sea: the sky has no map; make one with daylight_sky() or picture_sky()");
     }
-    shading::kBatches[shading::number_of(choice)](sky, water, points, radiance, air, foam);
+    shading::kBatches[shading::number_of(choice)](choice, sky, water, points, radiance, air, foam);
 }
 
 }  // namespace pelagic

@@ -38,7 +38,7 @@ SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam se
 
     // What facets mirror onto the sea shows sun and water there; sky_seen_again() is the sky's part.
     float reflected = effective_fresnel(v, frame.variance);
-    float again = reflected * reflected_again(v, frame.variance);
+    float again = kSecondReflection ? reflected * reflected_again(v, frame.variance) : 0.0f;
     vec3 level = grazing_view(v);
     if (kSun) {
         terms.sun = sun_seen_from(v, light.sun_direction, frame, light.sun_radiance, light.sun_angular_radius);

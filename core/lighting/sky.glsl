@@ -1,6 +1,7 @@
 // The reflected sky: Bruneton et al. 2010, §5.2. The includer defines:
 //   const int kSkyLookups          1, 9, or 0 for the integral
 //   const bool kExactFresnel
+//   const bool kSecondReflection
 //   const float kSkyMapSize        texels per side of the map
 //   vec3 sky_lookup(vec2 u, float level)    the map, trilinear; u = r_xy/(1 + r_z), level 0 the finest
 
@@ -134,7 +135,8 @@ vec3 sky_of_nine(vec3 to_eye, SlopeFrame frame) {
         again += part * light.again;
         turn = turn > 0.5f ? -1.0f : (turn < -0.5f ? 0.0f : 1.0f);
     }
-    return (sum + again * sky_seen_again(v, frame)) / total;
+    if (kSecondReflection) sum += again * sky_seen_again(v, frame);
+    return sum / total;
 }
 
 // Eq. 20 in full: every facet with its visibility and Fresnel term. A midpoint rule over the visible slopes,
@@ -170,13 +172,15 @@ vec3 sky_integral(vec3 to_eye, SlopeFrame frame) {
             again += part * light.again;
         }
     }
-    return (sum + again * sky_seen_again(v, frame)) / total;
+    if (kSecondReflection) sum += again * sky_seen_again(v, frame);
+    return sum / total;
 }
 
 // What the sea shows of a uniform sky of radiance 1, by one and two reflections. The rest of it is the water's.
 float shown_of_uniform_sky(vec3 v, vec3 variance) {
     float reflected = effective_fresnel(v, variance);
-    return reflected * (1.0f - reflected_again(v, variance) * (1.0f - effective_fresnel(grazing_view(v), variance)));
+    float lost = kSecondReflection ? 1.0f - effective_fresnel(grazing_view(v), variance) : 1.0f;
+    return reflected * (1.0f - reflected_again(v, variance) * lost);
 }
 
 vec3 sky_reflection(vec3 to_eye, SlopeFrame frame) {

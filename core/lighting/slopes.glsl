@@ -42,7 +42,9 @@ vec3 facing_normal(vec3 normal, vec3 to_eye) {
 //
 // mesh_variance: of the slopes that the mesh hides, along the view's horizontal direction; variance: what is hidden of
 // these by the pixel, (σxx, σyy, σxy); both at rest. No more is hidden than by the mesh: the normal stays.
+// The includer defines const bool kMeshMasking: without it normals stay.
 vec3 visible_normal(vec3 normal, vec3 to_eye, vec3 variance, float mesh_variance) {
+    if (!kMeshMasking) return normal;
     float across2 = max(to_eye.x * to_eye.x + to_eye.y * to_eye.y, 1.0e-12f);
     float hidden = (variance.x * to_eye.x * to_eye.x + variance.y * to_eye.y * to_eye.y +
                     2.0f * variance.z * to_eye.x * to_eye.y) / across2;

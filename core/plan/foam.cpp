@@ -36,19 +36,18 @@ FoamPlan::Weight FoamPlan::weight(double from_s, double to_s) const {
     return {decay_s * (at_a - at_b), decay_s * ((a + decay_s) * at_a - (b + decay_s) * at_b)};
 }
 
-std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m) {
+std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m, double steps_a_period) {
     const Effects& effects = scene.effects;
     if (!effects.whitecaps || !(effects.foam_decay_s > 0.0)) return {};
     constexpr double kFinestCell_m = 0.25;
     constexpr double kCell =
         1.4;  // of the finest that breaking resolves: a half as many cells, and none of the foam is lost
-    constexpr double kWindow = 3.0;         // 5 % of the foam is older
-    constexpr double kStepsOfPeriod = 4.0;  // of the shortest wave that a cell resolves
+    constexpr double kWindow = 3.0;  // 5 % of the foam is older
     FoamPlan foam;
     foam.decay_s = effects.foam_decay_s;
     foam.window_s = kWindow * foam.decay_s;
     foam.cell_m = std::max(kCell * finest_m, kFinestCell_m);
-    foam.step_s = std::sqrt(kTwoPi * 2.0 * foam.cell_m / kGravity) / kStepsOfPeriod;
+    foam.step_s = std::sqrt(kTwoPi * 2.0 * foam.cell_m / kGravity) / steps_a_period;
     const double towards = scene.sea.wind_direction_deg * kPi / 180.0;
     foam.drift_mps =
         effects.foam_drift * scene.sea.wind_speed_mps * glm::dvec2(std::cos(towards), std::sin(towards));

@@ -50,8 +50,8 @@ struct FoamPlan {
     Weight weight(double from_s, double to_s) const;
 };
 
-// Nothing where the foam doesn't live. `finest_m`: no breaking is resolved below it.
-std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m);
+// steps_a_period: Knobs::foam_steps_a_period. Nothing where the foam doesn't live. `finest_m`: no breaking is resolved below it.
+std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m, double steps_a_period);
 
 // Which level's cells show what a footprint shows, two of them a footprint: (1 − t) of `level` and t of the next.
 struct FoamRung {

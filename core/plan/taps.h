@@ -12,7 +12,8 @@ namespace pelagic {
 
 #include "core/plan/taps.inl"
 
-// A longer ellipse counts as one that is as long and wider: so many widths. What it costs is in proportion.
+// A longer ellipse than Knobs::longest_ellipse counts as one that is as long and wider: so many widths. What it costs is in
+// proportion. What ellipses hide is known up to here.
 inline constexpr double kLongestEllipse = 8.0;
 
 // What ellipses hide beyond round footprints (core/waves/ellipse_moments.h) is a table: so many nodes from a rung of the

@@ -287,13 +287,13 @@ void CageSurface::lay_out(int frame, RestPoints<T>& points) const {
     points.pixel_m = points.cell_m;
 }
 
-std::size_t CageSurface::held_bytes(std::size_t points, std::size_t scalar) const {
+SurfaceBytes CageSurface::bytes(std::size_t points, std::size_t scalar) const {
     // What a pose gives; the mesh that it is made from, with two samples at the points of the cage's edges; and of the
     // points at rest the height, the normal and two footprints.
     const std::size_t faces = kQuadFaceBytes + (limit_.has_seams() ? kQuadSeamBytes : 0);
     constexpr std::size_t kLaid = 2 * sizeof(glm::dvec3) + sizeof(double);
     constexpr std::size_t kMade = sizeof(CageMeshing::Sample) + sizeof(glm::dvec3);
-    return points * (kLaid + faces + kMade + 6 * scalar);
+    return {.held = points * (kLaid + faces + 6 * scalar), .making = points * kMade};
 }
 
 void CageSurface::faces_at(int frame, Faces& faces) const {

@@ -61,7 +61,7 @@ class CageSurface final : public RestSurface {
     void points_at(int frame, RestPoints<float>& points) const override { lay_out(frame, points); }
     void points_at(int frame, RestPoints<double>& points) const override { lay_out(frame, points); }
     void faces_at(int frame, Faces& faces) const override;
-    std::size_t held_bytes(std::size_t points, std::size_t scalar) const override;
+    SurfaceBytes bytes(std::size_t points, std::size_t scalar) const override;
 
   private:
     // What a pose gives, kept until another pose is asked for: while neither cage nor camera move, frames cost nothing.

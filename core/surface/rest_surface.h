@@ -76,6 +76,11 @@ glm::dvec3 local_origin(glm::dvec3 place_m, double finest_cell_m);
 Faces grid_faces(int columns, int rows);
 void set_grid_faces(int columns, int rows, Faces& faces);
 
+// What a surface takes: from its first points on, and only while it makes them.
+struct SurfaceBytes {
+    std::size_t held = 0, making = 0;
+};
+
 class RestSurface {
   public:
     virtual ~RestSurface() = default;
@@ -104,9 +109,8 @@ class RestSurface {
     virtual void points_at(int frame, RestPoints<double>& points) const = 0;
     // Of the mesh's vertices: the points, or those of the cage.
     virtual void faces_at(int frame, Faces& faces) const = 0;
-    // What it holds [bytes] for frames of so many points, beside their places at rest and a frame's faces, each number in
-    // `scalar` bytes.
-    virtual std::size_t held_bytes(std::size_t /*points*/, std::size_t /*scalar*/) const { return 0; }
+    // For frames of so many points, each number in `scalar` bytes, beside their places at rest and a frame's faces.
+    virtual SurfaceBytes bytes(std::size_t /*points*/, std::size_t /*scalar*/) const { return {}; }
     // Where the mesh is a cage that is fitted to the points.
     virtual std::optional<FittedCage> fitted() const { return {}; }
 };

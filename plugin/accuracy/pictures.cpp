@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/plan/taps.h"
 #include "core/scene/text.h"
 #include "plugin/accuracy/rows.h"
 #include "plugin/accuracy/sea_answers.h"
@@ -16,21 +17,20 @@ namespace pelagic::rows {
 namespace {
 
 // So small that the references take seconds.
-constexpr int kWidth = 320;
-
 Scene small(Scene shot) {
+    constexpr int kWidest = 320;
+    const int width = std::min(kWidest, shot.camera.resolution.x);
     const double shape = static_cast<double>(shot.camera.resolution.y) / shot.camera.resolution.x;
-    shot.camera.resolution = {kWidth,
-                              std::clamp(static_cast<int>(std::lround(shape * kWidth)), 1, 4 * kWidth)};
+    shot.camera.resolution = {width, std::clamp(static_cast<int>(std::lround(shape * width)), 1, 4 * width)};
     return shot;
 }
 
 // A picture of the shot's middle frame, each run() anew.
 class SweepPicture {
   public:
-    SweepPicture(const Scene& scene, const RenderOptions& options)
+    SweepPicture(const Scene& scene, const RenderOptions& options, const Sky& sky)
         : frame_(middle_frame(scene)),
-          renderer_(std::make_unique<Renderer>(scene, options, make_sky(scene), std::span(&frame_, 1))) {}
+          renderer_(std::make_unique<Renderer>(scene, options, sky, std::span(&frame_, 1))) {}
     void run() { renderer_->render(frame_, picture_); }
     const Picture& picture() const { return picture_; }
     std::size_t bytes() const { return renderer_->plan().sea_bytes() + renderer_->plan().frame_bytes(); }
@@ -68,12 +68,13 @@ struct PictureSetting {
 
 // The reference may be one of the settings.
 Trials against(const Scene& scene, const RenderOptions& options, std::vector<PictureSetting> settings) {
-    SweepPicture made(scene, options);
+    const Sky sky = make_sky(scene);  // the same for all
+    SweepPicture made(scene, options, sky);
     made.run();
     const auto reference = std::make_shared<const Picture>(made.picture());
     Trials trials;
     for (PictureSetting& setting : settings) {
-        const auto picture = std::make_shared<SweepPicture>(setting.scene, setting.options);
+        const auto picture = std::make_shared<SweepPicture>(setting.scene, setting.options, sky);
         trials.trials.push_back({.setting = std::move(setting.name),
                                  .is_shots = setting.is_shots,
                                  .run = [picture] { picture->run(); },
@@ -225,6 +226,73 @@ Trials air(const Scene& shot) {
     RenderOptions without = with;
     without.lighting.air = false;
     return against(scene, with, {{"with", true, scene, with}, {"without", false, scene, without}});
+}
+
+Trials second_reflection(const Scene& shot) {
+    const Scene scene = small(shot);
+    RenderOptions with = render_options(scene);
+    with.samples = 1;
+    RenderOptions without = with;
+    without.lighting.second_reflection = false;
+    return against(scene, with, {{"with", true, scene, with}, {"without", false, scene, without}});
+}
+
+Trials masking(const Scene& shot) {
+    const Scene scene = small(shot);
+    const RenderOptions own = render_options(scene);
+    RenderOptions one = own;
+    one.samples = 1;
+    // Cells as fine as pixels hide nothing that pixels show.
+    Scene exact = scene;
+    exact.surface.cell_px = 0.5;
+    std::vector<PictureSetting> settings;
+    for (const double cell_px : {4.0, 16.0})
+        for (const bool is_masked : {true, false}) {
+            Scene at = scene;
+            at.surface.cell_px = cell_px;
+            RenderOptions options = one;
+            options.lighting.mesh_masking = is_masked;
+            settings.push_back({std::string(is_masked ? "two scales" : "one scale") + ", cells of " +
+                                    number_text(cell_px) + " px",
+                                false, at, options});
+        }
+    return against(exact, one, std::move(settings));
+}
+
+Trials ellipses(const Scene& shot) {
+    const Scene scene = small(shot);
+    RenderOptions exact = render_options(scene);
+    exact.samples = kReferenceSamples;
+    const Knobs own = knobs_of_shot(scene);
+    std::vector<PictureSetting> settings;
+    for (const double longest : {1.0, 2.0, 4.0, kLongestEllipse}) {
+        RenderOptions options = exact;
+        options.samples = 1;
+        options.knobs = own;
+        options.knobs->longest_ellipse = longest;
+        settings.push_back({longest > 1.0 ? "up to 1 : " + number_text(longest) : std::string("circles"),
+                            longest == own.longest_ellipse, scene, options});
+    }
+    return against(scene, exact, std::move(settings));
+}
+
+Trials foam_times(const Scene& shot) {
+    const Scene scene = small(shot);
+    const RenderOptions own = render_options(scene);
+    if (!own.lighting.whitecaps || !(scene.effects.foam_decay_s > 0.0))
+        return {{}, "has nothing to sweep: the shot's foam doesn't live"};
+    const Knobs knobs = knobs_of_shot(scene);
+    RenderOptions exact = own;
+    exact.samples = 1;
+    exact.knobs = knobs;
+    exact.knobs->foam_steps_a_period = 4.0 * knobs.foam_steps_a_period;
+    std::vector<PictureSetting> settings;
+    for (const double steps : {0.5, 1.0, 2.0, 4.0, 8.0}) {
+        RenderOptions options = exact;
+        options.knobs->foam_steps_a_period = steps;
+        settings.push_back({number_text(steps) + " a period", steps == knobs.foam_steps_a_period, scene, options});
+    }
+    return against(scene, exact, std::move(settings));
 }
 
 }  // namespace pelagic::rows

@@ -21,6 +21,10 @@ Trials fitted_cages(const Scene& shot);
 Trials file_numbers(const Scene& shot);
 Trials whitecap_moments(const Scene& shot);
 
+// Of surfaces that are made for the shot's camera.
+Trials near_far(const Scene& shot);
+Trials camera_grid(const Scene& shot);
+
 // Of pictures through the shot's camera.
 Trials sky_lookups(const Scene& shot);
 Trials fresnel_terms(const Scene& shot);
@@ -30,5 +34,9 @@ Trials footprint_filter(const Scene& shot);
 Trials picture_interpolation(const Scene& shot);
 Trials foam_structure(const Scene& shot);
 Trials air(const Scene& shot);
+Trials second_reflection(const Scene& shot);
+Trials masking(const Scene& shot);
+Trials ellipses(const Scene& shot);
+Trials foam_times(const Scene& shot);
 
 }  // namespace pelagic::rows

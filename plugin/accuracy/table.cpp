@@ -9,7 +9,7 @@ std::span<const ApproximationRow> approximation_table() {
     static constexpr const char* kRadiance =
         "95th percentile over water pixels of the relative error of radiance";
     static constexpr const char* kMeanRadiance = "its mean";
-    static constexpr const char* kPictureTime = "a picture, 320 pixels wide";
+    static constexpr const char* kPictureTime = "a picture, at most 320 pixels wide";
     static constexpr const char* kPointsTime = "a frame of the patch's points, at most 256 a side";
     static constexpr const char* kSeaBytes = "the sea and a frame of it";
     static const std::vector<ApproximationRow> kTable{
@@ -54,7 +54,7 @@ std::span<const ApproximationRow> approximation_table() {
         {"trains",
          "Number of wave trains",
          "waves.trains",
-         "the whole spectrum's moments",
+         "the spectrum's moments over the same range of waves",
          {"relative error of the mean square slope", "relative error of Hs"},
          kPointsTime,
          nullptr,
@@ -98,6 +98,15 @@ std::span<const ApproximationRow> approximation_table() {
          "positions of the cage",
          "Where a cage holds the waves, it errs by a fraction of what a mesh of as many vertices does.",
          rows::fitted_cages},
+        {"near-far", "The mesh from near to far", "surface.resolution with kind = \"near-far\"", "the sea without a footprint",
+         {"95th percentile over pixels of the distance from the sea [pixels]", "its median"}, "a frame of the mesh",
+         "positions of the mesh",
+         "Twice as many quads a side halve the error on the screen; all around the camera, with faces that stay.",
+         rows::near_far},
+        {"camera-grid", "The camera's grid as a mesh", "surface.cell_px with kind = \"projected-grid\"",
+         "the sea without a footprint", {"95th percentile over pixels of the distance from the sea [pixels]", "its median"},
+         "a frame of the mesh", "positions of the mesh",
+         "The fewest vertices for one picture: its error falls more slowly than the cells' size.", rows::camera_grid},
         {"files",
          "Half or float in maps",
          "none: maps of positions are float, fractions and directions half",
@@ -179,6 +188,19 @@ std::span<const ApproximationRow> approximation_table() {
          nullptr,
          "Structure is a matter of the picture near the eye; far away smooth coverage is its mean.",
          rows::foam_structure},
+        {"foam-times", "Moments of foam's past", "none: four a period of the shortest waves that it resolves",
+         "sixteen a period", {kRadiance, kMeanRadiance}, kPictureTime, nullptr,
+         "What broke between two moments is interpolated: more of them change the foam's edges, fewer lose breaking.",
+         rows::foam_times},
+        {"ellipses", "Elliptical footprints", "none: up to eight times as long as wide", "8 × 8 samples",
+         {kRadiance, kMeanRadiance}, kPictureTime, nullptr,
+         "Towards the horizon a pixel's footprint is long: circles of its length blur the waves across it.", rows::ellipses},
+        {"masking", "Masking in one scale and in two", "none: two scales", "cells of half a pixel",
+         {kRadiance, kMeanRadiance}, kPictureTime, nullptr,
+         "A coarse mesh shows slopes that face away as if they were seen; normals that lean to the eye make up for it.",
+         rows::masking},
+        {"second-reflection", "Light that is reflected twice", "none: it is on", "with it", {kRadiance, kMeanRadiance},
+         kPictureTime, nullptr, "Facets that mirror the sea itself would be black without it.", rows::second_reflection},
         {"air",
          "Air before the sea",
          "light.visibility_km, pelagic render --terms",

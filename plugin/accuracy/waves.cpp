@@ -14,6 +14,7 @@
 #include "core/base/instruction_set.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/prepared_scene.h"
+#include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
 #include "core/waves/transform.h"
 #include "plugin/accuracy/rows.h"
@@ -100,6 +101,14 @@ std::vector<glm::dvec3> positions_at(const Scene& scene, const SweepPoints& at, 
     return sea.vectors(Product::Position);
 }
 
+// How far the mean square slope and the significant height are from what they should be.
+std::vector<double> moment_errors(const SpectralMoments& shown, const SpectralMoments& whole) {
+    const auto off = [](double is, double should_be) {
+        return should_be > 0.0 ? std::abs(1.0 - is / should_be) : 0.0;
+    };
+    return {off(shown.mss(), whole.mss()), off(shown.significant_height_m(), whole.significant_height_m())};
+}
+
 // Of a frame of the grid of points: positions, against a reference at some of them.
 struct AgainstSum {
     SweepPoints all, some;
@@ -151,38 +160,31 @@ Trials cascade_number(const Scene& shot) {
     const double largest_m = own.waves.cascades.front().size_m;
     const CascadeSize finest = own.waves.cascades.back();
     const double shortest_m = 2.0 * finest.size_m / finest.resolution;
-    const auto whole =
-        moments(prepare(own)->spectrum, 0.0, kTwoPi / shortest_m);  // of all waves that they could show
+    const SpectralMoments whole = moments(prepare(own)->spectrum, 0.0, kTwoPi / shortest_m);
     const SweepPoints at = sweep_points(own);
     Trials trials;
     for (const int count : {1, 2, 3, 4, 5}) {
+        const double ratio = std::pow(largest_m / finest.size_m, 1.0 / std::max(count - 1, 1));
+        std::vector<double> sizes_m;
+        for (int i = 0; i < count; ++i) sizes_m.push_back(largest_m / std::pow(ratio, i));
+        const std::vector<double> edges = lower_edges(sizes_m);
         Scene scene = own;
         scene.waves.cascades.clear();
         constexpr int kLargest = 4096;
-        const double ratio = std::pow(largest_m / finest.size_m, 1.0 / std::max(count - 1, 1));
-        double size_m = largest_m;
-        for (int i = 0; i < count; ++i, size_m /= ratio) {
-            const bool is_last = i + 1 == count;
-            // A cascade's band ends where the next one's begins, some modes from that one's longest wave.
-            const double ends_m = is_last ? shortest_m : size_m / ratio / 4.0;
-            const int resolution =
-                std::clamp(2 * static_cast<int>(std::ceil(size_m / ends_m)) + 2, 16, kLargest);
-            scene.waves.cascades.push_back({size_m, resolution + resolution % 2});
+        for (int i = 0; i < count; ++i) {
+            const double size_m = sizes_m[static_cast<std::size_t>(i)];
+            const double ends = i + 1 < count ? edges[static_cast<std::size_t>(i) + 1] : kTwoPi / shortest_m;
+            const double needed = i + 1 < count ? sufficient_resolution(size_m, ends)
+                                                : 2.0 * std::ceil(size_m / shortest_m);
+            scene.waves.cascades.push_back(
+                {size_m, static_cast<int>(std::clamp(needed, double{kMinCascadeResolution}, double{kLargest}))});
         }
         const auto sea = std::make_shared<SeaAnswers>(scene, kShape, 0.0, at);
-        trials.trials.push_back(
-            {.setting = std::to_string(count) + (count == 1 ? " cascade" : " cascades"),
-             .is_shots = count == static_cast<int>(own.waves.cascades.size()),
-             .run = [sea] { sea->run(); },
-             .errors =
-                 [=] {
-                     const SpectralMoments shown = sea->shown();
-                     const double height_m = std::max(whole.significant_height_m(), 1e-12);
-                     return std::vector<double>{
-                         whole.mss() > 0.0 ? std::abs(1.0 - shown.mss() / whole.mss()) : 0.0,
-                         std::abs(1.0 - shown.significant_height_m() / height_m)};
-                 },
-             .bytes = sea->bytes()});
+        trials.trials.push_back({.setting = std::to_string(count) + (count == 1 ? " cascade" : " cascades"),
+                                 .is_shots = count == static_cast<int>(own.waves.cascades.size()),
+                                 .run = [sea] { sea->run(); },
+                                 .errors = [=] { return moment_errors(sea->shown(), whole); },
+                                 .bytes = sea->bytes()});
     }
     return trials;
 }
@@ -242,26 +244,21 @@ Trials train_number(const Scene& shot) {
     Scene trains = shot;
     trains.waves.model = WaveModel::Trochoid;
     trains.waves.cascades.clear();
-    const SpectralMoments whole =
-        moments(prepare(trains)->spectrum, 0.0, std::numeric_limits<double>::infinity());
+    const auto prepared = prepare(trains);
     const SweepPoints at = sweep_points(trains, 128);
     Trials trials;
     for (const int count : {10, 20, 30, 60, 120, 240, 480}) {
         Scene scene = trains;
         scene.waves.trains = count;
         const auto sea = std::make_shared<SeaAnswers>(scene, kShape, 0.0, at);
+        const TrainsPlan& plan = *sea->plan().trains;
+        const SpectralMoments whole =
+            moments(prepared->spectrum, kTwoPi / plan.longest_m, kTwoPi / plan.shortest_m);
         trials.trials.push_back(
             {.setting = std::to_string(count) + " trains",
              .is_shots = shot.waves.model == WaveModel::Trochoid && shot.waves.trains == count,
              .run = [sea] { sea->run(); },
-             .errors =
-                 [=] {
-                     const SpectralMoments shown = sea->shown();
-                     const double height_m = std::max(whole.significant_height_m(), 1e-12);
-                     return std::vector<double>{
-                         whole.mss() > 0.0 ? std::abs(1.0 - shown.mss() / whole.mss()) : 0.0,
-                         std::abs(1.0 - shown.significant_height_m() / height_m)};
-                 },
+             .errors = [=] { return moment_errors(sea->shown(), whole); },
              .bytes = sea->bytes()});
     }
     return trials;

@@ -93,13 +93,14 @@ class MeshPart final : public OutputPart {
         const std::size_t points = query().points;
         const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
         const std::size_t face_bytes = kQuadFaceBytes + (attributes_.st_of_corners ? kQuadSeamBytes : 0);
-        const std::size_t surface = plan_.surface->held_bytes(points, scalar);
-        OutputMemory memory{.once = points * 2 * scalar + surface,
+        const SurfaceBytes surface = plan_.surface->bytes(points, scalar);
+        OutputMemory memory{.once = points * 2 * scalar + surface.held +
+                                    (plan_.surface->is_constant() ? 0 : surface.making),
                             .remedy = plan_.surface->remedy() + ", or ask for fewer output.attributes"};
         if (attributes_.faces)
             memory.slot = points * face_bytes;
         else
-            memory.fixed = points * face_bytes * (keeps_faces() ? 2 : 1) + surface;
+            memory.fixed = points * face_bytes * (keeps_faces() ? 2 : 1) + surface.held + surface.making;
         if (keeps_faces()) memory.once += points * face_bytes;
         // Footprints of each point, and the grid that they are taken from.
         if (!plan_.surface->is_constant())

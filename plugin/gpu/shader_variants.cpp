@@ -108,7 +108,7 @@ std::string query_constants(const SeaLayout& layout, bool coverage) {
            constant("kNodesARung", EllipseTable::kNodesARung) +
            constant("kNodesAnOctave", EllipseTable::kNodesAnOctave) +
            constant("kRatios", EllipseTable::kRatios) + constant("kDirections", EllipseTable::kDirections) +
-           "const float kLongestEllipse = " + std::to_string(kLongestEllipse) + ";\n";
+           "const float kLongestEllipse = " + std::to_string(layout.sea().plan().knobs.longest_ellipse) + ";\n";
 }
 
 std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
@@ -121,6 +121,8 @@ std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {
            constant("kAirRows", Air::kRows) + constant("kAirHorizonRow", Air::kHorizonRow) +
            constant("kAirSkyRows", Air::kSkyRows) + constant("kSkyLookups", lookups) +
            constant("kExactFresnel", choice.fresnel == FresnelFit::Exact) +
+           constant("kSecondReflection", choice.second_reflection) +
+           constant("kMeshMasking", choice.mesh_masking) +
            "const float kSkyMapSize = " + std::to_string(sky_map_size) + ".0;\n";
 }
 

@@ -18,135 +18,18 @@
 #include "core/plan/plan.h"
 #include "core/surface/earth.h"
 #include "core/surface/earth_view.h"
+#include "plugin/accuracy/mesh_error.h"
 #include "tests/bench/timing.h"
 
 namespace pelagic::bench {
 namespace {
 
-constexpr double kFinest_m = 0.002;  // of the exact surface
 constexpr double kAllowed_px = 0.25, kShare = 0.95;
-constexpr double kSamples_per_px = 0.2;
 
-// A sea at one time, as fine as anybody looks, and the camera.
-struct Seen {
-    std::shared_ptr<const PreparedScene> prepared;
-    std::unique_ptr<Frame<float>> sea;
-    View view;
+// The camera's height decides how far a patch must reach.
+struct Seen : SeenSurface {
     EarthView earth{4.0, kEarthCurvature_per_m, 0.0};
 };
-
-// Points of triangles, and what they are to be compared with.
-struct Samples {
-    std::vector<glm::vec2> rest_m;   // relative to the mesh's origin
-    std::vector<glm::dvec3> face_m;  // relative to where the earth touches z = 0
-};
-
-std::vector<glm::vec3> positions(const Seen& seen, const RestPoints<float>& at) {
-    std::vector<glm::vec3> position_m(at.rest_m.size());
-    Points<float> points{.origin_m = at.origin_m, .count = at.rest_m.size(), .rest_m = {at.rest_m.data()}};
-    if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};
-    if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
-    Results<float> results;
-    results.set(Product::Position, {position_m.data()});
-    evaluate(*seen.sea, 0, points, results);
-    return position_m;
-}
-
-class Picture {
-  public:
-    Picture(const Seen& seen, const RestPoints<float>& at)
-        : view_(seen.view),
-          pixel_(view_.pixel_tangent()),
-          curvature_per_m_(at.curvature_per_m),
-          from_m_(at.origin_m - at.touches_at_m, 0.0),
-          eye_m_(view_.position_m - glm::dvec3(at.touches_at_m, 0.0)) {}
-
-    glm::dvec3 place(glm::vec3 position_m) const {
-        return on_earth(from_m_ + glm::dvec3(position_m), curvature_per_m_);
-    }
-    // In pixels from the picture's middle; z is positive before the camera.
-    glm::dvec3 on_screen(glm::dvec3 place_m) const {
-        const glm::dvec3 to = place_m - eye_m_;
-        const double depth_m = glm::dot(to, view_.forward);
-        return glm::dvec3(glm::dot(to, view_.right), glm::dot(to, view_.up), depth_m) /
-               (std::max(depth_m, 1e-9) * pixel_);
-    }
-    bool holds(glm::dvec3 at_px) const {
-        return at_px.z > 0.0 && std::abs(at_px.x) <= 0.5 * view_.resolution.x &&
-               std::abs(at_px.y) <= 0.5 * view_.resolution.y;
-    }
-    double pixel_m(glm::dvec3 place_m) const { return pixel_ * glm::length(place_m - eye_m_); }
-
-  private:
-    const View& view_;
-    double pixel_, curvature_per_m_;
-    glm::dvec3 from_m_, eye_m_;
-};
-
-// The error that kShare of the samples don't exceed [px].
-double error_px(const Seen& seen, const RestPoints<float>& at, const Picture& picture, const Samples& samples,
-                double share) {
-    std::vector<glm::vec3> exact_m(samples.rest_m.size()), normal(samples.rest_m.size());
-    Results<float> results;
-    results.set(Product::Position, {exact_m.data()});
-    results.set(Product::Normal, {normal.data()});
-    evaluate(*seen.sea, 0,
-             {.origin_m = at.origin_m, .count = samples.rest_m.size(), .rest_m = {samples.rest_m.data()}},
-             results);
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < exact_m.size(); ++i) {
-        const glm::dvec3 exact = picture.place(exact_m[i]);
-        errors.push_back(std::abs(glm::dot(samples.face_m[i] - exact, glm::dvec3(normal[i]))) /
-                         picture.pixel_m(exact));
-    }
-    if (errors.empty()) return 0.0;
-    const auto last =
-        errors.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(errors.size() - 1));
-    std::nth_element(errors.begin(), last, errors.end());
-    return *last;
-}
-
-// Faces in view that turn to the camera, with samples in proportion to the pixels that they cover.
-Samples samples_of(const Seen& seen, const RestPoints<float>& at, const Faces& faces,
-                   const Picture& picture) {
-    const std::vector<glm::vec3> position_m = positions(seen, at);
-    std::vector<glm::dvec3> place_m(position_m.size());
-    std::transform(position_m.begin(), position_m.end(), place_m.begin(),
-                   [&](glm::vec3 position) { return picture.place(position); });
-    std::mt19937 random(3);
-    std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    Samples samples;
-    const auto add = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
-        const glm::dvec3 sa = picture.on_screen(place_m[a]), sb = picture.on_screen(place_m[b]),
-                         sc = picture.on_screen(place_m[c]);
-        if (!(std::min({sa.z, sb.z, sc.z}) > 0.0)) return;
-        const double area_px2 = 0.5 * ((sb.x - sa.x) * (sc.y - sa.y) - (sb.y - sa.y) * (sc.x - sa.x));
-        if (!(area_px2 > 0.0)) return;
-        const glm::dvec3 low = glm::min(sa, glm::min(sb, sc)), high = glm::max(sa, glm::max(sb, sc));
-        const glm::dvec2 half = 0.5 * glm::dvec2(seen.view.resolution);
-        if (low.x > half.x || high.x < -half.x || low.y > half.y || high.y < -half.y) return;
-        // A face that reaches far beyond the picture has no more samples than the picture.
-        const double most = kSamples_per_px * seen.view.resolution.x * seen.view.resolution.y;
-        const double count = std::min(kSamples_per_px * area_px2, most) + uniform(random);
-        for (int i = 1; i <= static_cast<int>(count); ++i) {
-            double u = uniform(random), v = uniform(random);
-            if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
-            const glm::dvec3 face =
-                place_m[a] + u * (place_m[b] - place_m[a]) + v * (place_m[c] - place_m[a]);
-            if (!picture.holds(picture.on_screen(face))) continue;
-            const auto p = static_cast<float>(u), q = static_cast<float>(v);
-            samples.rest_m.push_back(at.rest_m[a] + p * (at.rest_m[b] - at.rest_m[a]) +
-                                     q * (at.rest_m[c] - at.rest_m[a]));
-            samples.face_m.push_back(face);
-        }
-    };
-    const std::int32_t* corner = faces.indices.data();
-    for (const std::int32_t count : faces.counts) {
-        for (std::int32_t i = 2; i < count; ++i) add(corner[0], corner[i - 1], corner[i]);
-        corner += count;
-    }
-    return samples;
-}
 
 struct Row {
     double vertices = 0.0, median_px = 0.0, error_px = 0.0;
@@ -185,8 +68,8 @@ Row row_of(const Seen& seen, const Surface& surface) {
     Faces faces;
     rest->points_at(1, at);
     rest->faces_at(1, faces);
-    const Picture picture(seen, at);
-    const Samples samples = samples_of(seen, at, faces, picture);
+    const MeshPicture picture(seen, at);
+    const FaceSamples samples = samples_of(seen, at, faces, picture);
     return {static_cast<double>(at.rest_m.size()), error_px(seen, at, picture, samples, 0.5),
             error_px(seen, at, picture, samples, kShare)};
 }
@@ -197,7 +80,7 @@ Row patch_row(const Seen& seen, double cell_m) {
     RestPoints<float> at{.origin_m = glm::dvec2(seen.view.position_m),
                          .curvature_per_m = kEarthCurvature_per_m};
     at.touches_at_m = at.origin_m;
-    const Picture picture(seen, at);
+    const MeshPicture picture(seen, at);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     std::vector<glm::dvec2> within;
@@ -217,8 +100,8 @@ Row patch_row(const Seen& seen, double cell_m) {
         within.push_back(place - cell);
     }
     at.cell_m.assign(at.rest_m.size(), static_cast<float>(cell_m));
-    const std::vector<glm::vec3> position_m = positions(seen, at);
-    Samples samples;
+    const std::vector<glm::vec3> position_m = positions_of(seen, at);
+    FaceSamples samples;
     for (std::size_t i = 0; i < within.size(); ++i) {
         const double most = std::max(within[i].x, within[i].y), least = std::min(within[i].x, within[i].y);
         const glm::dvec3 weight(1.0 - most, most - least, least);
@@ -241,24 +124,19 @@ void run(const char* name, double wind_mps, int width, int height) {
     scene.sea.wind_speed_mps = wind_mps;
     scene.camera.resolution = {width, height};
     const double height_m = scene.camera.position_m.z;
-    Seen seen{.prepared = prepare(scene), .sea = nullptr, .view = view_at(scene.camera, 1.0)};
+    Seen seen{seen_surface(scene, view_at(scene.camera, 1.0)), {4.0, kEarthCurvature_per_m, 0.0}};
     seen.earth = EarthView(height_m, kEarthCurvature_per_m, seen.prepared->extent.height_m);
-    Query query = view_query(*seen.prepared, {.products = products(Product::Position, Product::Normal),
-                                              .finest_cell_m = kFinest_m,
-                                              .finest_pixel_m = kFinest_m});
-    seen.sea =
-        std::make_unique<Frame<float>>(std::make_shared<const Sea<float>>(make_plan(seen.prepared, {query})));
     // The first second in which the sea is well below the eye.
     RestPoints<float> nadir{.origin_m = glm::dvec2(seen.view.position_m), .rest_m = {glm::vec2(0.0f)}};
     for (int second = 0;
-         second == 0 || positions(seen, nadir).front().z > 0.5f * static_cast<float>(height_m); ++second)
+         second == 0 || positions_of(seen, nadir).front().z > 0.5f * static_cast<float>(height_m); ++second)
         seen.sea->set(second);
     std::printf("\n%s, %d x %d from %g m, horizon %.1f km\n  %-34s %12s %10s %10s\n", name, width, height,
                 height_m, seen.earth.horizon_m() / 1e3, "", "vertices", "median px", "95 % px");
 
     char text[80];
     double patch = 0.0, least = 1e300;
-    for (double cell_m = 1.0; patch == 0.0 && cell_m > kFinest_m; cell_m /= std::sqrt(2.0)) {
+    for (double cell_m = 1.0; patch == 0.0 && cell_m > SeenSurface::kFinest_m; cell_m /= std::sqrt(2.0)) {
         const Row row = patch_row(seen, cell_m);
         std::snprintf(text, sizeof text, "patch, cells of %.3g m", cell_m);
         print(text, row, 0.0);

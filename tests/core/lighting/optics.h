@@ -23,7 +23,7 @@ inline vec3 uniform_sky(vec2, float) {
 struct Optics {
     Lookup lookup = uniform_sky;
     int kSkyLookups = 9;
-    bool kExactFresnel = true;
+    bool kExactFresnel = true, kSecondReflection = true, kMeshMasking = true;
     float kSkyMapSize = 256.0f;
     bool kSun = true, kSky = true, kWater = true, kWhitecaps = true;
 
@@ -46,7 +46,7 @@ struct Optics {
 struct Furnace {
     Lookup lookup = uniform_sky;
     int kSkyLookups = 0;
-    bool kExactFresnel = true;
+    bool kExactFresnel = true, kSecondReflection = true, kMeshMasking = true;
     float kSkyMapSize = 256.0f;
 
     vec3 sky_lookup(vec2 u, float level) const { return lookup(u, level); }

@@ -52,7 +52,8 @@ using namespace glm;
 
 template <int kLookups, bool kExact>
 struct Functions {
-    static constexpr bool kSun = true, kSky = true, kWater = true, kWhitecaps = true, kExactFresnel = kExact;
+    static constexpr bool kSun = true, kSky = true, kWater = true, kWhitecaps = true, kExactFresnel = kExact,
+                          kSecondReflection = true, kMeshMasking = true;
     static constexpr int kSkyLookups = kLookups;
 
     explicit Functions(const SkyMap& sky_map)

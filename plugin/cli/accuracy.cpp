@@ -1,0 +1,158 @@
+// pelagic accuracy [SHOT.toml] --out DIR
+#include "plugin/accuracy/accuracy.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/scene/names.h"
+#include "plugin/accuracy/report.h"
+#include "plugin/cli/exit_status.h"
+#include "plugin/cli/help.h"
+#include "plugin/cli/progress.h"
+#include "plugin/cli/stop.h"
+#include "plugin/cli/threads.h"
+#include "plugin/cli/verb.h"
+#include "plugin/files/files.h"
+#include "plugin/files/read.h"
+#include "plugin/light/light.h"
+#include "plugin/shot/shot.h"
+
+namespace pelagic::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+    std::string shot, out, threads;
+    std::vector<std::string> rows;
+    bool list = false;
+    int repeats = 5;
+};
+
+void list_rows() {
+    std::size_t widest = 0;
+    for (const ApproximationRow& row : approximation_table()) widest = std::max(widest, std::string(row.name).size());
+    for (const ApproximationRow& row : approximation_table()) {
+        const std::string name = row.name;
+        std::cout << name << std::string(widest + 2 - name.size(), ' ') << row.title << "; knob: " << row.knob << '\n';
+    }
+}
+
+// What is wrong with a name; otherwise empty.
+std::string refuse_rows(const std::vector<std::string>& names) {
+    std::vector<std::string> known;
+    for (const ApproximationRow& row : approximation_table()) known.emplace_back(row.name);
+    for (const std::string& name : names) {
+        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+        const std::string near = nearest(name, known);
+        return "--rows: '" + name + "' is no approximation" + (near.empty() ? "" : "; did you mean " + near + '?') +
+               " (pelagic accuracy --list has them all)";
+    }
+    return {};
+}
+
+// In the order of the table; all where no name is given.
+std::vector<const ApproximationRow*> asked_rows(const std::vector<std::string>& names) {
+    std::vector<const ApproximationRow*> rows;
+    for (const ApproximationRow& row : approximation_table())
+        if (names.empty() || std::find(names.begin(), names.end(), row.name) != names.end()) rows.push_back(&row);
+    return rows;
+}
+
+// What an earlier run left; nothing where there is no table, or one of another program.
+std::vector<MeasuredRow> recorded(const fs::path& table) {
+    std::string text;
+    const std::string problem = files::read_pieces(table, [&](std::string_view piece) { text += piece; });
+    if (!problem.empty()) return {};
+    try {
+        return read_csv_report(text);
+    } catch (const std::invalid_argument& error) {
+        std::cerr << table.string() << ": note: " << error.what() << "; it is measured anew\n";
+        return {};
+    }
+}
+
+void put(std::vector<MeasuredRow>& rows, MeasuredRow row) {
+    std::erase_if(rows, [&](const MeasuredRow& old) { return old.name == row.name; });
+    rows.push_back(std::move(row));
+    const auto place = [](const MeasuredRow& of) {
+        const auto table = approximation_table();
+        return std::find_if(table.begin(), table.end(),
+                            [&](const ApproximationRow& each) { return of.name == each.name; });
+    };
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](const MeasuredRow& a, const MeasuredRow& b) { return place(a) < place(b); });
+}
+
+void write(const fs::path& folder, const std::vector<MeasuredRow>& rows, const Scene& shot) {
+    const std::string now = utc_now(), hash = shot_hash(shot);
+    files::write_atomically(folder / "accuracy.txt", text_report(rows, now, hash));
+    files::write_atomically(folder / "accuracy.csv", csv_report(rows));
+    files::write_atomically(folder / "accuracy.html", html_report(rows, now, shot.shot.name, hash));
+}
+
+int run(const Arguments& arguments) {
+    if (arguments.list) {
+        list_rows();
+        return kDone;
+    }
+    if (const std::string problem = refuse_rows(arguments.rows); !problem.empty()) {
+        std::cerr << "pelagic: " << problem << "\nSee: pelagic accuracy --help\n";
+        return kWrongUsage;
+    }
+    const std::vector<const ApproximationRow*> rows = asked_rows(arguments.rows);
+    const Scene shot = arguments.shot.empty() ? Scene{} : load_shot(arguments.shot, check_scene);
+    const fs::path folder = arguments.out.empty() ? fs::path(shot.shot.name + "-accuracy") : fs::path(arguments.out);
+    files::ensure_folder(folder);
+    std::vector<MeasuredRow> measured = recorded(folder / "accuracy.csv");
+    StopSignals stop;
+    stop.files_begin();
+    Progress progress;
+    Threads threads(arguments.threads);
+    std::size_t done = 0;
+    SweepWatch watch{.progress =
+                         [&](const std::string& row, const std::string& setting) {
+                             progress.show(std::to_string(done + 1) + " of " + std::to_string(rows.size()) + ": " + row +
+                                           ", " + setting);
+                         },
+                     .cancel = &stop.cancelled()};
+    try {
+        for (const ApproximationRow* row : rows) {
+            put(measured, threads.execute([&] { return sweep(*row, shot, arguments.repeats, watch); }));
+            write(folder, measured, shot);  // what is known so far
+            ++done;
+        }
+    } catch (const SweepCancelled&) {
+        progress.clear();
+        std::cerr << "pelagic: stopped; " << folder.string() << " has the " << done << " rows that were measured, and earlier ones\n";
+        return kSignal + stop.number();
+    }
+    progress.clear();
+    std::cout << text_report(measured, utc_now(), shot_hash(shot)) << '\n'
+              << (folder / "accuracy.html").string() << " has the plots\n";
+    return kDone;
+}
+
+}  // namespace
+
+Verb add_accuracy(CLI::App& program) {
+    CLI::App* command = program.add_subcommand("accuracy", help::kAccuracy);
+    command->group(help::kVerbs);
+    command->footer(help::kAccuracyFooter);
+    auto arguments = std::make_shared<Arguments>();
+    command->add_option("SHOT.toml", arguments->shot, help::kAccuracyShot)->type_name("");
+    command->add_option("--out", arguments->out, help::kAccuracyOut)->type_name("DIR");
+    command->add_option("--rows", arguments->rows, help::kAccuracyRows)->delimiter(',')->type_name("NAMES");
+    command->add_option("--repeats", arguments->repeats, help::kAccuracyRepeats)
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
+    command->add_flag("--list", arguments->list, help::kAccuracyList);
+    add_threads(*command, arguments->threads, help::kAccuracyThreads);
+    return {command, [arguments] { return run(*arguments); }};
+}
+
+}  // namespace pelagic::cli

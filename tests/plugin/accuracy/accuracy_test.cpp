@@ -1,0 +1,160 @@
+// Every row of the table on a small shot: what holds for all of them, and which way each knob turns.
+#include "plugin/accuracy/accuracy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "plugin/accuracy/report.h"
+
+namespace pelagic {
+namespace {
+
+Scene small_shot() {
+    Scene scene;
+    scene.shot.name = "small";
+    scene.shot.last_frame = 3;
+    scene.sea.wind_speed_mps = 13.0;
+    scene.surface.resolution = 32;
+    scene.surface.size_m = 80.0;
+    scene.waves.cascades = {{400.0, 128}, {60.0, 64}};
+    scene.camera.resolution = {24, 14};
+    return scene;
+}
+
+const ApproximationRow& row_called(const std::string& name) {
+    for (const ApproximationRow& row : approximation_table())
+        if (name == row.name) return row;
+    throw std::logic_error(name);
+}
+
+// Each is swept once.
+const MeasuredRow& measured(const std::string& name) {
+    static std::map<std::string, MeasuredRow> known;
+    const auto found = known.find(name);
+    if (found != known.end()) return found->second;
+    return known.emplace(name, sweep(row_called(name), small_shot(), 1, {})).first->second;
+}
+
+double error_of(const std::string& row, const std::string& setting, std::size_t which = 0) {
+    for (const MeasuredSetting& each : measured(row).settings)
+        if (each.setting == setting) return each.errors.at(which);
+    ADD_FAILURE() << row << " has no setting " << setting;
+    return NAN;
+}
+
+TEST(Accuracy, EveryRowHoldsWhatTheTableSays) {
+    std::set<std::string> names;
+    for (const ApproximationRow& row : approximation_table()) {
+        SCOPED_TRACE(row.name);
+        EXPECT_TRUE(names.insert(row.name).second) << "twice";
+        EXPECT_EQ(std::string(row.name).find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), std::string::npos);
+        for (const char* text : {row.title, row.knob, row.reference, row.time, row.lesson}) EXPECT_STRNE(text, "");
+        EXPECT_GE(row.errors.size(), 1u);
+        EXPECT_LE(row.errors.size(), 3u) << "as many as a line of the CSV has";
+        const MeasuredRow& result = measured(row.name);
+        EXPECT_EQ(result.why_none, "");
+        EXPECT_GE(result.settings.size(), 2u);
+        EXPECT_EQ(result.shot, shot_hash(small_shot()));
+        std::set<std::string> settings;
+        int own = 0;
+        for (const MeasuredSetting& setting : result.settings) {
+            EXPECT_TRUE(settings.insert(setting.setting).second) << setting.setting << " twice";
+            own += setting.is_shots ? 1 : 0;
+            EXPECT_EQ(setting.errors.size(), row.errors.size());
+            EXPECT_GT(setting.ms, 0.0);
+            if (row.bytes) {
+                EXPECT_GT(setting.bytes, 0u) << setting.setting;
+            }
+        }
+        EXPECT_LE(own, 1);
+    }
+}
+
+// From the coarsest setting to the finest the error falls by a factor that the approximation's theory gives or more.
+TEST(Accuracy, FinerSettingsErrLess) {
+    struct Case {
+        const char *row, *coarse, *fine;
+        double factor;
+    };
+    for (const Case& each : {
+             Case{"cascade-resolution", "32²", "2048²", 10.0},
+             Case{"interpolation", "cubic, 1 nodes a sample", "cubic, 3 nodes a sample", 50.0},     // 3⁴ = 81
+             Case{"interpolation", "quintic, 1 nodes a sample", "quintic, 2 nodes a sample", 50.0},  // 2⁶ = 64
+             Case{"trains", "10 trains", "480 trains", 500.0},  // a bin's width squared: 48² = 2304
+             Case{"mesh-spacing", "16 quads a side", "512 quads a side", 50.0},
+             Case{"fitted-cage", "16 quads a side", "512 quads a side", 1e4},
+             Case{"mesh-variance", "16 cells without", "16 cells with variance", 2.0},
+             Case{"files", "half", "float", 1e9},
+             Case{"sky", "one", "nine", 2.0},
+             Case{"sky", "nine", "integral", 1e9},
+             Case{"samples", "1 × 1", "6 × 6", 2.0},
+             Case{"grid-cells", "32 px", "1 px", 1.5},
+             Case{"picture-interpolation", "cubic, 1 nodes a sample", "quintic, 2 nodes a sample", 30.0},
+         })
+        EXPECT_GE(error_of(each.row, each.coarse), each.factor * error_of(each.row, each.fine) + 1e-300)
+            << each.row << ": " << each.coarse << ", " << each.fine;
+}
+
+// Numbers that are known apart from the sweep.
+TEST(Accuracy, KnownErrorsAreFound) {
+    // A half has 11 bits: an error of 2^−12/√3 of a number at its binade's top, of three components.
+    EXPECT_LT(error_of("files", "half"), std::ldexp(1.0, -11));
+    EXPECT_GT(error_of("files", "half"), std::ldexp(1.0, -16));
+    EXPECT_LT(error_of("precision", "single"), 1e-5);
+    EXPECT_GT(error_of("precision", "single"), 1e-8);
+    EXPECT_LT(error_of("precision", "double"), 1e-12);
+    // All instruction sets agree to rounding.
+    for (const MeasuredSetting& setting : measured("instruction-sets").settings)
+        EXPECT_LT(setting.errors[0], 1e-5) << setting.setting;
+    // The energy of trains is their bins'.
+    for (const MeasuredSetting& setting : measured("trains").settings) EXPECT_LT(setting.errors[1], 1e-9);
+    EXPECT_EQ(error_of("air", "with"), 0.0);
+    EXPECT_GT(error_of("air", "without"), 0.001);
+}
+
+TEST(Accuracy, TheShotsOwnSettingsAreMarked) {
+    const auto own = [](const std::string& row) {
+        for (const MeasuredSetting& setting : measured(row).settings)
+            if (setting.is_shots) return setting.setting;
+        return std::string("none");
+    };
+    EXPECT_EQ(own("interpolation"), "quintic, 2 nodes a sample");
+    EXPECT_EQ(own("sky"), "nine");
+    EXPECT_EQ(own("samples"), "2 × 2");
+    EXPECT_EQ(own("grid-cells"), "8 px");
+    EXPECT_EQ(own("mesh-spacing"), "32 quads a side");
+    EXPECT_EQ(own("cascade-resolution"), "64²");
+    EXPECT_EQ(own("trains"), "none") << "the shot has cascades";
+}
+
+// What a shot hasn't isn't swept, and says why; and nothing is NaN where nothing moves.
+TEST(Accuracy, SeasWithoutWavesAndWithoutCascadesAreNoSpecialCase) {
+    Scene calm = small_shot();
+    calm.sea.wind_speed_mps = 0.0;
+    Scene trains = small_shot();
+    trains.waves.cascades.clear();
+    trains.waves.model = WaveModel::Trochoid;
+    Scene bare = small_shot();
+    bare.effects.whitecaps = false;
+    for (const Scene& scene : {calm, trains, bare})
+        for (const char* name : {"interpolation", "cascade-number", "trains", "mesh-spacing", "mesh-variance", "fitted-cage",
+                                 "files", "whitecap-moments", "instruction-sets", "foam-structure"}) {
+            const MeasuredRow result = sweep(row_called(name), scene, 1, {});  // throws for what isn't finite
+            EXPECT_NE(result.settings.empty(), result.why_none.empty()) << name;
+        }
+    EXPECT_FALSE(sweep(row_called("interpolation"), trains, 1, {}).why_none.empty());
+    EXPECT_FALSE(sweep(row_called("whitecap-moments"), bare, 1, {}).why_none.empty());
+}
+
+TEST(Accuracy, ACancelledSweepEnds) {
+    const std::atomic<bool> cancel = true;
+    EXPECT_THROW(sweep(row_called("files"), small_shot(), 1, {.progress = {}, .cancel = &cancel}), SweepCancelled);
+}
+
+}  // namespace
+}  // namespace pelagic

@@ -53,6 +53,7 @@ class CageSurface final : public RestSurface {
     bool is_constant() const override { return !level_.is_adaptive; }
     bool has_constant_faces() const override { return !level_.is_adaptive; }
     bool has_origin() const override;
+    bool origin_follows_camera() const override { return false; }
     bool has_st_of_corners() const override { return limit_.has_seams(); }
     bool is_even() const override { return false; }
     std::optional<View> shaped_by(int frame) const override;

@@ -94,6 +94,8 @@ class RestSurface {
     virtual bool has_constant_faces() const = 0;
     // Whether meshes of it have an origin of their own in each file, because their points may be far from the world's.
     virtual bool has_origin() const { return !is_constant(); }
+    // Whether that origin is a place near the camera, and moves as it does.
+    virtual bool origin_follows_camera() const { return !is_constant(); }
     // Whether each corner of a face has its own texture coordinate (Faces::is_st_of_corners).
     virtual bool has_st_of_corners() const { return false; }
     // Whether the points are spread evenly, so that their statistics are the sea's.

@@ -190,6 +190,8 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
                         .faces = !plan.surface->has_constant_faces(),
                         .origin = plan.surface->has_origin(),
                         .st_of_corners = plan.surface->has_st_of_corners()};
+    stage.points_follow_camera = !plan.surface->is_constant();
+    stage.origin_follows_camera = plan.surface->origin_follows_camera();
     stage.frame_extension = stage.topology_extension = std::string(word_of(scene.output.mesh));
     stage.material = material_of(plan);
     stage.has_camera = true;

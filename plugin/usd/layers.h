@@ -155,6 +155,9 @@ struct Stage {
     int last_frame = 48;
     double fps = 24.0;  // > 0
     AttributeSet attributes{};
+    // Of the mesh, as its surface says: whether a vertex is another place where the camera is another, and whether the
+    // places' origin (attributes.origin) is one near the camera.
+    bool points_follow_camera = false, origin_follows_camera = false;
     std::string frame_extension = "usda";     // without the dot
     std::string topology_extension = "usda";  // without the dot
     Material material{};

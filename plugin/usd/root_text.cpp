@@ -95,6 +95,26 @@ void write_custom_data(Page& page, const Stage& stage) {
     page.close("}");
 }
 
+// Where the origin of a mesh's points is from frame to frame.
+std::string_view text_of_origin(const Stage& stage) {
+    if (stage.origin_follows_camera)
+        return "follows the camera in steps: far from the world's origin floats are too coarse for places. "
+               "A step is no motion; velocities leave it out.";
+    if (stage.points_follow_camera)
+        return "stays near the mesh: far from the world's origin floats are too coarse for places. "
+               "It may step where the cells grow, which is no motion; velocities leave it out.";
+    return "is the same at all frames: far from the world's origin floats are too coarse for places.";
+}
+
+// Where a point of the next frame isn't the same place: what that means for who reads two of them.
+std::string_view text_of_points(const Stage& stage) {
+    if (!stage.points_follow_camera) return "";
+    if (stage.attributes.faces)
+        return " Each frame has points and faces of its own, as its camera sees them: blur by velocities.";
+    return " Points follow the camera in steps, too, from place to place of a sea that stays: "
+           "blur by velocities.";
+}
+
 void write_mesh(Page& page, const Stage& stage, const std::string& material_path) {
     page.gap();
     page.open({"def Mesh \"", kMeshName, "\" ("});
@@ -111,15 +131,8 @@ void write_mesh(Page& page, const Stage& stage, const std::string& material_path
     page.close("}");
     page.close("}");
     if (stage.attributes.origin)
-        page.line(
-            {"doc = \"Points are relative to ", kOrigin,
-             ", which follows the camera in steps: far from the world's origin floats are too coarse for places. ",
-             "A step is no motion; velocities leave it out.",
-             stage.attributes.faces
-                 ? ""
-                 : " Points follow the camera in steps, too, from place to place of a sea that stays: "
-                   "blur by velocities.",
-             "\""});
+        page.line({"doc = \"Points are relative to ", kOrigin, ", which ", text_of_origin(stage),
+                   text_of_points(stage), "\""});
     page.line({"prepend references = @./", topology_file(stage.name, stage.topology_extension), "@"});
     page.close(")");
     page.open({"{"});

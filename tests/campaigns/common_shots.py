@@ -149,14 +149,34 @@ def shot_text(keys):
 
 
 def write_cage(path, draw):
-    """A few faces of any size and slope, among them triangles, with a crease and a corner, and perhaps a hole."""
-    size, far = draw.choice([0.0, 0.1, 10.0, 300.0, 1e5]), draw.choice([0.0, 0.0, 9e5])
+    """A few faces of any size and slope, two of them triangles, with a crease and a corner, and perhaps a hole; any rule
+    for the boundary, of which 0 leaves the face in the middle of nine, and nothing of five; and any texture: none, of the
+    points, of the faces' corners, or of two halves that lie apart."""
+    side = draw.choice([3, 4])
+    size, far = draw.choice([0.0, 0.1, 10.0, 300.0, 1e5]), draw.choice([0.0, 0.0, 6e5])
     lines = [f"v {far + size * (x + draw.uniform(-0.2, 0.2))} {size * y} {size * draw.choice([0.0, draw.uniform(-2, 2)])}"
-             for y in range(3) for x in range(3)]
-    lines += ["f 1 2 5 4", "f 2 3 6 5", "f 4 5 8 7", "f 5 6 9", "f 5 9 8",
-              f"t crease 2/1/0 3 4 {draw.choice([0.0, 1.5, 10.0])}", f"t corner 1/1/0 4 {draw.choice([0.0, 3.0])}"]
+             for y in range(side) for x in range(side)]
+    quads = [(x + side * y, x + side * y + 1, x + side * y + side + 1, x + side * y + side)
+             for y in range(side - 1) for x in range(side - 1)]
+    faces = [*quads[:-1], quads[-1][:3], (quads[-1][0], *quads[-1][2:])]
+    texture = draw.choice(["none", "points", "corners", "halves"])
+    corners = 0
+    for face in faces:
+        words = []
+        for point in face:
+            coordinate = {"points": point, "corners": corners,
+                          "halves": point + side * side * (face[0] % side > 0)}.get(texture)
+            words.append(f"{point + 1}" + ("" if coordinate is None else f"/{coordinate + 1}"))
+            corners += 1
+        lines.append("f " + " ".join(words))
+    coordinates = {"none": 0, "points": side * side, "corners": corners, "halves": 2 * side * side}[texture]
+    lines[:0] = [f"vt {draw.choice([0.0, draw.uniform(-3, 3)])} {draw.uniform(0, 1)}" for _ in range(coordinates)]
+    lines += [f"t crease 2/1/0 {side} {side + 1} {draw.choice([0.0, 1.5, 10.0])}",
+              f"t corner 1/1/0 4 {draw.choice([0.0, 3.0])}"]
     if draw.random() < 0.3:
-        lines.append("t hole 1/0/0 0")
+        lines.append(f"t hole 1/0/0 {draw.choice([0, 4])}")
+    if draw.random() < 0.6:
+        lines.append(f"t interpolateboundary 1/0/0 {draw.choice([0, 1, 2])}")
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -178,6 +198,8 @@ def _make_fit(draw, keys):
     else:
         for name in ("trains", "shortest_m", "longest_m"):
             keys.pop(f"waves.{name}", None)
+    if keys.get("surface.kind", "patch") != "patch":
+        keys.pop("output.mesh_scheme", None)
     if keys.get("output.cascade_tiles"):
         keys["output.maps"] = keys.get("output.maps") or ["normal", "whitecaps"]
     if volumes := keys.get("output.volumes"):
@@ -216,6 +238,8 @@ def shot(draw, folder, each=0.35):
         keys["shot.frames"] = [1, 2]
     if draw.random() < 0.15:
         keys["surface.kind"], keys["surface.cage_file"] = "cage", str(folder / "cage.obj")
+        if draw.random() < 0.95:
+            keys.pop("output.mesh_scheme", None)
         write_cage(folder / "cage.obj", draw)
     if draw.random() < 0.05:
         keys["sea.spectrum"] = "file"

@@ -330,7 +330,7 @@ TEST(CageSurface, AUniformOneIsTheSameAtEveryFrame) {
     scene.surface.cage_level = {.splits = 3};
     const auto surface = make_surface(scene, kReach);
     EXPECT_TRUE(surface->is_constant());
-    EXPECT_FALSE(surface->has_origin() || surface->is_even());
+    EXPECT_FALSE(surface->has_origin() || surface->origin_follows_camera() || surface->is_even());
     EXPECT_FALSE(surface->shaped_by(7));
     RestPoints<double> points;
     surface->points_at(7, points);
@@ -357,7 +357,7 @@ TEST(CageSurface, AnAdaptiveOneFollowsTheCamera) {
                          {.frame = 11, .position_m = {4.0, -300.0, 80.0}, .look_at_m = {4.0, 4.0, 0.0}}};
     const auto surface = make_surface(scene, kReach);
     EXPECT_FALSE(surface->is_constant());
-    EXPECT_TRUE(surface->has_origin());
+    EXPECT_TRUE(surface->has_origin() && !surface->origin_follows_camera());
     const int all[] = {1, 11, 20};
     std::size_t most = 0, before = 0;
     for (const int frame : all) {
@@ -506,7 +506,7 @@ TEST(CageSurface, FarFromTheOriginItHasItsOwn) {
     CageMesh mesh = grid_cage(2, 2, [](int, int) { return 0.0; });
     for (glm::dvec3& point : mesh.points_m) point += glm::dvec3(9e5, -9e5, 0.0);
     const auto surface = make_surface(cage_scene(std::move(mesh)), kReach);
-    EXPECT_TRUE(surface->is_constant() && surface->has_origin());
+    EXPECT_TRUE(surface->is_constant() && surface->has_origin() && !surface->origin_follows_camera());
     RestPoints<float> points;
     surface->points_at(1, points);
     for (const glm::vec2& rest : points.rest_m) EXPECT_LT(glm::length(rest), 4096.0f);

@@ -55,6 +55,7 @@ TEST(RestSurface, TheCamerasGridOfAFrameDependsOnItsPoseAlone) {
     other.camera.keys.push_back({.frame = 40, .position_m = {0.0, 0.0, 900.0}, .look_at_m = {9.0, 0.0, 0.0}});
     const auto a = make_surface(scene, kReach), b = make_surface(other, kReach);
     EXPECT_FALSE(a->is_constant());
+    EXPECT_TRUE(a->origin_follows_camera());
     std::size_t sizes = 0, last = 0;
     for (const int frame : {2, 12, 19}) {
         RestPoints<float> ours, theirs;

@@ -81,6 +81,7 @@ class RandomShot {
         }
         const double size_m = own_cascades ? pick({0.5, 50.0, 400.0, 3e4}) : pick({200.0, 3e4});
         shot << "[surface]\nsize_m = " << size_m << "\nresolution = " << pick({1, 2, 3, 7, 8, 16}) << "\n";
+        bool is_patch = false;
         if (chance(0.3)) {
             shot << "kind = \"near-far\"\nearth_curvature = " << (chance(0.5) ? "true" : "false") << "\n";
             const double x_m = pick({0.0, -3.3, 1e5, 1e9}), z_m = pick({0.0, 0.1, 4.0, -2.0, 1e3, 1e5});
@@ -90,6 +91,8 @@ class RandomShot {
             shot << "kind = \"cage\"\ncage_file = \"cage.obj\"\ncage_level = "
                  << pick({"0", "1", "2", "\"adaptive\""}) << "\n";
             if (chance(0.5)) shot << "cell_px = 64\n";
+        } else {
+            is_patch = true;
         }
         const bool whitecaps = chance(0.8), spray = chance(0.6);
         shot << "[effects]\nwhitecaps = " << (whitecaps ? "true" : "false") << "\n";
@@ -97,9 +100,12 @@ class RandomShot {
         shot << "[quality]\nlevel = \"" << pick({"draft", "preview", "final", "reference"}) << "\"\n";
         shot << "[output]\nmesh = \"" << pick({"usda", "usda", "usdc", "none"}) << "\"\nattributes = ["
              << subset({"normal", "velocity", "slope-variance", "whitecaps"}) << "]\nmaps = ["
-             << subset({"displacement", "normal", "slope-variance", "whitecaps"})
+             << (whitecaps || chance(0.1) ? subset({"displacement", "normal", "slope-variance", "whitecaps"})
+                                          : subset({"displacement", "normal", "slope-variance"}))
              << "]\nmap_resolution = " << pick({1, 2, 5, 8, 16}) << "\n";
         if (own_cascades && chance(0.3)) shot << "cascade_tiles = true\n";
+        // Of other surfaces it is refused.
+        if (chance(is_patch ? 0.3 : 0.02)) shot << "mesh_scheme = \"catmullClark\"\n";
         if (chance(0.4))
             shot << "volumes = ["
                  << (whitecaps && spray ? subset({"spray", "level-set"}) : subset({"level-set"}))
@@ -107,22 +113,49 @@ class RandomShot {
         return shot.str();
     }
 
-    // A few faces of any size and slope, among them triangles, with creases, a corner and a hole.
+    // A few faces of any size and slope, two of them triangles, with a crease, a corner, perhaps a hole, any rule for the
+    // boundary and any texture. Rule 0 leaves the face in the middle of nine, and nothing of five.
     std::string cage() {
         std::ostringstream obj;
-        const double size = pick({0.0, 0.1, 10.0, 1e5}), at = pick({0.0, 0.0, 9e5});
-        for (int y = 0; y < 3; ++y)
-            for (int x = 0; x < 3; ++x)
+        const int side = pick({3, 4}), faces = (side - 1) * (side - 1);
+        const double size = pick({0.0, 0.1, 10.0, 1e5}), at = pick({0.0, 0.0, 6e5});
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; ++x)
                 obj << "v " << at + size * (x + 0.2 * uniform(-1.0, 1.0)) << ' ' << size * y << ' '
                     << pick({0.0, size * uniform(-2.0, 2.0)}) << '\n';
-        obj << "f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9\nf 5 9 8\nt crease 2/1/0 3 4 "
-            << pick({0.0, 1.5, 10.0}) << "\nt corner 1/1/0 4 " << pick({0.0, 3.0}) << "\n";
-        if (chance(0.3)) obj << "t hole 1/0/0 0\n";
-        if (chance(0.3)) obj << "t interpolateboundary 1/0/0 2\n";
+        const Texture texture = pick({Texture::None, Texture::OfPoints, Texture::OfFaces, Texture::OfHalves});
+        const int halves = texture == Texture::OfHalves ? 2 : 1;
+        const int coordinates = texture == Texture::OfFaces ? 4 * faces : halves * side * side;
+        for (int i = 0; texture != Texture::None && i < coordinates; ++i)
+            obj << "vt " << pick({0.0, uniform(-3.0, 3.0)}) << ' ' << uniform(0.0, 1.0) << '\n';
+        for (int face = 0; face < faces; ++face) {
+            const int x = face % (side - 1), first = x + face / (side - 1) * side + 1;
+            const int points[] = {first, first + 1, first + 1 + side, first + side};
+            const auto corner = [&](int k) {
+                obj << ' ' << points[k];
+                if (texture == Texture::OfFaces) obj << '/' << 4 * face + k + 1;
+                if (texture == Texture::OfPoints || texture == Texture::OfHalves)
+                    obj << '/' << points[k] + (halves == 2 && x > 0 ? side * side : 0);
+            };
+            const std::vector<std::vector<int>> polygons =
+                face + 1 < faces ? std::vector<std::vector<int>>{{0, 1, 2, 3}}
+                                 : std::vector<std::vector<int>>{{0, 1, 2}, {0, 2, 3}};
+            for (const std::vector<int>& polygon : polygons) {
+                obj << 'f';
+                for (const int k : polygon) corner(k);
+                obj << '\n';
+            }
+        }
+        obj << "t crease 2/1/0 " << side << ' ' << side + 1 << ' ' << pick({0.0, 1.5, 10.0})
+            << "\nt corner 1/1/0 4 " << pick({0.0, 3.0}) << "\n";
+        if (chance(0.3)) obj << "t hole 1/0/0 " << pick({0, 4}) << "\n";
+        if (chance(0.6)) obj << "t interpolateboundary 1/0/0 " << pick({0, 1, 2}) << "\n";
         return obj.str();
     }
 
   private:
+    enum class Texture { None, OfPoints, OfFaces, OfHalves };
+
     template <class V>
     V pick(std::initializer_list<V> values) {
         return *(values.begin() + std::uniform_int_distribution<std::size_t>(0, values.size() - 1)(engine_));
@@ -236,6 +269,9 @@ TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
                     if (path.ends_with(".exr")) expect_bounded_map(out / path);
             } catch (const ShotError&) {
                 refused = true;
+            } catch (const std::exception& error) {
+                FAIL() << "neither baked nor refused: "
+                       << error.what();  // with the shot, unlike an exception
             }
             ASSERT_TRUE(!refused || !fs::exists(out)) << "refused, but something was written";
         }

@@ -14,7 +14,6 @@
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 
 namespace pelagic::usd {
 namespace {
@@ -298,18 +297,37 @@ def Xform "a_b"
     EXPECT_EQ(text, expected);
 }
 
-// Where points follow the camera and faces stay, a point isn't the same place in the next frame.
-TEST(UsdText, SaysWhichPointsFollowTheCamera) {
-    const auto says = [](const AttributeSet& attributes, const char* what) {
-        return root_text({.attributes = attributes}).find(what) != std::string::npos;
-    };
-    for (const auto& [attributes, origin, points] :
-         {std::tuple(AttributeSet{}, false, false),
-          {AttributeSet{.faces = true, .origin = true}, true, false},
-          {AttributeSet{.origin = true}, true, true}}) {
-        EXPECT_EQ(says(attributes, "A step is no motion"), origin);
-        EXPECT_EQ(says(attributes, "blur by velocities"), points);
-    }
+// The mesh's doc, in one line; none: "".
+std::string doc_of(const Stage& stage) {
+    const std::string text = root_text(stage), key = "        doc = \"";
+    const std::size_t at = text.find(key);
+    if (at == std::string::npos) return "";
+    return text.substr(at + key.size(), text.find("\"\n", at) - at - key.size());
+}
+
+// An artist's surface far out has an origin that nothing moves; a camera moves points, their origin, or both.
+TEST(UsdText, SaysWhatFollowsTheCamera) {
+    const std::string origin = "Points are relative to xformOp:translate, which ",
+                      why = ": far from the world's origin floats are too coarse for places.";
+    const AttributeSet constant_faces{.origin = true}, varying_faces{.faces = true, .origin = true};
+    EXPECT_EQ(doc_of({}), "");
+    EXPECT_EQ(doc_of({.attributes = constant_faces}), origin + "is the same at all frames" + why);
+    const std::string follows =
+        origin + "follows the camera in steps" + why + " A step is no motion; velocities leave it out.";
+    const std::string own_faces =
+        " Each frame has points and faces of its own, as its camera sees them: blur by velocities.";
+    EXPECT_EQ(
+        doc_of({.attributes = constant_faces, .points_follow_camera = true, .origin_follows_camera = true}),
+        follows +
+            " Points follow the camera in steps, too, from place to place of a sea that stays: "
+            "blur by velocities.");
+    EXPECT_EQ(
+        doc_of({.attributes = varying_faces, .points_follow_camera = true, .origin_follows_camera = true}),
+        follows + own_faces);
+    EXPECT_EQ(doc_of({.attributes = varying_faces, .points_follow_camera = true}),
+              origin + "stays near the mesh" + why +
+                  " It may step where the cells grow, which is no motion; velocities leave it out." +
+                  own_faces);
 }
 
 TEST(UsdText, MaterialReadsTheMeshsPrimvarsOnlyWhereTheyAre) {

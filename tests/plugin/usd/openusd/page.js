@@ -109,11 +109,12 @@ function numbersOf(text) {
     return Float32Array.from(numbers, Number);
 }
 
-// The prims and the samples of float arrays in the flattened text: the type of each prim by its path, the samples by
-// prim, attribute and time. OpenUSD indents by four spaces a level.
-function parseFlattened(text) {
+// The prims and the samples of float arrays and of files in the flattened text: the type of each prim by its path, the
+// samples by prim, attribute and time. OpenUSD indents by four spaces a level, and writes files from the root on.
+function parseFlattened(text, folder) {
     const prims = {};
     const samples = [];
+    const files = {};
     const path = [];
     let attribute = null;
     for (const line of text.split('\n')) {
@@ -124,7 +125,7 @@ function parseFlattened(text) {
             prims[`/${path.join('/')}`] = prim[2] ?? '';
             continue;
         }
-        const opening = /^ *float\d?\[\] ([\w:]+)\.timeSamples = \{$/.exec(line);
+        const opening = /^ *(?:float\d?\[\]|asset) ([\w:]+)\.timeSamples = \{$/.exec(line);
         if (opening) {
             attribute = opening[1];
             continue;
@@ -138,8 +139,13 @@ function parseFlattened(text) {
         if (sample) {
             samples.push({ prim: `/${path.join('/')}`, attribute, time: Number(sample[1]), text: sample[2] });
         }
+        const file = /^ *([-+.\deE]+): @(.*)@,$/.exec(line);
+        if (file) {
+            const named = (files[`/${path.join('/')}.${attribute}`] ??= {});
+            named[Number(file[1])] = file[2].startsWith(`${folder}/`) ? file[2].slice(folder.length + 1) : file[2];
+        }
     }
-    return { prims, samples };
+    return { prims, samples, files };
 }
 
 // Where two layers differ when OpenUSD writes each as text, a line for each pair that does.
@@ -212,7 +218,7 @@ async function readStage({ rootFile, layers, frames, pairs }) { // eslint-disabl
         new TextEncoder().encode(
             slimLayer(rootFile.replace(/^.*\//, ''), stage.GetTimeCodesPerSecond(), blocked)), true, true, true);
     const flattened = usd.UsdStage.Open(`${folder}/${slim}`).ExportToString();
-    const { prims, samples } = parseFlattened(flattened);
+    const { prims, samples, files } = parseFlattened(flattened, folder);
     for (const { prim, attribute, time, text } of samples) {
         if (!wanted.get(prim)?.has(attribute) || !frames.includes(time)) continue;
         const name = attribute.replace(/^primvars:/, '');
@@ -225,6 +231,7 @@ async function readStage({ rootFile, layers, frames, pairs }) { // eslint-disabl
         rootLayer: stage.GetRootLayer().ExportToString(),
         flattened,
         prims,
+        files,
         stage: {
             startTimeCode: stage.GetStartTimeCode(),
             endTimeCode: stage.GetEndTimeCode(),

@@ -13,7 +13,8 @@ collects what OpenUSD hands over. All layers below DIR (.usda .usdc .usd) are gi
 
   --json FILE        write all that was read (below)
   --expect FILE      compare with FILE, of the same form: every array, prim, mesh and stage value that it names must
-                     have been read with exactly the same float32 values, and every transform within 2e-7;
+                     have been read with exactly the same float32 values, and every transform within 2e-7; the
+                     time samples of every attribute in "files" must be the same, and each file be there, not empty;
                      "flattened" and "root" list lines that must
                      stand in the flattened stage, and in the root layer as OpenUSD writes it again (spaces at
                      either end aside); "sameLayers" lists pairs of layers, [A, B], that must be the same when
@@ -30,6 +31,7 @@ JSON:
   { "complaints": [line…], "known": [line…], "open_ms": n,
     "stage": { startTimeCode, endTimeCode, timeCodesPerSecond },
     "prims": { PATH: TYPE… },
+    "files": { PATH.ATTRIBUTE: { FRAME: file below DIR… } },
     "meshes": { PATH: { "material": PATH, "indices": array, "primvars": { NAME: { dimension, interpolation } } } },
     "materials": { PATH: { NODE: { parameter: value } } },
     "frames": { FRAME: { PATH: { "points": array, "normals": array, "velocities": array, "indices": array,
@@ -287,6 +289,7 @@ function writeJson(options, { complaints, knownLines, arrays, result }) {
         ['open_ms', () => putPlain(result.openMs)],
         ['stage', () => putPlain(result.stage)],
         ['prims', () => putPlain(result.prims)],
+        ['files', () => putPlain(result.files)],
         ['materials', () => putPlain(result.materials)],
         ['meshes', () => putObject(Object.entries(result.meshes ?? {}), (mesh, prim) => putObject([
             ['material', () => putPlain(mesh.material)],
@@ -339,6 +342,15 @@ function differences(options, expected, arrays, result) {
     comparePlain('stage', expected.stage ?? {}, result.stage);
     comparePlain('prims', expected.prims ?? {}, result.prims);
     comparePlain('materials', expected.materials ?? {}, result.materials);
+    comparePlain('files', expected.files ?? {}, result.files);
+    for (const [attribute, wanted] of Object.entries(expected.files ?? {})) {
+        const samples = Object.entries(result.files?.[attribute] ?? {});
+        for (const [frame, file] of samples) {
+            if (!(frame in wanted)) found.push(`files ${attribute} ${frame}: ${file} instead of none`);
+            const place = path.join(options.dir, file);
+            if (!fs.existsSync(place) || fs.statSync(place).size === 0) found.push(`${place} is missing or empty`);
+        }
+    }
     for (const [prim, { indices, ...rest }] of Object.entries(expected.meshes ?? {})) {
         comparePlain(`meshes ${prim}`, rest, result.meshes?.[prim]);
         if (indices) compareArrays(`${prim} indices`, indices, arrays.indices.get(prim), Int32Array);

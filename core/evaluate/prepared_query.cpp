@@ -259,8 +259,10 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
     if (call.on_ladder) {
         const Query& query = planned_->query;
         const double longest = frame_->sea().plan().knobs.longest_ellipse;
-        work.cells.take(query.cell_m, call.points.cell_m, call.points.cell_axis_m, longest, first, chunk.count);
-        work.pixels.take(query.pixel_m, call.points.pixel_m, call.points.pixel_axis_m, longest, first, chunk.count);
+        work.cells.take(query.cell_m, call.points.cell_m, call.points.cell_axis_m, longest, first,
+                        chunk.count);
+        work.pixels.take(query.pixel_m, call.points.pixel_m, call.points.pixel_axis_m, longest, first,
+                         chunk.count);
     }
     for (std::size_t c = 0; c < call.place.copies.size(); ++c) work.copies[c].forget();
     work.apart = breaks_apart(call, work);

@@ -16,7 +16,8 @@ using namespace glm;
 // The shared source as members of a struct, one instance per variant, so that its constants fold.
 template <LightingChoice kChoice>
 struct Shading {
-    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr, const LightingChoice& choice = kChoice)
+    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr,
+                     const LightingChoice& choice = kChoice)
         : map(sky_map),
           seen_air(of_air),
           kSkyMapSize(static_cast<float>(sky_map.size())),
@@ -70,12 +71,13 @@ SeaAlbedo albedo(const WaterBody& water) {
         .water_index = shading.kWaterIndex};
 }
 
-using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>, std::span<SeaRadiance>,
-                       const Air*, const FoamPattern&);
+using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>,
+                       std::span<SeaRadiance>, const Air*, const FoamPattern&);
 
 template <LightingChoice kChoice>
-void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& water, std::span<const SeaPoint> points,
-                 std::span<SeaRadiance> radiance, const Air* air, const FoamPattern& foam) {
+void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
+                 std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air,
+                 const FoamPattern& foam) {
     using Variant = Shading<kChoice>;
     const bool by_place = air && air->by_place > 0.0f;
     Variant shading(sky.map, air, choice);

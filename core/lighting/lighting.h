@@ -33,7 +33,8 @@ struct LightingChoice {
     SkyQuality sky_quality = SkyQuality::Nine;
     FresnelFit fresnel = FresnelFit::Exact;
     bool second_reflection = true;  // of what facets mirror onto the sea; without it that light is lost
-    bool mesh_masking = true;  // normals lean to the eye as those that a coarser mesh shows do (SeaPoint::mesh_variance)
+    bool mesh_masking =
+        true;  // normals lean to the eye as those that a coarser mesh shows do (SeaPoint::mesh_variance)
     bool operator==(const LightingChoice&) const = default;
 };
 

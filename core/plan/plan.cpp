@@ -321,7 +321,8 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     const bool has_coverage = std::any_of(queries.begin(), queries.end(), [](const Query& query) {
         return query.products[index(Product::Coverage)];
     });
-    if (options.living_foam && has_coverage) plan.foam = plan_foam(scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
+    if (options.living_foam && has_coverage)
+        plan.foam = plan_foam(scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
 
     double finest_m = std::numeric_limits<double>::infinity(), trains_finest_m = finest_m;
     for (const PlannedQuery& planned : plan.queries) {

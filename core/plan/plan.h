@@ -82,8 +82,9 @@ struct Knobs {
     double oversampling = 2.0;
     bool third_moment = true;  // coverage from three moments of J, or from two (Dupuy and Bruneton)
     bool double_precision = false;
-    double longest_ellipse = 8.0;     // of footprints: over its width, 1 … kLongestEllipse (core/plan/taps.h)
-    double foam_steps_a_period = 4.0;  // of the lattice of times of living foam, in periods of its shortest waves
+    double longest_ellipse = 8.0;  // of footprints: over its width, 1 … kLongestEllipse (core/plan/taps.h)
+    double foam_steps_a_period =
+        4.0;  // of the lattice of times of living foam, in periods of its shortest waves
 
     bool operator==(const Knobs&) const = default;
 };

@@ -63,8 +63,8 @@ double MeshPicture::pixel_m(glm::dvec3 place_m) const {
     return pixel_ * glm::length(place_m - eye_m_);
 }
 
-double error_px(const SeenSurface& seen, const RestPoints<float>& at, const MeshPicture& picture, const FaceSamples& samples,
-                double share) {
+double error_px(const SeenSurface& seen, const RestPoints<float>& at, const MeshPicture& picture,
+                const FaceSamples& samples, double share) {
     std::vector<glm::vec3> exact_m(samples.rest_m.size()), normal(samples.rest_m.size());
     Results<float> results;
     results.set(Product::Position, {exact_m.data()});
@@ -86,7 +86,7 @@ double error_px(const SeenSurface& seen, const RestPoints<float>& at, const Mesh
 }
 
 FaceSamples samples_of(const SeenSurface& seen, const RestPoints<float>& at, const Faces& faces,
-                   const MeshPicture& picture) {
+                       const MeshPicture& picture) {
     const std::vector<glm::vec3> position_m = positions_of(seen, at);
     std::vector<glm::dvec3> place_m(position_m.size());
     std::transform(position_m.begin(), position_m.end(), place_m.begin(),

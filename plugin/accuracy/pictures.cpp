@@ -290,7 +290,8 @@ Trials foam_times(const Scene& shot) {
     for (const double steps : {0.5, 1.0, 2.0, 4.0, 8.0}) {
         RenderOptions options = exact;
         options.knobs->foam_steps_a_period = steps;
-        settings.push_back({number_text(steps) + " a period", steps == knobs.foam_steps_a_period, scene, options});
+        settings.push_back(
+            {number_text(steps) + " a period", steps == knobs.foam_steps_a_period, scene, options});
     }
     return against(scene, exact, std::move(settings));
 }

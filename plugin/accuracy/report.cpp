@@ -345,7 +345,10 @@ h1, h2 { line-height: 1.2; } h2 { margin-top: 3rem; border-top: 1px solid #ccd6d
 table { border-collapse: collapse; margin: 1rem 0; width: 100%; } th, td { text-align: left; padding: .2rem .7rem .2rem 0; vertical-align: top; }
 td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; } tr.own td { font-weight: 600; }
 tbody tr { border-top: 1px solid #e4eaee; } .old { color: #8a5a00; } .what { color: #4d6272; margin: .2rem 0; }
-svg { width: 100%; height: auto; } .grid { stroke: #dbe3e8; } .tick, .axis, .label { font-size: 11px; fill: #4d6272; }
+svg { width: 100%; height: auto; }
+)css";
+constexpr const char* kPlotStyle = R"css(
+.grid { stroke: #dbe3e8; } .tick, .axis, .label { font: 11px system-ui, sans-serif; fill: #4d6272; }
 .front { fill: none; stroke: #1673a5; stroke-width: 1.5; } .point { fill: #1673a5; } .own { fill: #d2691e; } .lead { stroke: #c6d2da; stroke-width: .6; }
 )css";
 
@@ -355,7 +358,7 @@ std::string html_report(const std::vector<MeasuredRow>& rows, std::string_view n
                         const std::string& shot_name, const std::string& shot) {
     std::string page =
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>What accuracy costs: " +
-        escaped(shot_name) + "</title>\n<style>" + kStyle +
+        escaped(shot_name) + "</title>\n<style>" + kStyle + kPlotStyle +
         "</style></head><body>\n<h1>What accuracy costs: " + escaped(shot_name) +
         "</h1>\n<p>Each row is an approximation with its knob: what its settings differ from the reference by, and how "
         "long a frame takes with each. Times are of one machine and compare only within a row.</p>\n"
@@ -391,6 +394,18 @@ std::string html_report(const std::vector<MeasuredRow>& rows, std::string_view n
         page += "</tbody></table>\n";
     }
     return page + "</body></html>\n";
+}
+
+std::string svg_report(const MeasuredRow& measured) {
+    if (!measured.why_none.empty()) return {};
+    const ApproximationRow& row = row_of(measured);
+    std::string svg = plot(row, measured);
+    const std::size_t at = svg.find('>'), style = svg.find('\n', at) + 1;
+    svg.insert(style, std::string("<style>") + kPlotStyle +
+                          "</style><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" +
+                          print("<text class=\"axis\" x=\"%.1f\" y=\"11\">", kLeft) + escaped(row.title) +
+                          ": " + escaped(row.errors[0]) + "</text>\n");
+    return svg.insert(4, " xmlns=\"http://www.w3.org/2000/svg\"");
 }
 
 }  // namespace pelagic

@@ -24,4 +24,7 @@ std::vector<MeasuredRow> read_csv_report(std::string_view text);
 std::string html_report(const std::vector<MeasuredRow>& rows, std::string_view now,
                         const std::string& shot_name, const std::string& shot);
 
+// A row's plot as a file of its own, for other pages; empty for a row without settings.
+std::string svg_report(const MeasuredRow& row);
+
 }  // namespace pelagic

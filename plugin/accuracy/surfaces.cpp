@@ -63,8 +63,7 @@ Trials near_far(const Scene& shot) {
     // The size that spends vertices best lies between six and ten of the eye's heights.
     constexpr double kHeights = 8.0, kLeast_m = 8.0;
     if (!is_shots)
-        surface.size_m =
-            std::max(kHeights * view_at(shot.camera, middle_frame(shot)).position_m.z, kLeast_m);
+        surface.size_m = std::max(kHeights * view_at(shot.camera, middle_frame(shot)).position_m.z, kLeast_m);
     surface.kind = SurfaceKind::NearFar;
     std::vector<SurfaceSetting> settings;
     for (const int resolution : {32, 64, 128, 256, 512}) {
@@ -81,9 +80,9 @@ Trials camera_grid(const Scene& shot) {
     std::vector<SurfaceSetting> settings;
     for (const double cell_px : {1.0, 2.0, 4.0, 8.0, 16.0}) {
         surface.cell_px = cell_px;
-        settings.push_back({number_text(cell_px) + " px",
-                            shot.surface.kind == SurfaceKind::ProjectedGrid && shot.surface.cell_px == cell_px,
-                            surface});
+        settings.push_back(
+            {number_text(cell_px) + " px",
+             shot.surface.kind == SurfaceKind::ProjectedGrid && shot.surface.cell_px == cell_px, surface});
     }
     return of_surfaces(shot, settings);
 }

@@ -174,10 +174,11 @@ Trials cascade_number(const Scene& shot) {
         for (int i = 0; i < count; ++i) {
             const double size_m = sizes_m[static_cast<std::size_t>(i)];
             const double ends = i + 1 < count ? edges[static_cast<std::size_t>(i) + 1] : kTwoPi / shortest_m;
-            const double needed = i + 1 < count ? sufficient_resolution(size_m, ends)
-                                                : 2.0 * std::ceil(size_m / shortest_m);
+            const double needed =
+                i + 1 < count ? sufficient_resolution(size_m, ends) : 2.0 * std::ceil(size_m / shortest_m);
             scene.waves.cascades.push_back(
-                {size_m, static_cast<int>(std::clamp(needed, double{kMinCascadeResolution}, double{kLargest}))});
+                {size_m,
+                 static_cast<int>(std::clamp(needed, double{kMinCascadeResolution}, double{kLargest}))});
         }
         const auto sea = std::make_shared<SeaAnswers>(scene, kShape, 0.0, at);
         trials.trials.push_back({.setting = std::to_string(count) + (count == 1 ? " cascade" : " cascades"),

@@ -94,9 +94,9 @@ class MeshPart final : public OutputPart {
         const std::size_t scalar = plan_.knobs.double_precision ? sizeof(double) : sizeof(float);
         const std::size_t face_bytes = kQuadFaceBytes + (attributes_.st_of_corners ? kQuadSeamBytes : 0);
         const SurfaceBytes surface = plan_.surface->bytes(points, scalar);
-        OutputMemory memory{.once = points * 2 * scalar + surface.held +
-                                    (plan_.surface->is_constant() ? 0 : surface.making),
-                            .remedy = plan_.surface->remedy() + ", or ask for fewer output.attributes"};
+        OutputMemory memory{
+            .once = points * 2 * scalar + surface.held + (plan_.surface->is_constant() ? 0 : surface.making),
+            .remedy = plan_.surface->remedy() + ", or ask for fewer output.attributes"};
         if (attributes_.faces)
             memory.slot = points * face_bytes;
         else

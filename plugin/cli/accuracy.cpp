@@ -35,10 +35,12 @@ struct Arguments {
 
 void list_rows() {
     std::size_t widest = 0;
-    for (const ApproximationRow& row : approximation_table()) widest = std::max(widest, std::string(row.name).size());
+    for (const ApproximationRow& row : approximation_table())
+        widest = std::max(widest, std::string(row.name).size());
     for (const ApproximationRow& row : approximation_table()) {
         const std::string name = row.name;
-        std::cout << name << std::string(widest + 2 - name.size(), ' ') << row.title << "; knob: " << row.knob << '\n';
+        std::cout << name << std::string(widest + 2 - name.size(), ' ') << row.title << "; knob: " << row.knob
+                  << '\n';
     }
 }
 
@@ -49,7 +51,8 @@ std::string refuse_rows(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         if (std::find(known.begin(), known.end(), name) != known.end()) continue;
         const std::string near = nearest(name, known);
-        return "--rows: '" + name + "' is no approximation" + (near.empty() ? "" : "; did you mean " + near + '?') +
+        return "--rows: '" + name + "' is no approximation" +
+               (near.empty() ? "" : "; did you mean " + near + '?') +
                " (pelagic accuracy --list has them all)";
     }
     return {};
@@ -59,7 +62,8 @@ std::string refuse_rows(const std::vector<std::string>& names) {
 std::vector<const ApproximationRow*> asked_rows(const std::vector<std::string>& names) {
     std::vector<const ApproximationRow*> rows;
     for (const ApproximationRow& row : approximation_table())
-        if (names.empty() || std::find(names.begin(), names.end(), row.name) != names.end()) rows.push_back(&row);
+        if (names.empty() || std::find(names.begin(), names.end(), row.name) != names.end())
+            rows.push_back(&row);
     return rows;
 }
 
@@ -93,6 +97,9 @@ void write(const fs::path& folder, const std::vector<MeasuredRow>& rows, const S
     files::write_atomically(folder / "accuracy.txt", text_report(rows, now, hash));
     files::write_atomically(folder / "accuracy.csv", csv_report(rows));
     files::write_atomically(folder / "accuracy.html", html_report(rows, now, shot.shot.name, hash));
+    for (const MeasuredRow& row : rows)
+        if (const std::string plot = svg_report(row); !plot.empty())
+            files::write_atomically(folder / (row.name + ".svg"), plot);
 }
 
 int run(const Arguments& arguments) {
@@ -106,7 +113,8 @@ int run(const Arguments& arguments) {
     }
     const std::vector<const ApproximationRow*> rows = asked_rows(arguments.rows);
     const Scene shot = arguments.shot.empty() ? Scene{} : load_shot(arguments.shot, check_scene);
-    const fs::path folder = arguments.out.empty() ? fs::path(shot.shot.name + "-accuracy") : fs::path(arguments.out);
+    const fs::path folder =
+        arguments.out.empty() ? fs::path(shot.shot.name + "-accuracy") : fs::path(arguments.out);
     files::ensure_folder(folder);
     std::vector<MeasuredRow> measured = recorded(folder / "accuracy.csv");
     StopSignals stop;
@@ -116,8 +124,8 @@ int run(const Arguments& arguments) {
     std::size_t done = 0;
     SweepWatch watch{.progress =
                          [&](const std::string& row, const std::string& setting) {
-                             progress.show(std::to_string(done + 1) + " of " + std::to_string(rows.size()) + ": " + row +
-                                           ", " + setting);
+                             progress.show(std::to_string(done + 1) + " of " + std::to_string(rows.size()) +
+                                           ": " + row + ", " + setting);
                          },
                      .cancel = &stop.cancelled()};
     try {
@@ -128,7 +136,8 @@ int run(const Arguments& arguments) {
         }
     } catch (const SweepCancelled&) {
         progress.clear();
-        std::cerr << "pelagic: stopped; " << folder.string() << " has the " << done << " rows that were measured, and earlier ones\n";
+        std::cerr << "pelagic: stopped; " << folder.string() << " has the " << done
+                  << " rows that were measured, and earlier ones\n";
         return kSignal + stop.number();
     }
     progress.clear();

@@ -188,7 +188,7 @@ const char* const kMeasureThreads =
 const char* const kAccuracy =
     "Measure what accuracy costs on a shot: error against time for each approximation.\n"
     "Sweeps the knob of each, with errors against a named reference and times of the same run, and\n"
-    "writes DIR/accuracy.html with plots, accuracy.csv and accuracy.txt. Rows that were measured before\n"
+    "writes DIR/accuracy.html with plots, accuracy.csv, accuracy.txt and ROW.svg. Rows that were measured before\n"
     "stay, with their age.";
 const char* const kAccuracyFooter =
     "Examples:\n"

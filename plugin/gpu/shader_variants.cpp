@@ -108,7 +108,8 @@ std::string query_constants(const SeaLayout& layout, bool coverage) {
            constant("kNodesARung", EllipseTable::kNodesARung) +
            constant("kNodesAnOctave", EllipseTable::kNodesAnOctave) +
            constant("kRatios", EllipseTable::kRatios) + constant("kDirections", EllipseTable::kDirections) +
-           "const float kLongestEllipse = " + std::to_string(layout.sea().plan().knobs.longest_ellipse) + ";\n";
+           "const float kLongestEllipse = " + std::to_string(layout.sea().plan().knobs.longest_ellipse) +
+           ";\n";
 }
 
 std::string lighting_constants(const LightingChoice& choice, int sky_map_size) {

@@ -255,21 +255,27 @@ TEST(LivingFoam, IsCancelledWhereALevelIsBuilt) {
         work();
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     };
-    const double level_s =
-        seconds_of([&] { Sea<float>{plan_of_foam_level(sea->plan(), sea->plan().foam->cell_of(0))}; });
-    FoamHistory<float> history(sea);
-    history.set(9.0);
-    std::atomic<bool> enough = false;
-    std::thread cancels([&] {
-        std::this_thread::sleep_for(std::chrono::duration<double>(0.2 * level_s));
-        enough = true;
-    });
-    const double until_s = seconds_of([&] {
-        EXPECT_THROW(history.prepare(std::vector<FoamPlace>{{0, 0, 0}}, {.progress = {}, .cancel = &enough}),
-                     BuildCancelled);
-    });
-    cancels.join();
-    EXPECT_LT(until_s, 0.7 * level_s);
+    // Other work on the machine makes either longer, at times: once in a few attempts neither is.
+    double least_share = 1.0;
+    for (int attempt = 0; attempt < 10 && least_share >= 0.7; ++attempt) {
+        const double level_s =
+            seconds_of([&] { Sea<float>{plan_of_foam_level(sea->plan(), sea->plan().foam->cell_of(0))}; });
+        FoamHistory<float> history(sea);
+        history.set(9.0);
+        std::atomic<bool> enough = false;
+        std::thread cancels([&] {
+            std::this_thread::sleep_for(std::chrono::duration<double>(0.2 * level_s));
+            enough = true;
+        });
+        const double until_s = seconds_of([&] {
+            EXPECT_THROW(
+                history.prepare(std::vector<FoamPlace>{{0, 0, 0}}, {.progress = {}, .cancel = &enough}),
+                BuildCancelled);
+        });
+        cancels.join();
+        least_share = std::min(least_share, until_s / level_s);
+    }
+    EXPECT_LT(least_share, 0.7);
 }
 
 // Between a frame and the next where the loop begins again foam changes as between any two, near and far: on all levels

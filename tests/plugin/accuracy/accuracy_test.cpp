@@ -53,7 +53,8 @@ TEST(Accuracy, EveryRowHoldsWhatTheTableSays) {
         SCOPED_TRACE(row.name);
         EXPECT_TRUE(names.insert(row.name).second) << "twice";
         EXPECT_EQ(std::string(row.name).find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), std::string::npos);
-        for (const char* text : {row.title, row.knob, row.reference, row.time, row.lesson}) EXPECT_STRNE(text, "");
+        for (const char* text : {row.title, row.knob, row.reference, row.time, row.lesson})
+            EXPECT_STRNE(text, "");
         EXPECT_GE(row.errors.size(), 1u);
         EXPECT_LE(row.errors.size(), 3u) << "as many as a line of the CSV has";
         const MeasuredRow& result = measured(row.name);
@@ -83,8 +84,9 @@ TEST(Accuracy, FinerSettingsErrLess) {
     };
     for (const Case& each : {
              Case{"cascade-resolution", "32²", "2048²", 10.0},
-             Case{"interpolation", "cubic, 1 nodes a sample", "cubic, 3 nodes a sample", 50.0},     // 3⁴ = 81
-             Case{"interpolation", "quintic, 1 nodes a sample", "quintic, 2 nodes a sample", 50.0},  // 2⁶ = 64
+             Case{"interpolation", "cubic, 1 nodes a sample", "cubic, 3 nodes a sample", 50.0},  // 3⁴ = 81
+             Case{"interpolation", "quintic, 1 nodes a sample", "quintic, 2 nodes a sample",
+                  50.0},                                        // 2⁶ = 64
              Case{"trains", "10 trains", "480 trains", 500.0},  // a bin's width squared: 48² = 2304
              Case{"mesh-spacing", "16 quads a side", "512 quads a side", 50.0},
              Case{"fitted-cage", "16 quads a side", "512 quads a side", 1e4},
@@ -142,8 +144,9 @@ TEST(Accuracy, SeasWithoutWavesAndWithoutCascadesAreNoSpecialCase) {
     Scene bare = small_shot();
     bare.effects.whitecaps = false;
     for (const Scene& scene : {calm, trains, bare})
-        for (const char* name : {"interpolation", "cascade-number", "trains", "mesh-spacing", "mesh-variance", "fitted-cage",
-                                 "files", "whitecap-moments", "instruction-sets", "foam-structure"}) {
+        for (const char* name :
+             {"interpolation", "cascade-number", "trains", "mesh-spacing", "mesh-variance", "fitted-cage",
+              "files", "whitecap-moments", "instruction-sets", "foam-structure"}) {
             const MeasuredRow result = sweep(row_called(name), scene, 1, {});  // throws for what isn't finite
             EXPECT_NE(result.settings.empty(), result.why_none.empty()) << name;
         }
@@ -153,7 +156,8 @@ TEST(Accuracy, SeasWithoutWavesAndWithoutCascadesAreNoSpecialCase) {
 
 TEST(Accuracy, ACancelledSweepEnds) {
     const std::atomic<bool> cancel = true;
-    EXPECT_THROW(sweep(row_called("files"), small_shot(), 1, {.progress = {}, .cancel = &cancel}), SweepCancelled);
+    EXPECT_THROW(sweep(row_called("files"), small_shot(), 1, {.progress = {}, .cancel = &cancel}),
+                 SweepCancelled);
 }
 
 }  // namespace

@@ -64,14 +64,17 @@ TEST(AccuracyReport, DamagedTablesAreRefusedWithTheirLine) {
     const std::size_t second = csv.find('\n') + 1;
     EXPECT_NE(problem_of("").find("empty"), std::string::npos);
     EXPECT_NE(problem_of("a,b\n").find("line 1"), std::string::npos);
-    EXPECT_NE(problem_of(csv.substr(0, second) + "\"sky\",\"x\"\n").find("line 2: it has 2 fields"), std::string::npos);
-    EXPECT_NE(problem_of(csv.substr(0, second) + "\"sky\n").find("line 2: a quotation mark"), std::string::npos);
+    EXPECT_NE(problem_of(csv.substr(0, second) + "\"sky\",\"x\"\n").find("line 2: it has 2 fields"),
+              std::string::npos);
+    EXPECT_NE(problem_of(csv.substr(0, second) + "\"sky\n").find("line 2: a quotation mark"),
+              std::string::npos);
     std::string wrong = csv;
     wrong.replace(wrong.find("10.25"), 5, "ten");
     EXPECT_NE(problem_of(wrong).find("\"ten\" is no number"), std::string::npos) << problem_of(wrong);
     // Rows of another version are left out.
     std::string other = csv;
-    for (std::size_t at; (at = other.find("\"sky\"")) != std::string::npos;) other.replace(at, 5, "\"skies\"");
+    for (std::size_t at; (at = other.find("\"sky\"")) != std::string::npos;)
+        other.replace(at, 5, "\"skies\"");
     EXPECT_EQ(read_csv_report(other).size(), 1u);
     // Cut anywhere, it is read or refused.
     for (std::size_t length = 0; length < csv.size(); ++length) problem_of(csv.substr(0, length));
@@ -79,8 +82,8 @@ TEST(AccuracyReport, DamagedTablesAreRefusedWithTheirLine) {
 
 TEST(AccuracyReport, TextSaysWhatEachNumberIsAndHowOldItIs) {
     const std::string text = text_report(made_up(), kNow, kShot);
-    for (const char* part : {"Lookups of the reflected sky (sky)", "the integral", "measured 3 days ago", "  * nine",
-                             "the shot has no whitecaps"})
+    for (const char* part : {"Lookups of the reflected sky (sky)", "the integral", "measured 3 days ago",
+                             "  * nine", "the shot has no whitecaps"})
         EXPECT_NE(text.find(part), std::string::npos) << part << '\n' << text;
     EXPECT_EQ(text.find("as it was then"), std::string::npos);
     EXPECT_NE(text_report(made_up(), kNow, "another").find("of the shot as it was then"), std::string::npos);
@@ -94,7 +97,8 @@ TEST(AccuracyReport, ThePageStandsAlone) {
     EXPECT_EQ(page.find("<b>"), std::string::npos);
     EXPECT_EQ(page.find("<shot>"), std::string::npos);
     EXPECT_NE(page.find("nine, &quot;quoted&quot;, &lt;b&gt;: 0.0333, 11.5 ms"), std::string::npos);
-    for (const std::string number : {"nan", "inf\""}) EXPECT_EQ(page.find(number), std::string::npos) << number;
+    for (const std::string number : {"nan", "inf\""})
+        EXPECT_EQ(page.find(number), std::string::npos) << number;
     std::vector<std::string> open;
     for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at + 1)) {
         const std::string tag = page.substr(at + 1, page.find_first_of(" >/", at + 2) - at - 1);
@@ -109,6 +113,14 @@ TEST(AccuracyReport, ThePageStandsAlone) {
         }
     }
     EXPECT_TRUE(open.empty());
+}
+
+TEST(AccuracyReport, PlotsAreFilesOfTheirOwn) {
+    const std::string svg = svg_report(made_up()[0]);
+    EXPECT_TRUE(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=")) << svg.substr(0, 80);
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+    EXPECT_NE(svg.find("<style>"), std::string::npos);
+    EXPECT_EQ(svg_report(made_up()[1]), "");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# What takes hours: every test under the sanitizers, six million rays, ten thousand random scenes, then the campaigns in full. Goes on
-# after a failure; the exit status
-# is 0 if nothing failed.
+# What takes hours: every test under the sanitizers, six million rays, ten thousand random scenes, then the campaigns in
+# full. Goes on after a failure; the exit status is 0 if nothing failed.
 #   tests/nightly.sh
 set -uo pipefail
 if [ $# -gt 0 ]; then

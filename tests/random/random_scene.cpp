@@ -621,6 +621,15 @@ std::string RandomScene::text() const {
     return out;
 }
 
+void RandomScene::forget_unnamed_files() {
+    const std::string shot = text();
+    const bool has_buoy = shot.find(kBuoyName) != std::string::npos;
+    std::erase_if(files, [&](const auto& file) {
+        const bool is_of_buoy = file.first.ends_with(".txt");
+        return is_of_buoy ? !has_buoy : shot.find(file.first) == std::string::npos;
+    });
+}
+
 std::filesystem::path RandomScene::write(const std::filesystem::path& folder) const {
     std::filesystem::create_directories(folder);
     const auto put = [&](const std::string& name, const std::string& bytes) {

@@ -44,6 +44,7 @@ struct RandomScene {
 
     const KeyValue* value(std::string_view path) const;  // null: not given
     std::string text() const;                            // of the shot file
+    void forget_unnamed_files();
     // FOLDER/shot.toml and the files beside it.
     std::filesystem::path write(const std::filesystem::path& folder) const;
     // As core sees it: cages are read, and a buoy's spectrum is a stand-in. Nothing where a cage is refused.

@@ -31,6 +31,7 @@ class Shrinking {
             has_changed = shorten() || has_changed;
             has_changed = round() || has_changed;
         }
+        scene_.forget_unnamed_files();
         return std::move(scene_);
     }
 

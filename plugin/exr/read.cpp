@@ -2,7 +2,6 @@
 
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <openexr.h>
@@ -222,16 +221,16 @@ RgbPixels read_rgb(const std::filesystem::path& path) {
     return out;
 }
 
-bool ends_whole(const std::filesystem::path& file) {
+bool ends_whole(const std::filesystem::path& path) {
     try {
-        Imf::InputFile input(file.c_str());
-        if (!input.isComplete()) return false;
-        // Lines are written from the top: the last one stands at the file's end.
-        const char* data = nullptr;
-        int bytes = 0;
-        input.rawPixelData(input.header().dataWindow().max.y, data, bytes);
-        return bytes > 0;
-    } catch (const std::exception&) {
+        refuse_no_file(path);
+        const Context file(path);
+        if (file.get<exr_storage_t>(exr_get_storage) != EXR_STORAGE_SCANLINE) return false;
+        const auto window = file.get<exr_attr_box2i_t>(exr_get_data_window);
+        std::error_code ignored;
+        refuse_short_file(file, std::filesystem::file_size(path, ignored), window, false);
+        return true;
+    } catch (const Refusal&) {
         return false;
     }
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What takes hours: every test under the sanitizers, six million rays, then the campaigns in full. Goes on after a failure; the exit status
+# What takes hours: every test under the sanitizers, six million rays, an hour of fuzzing, then the campaigns in full. Goes on after a failure; the exit status
 # is 0 if nothing failed.
 #   tests/nightly.sh
 set -uo pipefail
@@ -19,6 +19,8 @@ done
 echo "== rays"
 { install_packages && build release test_procedural_rays &&
     PELAGIC_RAYS=6000000 "$PELAGIC_ROOT/build/release/tests/test_procedural_rays"; } || status=1
+echo "== fuzzing"
+"$here/fuzz/run.sh" 500 || status=1  # [s] of each of seven targets
 echo "== campaigns"
 { install_packages && build release pelagic pelagic_python && "$here/campaigns/run.sh"; } || status=1
 exit $status

@@ -22,8 +22,8 @@ namespace pelagic::fuzz {
 // Ends the process: the driver and libFuzzer keep the input.
 inline void hold(bool is_true, std::string_view promise, std::string_view found = {}) {
     if (is_true) return;
-    std::fprintf(stderr, "broken promise: %.*s\n%.*s\n", static_cast<int>(promise.size()), promise.data(),
-                 static_cast<int>(found.size()), found.data());
+    std::fputs(("broken promise: " + std::string(promise) + '\n' + std::string(found) + '\n').c_str(),
+               stderr);
     std::abort();
 }
 

@@ -22,23 +22,27 @@ missing_packages() {
     done
 }
 
-# install_packages [SECTION…]
+# install_packages [SECTION…]: those that are missing.
 install_packages() {
     local missing
     missing=$(missing_packages "$@")
-    [ -n "$missing" ] || return 0
+    # shellcheck disable=SC2086
+    [ -z "$missing" ] || apt_install $missing
+}
+
+# apt_install PACKAGE…
+apt_install() {
     local as_root=()
     if [ "$(id -u)" -ne 0 ]; then
         command -v sudo >/dev/null || {
-            echo "These packages are missing, and this user is neither root nor has sudo:" $missing >&2
+            echo "These packages are missing, and this user is neither root nor has sudo:" "$@" >&2
             return 1
         }
         as_root=(sudo)
     fi
-    echo "Installing:" $missing
+    echo "Installing:" "$@"
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -q
-    # shellcheck disable=SC2086
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $missing
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@"
 }
 
 # installed SECTION: ON or OFF, for an option of the build.

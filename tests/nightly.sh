@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What takes hours: every test under the sanitizers, six million rays, ten thousand random scenes, then the campaigns in
-# full. Goes on after a failure; the exit status is 0 if nothing failed.
+# What takes hours: every test under the sanitizers, six million rays, ten thousand random scenes, an hour of fuzzing, then the
+# campaigns in full. Goes on after a failure; the exit status is 0 if nothing failed.
 #   tests/nightly.sh
 set -uo pipefail
 if [ $# -gt 0 ]; then
@@ -22,6 +22,8 @@ echo "== rays"
 echo "== random scenes"
 { install_packages && build release test_random_scenes &&
     PELAGIC_SCENES=10000 "$PELAGIC_ROOT/build/release/tests/test_random_scenes"; } || status=1
+echo "== fuzzing"
+"$here/fuzz/run.sh" 500 || status=1  # [s] of each of seven targets
 echo "== campaigns"
 { install_packages && build release pelagic pelagic_python && "$here/campaigns/run.sh"; } || status=1
 exit $status

@@ -49,6 +49,7 @@ class Checker {
         check_faces();
         check_sides();
         check_fans();
+        check_insides();
         check_sharpness();
         check_holes();
         check_surface();
@@ -223,6 +224,24 @@ class Checker {
                                " and shares no edge with them there",
                            "faces that share an edge where they share a point");
             }
+    }
+
+    // OpenSubdiv 3.5 crashes, or takes other faces' surfaces, where two faces alone meet all round a point (mended in its 3.6
+    // and 3.7: its pull requests 1301, 1336 and 1353).
+    void check_insides() const {
+        std::vector<std::int32_t> faces_at(mesh_.points_m.size()), shared_at(mesh_.points_m.size());
+        for (const std::int32_t index : mesh_.indices) ++faces_at[static_cast<std::size_t>(index)];
+        for (std::size_t i = 1; i < sides_.size(); ++i) {
+            if (!sides_[i].is_beside(sides_[i - 1])) continue;
+            for (const std::int32_t point : {sides_[i].low, sides_[i].high}) {
+                const auto at = static_cast<std::size_t>(point);
+                if (++shared_at[at] == 2 && faces_at[at] == 2)
+                    refuse(
+                        Part::Face, static_cast<std::size_t>(std::max(sides_[i].face, sides_[i - 1].face)),
+                        "meets one other face alone all round the point " + std::to_string(point) + kFromZero,
+                        "three faces or more round a point inside: take the point out of both");
+            }
+        }
     }
 
     bool has_edge(std::int32_t a, std::int32_t b) const {

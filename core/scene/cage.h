@@ -80,7 +80,7 @@ class Cage {
   public:
     // Throws CageError: for no faces or more than 1e6 (before it looks at them), more than 256 corners of a face or faces
     // round a point, indices out of range, a point twice in a face, edges with more than two faces or with two that run
-    // the same way along them, points where faces meet without an edge, numbers that aren't finite, points farther than limits::kCagePoint_m from the origin along
+    // the same way along them, points where faces meet without an edge, points inside that have two faces alone, numbers that aren't finite, points farther than limits::kCagePoint_m from the origin along
     // an axis, creases that are no edges, and no face with a surface: nothing but holes, or with CageBoundary::None
     // nothing but faces that touch the boundary.
     explicit Cage(CageMesh mesh);

@@ -41,13 +41,12 @@ std::vector<Band> bands_of(const Plan& plan, const Query& query) {
         for (std::size_t p = 0; p + 1 < panels.size(); ++p) {
             const double from = std::max(panels[p], cascade.k_lower), to = std::min(panels[p + 1], end);
             if (!(from < to)) continue;
-            double energy = 0.0, slopes = 0.0, strains = 0.0, k = 0.0;
+            double slopes = 0.0, strains = 0.0, k = 0.0;
             for (std::size_t i = 0; i < rule.node.size(); ++i) {
                 const double at = 0.5 * (from + to) + 0.5 * (to - from) * rule.node[i];
                 const double e = 0.5 * (to - from) * rule.weight[i] * spectrum.omnidirectional(at);
                 const double ratio =
                     at < plan.breaking.k_end() ? spectrum.dispersion().horizontal_ratio(at) : 0.0;
-                energy += e;
                 k += at * at * at * e;
                 slopes += at * at * e;
                 strains += choppiness2 * ratio * ratio * at * at * e;

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <streambuf>
 #include <system_error>
+#include <utility>
 
 #include "core/base/constants.h"
 #include "core/plan/copies.h"
@@ -68,6 +69,16 @@ Json to_json(const SprayRecord& spray) {
             {"optical_thickness", spray.optical_thickness}};
 }
 
+// The library's own conversion takes any number: of one beyond the type it makes something else.
+template <class Integer>
+Integer integer_from(const Json& json) {
+    const bool is_in_range = json.is_number_unsigned()  ? std::in_range<Integer>(json.get<std::uint64_t>())
+                             : json.is_number_integer() ? std::in_range<Integer>(json.get<std::int64_t>())
+                                                        : false;
+    if (!is_in_range) throw Json::type_error::create(302, "no integer of its type", &json);
+    return json.get<Integer>();
+}
+
 std::optional<SprayRecord> spray_from_json(const Json& json) {
     const auto spray = json.find("spray");
     if (spray == json.end()) return {};
@@ -86,7 +97,7 @@ Json to_json(const FileRecord& file) {
 }
 
 FileRecord file_from_json(const Json& json) {
-    FileRecord file{.bytes = json.at("bytes").get<std::uintmax_t>(),
+    FileRecord file{.bytes = integer_from<std::uintmax_t>(json.at("bytes")),
                     .checksum = json.at("checksum").get<std::string>(),
                     .fingerprint = json.value("fingerprint", std::string())};
     if (json.contains("whitecap_coverage")) file.coverage = json.at("whitecap_coverage").get<double>();
@@ -151,8 +162,8 @@ bool is_as_written(const std::string& key, const Json& part) {
 
 ShotRecord shot_from_json(const Json& json) {
     ShotRecord shot{.name = json.at("name").get<std::string>(),
-                    .first_frame = json.at("frame_range").at(0).get<int>(),
-                    .last_frame = json.at("frame_range").at(1).get<int>(),
+                    .first_frame = integer_from<int>(json.at("frame_range").at(0)),
+                    .last_frame = integer_from<int>(json.at("frame_range").at(1)),
                     .files = {}};
     for (const auto& [path, file] : json.at("files").items()) shot.files[path] = file_from_json(file);
     return shot;

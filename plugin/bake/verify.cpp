@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/scene/text.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/foreign.h"
 #include "plugin/bake/pictures.h"
@@ -111,8 +112,8 @@ Verification verify(const fs::path& folder, const CheckWatch& watch) {
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
         names.insert(entry->path().filename().string());
     if (error)
-        throw files::FileError("cannot read the folder '" + folder.string() + "': " + error.message() +
-                                   ": name a folder that a bake or a render wrote into",
+        throw files::FileError("cannot read the folder '" + line_text(folder.string()) + "': " +
+                                   error.message() + ": name a folder that a bake or a render wrote into",
                                folder, error);
 
     Verification found;

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "core/scene/names.h"
+#include "core/scene/text.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/verb.h"
@@ -73,8 +74,12 @@ std::string refuse_extras(const std::vector<std::string>& extras, const CLI::App
            suggestion(option->substr(0, option->find('=')), options_of(command));
 }
 
+constexpr std::size_t kMostOfProblem = 1000;  // [bytes]
+
 int usage_error(const std::string& problem, const std::string& command) {
-    std::cerr << "pelagic: " << problem << "\nSee: " << command << " --help\n";
+    // Arguments are in it, whatever they are.
+    std::cerr << "pelagic: " << line_text(shortened(problem, kMostOfProblem)) << "\nSee: " << command
+              << " --help\n";
     return kWrongUsage;
 }
 

@@ -61,8 +61,8 @@ struct RgbPixels {
 };
 RgbPixels read_rgb(const std::filesystem::path& path);
 
-// Whether the file is an image in scan lines whose last one is there: false for a file that was cut short, that is
-// missing, or that can't be read.
-bool ends_whole(const std::filesystem::path& file);
+// Whether the file is an image in scan lines whose last one is there, as RgbFile looks at that: false for a file that was cut
+// short, that is missing, or that can't be read.
+bool ends_whole(const std::filesystem::path& path);
 
 }  // namespace pelagic::exr

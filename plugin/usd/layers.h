@@ -95,7 +95,7 @@ struct MeshSample {
                 .velocities = !velocities.empty(),
                 .slope_variance = !slope_variance.empty(),
                 .whitecap_coverage = !whitecap_coverage.empty(),
-                .foam_history = !foam_age_s.empty(),
+                .foam_history = !foam_active.empty() || !foam_age_s.empty(),
                 .faces = faces.has_value(),
                 .origin = origin_m.has_value(),
                 .st_of_corners = faces && faces->is_st_of_corners};

@@ -34,6 +34,10 @@ void check(const MeshLayer& layer) {
                        .attributes = {.st_of_corners = faces.is_st_of_corners}});
         return;
     }
+    // For the writers such an array isn't there; here it is, and not as long as the points.
+    for (const MeshArray& array : layer.arrays)
+        if (points > 0 && std::visit([](const auto& values) { return values.empty(); }, array.values))
+            throw ReadError("is damaged: " + array.name + " is empty");
     MeshSample sample{.origin_m = layer.origin_m,
                       .points = vectors_of<glm::vec3>(layer, "points"),
                       .normals = vectors_of<glm::vec3>(layer, "normals"),

@@ -109,6 +109,9 @@ TEST(Obj, BadCagesAreRefusedWithTheirLine) {
         {two + "f 1 2 3 4\nf 3 6 5 2\n", "c.obj:9: the face runs along the edge between the points 1 and 2",
          "same side"},
         {two + "f 1 2 4\nf 1 5 6\n", "c.obj:9: the face meets others at the point 0", "an edge"},
+        // OpenSubdiv 3.5 crashes on it where an edge is sharp.
+        {square + "v 2 2 0\nf 1 2 3 4\nf 3 2 1 5\n",
+         "c.obj:7: the face meets one other face alone all round the point 1", "three faces"},
         {square + "f 1 2 3 4\nt crease 2/1/0 0 2 1\n", "c.obj:6: the crease lies between the points 0 and 2",
          "two points"},
         {square + "f 1 2 3 4\nt crease 2/1/0 0 9 1\n", "c.obj:6: the crease lies between the points 0 and 9",

@@ -112,8 +112,8 @@ Verification verify(const fs::path& folder, const CheckWatch& watch) {
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
         names.insert(entry->path().filename().string());
     if (error)
-        throw files::FileError("cannot read the folder '" + line_text(folder.string()) + "': " + error.message() +
-                                   ": name a folder that a bake or a render wrote into",
+        throw files::FileError("cannot read the folder '" + line_text(folder.string()) + "': " +
+                                   error.message() + ": name a folder that a bake or a render wrote into",
                                folder, error);
 
     Verification found;

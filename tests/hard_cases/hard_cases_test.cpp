@@ -121,7 +121,9 @@ TEST_P(HardCases, HaveFiniteValuesAtTheirLimit) {
             }
             const SpectralMoments shown = frame.sea().shown(asked), total = frame.sea().total();
             EXPECT_LE(shown.m0, total.m0 * (1.0 + 1e-6));
-            EXPECT_LE(shown.mss(), total.mss() * (1.0 + 1e-6));
+            // A mode has the energy of its cell at the wavenumber in the cell's middle: of slopes, which grow with it, that is not
+            // quite the cell's mean.
+            EXPECT_LE(shown.mss(), total.mss() * (1.0 + 2e-3));
         });
     }
 }

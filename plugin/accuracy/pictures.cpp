@@ -219,22 +219,26 @@ Trials foam_structure(const Scene& shot) {
     return against(scene, exact, std::move(settings));
 }
 
-Trials air(const Scene& shot) {
+namespace {
+
+// A part of the light, and the picture without it.
+Trials with_and_without(const Scene& shot, bool LightingChoice::*part) {
     const Scene scene = small(shot);
     RenderOptions with = render_options(scene);
     with.samples = 1;
     RenderOptions without = with;
-    without.lighting.air = false;
+    without.lighting.*part = false;
     return against(scene, with, {{"with", true, scene, with}, {"without", false, scene, without}});
 }
 
+}  // namespace
+
+Trials air(const Scene& shot) {
+    return with_and_without(shot, &LightingChoice::air);
+}
+
 Trials second_reflection(const Scene& shot) {
-    const Scene scene = small(shot);
-    RenderOptions with = render_options(scene);
-    with.samples = 1;
-    RenderOptions without = with;
-    without.lighting.second_reflection = false;
-    return against(scene, with, {{"with", true, scene, with}, {"without", false, scene, without}});
+    return with_and_without(shot, &LightingChoice::second_reflection);
 }
 
 Trials masking(const Scene& shot) {

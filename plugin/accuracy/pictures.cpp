@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
@@ -92,7 +93,16 @@ Knobs knobs_of_shot(const Scene& shot) {
 
 }  // namespace
 
-Trials sky_lookups(const Scene& shot) {
+namespace {
+
+struct LightSetting {
+    const char* name;
+    SkyQuality sky_quality;
+    FresnelFit fresnel;
+};
+
+// Against the integral of the exact term.
+Trials of_light(const Scene& shot, std::initializer_list<LightSetting> lights) {
     const Scene scene = small(shot);
     const RenderOptions own = render_options(scene);
     RenderOptions exact = own;
@@ -100,38 +110,33 @@ Trials sky_lookups(const Scene& shot) {
     exact.lighting.sky_quality = SkyQuality::Integral;
     exact.lighting.fresnel = FresnelFit::Exact;
     std::vector<PictureSetting> settings;
-    for (const auto& [name, quality] :
-         {std::pair{"one", SkyQuality::One}, std::pair{"nine", SkyQuality::Nine},
-          std::pair{"integral", SkyQuality::Integral}}) {
+    for (const LightSetting& light : lights) {
         RenderOptions options = exact;
-        options.lighting.sky_quality = quality;
-        settings.push_back({name, own.lighting.sky_quality == quality, scene, options});
+        options.lighting.sky_quality = light.sky_quality;
+        options.lighting.fresnel = light.fresnel;
+        settings.push_back(
+            {light.name,
+             own.lighting.sky_quality == light.sky_quality && own.lighting.fresnel == light.fresnel, scene,
+             options});
     }
     return against(scene, exact, std::move(settings));
 }
 
+}  // namespace
+
+Trials sky_lookups(const Scene& shot) {
+    return of_light(shot, {{"one", SkyQuality::One, FresnelFit::Exact},
+                           {"nine", SkyQuality::Nine, FresnelFit::Exact},
+                           {"integral", SkyQuality::Integral, FresnelFit::Exact}});
+}
+
 Trials fresnel_terms(const Scene& shot) {
-    const Scene scene = small(shot);
-    const RenderOptions own = render_options(scene);
-    RenderOptions exact = own;
-    exact.samples = 1;
-    exact.lighting.sky_quality = SkyQuality::Integral;
-    exact.lighting.fresnel = FresnelFit::Exact;
-    std::vector<PictureSetting> settings;
-    for (const auto& [name, quality, fresnel] :
-         {std::tuple{"one lookup, Eq. 26 of Schlick's term", SkyQuality::One, FresnelFit::Paper},
-          std::tuple{"one lookup, fit of the exact term", SkyQuality::One, FresnelFit::Exact},
-          std::tuple{"nine, Schlick's term", SkyQuality::Nine, FresnelFit::Paper},
-          std::tuple{"nine, exact term", SkyQuality::Nine, FresnelFit::Exact},
-          std::tuple{"integral, Schlick's term", SkyQuality::Integral, FresnelFit::Paper},
-          std::tuple{"integral, exact term", SkyQuality::Integral, FresnelFit::Exact}}) {
-        RenderOptions options = exact;
-        options.lighting.sky_quality = quality;
-        options.lighting.fresnel = fresnel;
-        settings.push_back(
-            {name, own.lighting.sky_quality == quality && own.lighting.fresnel == fresnel, scene, options});
-    }
-    return against(scene, exact, std::move(settings));
+    return of_light(shot, {{"one lookup, Eq. 26 of Schlick's term", SkyQuality::One, FresnelFit::Paper},
+                           {"one lookup, fit of the exact term", SkyQuality::One, FresnelFit::Exact},
+                           {"nine, Schlick's term", SkyQuality::Nine, FresnelFit::Paper},
+                           {"nine, exact term", SkyQuality::Nine, FresnelFit::Exact},
+                           {"integral, Schlick's term", SkyQuality::Integral, FresnelFit::Paper},
+                           {"integral, exact term", SkyQuality::Integral, FresnelFit::Exact}});
 }
 
 Trials samples(const Scene& shot) {

@@ -12,7 +12,6 @@ Trials interpolation(const Scene& shot);
 Trials precision(const Scene& shot);
 Trials train_number(const Scene& shot);
 Trials instruction_sets(const Scene& shot);
-Trials transform_plans(const Scene& shot);
 
 // Of meshes, files and foam.
 Trials mesh_spacing(const Scene& shot);

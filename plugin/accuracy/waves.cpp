@@ -3,7 +3,6 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <memory>
@@ -16,7 +15,6 @@
 #include "core/plan/prepared_scene.h"
 #include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
-#include "core/waves/transform.h"
 #include "plugin/accuracy/rows.h"
 #include "plugin/accuracy/sea_answers.h"
 

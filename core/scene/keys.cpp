@@ -496,10 +496,23 @@ void add_effects_and_quality(Built& out) {
     add_table<&Scene::quality>(
         out.tables, out.keys, {"quality", "accuracy against time", {}, {}},
         row<&Quality::level>({.name = "level", .help = "how much time accuracy may take", .feeds = kQuality}),
-        not_built<Quality>({.name = "max_error", .help = "a budget of error", .feeds = kQuality},
-                           "use level"),
-        not_built<Quality>({.name = "frame_ms", .help = "a budget of time", .unit = "ms", .feeds = kQuality},
-                           "use level"));
+        row<&Quality::max_error>(
+            {.name = "max_error",
+             .help =
+                 "instead of level: the cheapest settings that hold it. Of a mesh, the distance from the sea over the "
+                 "significant height (RMS); of pictures, the relative error of radiance that 95 % of the water's pixels "
+                 "don't exceed",
+             .range = limits::kMaxError,
+             .soft = SoftRange{1e-3, 0.3, true},
+             .feeds = kQuality}),
+        row<&Quality::frame_ms>({.name = "frame_ms",
+                                 .help =
+                                     "instead of level: the most accurate settings that compute a frame in "
+                                     "this time, on the two cores on which costs are recorded",
+                                 .unit = "ms",
+                                 .range = limits::kFrame_ms,
+                                 .soft = SoftRange{1.0, 1e4, true},
+                                 .feeds = kQuality}));
 }
 
 void add_output(Built& out) {

@@ -96,6 +96,8 @@ inline constexpr Range kMapResolution{1, 8192};
 inline constexpr Range kVoxel_m{1e-3, 1e5};
 inline constexpr double kVoxelsASide =
     1e5;  // ten kilometres in decimetres; counts of voxels stay far below 2⁶⁴
+inline constexpr Range kMaxError{1e-6, 1.0};
+inline constexpr Range kFrame_ms{1e-2, 1e7};
 inline constexpr Range kSprayGain{0.0, 1e6};
 
 }  // namespace limits

@@ -196,6 +196,9 @@ struct Effects {
 // [quality]
 struct Quality {
     QualityLevel level = QualityLevel::Final;
+    // Instead of the level, one of the two (core/plan/budget.h, plugin/render/picture_budget.h).
+    std::optional<double> max_error{};
+    std::optional<double> frame_ms{};
 };
 
 // [output]

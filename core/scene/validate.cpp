@@ -444,6 +444,12 @@ void check_planet(Checker& check, const Scene& scene) {
         check_place(indexed("camera.keys", i) + ".position_m", scene.camera.keys[i].position_m);
 }
 
+void check_budget(Checker& check, const Quality& quality) {
+    if (quality.max_error && quality.frame_ms)
+        check.refuse({"quality.frame_ms", number_text(*quality.frame_ms),
+                      "is a second budget beside quality.max_error", "one of the two"});
+}
+
 // Each corner of a face becomes a square of quads. An index of their corners is an int.
 void check_refined(Checker& check, const Surface& surface) {
     if (surface.cage_level.is_adaptive || !check.is_good("surface.cage_level")) return;
@@ -572,6 +578,7 @@ std::vector<Problem> validate(const Scene& scene) {
     check_light(check, scene.light);
     check_output(check, scene.effects, scene.output);
     check_scheme(check, scene.output, scene.surface);
+    check_budget(check, scene.quality);
     check_tiles(check, scene.output, scene.waves);
     check_volumes(check, scene);
     return check.take();

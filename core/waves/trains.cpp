@@ -143,7 +143,8 @@ double fraction_of_product(double a, double b) {
 
 template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, const FootprintFilter& filter) {
-    const auto& [scene, spectrum, extent] = prepared;
+    const Scene& scene = prepared.scene;
+    const DirectionalSpectrum& spectrum = prepared.spectrum;
     const double choppiness = built_choppiness(scene), loop_s = scene.shot.sea_loop_s();
     const Breaking breaking = breaking_of(scene, filter);
     Breaking unscaled = breaking;

@@ -1,7 +1,6 @@
 // Sweeps of pictures through the shot's camera.
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -12,6 +11,7 @@
 #include "plugin/accuracy/rows.h"
 #include "plugin/accuracy/sea_answers.h"
 #include "plugin/light/light.h"
+#include "plugin/render/picture_budget.h"
 #include "plugin/render/render.h"
 
 namespace pelagic::rows {
@@ -42,22 +42,9 @@ class SweepPicture {
     Picture picture_;
 };
 
-// Of the pixels of water in both: |L − L'|/|L'| of the radiance, L' being the reference's: the 95th percentile and the
-// mean. A reference without light counts what is there as it is.
 std::vector<double> relative_errors(const Picture& picture, const Picture& reference) {
-    std::vector<double> off;
-    double mean = 0.0;
-    for (std::size_t i = 0; i < reference.layers.size(); ++i) {
-        if (!picture.sea[i] || !reference.sea[i]) continue;
-        const glm::dvec3 seen(radiance_of(picture.layers[i])), exact(radiance_of(reference.layers[i]));
-        const double scale = glm::length(exact);
-        off.push_back(glm::length(seen - exact) / (scale > 0.0 ? scale : 1.0));
-        mean += off.back();
-    }
-    if (off.empty()) return {0.0, 0.0};
-    const auto at = off.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(off.size() - 1));
-    std::nth_element(off.begin(), at, off.end());
-    return {*at, mean / static_cast<double>(off.size())};
+    const RelativeError error = relative_error(picture, reference);
+    return {error.most, error.mean};
 }
 
 struct PictureSetting {

@@ -136,7 +136,7 @@ std::span<const ApproximationRow> approximation_table() {
          rows::whitecap_moments},
         {"sky",
          "Lookups of the reflected sky",
-         "quality.level, pelagic render --sky",
+         "quality.level, pelagic render --sky-quality",
          "the integral",
          {kRadiance, kMeanRadiance},
          kPictureTime,

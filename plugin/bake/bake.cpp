@@ -203,6 +203,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
 
     report_progress(BakeStage::Planning);
     const Plan plan = plan_bake(prepare(scene), frames);
+    if (!plan.from->holds_budget) throw std::invalid_argument(plan.from->budget + "; raise the budget");
     if (plan.outputs.empty())
         throw std::invalid_argument(
             "the shot asks for no output: accepted: output.mesh, output.maps, output.volumes");

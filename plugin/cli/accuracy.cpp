@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/plan/budget.h"
 #include "core/scene/names.h"
 #include "plugin/accuracy/report.h"
 #include "plugin/cli/exit_status.h"
@@ -112,7 +113,8 @@ int run(const Arguments& arguments) {
         return kWrongUsage;
     }
     const std::vector<const ApproximationRow*> rows = asked_rows(arguments.rows);
-    const Scene shot = arguments.shot.empty() ? Scene{} : load_shot(arguments.shot, check_scene);
+    // Sweeps turn the knobs that a budget would choose.
+    const Scene shot = settled(arguments.shot.empty() ? Scene{} : load_shot(arguments.shot, check_scene));
     const fs::path folder =
         arguments.out.empty() ? fs::path(shot.shot.name + "-accuracy") : fs::path(arguments.out);
     files::ensure_folder(folder);

@@ -25,6 +25,7 @@
 #include "plugin/cli/warnings.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
+#include "plugin/render/picture_budget.h"
 #include "plugin/render/render.h"
 #include "plugin/shot/shot.h"
 
@@ -109,8 +110,23 @@ int print_prices(const Scene& scene, const Arguments& arguments) {
     return kDone;
 }
 
+// Of a shot with a budget: what pictures of it take. What a mesh of it takes is in the plan's page.
+PictureBudget print_picture_budget(const Scene& scene) {
+    Progress progress;
+    const PictureBudget budget =
+        picture_budget(scene, {.progress =
+                                   [&](double done) {
+                                       progress.show("measuring a small picture of the shot: " +
+                                                     std::to_string(std::lround(100.0 * done)) + " %");
+                                   },
+                               .cancel = nullptr});
+    progress.clear();
+    if (!budget.text.empty()) std::cout << "\nBudget of pictures\n  " << budget.text << "\n\n";
+    return budget;
+}
+
 // What a bake of the shot and its pictures would hold, as bake and render compare it with what there is.
-void print_memory(const Scene& scene, const Plan& plan) {
+void print_memory(const Scene& scene, const RenderOptions& options, const Plan& plan) {
     const int threads = tbb::this_task_arena::max_concurrency();
     const std::vector<int> frames = representative_frames(scene, 64);
     const bool alone = scene.shot.first_frame == scene.shot.last_frame;
@@ -118,8 +134,7 @@ void print_memory(const Scene& scene, const Plan& plan) {
         std::cout << "A bake holds " << memory_text(bake_memory(plan, alone ? 1 : kFramesInFlight, threads))
                   << ".\n";
     std::cout << "Pictures of " << scene.camera.resolution.x << " × " << scene.camera.resolution.y << " hold "
-              << memory_text(render_memory(scene, render_options(scene), frames,
-                                           alone ? 1 : kPicturesInFlight, threads))
+              << memory_text(render_memory(scene, options, frames, alone ? 1 : kPicturesInFlight, threads))
               << ".\n"
               << std::flush;
 }
@@ -138,9 +153,10 @@ Verb add_explain(CLI::App& program) {
                 const Scene scene = load_shot(arguments->shot, check_scene);
                 const Plan plan = plan_bake(scene);
                 std::cout << explain(plan);
-                print_memory(scene, plan);
+                const PictureBudget pictures = print_picture_budget(scene);
+                print_memory(pictures.scene, pictures.options, plan);
                 print_warnings(arguments->shot, scene);
-                return arguments->measure ? print_prices(scene, *arguments) : int{kDone};
+                return arguments->measure ? print_prices(plan.from->scene, *arguments) : int{kDone};
             }};
 }
 

@@ -105,10 +105,12 @@ const char* const kExposure =
     "Stops by which the PNG is brighter (or darker, if negative): each doubles the light";
 const char* const kSamples =
     "N × N samples per pixel, 1 to 16.\n"
-    "Default: from the shot's quality.level: 1 for draft and preview, 2 for final, 4 for reference";
+    "Default: what the shot's budget asks for (quality.max_error, quality.frame_ms), or from its\n"
+    "quality.level: 1 for draft and preview, 2 for final, 4 for reference";
 const char* const kSkyQuality =
     "How the sky's reflection is computed: one (lookup), nine, integral.\n"
-    "Default: from the shot's quality.level: one for draft, integral for reference, otherwise nine";
+    "Default: what the shot's budget asks for, or from its quality.level: one for draft, integral for\n"
+    "reference, otherwise nine";
 const char* const kTerms =
     "The terms of the light: sun, sky, sea, foam, and the air and the spray before them, separated by commas.\n"
     "Default: all of them";
@@ -150,7 +152,8 @@ const char* const kFrame =
 const char* const kPreviewSize =
     "Width and height of the window or picture in pixels.\n"
     "Default: the shot's camera.resolution; a window is no larger than the screen";
-const char* const kPreviewQuality = "Instead of the shot's quality.level: draft, preview, final, reference";
+const char* const kPreviewQuality =
+    "Instead of the shot's quality.level: draft, preview, final, reference; a budget is none of previews";
 const char* const kScale =
     "Draw fewer pixels than the window has: each covers N × N of them, N = 1, 2 or 4.\n"
     "Also in the window's panel. Default: 1, or 2 where the processor draws";

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/plan/budget.h"
 #include "core/plan/spray.h"
 #include "core/scene/text.h"
 #include "plugin/bake/bake.h"
@@ -36,6 +37,7 @@
 #include "plugin/cli/verb.h"
 #include "plugin/files/files.h"
 #include "plugin/machine/memory.h"
+#include "plugin/render/picture_budget.h"
 #include "plugin/render/picture_files.h"
 #include "plugin/shot/shot.h"
 
@@ -97,6 +99,7 @@ struct Job {
     double exposure_stops = 0.0;
     std::size_t max_memory_bytes = 0;
     bool trust_times = false;
+    bool has_samples = false, has_sky_quality = false;  // asked for by name: no budget decides them
 };
 
 Job job_of(const Arguments& arguments) {
@@ -104,6 +107,8 @@ Job job_of(const Arguments& arguments) {
     const Shot& shot = job.scene.shot;
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) job.scene.camera.resolution = size;
     job.options = render_options(job.scene);
+    job.has_samples = arguments.samples.has_value();
+    job.has_sky_quality = arguments.sky_quality.has_value();
     if (arguments.samples) job.options.samples = *arguments.samples;
     if (job.options.samples < 1 || job.options.samples > kMostSamples)
         throw WrongUsage("samples " + std::to_string(job.options.samples) + "; accepted: 1 to " +
@@ -142,6 +147,31 @@ Job job_of(const Arguments& arguments) {
 }
 
 struct Cancelled {};
+
+// Turns the shot's budget into settings, in the light of which the rest of the job is done. Throws BuildCancelled.
+void spend_budget(Job& job, StopSignals& stop, Progress& progress) {
+    if (!has_budget(job.scene.quality)) return;
+    if (job.has_samples && job.has_sky_quality) {
+        job.scene = without_budget(job.scene);
+        return;
+    }
+    const PictureBudget budget =
+        picture_budget(job.scene, {.progress =
+                                       [&](double done) {
+                                           progress.show("measuring a small picture of the shot: " +
+                                                         std::to_string(std::lround(100.0 * done)) + " %");
+                                       },
+                                   .cancel = &stop.cancelled()});
+    progress.clear();
+    if (!budget.holds && !job.has_samples && !job.has_sky_quality)
+        throw std::invalid_argument(budget.text +
+                                    "; raise the budget, or give --samples and --sky-quality instead of it");
+    std::cout << budget.text << std::endl;
+    job.scene = budget.scene;
+    if (!job.has_samples) job.options.samples = budget.options.samples;
+    if (!job.has_sky_quality) job.options.lighting.sky_quality = budget.options.lighting.sky_quality;
+    job.options.lighting.fresnel = budget.options.lighting.fresnel;
+}
 
 struct Done {
     std::vector<int> stale;  // of the shot, not asked for, and made of something else
@@ -297,7 +327,16 @@ int run(const Arguments& arguments) {
     Threads threads(arguments.threads);
     Done done;
     try {
-        done = threads.execute([&] { return render_all(job, stop, progress); });
+        done = threads.execute([&] {
+            try {
+                spend_budget(job, stop, progress);
+            } catch (const BuildCancelled&) {
+                Done none;
+                none.cancelled = true;
+                return none;
+            }
+            return render_all(job, stop, progress);
+        });
     } catch (const std::bad_alloc&) {
         progress.clear();
         std::cerr << "pelagic: out of memory; ask for a smaller picture with --size (now "

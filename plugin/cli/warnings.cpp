@@ -2,12 +2,13 @@
 
 #include <iostream>
 
+#include "core/plan/budget.h"
 #include "core/waves/folding.h"
 
 namespace pelagic::cli {
 
 void print_warnings(const std::string& shot, const Scene& scene) {
-    for (const std::string& warning : sea_warnings(*prepare(scene)))
+    for (const std::string& warning : sea_warnings(*prepare(without_budget(scene))))
         std::cerr << shot << ": note: " << warning << std::endl;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "core/plan/budget.h"
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
@@ -52,7 +53,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
         problems += (problems.empty() ? "" : "\n") + text_of(problem);
     if (!problems.empty()) throw std::invalid_argument(problems);
     const auto start = std::chrono::steady_clock::now();
-    const auto prepared = prepare(scene);
+    const auto prepared = prepare(without_budget(scene));  // a budget is of meshes and of rendered pictures
     LiveBuild made;
     made.scene = scene;
     const bool has_spray = render_options(scene).lighting.spray;

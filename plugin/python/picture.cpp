@@ -16,6 +16,7 @@
 #include "plugin/python/bindings.h"
 #include "plugin/python/light.h"
 #include "plugin/python/watch.h"
+#include "plugin/render/picture_budget.h"
 #include "plugin/render/render.h"
 
 namespace pelagic::python {
@@ -47,14 +48,27 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     Scene kept = scene;
     if (size) kept.camera.resolution = {(*size)[0], (*size)[1]};
     require_valid(kept);
+    Watch watch(progress, cancel);
     RenderOptions options = render_options(kept);
+    if (has_budget(kept.quality)) {
+        PictureBudget budget;
+        try {
+            const OthersMayRun others_may_run;
+            budget = picture_budget(kept, {.progress = {}, .cancel = watch.flag()});
+        } catch (const BuildCancelled&) {
+            watch.rethrow();
+            throw Cancelled("rendering was cancelled");
+        }
+        if (!budget.holds) throw py::value_error(budget.text + "; raise the budget");
+        kept = budget.scene;
+        options = budget.options;
+    }
     if (samples) options.samples = *samples;
     if (sky_quality) options.lighting.sky_quality = sky_quality_of(*sky_quality);
     options.layers = data_layers_of(layers);
     options.shutter_frames = shutter;
     options.alpha = alpha;
     check_render(kept, options);
-    Watch watch(progress, cancel);
     auto picture = std::make_unique<Picture>();
     bool is_whole = false;
     try {

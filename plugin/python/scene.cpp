@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/plan/budget.h"
 #include "core/plan/prepared_scene.h"
 #include "core/scene/canonical.h"
 #include "core/scene/keys.h"
@@ -211,14 +212,14 @@ double significant_height_of(const Scene& scene) {
     require_valid(scene);
     const Scene kept = scene;
     const OthersMayRun others_may_run;
-    return prepare(kept)->extent.significant_height_m;
+    return prepare(without_budget(kept))->extent.significant_height_m;
 }
 
 std::vector<std::string> warnings_of(const Scene& scene) {
     require_valid(scene);
     const Scene kept = scene;
     const OthersMayRun others_may_run;
-    return sea_warnings(*prepare(kept));
+    return sea_warnings(*prepare(without_budget(kept)));
 }
 
 std::vector<std::string> problem_lines(const Scene& scene) {

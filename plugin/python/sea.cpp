@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/plan/budget.h"
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
 #include "plugin/light/light.h"
@@ -105,7 +106,8 @@ struct SeaOrder {
 
 SeaOrder order_of(const Scene& scene, SeaRequest request) {
     require_valid(scene);
-    SeaOrder order{.scene = scene, .asked = {}, .held = {}, .plain = {}, .request = std::move(request)};
+    SeaOrder order{
+        .scene = settled(scene), .asked = {}, .held = {}, .plain = {}, .request = std::move(request)};
     for (const std::string& name : order.request.products) order.asked.set(output_of(name));
     order.held = products_of(order.asked);
     if (order.asked[index(Product::Position)]) order.held.set(index(Product::Displacement));
@@ -114,7 +116,7 @@ SeaOrder order_of(const Scene& scene, SeaRequest request) {
     if (!kept.views.empty() && (kept.cell_m || kept.pixel_m || kept.lattice))
         throw py::value_error(
             "views: have footprints of their own; accepted: without cell_m, pixel_m and lattice");
-    if (kept.views.empty()) order.plain = plain_query(scene, kept);
+    if (kept.views.empty()) order.plain = plain_query(order.scene, kept);
     return order;
 }
 

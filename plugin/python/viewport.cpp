@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "core/lighting/air.h"
+#include "core/plan/budget.h"
 #include "core/plan/plan.h"
 #include "core/scene/canonical.h"
 #include "core/scene/text.h"
@@ -179,7 +180,7 @@ class GpuSea {
         : finest_m_(finest_m),
           made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
-          prepared_(prepare(scene)),
+          prepared_(prepare(without_budget(scene))),
           sea_(std::make_shared<const Sea<float>>(make_plan(prepared_, {query_of(*prepared_, finest_m)},
                                                             {.double_precision = false, .living_foam = true}),
                                                   watch)),

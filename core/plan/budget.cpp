@@ -1,0 +1,220 @@
+#include "core/plan/budget.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/plan/cost_model.h"
+#include "core/plan/mesh_error_model.h"
+#include "core/plan/plan.h"
+#include "core/scene/limits.h"
+#include "core/scene/names.h"
+#include "core/scene/text.h"
+#include "core/scene/validate.h"
+
+namespace pelagic {
+namespace {
+
+// What reading between a grid's nodes adds (RMS of positions over Hs): the largest of the examples' in `pelagic accuracy
+// --rows interpolation`. From cheap to accurate.
+struct LevelError {
+    QualityLevel level;
+    double error;
+};
+constexpr std::array kLevels = std::to_array<LevelError>({
+    {QualityLevel::Draft, 0.0045},
+    {QualityLevel::Preview, 4e-4},
+    {QualityLevel::Final, 3e-5},
+    {QualityLevel::Reference, 1e-6},
+});
+
+constexpr int kFrames = 3;  // that stand for a shot whose camera moves
+
+std::shared_ptr<const PreparedScene> with(const PreparedScene& prepared, QualityLevel level,
+                                          const Surface& surface) {
+    PreparedScene changed = prepared;
+    changed.scene = without_budget(std::move(changed.scene));
+    changed.scene.quality.level = level;
+    changed.scene.surface = surface;
+    // Who has no mesh to bake asks for points of another kind, and wants them as fine.
+    if (changed.scene.output.mesh == MeshFormat::None) changed.scene.output.mesh = MeshFormat::Usdc;
+    return std::make_shared<const PreparedScene>(std::move(changed));
+}
+
+class Chooser {
+  public:
+    explicit Chooser(const PreparedScene& prepared)
+        : prepared_(prepared),
+          model_(prepared),
+          surfaces_(rising_fineness(prepared.scene)),
+          errors_(surfaces_.size(), -1.0),
+          frames_(representative_frames(prepared.scene, kFrames)) {}
+
+    struct Setting {
+        const LevelError* level;
+        std::size_t surface;
+        double error, ms;
+    };
+
+    Setting at(const LevelError& level, std::size_t surface) {
+        return {&level, surface, std::hypot(missed(surface), level.error), cost(level, surface)};
+    }
+    // The cheapest that errs by no more; otherwise the most accurate.
+    Setting cheapest(double most) {
+        std::optional<Setting> best;
+        for (const LevelError& level : kLevels) {
+            const std::size_t surface =
+                first([&](std::size_t i) { return std::hypot(missed(i), level.error) <= most; });
+            if (surface == surfaces_.size()) continue;
+            const Setting here = at(level, surface);
+            if (!best || here.ms < best->ms) best = here;
+        }
+        return best ? *best : at(kLevels.back(), surfaces_.size() - 1);
+    }
+    // The most accurate that costs no more; otherwise the cheapest.
+    Setting finest(double most_ms) {
+        std::optional<Setting> best;
+        for (const LevelError& level : kLevels) {
+            const std::size_t too_dear = first([&](std::size_t i) { return cost(level, i) > most_ms; });
+            if (too_dear == 0) continue;
+            const Setting here = at(level, too_dear - 1);
+            if (!best || here.error < best->error) best = here;
+        }
+        return best ? *best : at(kLevels.front(), 0);
+    }
+    const Surface& surface(std::size_t i) const { return surfaces_[i]; }
+
+  private:
+    template <class Holds>
+    std::size_t first(const Holds& holds) const {
+        std::size_t low = 0, high = surfaces_.size();
+        while (low < high) {
+            const std::size_t middle = (low + high) / 2;
+            if (holds(middle))
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        return low;
+    }
+    double missed(std::size_t surface) {
+        if (errors_[surface] < 0.0) {
+            const auto changed = with(prepared_, QualityLevel::Final, surfaces_[surface]);
+            const Extent& extent = prepared_.extent;
+            errors_[surface] = model_.error(
+                *make_surface(changed->scene, {.height_m = extent.height_m,
+                                               .reach_m = extent.reach_m,
+                                               .significant_height_m = extent.significant_height_m,
+                                               .hidden = extent.hidden}),
+                changed->scene.camera, frames_);
+        }
+        return errors_[surface];
+    }
+    double cost(const LevelError& level, std::size_t surface) const {
+        return frame_ms(plan_bake(with(prepared_, level.level, surfaces_[surface]), frames_));
+    }
+
+    const PreparedScene& prepared_;
+    MeshErrorModel model_;
+    std::vector<Surface> surfaces_;
+    std::vector<double> errors_;
+    std::vector<int> frames_;
+};
+
+// "surface.resolution = 384": what differs among rising_fineness().
+std::string fineness_text(const Surface& surface) {
+    switch (surface.kind) {
+        case SurfaceKind::Patch:
+        case SurfaceKind::NearFar:
+            return "surface.resolution = " + std::to_string(surface.resolution);
+        case SurfaceKind::Cage:
+            if (!surface.cage_level.is_adaptive)
+                return "surface.cage_level = " + std::to_string(surface.cage_level.splits);
+            break;
+        case SurfaceKind::ProjectedGrid:
+        case SurfaceKind::Planet:
+            break;
+    }
+    return "surface.cell_px = " + number_text(surface.cell_px);
+}
+
+double rounded(double value, int digits) {
+    if (!(value > 0.0)) return 0.0;
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - (digits - 1));
+    return std::round(value / unit) * unit;
+}
+
+}  // namespace
+
+bool has_budget(const Quality& quality) {
+    return quality.max_error || quality.frame_ms;
+}
+
+Scene without_budget(Scene scene) {
+    scene.quality.max_error.reset();
+    scene.quality.frame_ms.reset();
+    return scene;
+}
+
+Scene settled(Scene scene) {
+    return has_budget(scene.quality) ? prepare(std::move(scene))->scene : scene;
+}
+
+std::vector<Surface> rising_fineness(const Scene& scene) {
+    std::vector<Surface> surfaces;
+    const auto add = [&](const Surface& surface) { surfaces.push_back(surface); };
+    Surface surface = scene.surface;
+    const bool has_level = surface.kind == SurfaceKind::Cage && !surface.cage_level.is_adaptive;
+    if (surface.kind == SurfaceKind::Patch || surface.kind == SurfaceKind::NearFar) {
+        const int most = surface.kind == SurfaceKind::NearFar
+                             ? limits::kNearFarResolution
+                             : static_cast<int>(limits::kSurfaceResolution.high);
+        // An eighth more at most from one to the next, and numbers with small factors.
+        for (int quads = 8; quads <= most;
+             quads += std::max(8, static_cast<int>(std::bit_floor(static_cast<unsigned>(quads))) / 8)) {
+            surface.resolution = quads;
+            add(surface);
+        }
+    } else if (has_level) {
+        for (int splits = 0; splits <= static_cast<int>(limits::kCageLevel.high); ++splits) {
+            surface.cage_level.splits = splits;
+            Scene refined = without_budget(scene);
+            refined.surface = surface;
+            if (!validate(refined).empty()) break;  // more quads than an index counts
+            add(surface);
+        }
+    } else {
+        for (double cell_px = 64.0; cell_px > 0.99; cell_px *= std::exp2(-0.25)) {
+            surface.cell_px = rounded(cell_px, 2);
+            add(surface);
+        }
+    }
+    return surfaces;
+}
+
+MeshBudget mesh_budget(const PreparedScene& prepared) {
+    const Quality& quality = prepared.scene.quality;
+    Chooser chooser(prepared);
+    const Chooser::Setting chosen =
+        quality.max_error ? chooser.cheapest(*quality.max_error) : chooser.finest(*quality.frame_ms);
+    MeshBudget budget{.scene = without_budget(prepared.scene), .error = chosen.error, .ms = chosen.ms};
+    budget.scene.quality.level = chosen.level->level;
+    budget.scene.surface = chooser.surface(chosen.surface);
+    budget.holds = quality.max_error ? chosen.error <= *quality.max_error : chosen.ms <= *quality.frame_ms;
+    budget.text = (quality.max_error ? "quality.max_error = " + number_text(*quality.max_error)
+                                     : "quality.frame_ms = " + number_text(*quality.frame_ms)) +
+                  (budget.holds ? "" : ", which nothing holds") + ": the " +
+                  (quality.max_error ? (budget.holds ? "cheapest" : "most accurate")
+                                     : (budget.holds ? "most accurate" : "cheapest")) +
+                  " mesh is quality.level = \"" + std::string(word_of(chosen.level->level)) + "\" with " +
+                  fineness_text(budget.scene.surface) + ", an error of " +
+                  number_text(rounded(chosen.error, 2)) + " and about " + number_text(rounded(chosen.ms, 2)) +
+                  " ms a frame";
+    return budget;
+}
+
+}  // namespace pelagic

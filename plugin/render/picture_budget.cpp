@@ -1,0 +1,231 @@
+#include "plugin/render/picture_budget.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/plan/budget.h"
+#include "core/plan/cost_model.h"
+#include "core/scene/names.h"
+#include "core/scene/text.h"
+#include "core/surface/rest_surface.h"
+#include "core/surface/view.h"
+#include "plugin/light/light.h"
+#include "plugin/render/batch.h"
+
+namespace pelagic {
+namespace {
+
+// Cells of pictures with a budget [pixels]: finer ones change little, and coarser ones save little.
+constexpr double kCell_px = 2.0;
+
+// The small picture that a shot is measured on.
+constexpr int kProbeWidth = 96;
+constexpr int kReferenceSamples = 8;
+constexpr std::array kMeasuredSamples{1, 2, 4, 6};
+
+// What errors are multiplied by before they are promised: another frame, and a larger picture, differ by that much (tests/plugin/render,
+// picture_budget_test.cpp).
+constexpr double kMargin = 1.12;
+
+struct SkyCost {
+    SkyQuality sky;
+    const char* words;
+    double us_a_sample;  // of a sample that shows the sea (bench_cost_model)
+};
+constexpr std::array kSkies = std::to_array<SkyCost>({
+    {SkyQuality::Nine, "nine lookups", 1.8},
+    {SkyQuality::Integral, "the integral", 27.0},
+});
+constexpr double kAir_us = 0.05;  // of a sample that shows the sky
+
+struct Setting {
+    const SkyCost* sky;
+    int samples;
+    double error = 0.0, ms = 0.0;
+};
+
+// The larger a picture's share of water, the longer it takes.
+double water_share(const Scene& scene, int frame) {
+    constexpr int kLines = 64;
+    const View view = view_at(scene.camera, frame);
+    int water = 0;
+    for (int y = 0; y < kLines; ++y)
+        for (int x = 0; x < kLines; ++x)
+            water += view.direction((glm::dvec2(x, y) + 0.5) / static_cast<double>(kLines) *
+                                    glm::dvec2(view.resolution))
+                         .z < 0.0;
+    return static_cast<double>(water) / (kLines * kLines);
+}
+
+std::vector<int> frames_to_measure(const Scene& scene) {
+    constexpr int kFrames = 3;
+    if (!scene.camera.keys.empty()) return representative_frames(scene, kFrames);
+    return {scene.shot.first_frame + (scene.shot.last_frame - scene.shot.first_frame) / 2};
+}
+
+// How a shot's pictures err: by the number of samples (kMeasuredSamples) with nine lookups against eight times eight, and
+// by the lookups alone.
+struct MeasuredErrors {
+    std::array<double, kMeasuredSamples.size()> by_samples{};
+    double of_nine = 0.0;
+
+    // Between the numbers that were measured, as a power of them.
+    double at(int samples) const {
+        std::size_t i = 1;
+        while (i + 1 < kMeasuredSamples.size() && kMeasuredSamples[i] < samples) ++i;
+        const double from = kMeasuredSamples[i - 1], to = kMeasuredSamples[i];
+        const double t = std::log(samples / from) / std::log(to / from);
+        constexpr double kLeast = 1e-9;
+        return std::exp(std::lerp(std::log(std::max(by_samples[i - 1], kLeast)),
+                                  std::log(std::max(by_samples[i], kLeast)), t));
+    }
+};
+
+// Of most pictures: by which settings are put in order where nothing is measured.
+constexpr MeasuredErrors kTypical{{0.30, 0.21, 0.13, 0.09}, 0.08};
+
+MeasuredErrors measured(const Scene& scene, const Sky& sky, const BuildWatch& watch) {
+    Scene small = scene;
+    const double shape = static_cast<double>(scene.camera.resolution.y) / scene.camera.resolution.x;
+    const double width = kProbeWidth * std::min(1.0, 1.0 / shape);
+    small.camera.resolution = {std::max(1, static_cast<int>(std::lround(width))),
+                               std::max(1, static_cast<int>(std::lround(width * shape)))};
+    const std::vector<int> frames = frames_to_measure(scene);
+    const RenderOptions own = render_options(scene);
+    double done = 0.0;
+    const double all = static_cast<double>(frames.size()) * 9.0;
+    const auto picture = [&](int frame, double cell_px, int samples, SkyQuality quality, double weight) {
+        small.surface.cell_px = cell_px;
+        RenderOptions options = own;
+        options.samples = samples;
+        options.lighting.sky_quality = quality;
+        options.knobs = Knobs{.double_precision = true};
+        Picture made;
+        Renderer renderer(small, options, sky, std::span(&frame, 1),
+                          {.progress = {}, .cancel = watch.cancel});
+        if (!renderer.render(frame, made, {.progress = {}, .cancel = watch.cancel})) throw BuildCancelled();
+        done += weight;
+        if (watch.progress) watch.progress(std::min(done / all, 1.0));
+        return made;
+    };
+    MeasuredErrors errors;
+    for (const int frame : frames) {
+        const Picture reference = picture(frame, 0.5, kReferenceSamples, SkyQuality::Nine, 5.0);
+        std::optional<Picture> one;
+        for (std::size_t i = 0; i < kMeasuredSamples.size(); ++i) {
+            Picture made = picture(frame, kCell_px, kMeasuredSamples[i], SkyQuality::Nine, 0.75);
+            errors.by_samples[i] = std::max(errors.by_samples[i], relative_error(made, reference).most);
+            if (i == 0) one = std::move(made);
+        }
+        const Picture integral = picture(frame, kCell_px, 1, SkyQuality::Integral, 1.0);
+        errors.of_nine = std::max(errors.of_nine, relative_error(*one, integral).most);
+    }
+    return errors;
+}
+
+// All that a budget chooses from, from few samples to many.
+std::vector<Setting> settings_of(const Scene& scene, const MeasuredErrors& errors) {
+    const std::vector<int> frames = frames_to_measure(scene);
+    const double pixels =
+        static_cast<double>(scene.camera.resolution.x) * static_cast<double>(scene.camera.resolution.y);
+    double water = 0.0;
+    for (const int frame : frames) water = std::max(water, water_share(scene, frame));
+    std::vector<Setting> settings;
+    for (int samples = kMeasuredSamples.front(); samples <= kMeasuredSamples.back(); ++samples) {
+        RenderOptions options = render_options(scene);
+        options.samples = samples;
+        const double sea_ms = frame_ms(picture_plan(of_samples(scene, samples), frames, options));
+        for (const SkyCost& sky : kSkies) {
+            const double us = water * sky.us_a_sample + (1.0 - water) * kAir_us;
+            const double of_sky = sky.sky == SkyQuality::Integral ? 0.0 : errors.of_nine;
+            settings.push_back({&sky, samples, kMargin * std::hypot(errors.at(samples), of_sky),
+                                sea_ms + 1e-3 * us * pixels * samples * samples});
+        }
+    }
+    return settings;
+}
+
+double rounded(double value) {
+    if (!(value > 0.0)) return 0.0;
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+    return std::round(value / unit) * unit;
+}
+
+}  // namespace
+
+RelativeError relative_error(const Picture& picture, const Picture& reference) {
+    std::vector<double> off;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < reference.layers.size(); ++i) {
+        if (!picture.sea[i] || !reference.sea[i]) continue;
+        const glm::dvec3 seen(radiance_of(picture.layers[i])), exact(radiance_of(reference.layers[i]));
+        const double scale = glm::length(exact);
+        off.push_back(glm::length(seen - exact) / (scale > 0.0 ? scale : 1.0));
+        sum += off.back();
+    }
+    if (off.empty()) return {};
+    const auto at = off.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(off.size() - 1));
+    std::nth_element(off.begin(), at, off.end());
+    return {*at, sum / static_cast<double>(off.size())};
+}
+
+PictureSettings reference_settings(const Scene& scene) {
+    PictureSettings reference{without_budget(scene), {}};
+    reference.scene.surface.cell_px = 0.5;
+    reference.options = render_options(reference.scene);
+    reference.options.samples = kReferenceSamples;
+    reference.options.lighting.sky_quality = SkyQuality::Integral;
+    reference.options.lighting.fresnel = FresnelFit::Exact;
+    return reference;
+}
+
+PictureBudget picture_budget(const Scene& scene, const BuildWatch& watch) {
+    const bool is_measured = scene.quality.max_error.has_value();
+    return picture_budget(scene, is_measured ? make_sky(scene) : Sky{}, watch);
+}
+
+PictureBudget picture_budget(const Scene& scene, const Sky& sky, const BuildWatch& watch) {
+    PictureBudget budget{.scene = without_budget(scene), .options = {}};
+    if (!has_budget(scene.quality)) {
+        budget.options = render_options(scene);
+        return budget;
+    }
+    budget.scene.quality.level = QualityLevel::Final;
+    budget.scene.surface.cell_px = kCell_px;
+    const auto [max_error, most_ms] = std::pair(scene.quality.max_error, scene.quality.frame_ms);
+    const std::vector<Setting> settings =
+        settings_of(budget.scene, max_error ? measured(budget.scene, sky, watch) : kTypical);
+    std::optional<Setting> best;
+    for (const Setting& setting : settings) {
+        const bool holds = max_error ? setting.error <= *max_error : setting.ms <= *most_ms;
+        if (!holds) continue;
+        if (!best || (max_error ? setting.ms < best->ms : setting.error < best->error)) best = setting;
+    }
+    budget.holds = best.has_value();
+    if (!best)
+        best = *std::min_element(settings.begin(), settings.end(), [&](const Setting& a, const Setting& b) {
+            return max_error ? a.error < b.error : a.ms < b.ms;
+        });
+    budget.options = render_options(budget.scene);
+    budget.options.samples = best->samples;
+    budget.options.lighting.sky_quality = best->sky->sky;
+    budget.error = max_error ? best->error : std::numeric_limits<double>::quiet_NaN();
+    budget.ms = best->ms;
+    budget.text = (max_error ? "quality.max_error = " + number_text(*max_error)
+                             : "quality.frame_ms = " + number_text(*most_ms)) +
+                  (budget.holds ? "" : ", which no setting holds") + ": the " +
+                  (max_error.has_value() == budget.holds ? "cheapest" : "most accurate") + " pictures have " +
+                  std::to_string(best->samples) + " × " + std::to_string(best->samples) +
+                  " samples a pixel and " + best->sky->words + " of the sky" +
+                  (max_error ? ", an error of " + number_text(rounded(best->error)) : std::string()) +
+                  " and about " + number_text(rounded(best->ms)) + " ms a picture";
+    return budget;
+}
+
+}  // namespace pelagic

@@ -1,0 +1,49 @@
+// A budget of pictures: quality.max_error or quality.frame_ms, turned into what a render takes.
+//
+// How much pictures of a sea err differs between shots by more than ten, and hardly with the picture's size: so the shot is
+// measured on a small picture of its own, in double precision, and the errors of all settings follow from a law whose numbers
+// are recorded. Nothing is timed: every machine chooses alike.
+#pragma once
+
+#include <string>
+
+#include "core/lighting/sky.h"
+#include "core/scene/scene.h"
+#include "plugin/render/render.h"
+
+namespace pelagic {
+
+struct PictureBudget {
+    Scene scene;  // with the quality.level and surface.cell_px that it asks for, and without a budget
+    RenderOptions options;  // render_options(scene), with samples and lookups of the sky
+    // Expected: the relative error of radiance that 95 % of the water's pixels don't exceed, against 8 × 8 samples of the
+    // integral of the sky, with cells of half a pixel. NaN where only time was asked for.
+    double error = 0.0;
+    double ms = 0.0;  // of a picture, by the cost model
+    bool holds = true;
+    std::string text{};  // for people: what was chosen, and why; empty without a budget
+};
+
+// max_error: the cheapest settings that err by no more; frame_ms: the most accurate ones that cost no more. The scene must be
+// valid. Without a budget, the scene and its own options, at once; with max_error, seconds. Throws BuildCancelled and what
+// Renderer::render() throws.
+PictureBudget picture_budget(const Scene& scene, const BuildWatch& watch = {});
+// The same with the shot's light at hand.
+PictureBudget picture_budget(const Scene& scene, const Sky& sky, const BuildWatch& watch = {});
+
+// Of the pixels of water in both pictures: |L − L′|/|L′| of the radiance, L′ being the reference's: what 95 % of them don't exceed, and
+// the mean. A reference without light counts what is there as it is.
+struct RelativeError {
+    double most = 0.0, mean = 0.0;
+};
+RelativeError relative_error(const Picture& picture, const Picture& reference);
+
+// What errors of pictures are against: 8 × 8 samples of the integral of the sky and of the exact Fresnel term, over cells of
+// half a pixel.
+struct PictureSettings {
+    Scene scene;
+    RenderOptions options;
+};
+PictureSettings reference_settings(const Scene& scene);
+
+}  // namespace pelagic

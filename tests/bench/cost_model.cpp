@@ -1,0 +1,174 @@
+// The numbers of core/plan/cost_model.cpp and of plugin/render/picture_budget.cpp, fitted anew: frames of the examples' meshes at all
+// levels, and small pictures of them, timed; then the least relative error with costs that aren't negative.
+//   bench_cost_model
+#include "core/plan/cost_model.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/plan/plan.h"
+#include "core/scene/names.h"
+#include "plugin/bake/sequence.h"
+#include "plugin/light/light.h"
+#include "plugin/render/batch.h"
+#include "plugin/render/render.h"
+#include "plugin/shot/shot.h"
+
+namespace pelagic {
+namespace {
+
+struct Timed {
+    std::string what;
+    std::vector<double> work;
+    double ms;
+};
+
+// Costs ≥ 0 of each kind of work that bring Σ (cost · work/ms − 1)² down, one after another.
+std::vector<double> fitted(const std::vector<Timed>& rows) {
+    std::vector<double> cost(rows.front().work.size(), 0.0);
+    for (int round = 0; round < 20000; ++round)
+        for (std::size_t i = 0; i < cost.size(); ++i) {
+            double above = 0.0, below = 0.0;
+            for (const Timed& row : rows) {
+                double rest = 1.0;
+                for (std::size_t j = 0; j < cost.size(); ++j)
+                    if (j != i) rest -= cost[j] * row.work[j] / row.ms;
+                above += rest * row.work[i] / row.ms;
+                below += row.work[i] / row.ms * row.work[i] / row.ms;
+            }
+            if (below > 0.0) cost[i] = std::max(0.0, above / below);
+        }
+    return cost;
+}
+
+void print(const char* title, const std::vector<Timed>& rows, const std::vector<double>& cost) {
+    std::printf("%s:", title);
+    for (const double each : cost) std::printf(" %.4g", each);
+    std::vector<double> ratios;
+    for (const Timed& row : rows) {
+        double ms = 0.0;
+        for (std::size_t i = 0; i < cost.size(); ++i) ms += cost[i] * row.work[i];
+        ratios.push_back(ms / row.ms);
+        std::printf("\n  %-44s %9.3f ms, said %9.3f", row.what.c_str(), row.ms, ms);
+    }
+    std::sort(ratios.begin(), ratios.end());
+    std::printf("\n  said over taken: %.2f … %.2f, in the middle %.2f\n\n", ratios.front(), ratios.back(),
+                ratios[ratios.size() / 2]);
+}
+
+constexpr std::array kExamples{"first-shot",  "glassy-swell", "north-sea-storm",
+                               "shallow-bay", "trade-wind",   "wave-trains"};
+
+Scene example(const char* name) {
+    return load_shot(std::string(PELAGIC_SOURCE_DIR "/examples/") + name + ".toml", check_scene);
+}
+
+// A frame of a bake, one after another, so that the foam's past grows as in a run: the least of some.
+double frame_of_bake_ms(const Scene& scene) {
+    const Plan plan = plan_bake(scene);
+    const std::unique_ptr<Sequence> sequence = make_sequence(plan);
+    FrameSlot slot;
+    double least = 0.0;
+    for (int frame = scene.shot.first_frame; frame <= scene.shot.first_frame + 5; ++frame) {
+        const auto start = std::chrono::steady_clock::now();
+        sequence->compute(frame, slot);
+        const double ms =
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        least = frame == scene.shot.first_frame + 1 ? ms : std::min(least, ms);
+    }
+    return least;
+}
+
+std::vector<Timed> meshes() {
+    std::vector<Timed> rows;
+    for (const char* name : kExamples)
+        for (const QualityLevel level : {QualityLevel::Draft, QualityLevel::Preview, QualityLevel::Final})
+            for (const int quads : {48, 192, 512})
+                for (const bool has_foam : {false, true}) {
+                    Scene scene = example(name);
+                    scene.quality.level = level;
+                    scene.surface.resolution = quads;
+                    scene.output.maps.clear();
+                    scene.output.cascade_tiles = false;
+                    if (!has_foam) scene.effects.foam_decay_s = 0.0;
+                    const WorkDone work = work_of(plan_bake(scene));
+                    rows.push_back({std::string(name) + ", " + std::string(word_of(level)) + ", " +
+                                        std::to_string(quads) + (has_foam ? ", foam that lives" : ""),
+                                    {work.begin(), work.end()},
+                                    frame_of_bake_ms(scene)});
+                }
+    return rows;
+}
+
+// By what the sea costs according to the model, and the samples that show the sea with nine lookups, with the integral, and
+// those that show the sky [millions].
+std::vector<Timed> pictures() {
+    std::vector<Timed> rows;
+    for (const char* name : kExamples) {
+        Scene scene = example(name);
+        scene.camera.resolution = {160, 90};
+        scene.surface.cell_px = 2.0;
+        const Sky sky = make_sky(scene);
+        const int frame = scene.shot.first_frame;
+        for (const SkyQuality quality : {SkyQuality::Nine, SkyQuality::Integral})
+            for (const int samples : {1, 3}) {
+                if (quality == SkyQuality::Integral && samples > 1) continue;
+                RenderOptions options = render_options(scene);
+                options.samples = samples;
+                options.lighting.sky_quality = quality;
+                const WorkDone work =
+                    work_of(picture_plan(of_samples(scene, samples), std::span(&frame, 1), options));
+                Renderer renderer(scene, options, sky, std::span(&frame, 1));
+                Picture picture;
+                double least = 0.0;
+                for (int i = 0; i < 3; ++i) {
+                    const auto start = std::chrono::steady_clock::now();
+                    renderer.render(frame, picture);
+                    const double ms =
+                        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+                            .count();
+                    least = i == 0 ? ms : std::min(least, ms);
+                }
+                const double water =
+                    static_cast<double>(std::count(picture.sea.begin(), picture.sea.end(), std::uint8_t{1})) *
+                    1e-6 * samples * samples;
+                const double all = 1e-6 * samples * samples * static_cast<double>(picture.sea.size());
+                std::vector<double> row(work.begin(), work.end());
+                const bool is_nine = quality == SkyQuality::Nine;
+                row.insert(row.end(), {is_nine ? water : 0.0, is_nine ? 0.0 : water, all - water});
+                rows.push_back({std::string(name) + (is_nine ? ", nine, " : ", integral, ") +
+                                    std::to_string(samples) + " x " + std::to_string(samples),
+                                std::move(row), least});
+            }
+    }
+    return rows;
+}
+
+}  // namespace
+}  // namespace pelagic
+
+int main() {
+    using namespace pelagic;
+    const std::vector<Timed> of_meshes = meshes();
+    const std::vector<double> cost = fitted(of_meshes);
+    print("frames of bakes [ms]", of_meshes, cost);
+    // Of pictures, the sea costs what it costs in bakes, but for the foam: what is left is that and the samples'.
+    constexpr auto kFoam = static_cast<std::size_t>(Work::Foam);
+    std::vector<Timed> of_pictures = pictures();
+    for (Timed& row : of_pictures) {
+        double sea_ms = 0.0;
+        for (std::size_t i = 0; i < kFoam; ++i) sea_ms += cost[i] * row.work[i];
+        row.work.erase(row.work.begin(), row.work.begin() + kFoam);
+        row.ms = std::max(row.ms - sea_ms, 0.5 * row.ms);
+    }
+    print(
+        "pictures without what the sea costs in bakes [ms]: foam, samples with nine, with the integral, of sky",
+        of_pictures, fitted(of_pictures));
+}

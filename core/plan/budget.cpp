@@ -142,12 +142,6 @@ std::string fineness_text(const Surface& surface) {
     return "surface.cell_px = " + number_text(surface.cell_px);
 }
 
-double rounded(double value, int digits) {
-    if (!(value > 0.0)) return 0.0;
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - (digits - 1));
-    return std::round(value / unit) * unit;
-}
-
 }  // namespace
 
 bool has_budget(const Quality& quality) {
@@ -189,7 +183,7 @@ std::vector<Surface> rising_fineness(const Scene& scene) {
         }
     } else {
         for (double cell_px = 64.0; cell_px > 0.99; cell_px *= std::exp2(-0.25)) {
-            surface.cell_px = rounded(cell_px, 2);
+            surface.cell_px = std::round(4.0 * cell_px) / 4.0;
             add(surface);
         }
     }
@@ -211,9 +205,8 @@ MeshBudget mesh_budget(const PreparedScene& prepared) {
                   (quality.max_error ? (budget.holds ? "cheapest" : "most accurate")
                                      : (budget.holds ? "most accurate" : "cheapest")) +
                   " mesh is quality.level = \"" + std::string(word_of(chosen.level->level)) + "\" with " +
-                  fineness_text(budget.scene.surface) + ", an error of " +
-                  number_text(rounded(chosen.error, 2)) + " and about " + number_text(rounded(chosen.ms, 2)) +
-                  " ms a frame";
+                  fineness_text(budget.scene.surface) + ", an error of " + rough_text(chosen.error) +
+                  " and about " + rough_text(chosen.ms) + " ms a frame";
     return budget;
 }
 

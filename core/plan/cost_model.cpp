@@ -13,7 +13,7 @@ namespace {
 
 // [ms] of each Work in single precision.
 constexpr WorkDone kMs{0.05, 0.306, 3.84, 0.0212, 0.347, 2.19, 18.0};
-constexpr double kDouble = 2.0;             // as much in double precision
+constexpr double kDouble = 2.0;  // as much in double precision
 
 double& at(WorkDone& work, Work what) {
     return work[static_cast<std::size_t>(what)];

@@ -113,7 +113,11 @@ double MeshErrorModel::error(const RestSurface& surface, const Camera& camera,
                                    points.height_m.empty() ? 0.0 : points.height_m[i]);
             const double pixel_m =
                 surface.shaped_by(frame) ? view.pixel_tangent() * glm::length(place - view.position_m) : 0.0;
-            const double off = tabled(points.cell_m[i], pixel_m, drawn);
+            // An ellipse counts as the circle of its area.
+            const double cell_m = points.cell_m[i];
+            const double long_m =
+                points.cell_axis_m.empty() ? 0.0 : glm::length(glm::dvec2(points.cell_axis_m[i]));
+            const double off = tabled(std::sqrt(cell_m * std::max(cell_m, long_m)), pixel_m, drawn);
             sum += off * off;
         }
         largest = std::max(

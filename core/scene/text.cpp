@@ -28,6 +28,15 @@ std::string number_text(double value) {
     return text;
 }
 
+std::string rough_text(double value) {
+    std::array<char, 32> buffer{};
+    const auto written =
+        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific, 1);
+    double rounded = value;
+    std::from_chars(buffer.data(), written.ptr, rounded);
+    return number_text(rounded);
+}
+
 namespace {
 
 constexpr std::string_view kHexDigits = "0123456789abcdef";

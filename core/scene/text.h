@@ -10,6 +10,9 @@ namespace pelagic {
 // The shortest text that reads back as the same double: "24", "0.1", "1e8", "inf", "nan".
 std::string number_text(double value);
 
+// The same of the number to two digits, for people: "0.071", "120".
+std::string rough_text(double value);
+
 // The text between quotes, with quotes, backslashes and control characters escaped as TOML and JSON do: one
 // line of UTF-8, whatever is in it. A byte that isn't part of UTF-8 (a file name's: Unix allows any) has no
 // escape in either; it stands there as in utf8_text(), the backslash escaped like any other.

@@ -29,10 +29,6 @@ constexpr int kProbeWidth = 96;
 constexpr int kReferenceSamples = 8;
 constexpr std::array kMeasuredSamples{1, 2, 4, 6};
 
-// What errors are multiplied by before they are promised: another frame, and a larger picture, differ by that much (tests/plugin/render,
-// picture_budget_test.cpp).
-constexpr double kMargin = 1.12;
-
 struct SkyCost {
     SkyQuality sky;
     const char* words;
@@ -70,7 +66,7 @@ std::vector<int> frames_to_measure(const Scene& scene) {
 }
 
 // How a shot's pictures err: by the number of samples (kMeasuredSamples) with nine lookups against eight times eight, and
-// by the lookups alone.
+// by the lookups alone. Percentiles don't add like this, but their root of squares is rarely exceeded.
 struct MeasuredErrors {
     std::array<double, kMeasuredSamples.size()> by_samples{};
     double of_nine = 0.0;
@@ -144,17 +140,11 @@ std::vector<Setting> settings_of(const Scene& scene, const MeasuredErrors& error
         for (const SkyCost& sky : kSkies) {
             const double us = water * sky.us_a_sample + (1.0 - water) * kAir_us;
             const double of_sky = sky.sky == SkyQuality::Integral ? 0.0 : errors.of_nine;
-            settings.push_back({&sky, samples, kMargin * std::hypot(errors.at(samples), of_sky),
+            settings.push_back({&sky, samples, std::hypot(errors.at(samples), of_sky),
                                 sea_ms + 1e-3 * us * pixels * samples * samples});
         }
     }
     return settings;
-}
-
-double rounded(double value) {
-    if (!(value > 0.0)) return 0.0;
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-    return std::round(value / unit) * unit;
 }
 
 }  // namespace
@@ -207,6 +197,13 @@ PictureBudget picture_budget(const Scene& scene, const Sky& sky, const BuildWatc
         if (!holds) continue;
         if (!best || (max_error ? setting.ms < best->ms : setting.error < best->error)) best = setting;
     }
+    for (const Setting& setting : settings) {
+        RenderOptions options = render_options(budget.scene);
+        options.samples = setting.samples;
+        options.lighting.sky_quality = setting.sky->sky;
+        budget.settings.push_back(
+            {options, max_error ? setting.error : std::numeric_limits<double>::quiet_NaN(), setting.ms});
+    }
     budget.holds = best.has_value();
     if (!best)
         best = *std::min_element(settings.begin(), settings.end(), [&](const Setting& a, const Setting& b) {
@@ -223,8 +220,8 @@ PictureBudget picture_budget(const Scene& scene, const Sky& sky, const BuildWatc
                   (max_error.has_value() == budget.holds ? "cheapest" : "most accurate") + " pictures have " +
                   std::to_string(best->samples) + " × " + std::to_string(best->samples) +
                   " samples a pixel and " + best->sky->words + " of the sky" +
-                  (max_error ? ", an error of " + number_text(rounded(best->error)) : std::string()) +
-                  " and about " + number_text(rounded(best->ms)) + " ms a picture";
+                  (max_error ? ", an error of " + rough_text(best->error) : std::string()) + " and about " +
+                  rough_text(best->ms) + " ms a picture";
     return budget;
 }
 

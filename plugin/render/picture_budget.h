@@ -6,12 +6,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/lighting/sky.h"
 #include "core/scene/scene.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {
+
+struct PricedSetting {
+    RenderOptions options;
+    double error = 0.0, ms = 0.0;  // as PictureBudget's
+};
 
 struct PictureBudget {
     Scene scene;  // with the quality.level and surface.cell_px that it asks for, and without a budget
@@ -21,7 +27,8 @@ struct PictureBudget {
     double error = 0.0;
     double ms = 0.0;  // of a picture, by the cost model
     bool holds = true;
-    std::string text{};  // for people: what was chosen, and why; empty without a budget
+    std::string text{};                     // for people: what was chosen, and why; empty without a budget
+    std::vector<PricedSetting> settings{};  // all that it was chosen from
 };
 
 // max_error: the cheapest settings that err by no more; frame_ms: the most accurate ones that cost no more. The scene must be

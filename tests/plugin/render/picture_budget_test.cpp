@@ -1,0 +1,111 @@
+// Budgets of pictures: over a dozen shots that nothing was fitted to, what was chosen holds its promise on another frame than the
+// one that was measured, and nothing at half the cost would have.
+#include "plugin/render/picture_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "core/plan/budget.h"
+#include "core/scene/text.h"
+#include "plugin/light/light.h"
+
+namespace pelagic {
+namespace {
+
+struct BudgetShot {
+    const char* name;
+    void (*change)(Scene&);
+    double max_error;
+};
+
+const std::array kShots = std::to_array<BudgetShot>({
+    {"breeze, low sun", [](Scene& s) { s.sea.wind_speed_mps = 7.0, s.light.sun_elevation_deg = 6.0; }, 0.2},
+    {"breeze, high sun", [](Scene& s) { s.sea.wind_speed_mps = 5.5, s.light.sun_elevation_deg = 50.0; }, 0.1},
+    {"against the sun",
+     [](Scene& s) {
+         s.sea.wind_speed_mps = 4.5, s.light.sun_elevation_deg = 25.0, s.light.sun_azimuth_deg = 85.0;
+     },
+     0.25},
+    {"gale", [](Scene& s) { s.sea.wind_speed_mps = 20.0; }, 0.3},
+    {"gale, better", [](Scene& s) { s.sea.wind_speed_mps = 16.0; }, 0.18},
+    {"no foam", [](Scene& s) { s.sea.wind_speed_mps = 13.0, s.effects.whitecaps = false; }, 0.15},
+    {"from a mast", [](Scene& s) { s.sea.wind_speed_mps = 10.0, s.camera.position_m.z = 25.0; }, 0.13},
+    {"from a plane",
+     [](Scene& s) {
+         s.sea.wind_speed_mps = 8.0, s.camera.position_m = {0.0, -500.0, 250.0};
+     },
+     0.11},
+    {"near the water",
+     [](Scene& s) {
+         s.sea.wind_speed_mps = 3.5, s.camera.position_m = {0.0, -20.0, 1.5};
+     },
+     0.35},
+    {"swell alone",
+     [](Scene& s) {
+         s.sea.wind_speed_mps = 0.0, s.sea.swell = {{1.5, 9.0, 50.0}};
+     },
+     0.01},
+    {"long lens", [](Scene& s) { s.sea.wind_speed_mps = 9.0, s.camera.fov_deg = 15.0; }, 0.35},
+    {"wide lens, flown",
+     [](Scene& s) {
+         s.sea.wind_speed_mps = 6.5, s.camera.fov_deg = 85.0;
+         s.camera.keys = {{1, {0.0, -60.0, 5.0}, {0.0, 0.0, 0.0}}, {9, {0.0, -60.0, 10.0}, {0.0, 0.0, 0.0}}};
+     },
+     0.2},
+});
+
+Picture rendered(const PictureSettings& settings, int frame) {
+    Renderer renderer(settings.scene, settings.options, make_sky(settings.scene), std::span(&frame, 1));
+    Picture picture;
+    renderer.render(frame, picture);
+    return picture;
+}
+
+// The 95th percentile of some thousand pixels is uncertain by so much, either way.
+constexpr double kFewPixels = 1.1;
+
+class BudgetOfPictures : public testing::TestWithParam<BudgetShot> {};
+
+TEST_P(BudgetOfPictures, HoldsAndHalfTheCostWouldNot) {
+    const BudgetShot& shot = GetParam();
+    Scene scene;
+    scene.shot.last_frame = 9;
+    scene.effects.foam_decay_s = 0.0;  // its past takes long, and settings don't change it
+    shot.change(scene);
+    const char* width = std::getenv("PELAGIC_BUDGET_WIDTH");  // larger pictures, by hand
+    const int columns = width ? std::atoi(width) : 80;
+    scene.camera.resolution = {columns, columns * 9 / 16};
+    scene.quality.max_error = shot.max_error;
+    const PictureBudget budget = picture_budget(scene);
+    ASSERT_TRUE(budget.holds) << budget.text;
+    const int frame = 8;
+    const Picture reference = rendered(reference_settings(scene), frame);
+    const auto error_of = [&](const RenderOptions& options) {
+        return relative_error(rendered({budget.scene, options}, frame), reference).most;
+    };
+    const double found = error_of(budget.options);
+    EXPECT_LE(found, kFewPixels * shot.max_error) << budget.text;
+    RecordProperty("promised", rough_text(budget.error));
+    RecordProperty("found", rough_text(found));
+    const PricedSetting* best = nullptr;
+    for (const PricedSetting& each : budget.settings)
+        if (each.ms <= 0.5 * budget.ms && (!best || each.error < best->error)) best = &each;
+    if (best) {
+        const double cheaper = error_of(best->options);
+        EXPECT_GT(kFewPixels * cheaper, shot.max_error) << budget.text;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shots, BudgetOfPictures, testing::ValuesIn(kShots), [](const auto& shot) {
+    std::string name = shot.param.name;
+    std::erase_if(name, [](char c) { return c == ' ' || c == ','; });
+    return name;
+});
+
+}  // namespace
+}  // namespace pelagic

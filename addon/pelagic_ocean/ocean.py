@@ -11,7 +11,7 @@ from mathutils import Vector
 
 from .cages import cage_of
 from .module import pelagic
-from .properties import BY_PATH, FIELDS, TABLES, VERSION, counts, shortest_for
+from .properties import BUDGETS, BY_PATH, FIELDS, TABLES, VERSION, counts, shortest_for
 
 NO_MODULE = "Pelagic's compiled module isn't there"
 
@@ -67,6 +67,27 @@ def _with_settings(settings, obj, depsgraph):
             value = _on_disk(value)
         setattr(getattr(scene, BY_PATH[path].table), key["name"], value)
     return scene
+
+
+_settled = {}  # settings, and what else counts, → settings
+
+
+def settled(settings, obj, bpy_scene, depsgraph=None):
+    """The settings that a budget among them asks for, and no budget any more; without one they stay. Of a camera's grid
+    they are those of the camera as it is when they are first asked for. ValueError where nothing holds the budget."""
+    values = {field.path: value for field, value in zip(FIELDS, settings)}
+    if all(values[path] is None for path in BUDGETS):
+        return settings
+    cage = values["surface.kind"] == "cage" and cage_of(obj, values["surface.cage_file"] or "", depsgraph)
+    key = (settings, cage.content if cage else "")
+    if key not in _settled:
+        if len(_settled) > 64:
+            _settled.clear()
+        scene = scene_of(obj, bpy_scene, depsgraph, settings).settled()
+        for path in (*BUDGETS, "quality.level", "surface.resolution", "surface.cell_px", "surface.cage_level"):
+            values[path] = getattr(getattr(scene, BY_PATH[path].table), BY_PATH[path].name)
+        _settled[key] = tuple(values[field.path] for field in FIELDS)
+    return _settled[key]
 
 
 HOUR = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(:\d\d)?(Z|[+-]\d\d:\d\d)")

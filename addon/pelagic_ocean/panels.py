@@ -9,7 +9,7 @@ from .look import PELAGIC_OT_add_light, PELAGIC_OT_add_material
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
 from .presets import PELAGIC_MT_presets
-from .properties import FIELDS, VERSION, counts
+from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts
 
 # Title → tables of keys.
 PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
@@ -60,9 +60,20 @@ def _draw_tables(layout, settings, tables, title):
         column = layout.column()
         if table != title.lower():
             column.label(text=table.title())
+        if table == "quality":
+            _draw_quality(column, settings)
+            continue
         for field in FIELDS:
             if field.table == table and counts(field, settings):
                 _draw_field(column, getattr(settings, table), field)
+
+
+def _draw_quality(layout, settings):
+    """One menu; a custom budget is of error or of time."""
+    layout.prop(settings, "quality_menu")
+    if settings.quality_menu == CUSTOM:
+        for path in BUDGETS:
+            _draw_field(layout, settings.quality, BY_PATH[path])
 
 
 class Main:

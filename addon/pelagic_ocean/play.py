@@ -18,7 +18,7 @@ from bpy.app.handlers import persistent
 
 from . import cages, handlers, meshes, surfaces
 from .module import pelagic
-from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of
+from .ocean import frame_rate, is_ocean, migrate, oceans, pinhole_of, scene_of, settings_of, settled
 from .properties import FIELDS
 from .sea import BuiltSea, Moment
 
@@ -103,8 +103,8 @@ class Simulation:
     def follow(self, obj, bpy_scene, depsgraph, wait):
         """Brings the sea to the object's settings, or begins to. obj: the original. Returns the view that it is seen by,
         None where that doesn't matter."""
-        settings = settings_of(obj.evaluated_get(depsgraph))
         try:
+            settings = settled(settings_of(obj.evaluated_get(depsgraph)), obj, bpy_scene, depsgraph)
             surface_key, make_surface, view = _surface_of(obj, settings, bpy_scene, depsgraph)
             asked = (settings, frame_rate(bpy_scene), surface_key)  # a cage is a part of its scene
             if asked != self._asked:

@@ -259,6 +259,35 @@ def _can_be_cage(_group, other):
     return cages.can_be(other)
 
 
+BUDGETS = ("quality.max_error", "quality.frame_ms")
+CUSTOM = "custom"  # in place of a level: a budget
+
+
+def _quality_items():
+    levels = BY_PATH["quality.level"].key["choices"] if "quality.level" in BY_PATH else ()
+    return [(choice["word"], _spoken(choice["word"]), "", number) for number, choice in enumerate(levels)] + [
+        (CUSTOM, "Custom budget", "The cheapest settings within an error, or the most accurate within a time", len(levels))]
+
+
+def _budget_switches():
+    return [BY_PATH[path].switch for path in BUDGETS]
+
+
+def _quality(settings):
+    words = [item[0] for item in _quality_items()]
+    quality = settings.quality
+    return words.index(CUSTOM if any(getattr(quality, switch) for switch in _budget_switches()) else quality.level)
+
+
+def _set_quality(settings, number):
+    word = _quality_items()[number][0]
+    error, time = _budget_switches()
+    setattr(settings.quality, error, word == CUSTOM)
+    setattr(settings.quality, time, False)
+    if word != CUSTOM:
+        settings.quality.level = word
+
+
 def _ocean_annotations():
     """What an ocean has in Blender alone. These don't need the module."""
     return {
@@ -281,6 +310,9 @@ def _ocean_annotations():
             name="See Through", default=False, update=_touched,
             description="What is under the surface shows in Cycles, dimmed and coloured by the water: absorption and scattering "
                         "as a volume, which takes longer to render. Off, the water is opaque, with the same light from below"),
+        "quality_menu": EnumProperty(
+            name="Quality", items=_quality_items(), get=_quality, set=_set_quality, update=_touched,
+            description="How much time accuracy may take: a level, or a budget of error or of time that chooses the settings"),
         "viewport_percentage": IntProperty(
             name="Viewport", default=100, min=1, max=100, subtype="PERCENTAGE", update=_touched,
             description="Vertices a side while you work, as a share of what a render has"),

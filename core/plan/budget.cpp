@@ -91,7 +91,10 @@ class Chooser {
   private:
     template <class Holds>
     std::size_t first(const Holds& holds) const {
-        std::size_t low = 0, high = surfaces_.size();
+        // Coarse ones are looked at first: the finest take long to lay out.
+        std::size_t low = 0, high = 1;
+        while (high < surfaces_.size() && !holds(high - 1)) low = std::exchange(high, 2 * high);
+        high = std::min(high, surfaces_.size());
         while (low < high) {
             const std::size_t middle = (low + high) / 2;
             if (holds(middle))

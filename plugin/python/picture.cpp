@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/plan/budget.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/python/arrays.h"

@@ -222,6 +222,18 @@ std::vector<std::string> warnings_of(const Scene& scene) {
     return sea_warnings(*prepare(without_budget(kept)));
 }
 
+Scene settled_scene(const Scene& scene) {
+    require_valid(scene);
+    const Scene kept = scene;
+    std::shared_ptr<const PreparedScene> prepared;
+    {
+        const OthersMayRun others_may_run;
+        prepared = prepare(kept);
+    }
+    if (!prepared->holds_budget) throw py::value_error(prepared->budget + "; raise the budget");
+    return prepared->scene;
+}
+
 std::vector<std::string> problem_lines(const Scene& scene) {
     std::vector<std::string> lines;
     for (const Problem& problem : problems_of(scene)) lines.push_back(text_of(problem));
@@ -284,6 +296,11 @@ void add_scene(py::module_& module) {
         .def(
             "significant_height_m", &significant_height_of,
             "4 times the root of the variance of the surface's height [m]: of its spectrum, without building a Sea.")
+        .def(
+            "settled", &settled_scene,
+            "A copy with the keys of the mesh that the budget asks for (quality.max_error, quality.frame_ms), and without "
+            "the budget; without one as it is. ValueError where nothing holds the budget, ShotError for a scene that can't "
+            "be.")
         .def("__copy__", [](const Scene& self) { return std::make_shared<Scene>(self); })
         .def(
             "__deepcopy__", [](const Scene& self, const py::dict&) { return std::make_shared<Scene>(self); },

@@ -42,6 +42,32 @@ def ends(key):
     return ("", "no such file.exr")
 
 
+with checking("one menu for quality: levels, and a budget that chooses the mesh"):
+    quality, settings = obj.pelagic.quality, obj.pelagic
+    kept = settings.viewport_percentage, settings.horizon
+    settings.viewport_percentage, settings.horizon = 100, False
+    items = [item.identifier for item in settings.bl_rna.properties["quality_menu"].enum_items]
+    for word in items:
+        settings.quality_menu = word
+        assert settings.quality_menu == word, (settings.quality_menu, word)
+        has_budget = ocean.scene_of(obj, scene).quality.max_error is not None
+        assert has_budget == (word == properties.CUSTOM), word
+    sides = []
+    for error in (0.05, 0.02):
+        settings.quality_menu, quality.max_error = properties.CUSTOM, error
+        assert settle() is None, settle()
+        side = ocean.scene_of(obj, scene).settled().surface.resolution
+        assert len(obj.data.vertices) == (side + 1) ** 2, (len(obj.data.vertices), side)
+        sides.append(side)
+    assert sides[0] < sides[1], sides
+    quality.max_error = 1e-6
+    assert "raise the budget" in (settle() or ""), settle()
+    settings.quality_menu = "final"
+    assert settle() is None and ocean.scene_of(obj, scene).quality.max_error is None
+    assert len(obj.data.vertices) == (settings.surface.resolution + 1) ** 2
+    settings.viewport_percentage, settings.horizon = kept
+
+
 def words_of(path):
     return [choice["word"] for choice in properties.BY_PATH[path].key["choices"] if choice["built"]]
 

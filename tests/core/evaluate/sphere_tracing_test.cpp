@@ -301,24 +301,31 @@ TEST(SphereTracing, WhatRaysHaveSeenBeforeHelpsAndMisleadsNone) {
     std::printf("evaluations of a train: %zu, of rays that have seen the frame before %zu\n", without, with);
 }
 
-TEST(SphereTracing, IsTheSurfaceOfTheQuery) {
-    const Frame<float> frame = frame_of<float>(sea(60), {filtered(products(Position), kCell_m)}, 12.25);
-    const SphereTracing tracing(frame, kCell_m);
+// 2e-4 m is a thousandth of the shortest wave where a slope is 0.2.
+TEST(SphereTracing, IsTheSurfaceOfTheQueryAlsoFarAwayAndLate) {
     const glm::vec3 down(0.0f, 0.0f, -2.0f);
     const float tolerance_m = 1e-4f;
-    for (int i = 0; i < 100; ++i) {
-        const glm::dvec3 from_m(13.0 * i, -7.0 * i, 20.0);
-        double distance = 0.0;
-        tracing.trace({.count = 1, .origin_m = from_m, .direction = {&down}, .tolerance_m = {&tolerance_m}},
-                      {&distance});
-        const glm::vec2 rest_m(0.0f);
-        glm::vec3 position_m;
-        Results<float> results;
-        results.set(Position, {&position_m});
-        evaluate<float>(frame, 0, {.origin_m = {from_m.x, from_m.y}, .count = 1, .rest_m = {&rest_m}},
-                        results);
-        EXPECT_NEAR(20.0 - 2.0 * distance, static_cast<double>(position_m.z), 2e-4);
-    }
+    for (const double time_s : {12.25, 1e7 + 1.0 / 24.0})
+        for (const glm::dvec3 origin_m : {glm::dvec3(0.0), glm::dvec3(1e6 + 0.3, -1e6 + 0.07, 0.0)}) {
+            const Frame<float> frame =
+                frame_of<float>(sea(60), {filtered(products(Position), kCell_m)}, time_s);
+            const SphereTracing tracing(frame, kCell_m);
+            for (int i = 0; i < 100; ++i) {
+                const glm::dvec3 from_m = origin_m + glm::dvec3(13.0 * i, -7.0 * i, 20.0);
+                double distance = 0.0;
+                tracing.trace(
+                    {.count = 1, .origin_m = from_m, .direction = {&down}, .tolerance_m = {&tolerance_m}},
+                    {&distance});
+                const glm::vec2 rest_m(0.0f);
+                glm::vec3 position_m;
+                Results<float> results;
+                results.set(Position, {&position_m});
+                evaluate<float>(frame, 0, {.origin_m = {from_m.x, from_m.y}, .count = 1, .rest_m = {&rest_m}},
+                                results);
+                EXPECT_NEAR(20.0 - 2.0 * distance, static_cast<double>(position_m.z), 2e-4)
+                    << time_s << " s, " << origin_m.x << " m";
+            }
+        }
 }
 
 TEST(SphereTracing, AFlatSea) {

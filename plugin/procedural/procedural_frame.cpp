@@ -132,10 +132,12 @@ ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double cl
 
 void ShotFrame::set(double open_s, double close_s) {
     const auto accepts = [](double t_s) { return std::abs(t_s) <= Frame<float>::kLatest_s; };
-    if (!accepts(open_s) || !accepts(close_s) || !(open_s <= close_s))
+    if (!accepts(open_s) || !accepts(close_s) || !(open_s <= close_s) ||
+        !(close_s - open_s <= kLongestShutter_s))
         throw std::invalid_argument("a shutter from " + number_text(open_s) + " s to " +
                                     number_text(close_s) + " s: accepted: times within " +
-                                    number_text(Frame<float>::kLatest_s) + " s, in order");
+                                    number_text(Frame<float>::kLatest_s) + " s, in order, and open for " +
+                                    number_text(kLongestShutter_s) + " s of the sea at most");
     of_->arena->execute([&] {
         frame_.set(0.5 * (open_s + close_s));
         if (query_)

@@ -23,6 +23,10 @@ namespace pelagic::procedural {
 // The side of a mesh's cells on the screen where nobody says another.
 inline constexpr double kCell_px = 2.0;
 
+// Points move in straight lines while the shutter is open. Within a longer one they would go further than waves do, and a ray would
+// have to look for them everywhere: 0.8 s for the first rays of a second, and 15 s of two.
+inline constexpr double kLongestShutter_s = 1.0;
+
 // What a sea is asked for.
 struct SeaOptions {
     double finest_cell_m = 0.0, finest_pixel_m = 0.0;  // 0: as the shot's camera needs it

@@ -20,8 +20,6 @@ namespace {
 constexpr std::size_t kMostCalls = 8, kMostPoints = 6;
 // A mesh takes time, and a larger one goes no other way.
 constexpr std::size_t kMostMeshPoints = 20000;
-// Within longer ones points go so far along their straight ways that a ray has to look for them everywhere: minutes.
-constexpr double kLongestShutter_s = 1.0;
 constexpr float kUntouched = -77.25f;
 
 // A structure in memory of exactly the size that it says it has: a sanitizer sees who reads or writes beyond.
@@ -252,10 +250,15 @@ class Calls {
         expect_answer(status, error_);
         hold((status == PELAGIC_OK) == (made != nullptr), "a frame, or a reason");
         if (!made) return;
-        hold(std::isfinite(open_s) && std::isfinite(close_s), "a shutter that is taken is finite");
-        if (close_s - open_s > kLongestShutter_s) return pelagic_frame_release(made);
+        hold_shutter(open_s, close_s);
         pelagic_frame_release(frame_);
         frame_ = made;
+    }
+
+    static void hold_shutter(double open_s, double close_s) {
+        hold(std::isfinite(open_s) && std::isfinite(close_s), "a shutter that is taken is finite");
+        hold(close_s >= open_s && close_s - open_s <= 1.0,
+             "a shutter that is taken is open for a second at most");
     }
 
     void set() {
@@ -265,8 +268,7 @@ class Calls {
         expect_answer(status, error_);
         hold(status == PELAGIC_OK || is_refusal(status), "a frame that is there can be set", error_.message);
         if (status != PELAGIC_OK) return;
-        hold(std::isfinite(open_s) && std::isfinite(close_s), "a shutter that is taken is finite");
-        if (close_s - open_s > kLongestShutter_s) pelagic_frame_set(of, close_s, close_s, nullptr);
+        hold_shutter(open_s, close_s);
     }
 
     void bounds() {

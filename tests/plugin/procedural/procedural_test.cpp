@@ -395,6 +395,21 @@ TEST(Procedural, NonsenseIsRefusedWithASentence) {
     EXPECT_EQ(pelagic_evaluate(frame.get(), &points, &values, nullptr), PELAGIC_OK);
 }
 
+// Rays would take minutes within a longer one.
+TEST(Procedural, AShutterIsOpenForASecondAtMost) {
+    const SeaHandle sea = open_text(kShot);
+    const FrameHandle frame = frame_of(sea, 3.0, 4.0);
+    pelagic_frame* no_frame = nullptr;
+    pelagic_error error;
+    for (const double close_s : {std::nextafter(4.0, 5.0), 13.0, 1e11}) {
+        EXPECT_EQ(pelagic_frame_create(sea.get(), 3.0, close_s, &no_frame, &error), PELAGIC_INVALID_ARGUMENT);
+        EXPECT_NE(std::string(error.message).find("open for 1 s of the sea at most"), std::string::npos)
+            << error.message;
+        EXPECT_EQ(no_frame, nullptr);
+        EXPECT_EQ(pelagic_frame_set(frame.get(), 3.0, close_s, &error), PELAGIC_INVALID_ARGUMENT);
+    }
+}
+
 TEST(Procedural, AShotThatIsRefusedSaysWhere) {
     pelagic_source source = PELAGIC_INIT(pelagic_source);
     const std::string text = "[sea]\nwind_speed_mps = -3.0\n";

@@ -159,7 +159,7 @@ PELAGIC_API pelagic_status pelagic_shot_camera(const pelagic_sea* sea, double fr
 
 /* ---- A frame */
 
-/* The sea from open_s to close_s; the same twice: a moment. Runs the frame's transforms: pelagic_frame_set() again into the
+/* The sea from open_s to close_s, no more than a second later; the same twice: a moment. Runs the frame's transforms: pelagic_frame_set() again into the
  * same memory. */
 PELAGIC_API pelagic_status pelagic_frame_create(const pelagic_sea* sea, double open_s, double close_s,
                                                 pelagic_frame** frame, pelagic_error* error);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/base/buffer.h"
+#include "core/waves/planning.h"
 #include "core/waves/wisdom.h"
 
 namespace pelagic {
@@ -26,6 +27,29 @@ std::mutex& planner() {
                        [] { planner_of_process().unlock(); });
     });
     return planner_of_process();
+}
+
+// Guarded by the planner's mutex.
+Planning planning = Planning::Recorded;
+
+unsigned effort() {
+    switch (planning) {
+        case Planning::Measure:
+            return FFTW_MEASURE;
+        case Planning::Patient:
+            return FFTW_PATIENT;
+        case Planning::Recorded:
+        case Planning::Estimate:
+            break;
+    }
+    return FFTW_ESTIMATE;
+}
+
+void plan_by(Planning wanted) {
+    const std::lock_guard lock(planner());
+    fftwf_forget_wisdom();
+    fftw_forget_wisdom();
+    planning = wanted;
 }
 
 template <class T>
@@ -65,6 +89,13 @@ struct LineTransform<T>::Plan {
     }
 };
 
+PlannedBy::PlannedBy(Planning planning) {
+    plan_by(planning);
+}
+PlannedBy::~PlannedBy() {
+    plan_by(Planning::Recorded);
+}
+
 // FFTW's split-complex transforms have sign −1. Exchanging real and imaginary parts of input and output gives
 // sign +1.
 template <class T>
@@ -78,9 +109,9 @@ LineTransform<T>::LineTransform(int n) : n_(n) {
         // Each time: the host may have called fftw_forget_wisdom. Lengths without wisdom use FFTW's estimate,
         // which is good for single 1-D transforms out of place: within a fifth of its longest search. (For
         // 2-D, strided or in-place transforms estimates are up to ten times slower.)
-        Fftw<T>::remember();
+        if (planning == Planning::Recorded) Fftw<T>::remember();
         plan->handle = Fftw<T>::plan(1, &line, 0, nullptr, from.data() + stride, from.data(),
-                                     to.data() + stride, to.data(), FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
+                                     to.data() + stride, to.data(), effort() | FFTW_PRESERVE_INPUT);
     }
     if (!plan->handle) throw std::runtime_error("no transform for size " + std::to_string(n));
     plan_ = std::move(plan);

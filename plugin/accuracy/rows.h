@@ -24,6 +24,11 @@ Trials whitecap_moments(const Scene& shot);
 Trials near_far(const Scene& shot);
 Trials camera_grid(const Scene& shot);
 
+// Of cages, rays and transforms.
+Trials cage_levels(const Scene& shot);
+Trials ray_tolerance(const Scene& shot);
+Trials planning_modes(const Scene& shot);
+
 // Of pictures through the shot's camera.
 Trials sky_lookups(const Scene& shot);
 Trials fresnel_terms(const Scene& shot);

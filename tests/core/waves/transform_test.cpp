@@ -7,9 +7,11 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <string>
 
 #include "core/base/buffer.h"
 #include "core/base/random.h"
+#include "core/waves/planning.h"
 #include "core/waves/wisdom.h"
 
 namespace pelagic {
@@ -47,6 +49,26 @@ TEST(LineTransform, IsTheSumWithAPositiveExponent) {
 // A different build of FFTW may reject the recorded plans. Then this fails, and only speed is lost.
 TEST(LineTransform, RecordedPlansAreThoseOfThisFftw) {
     EXPECT_EQ(fftwf_import_wisdom_from_string(kSingleLineWisdom), 1);
+}
+
+// So that a comparison changes nobody's bits.
+TEST(LineTransform, PlansThatAreFoundOtherwiseAreForgotten) {
+    const auto known = [] {
+        char* text = fftwf_export_wisdom_to_string();
+        const std::string wisdom(text);
+        fftwf_free(text);
+        return wisdom;
+    };
+    fftwf_forget_wisdom();
+    const std::string nothing = known();
+    for (const Planning planning : {Planning::Estimate, Planning::Measure, Planning::Patient}) {
+        const PlannedBy planned(planning);
+        expect_the_sum<float>(540);
+        EXPECT_EQ(known() == nothing, planning == Planning::Estimate);
+    }
+    EXPECT_EQ(known(), nothing);
+    const LineTransform<float> transform(540);
+    EXPECT_NE(known(), nothing) << "the recorded plans";
 }
 
 TEST(GridLayout, KeepsRowsApartAndAligned) {

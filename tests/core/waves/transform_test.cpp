@@ -61,10 +61,10 @@ TEST(LineTransform, PlansThatAreFoundOtherwiseAreForgotten) {
     };
     fftwf_forget_wisdom();
     const std::string nothing = known();
-    for (const Planning planning : {Planning::Estimate, Planning::Measure, Planning::Patient}) {
+    for (const Planning planning : {Planning::Estimate, Planning::Measure}) {
         const PlannedBy planned(planning);
         expect_the_sum<float>(540);
-        EXPECT_EQ(known() == nothing, planning == Planning::Estimate);
+        EXPECT_NE(known(), nothing);
     }
     EXPECT_EQ(known(), nothing);
     const LineTransform<float> transform(540);

@@ -15,9 +15,10 @@
 namespace pelagic {
 namespace {
 
-// Squares are halved until they are sampled: this many cells a side of this size [m].
+// Squares are halved until they are sampled: this many cells a side of this size [m], or, of a footprint that lets only longer waves
+// through, this part of it: forty cells to the shortest wave. Where waves are choppy beyond measure they fold in less.
 constexpr int kCells = 32;
-constexpr double kSpacing_m = 0.02;
+constexpr double kFinestSpacing_m = 0.02, kSpacingOfCell = 0.05;
 
 // A place at rest, and where it is displaced to, both relative to the point's place.
 struct Node {
@@ -32,6 +33,7 @@ class Surroundings {
     Surroundings(const Frame<T>& frame, int query, glm::dvec2 place_m, double cell_m)
         : place_m_(place_m),
           cell_m_(static_cast<T>(cell_m)),
+          spacing_m_(std::max(kFinestSpacing_m, kSpacingOfCell * cell_m)),
           bounds_(frame, query, {.finest_m = cell_m, .coarsest_m = cell_m}),
           query_(frame, query, products(Product::Position), place_m) {}
 
@@ -39,7 +41,7 @@ class Surroundings {
         const DisplacementBounds all = bounds_.everywhere();
         highest_m_ = z_m;
         if (!(all.z.hi > z_m)) return std::nullopt;
-        const double half_m = std::max({all.reach_m().x, all.reach_m().y, kSpacing_m});
+        const double half_m = std::max({all.reach_m().x, all.reach_m().y, spacing_m_});
         search({glm::dvec2(-half_m), glm::dvec2(half_m)});
         if (highest_m_ > z_m) return highest_m_;
         return std::nullopt;
@@ -55,7 +57,7 @@ class Surroundings {
             if (square.min_m[axis] + reach[axis].lo > 0.0 || square.max_m[axis] + reach[axis].hi < 0.0)
                 return;
         if (!(bounds.z.hi > highest_m_)) return;
-        if (square.max_m.x - square.min_m.x <= kCells * kSpacing_m) return sample(square);
+        if (square.max_m.x - square.min_m.x <= kCells * spacing_m_) return sample(square);
         const glm::dvec2 middle = 0.5 * (square.min_m + square.max_m);
         for (const glm::dvec2 corner : {square.min_m, glm::dvec2(square.max_m.x, square.min_m.y),
                                         glm::dvec2(square.min_m.x, square.max_m.y), square.max_m})
@@ -127,6 +129,7 @@ class Surroundings {
 
     glm::dvec2 place_m_;
     T cell_m_;
+    double spacing_m_;
     FrameBounds<T> bounds_;
     PreparedQuery<T> query_;
     std::vector<glm::vec<2, T>> rest_m_;

@@ -37,7 +37,10 @@ inline SlopeVariances<T> carried_slopes(SlopeVariances<T> rest, T dxx, T dyy, T 
     const T by = T(1) / maximum(magnitude(jacobian), T(kLeastJacobian));
     // M⁻ᵀ = (a, −b; −c, d).
     const T a = (T(1) + dyy) * by, b = dyx * by, c = dxy * by, d = (T(1) + dxx) * by;
-    return SlopeVariances<T>(a * a * rest.xx - T(2) * a * b * rest.xy + b * b * rest.yy,
-                             c * c * rest.xx - T(2) * c * d * rest.xy + d * d * rest.yy,
-                             (a * d + b * c) * rest.xy - a * c * rest.xx - b * d * rest.yy);
+    const T xx = a * a * rest.xx - T(2) * a * b * rest.xy + b * b * rest.yy,
+            yy = c * c * rest.xx - T(2) * c * d * rest.xy + d * d * rest.yy,
+            xy = (a * d + b * c) * rest.xy - a * c * rest.xx - b * d * rest.yy;
+    // Where a crest is compressed from one side these are small differences of large terms: rounding leaves them possible.
+    const T bound = square_root(maximum(xx, T(0)) * maximum(yy, T(0)));
+    return SlopeVariances<T>(maximum(xx, T(0)), maximum(yy, T(0)), minimum(maximum(xy, -bound), bound));
 }

@@ -28,6 +28,11 @@ const std::array kEffectTable = std::to_array<EffectRow>({
      "effects.foam_decay_s is 0, or there are no whitecaps",
      [](Scene& scene) { scene.effects.foam_decay_s = 0.0; }, [] { return FieldSet(); },
      [] { return ProductSet(); }, kNothing},
+    {"foam structure",
+     [](const Scene& scene) { return scene.effects.whitecaps && scene.effects.foam_structure > 0.0; },
+     "effects.foam_structure is 0, or there are no whitecaps",
+     [](Scene& scene) { scene.effects.foam_structure = 0.0; }, [] { return FieldSet(); },
+     [] { return ProductSet(); }, kNothing},
     {"spray", [](const Scene& scene) { return scene.effects.spray && scene.effects.whitecaps; },
      "effects.spray is false, or there are no whitecaps",
      [](Scene& scene) {

@@ -1,6 +1,8 @@
 // What accuracy costs: each approximation of the program with its knob swept over a shot, the error against a named
 // reference and the time, both measured in one run.
 //
+// Rows of parts say what each effect that is on costs, by the shot without it.
+//
 // A new approximation is a row of approximation_table() with a function that lays out its trials. Timing, the table, the
 // page and the ages of what was recorded follow from the row.
 #pragma once
@@ -17,6 +19,10 @@
 
 namespace pelagic {
 
+struct PictureBytes {
+    std::string exr, png;
+};
+
 // One setting of a knob, ready to be timed.
 struct Trial {
     std::string setting;    // "cubic, 2 nodes a sample"
@@ -26,6 +32,9 @@ struct Trial {
     // itself.
     std::function<std::vector<double>()> errors;
     std::size_t bytes = 0;  // of what the row's `bytes` says
+    int transforms = 0;     // a frame, in rows of parts
+    // The picture that was made last, as an EXR and as a PNG; empty where there is none.
+    std::function<PictureBytes()> picture{};
 };
 
 struct Trials {
@@ -36,7 +45,19 @@ struct Trials {
 
 struct SweepWatch {
     std::function<void(const std::string& row, const std::string& setting)> progress{};  // may be empty
+    // Each setting's picture, by the setting's place in its row, from 1; may be empty.
+    std::function<void(const std::string& row, std::size_t setting, const PictureBytes& picture)> picture{};
     const std::atomic<bool>* cancel = nullptr;
+};
+
+// Of rows of parts: the whole shot, the same again, which shows how far two times of the same differ, the shot without each
+// of its parts ("without whitecaps"), and what is left without all of them.
+inline constexpr const char *kWholeShot = "the shot", *kShotAgain = "the shot again", *kWithout = "without ",
+                            *kBareShot = "without all of these";
+
+enum class RowKind {
+    Sweep,  // settings of a knob, each with its error
+    Parts,  // what is on in the shot, each with its price
 };
 
 struct ApproximationRow {
@@ -44,11 +65,12 @@ struct ApproximationRow {
     const char* title;                // "Lookups of the sky"
     const char* knob;                 // how a user sets it; or why nobody does
     const char* reference;            // what errors are against
-    std::vector<const char*> errors;  // what they are, with their units; the first one is drawn
+    std::vector<const char*> errors;  // what they are, with their units; of a sweep the first one is drawn
     const char* time;                 // what is timed
     const char* bytes;                // what bytes are of; null: none
     const char* lesson;               // what to learn from it, in a sentence
     Trials (*lay_out)(const Scene& shot);
+    RowKind kind = RowKind::Sweep;
 };
 
 std::span<const ApproximationRow> approximation_table();
@@ -59,6 +81,7 @@ struct MeasuredSetting {
     std::vector<double> errors;
     double ms = std::numeric_limits<double>::quiet_NaN();
     std::size_t bytes = 0;
+    int transforms = 0;
 };
 
 // A row as it was measured, now or in an earlier run.
@@ -78,9 +101,12 @@ class SweepCancelled : public std::exception {
 };
 
 // Sweeps one row: each trial once to warm up and for its errors, then all in turn, `repeats` times, so that a machine whose
-// speed drifts slows all alike; times are medians. The shot must be valid. Throws SweepCancelled, std::bad_alloc, and
+// speed drifts slows all alike; times are medians. Those of a part are the whole's less the median of their differences, of
+// kPartRepeats times as many and more where they are quick, since the differences are small. The shot must be valid. Throws SweepCancelled, std::bad_alloc, and
 // std::logic_error for errors that aren't finite.
 MeasuredRow sweep(const ApproximationRow& row, const Scene& shot, int repeats, const SweepWatch& watch);
+
+inline constexpr int kPartRepeats = 3;
 
 // The time of day, as MeasuredRow::when has it.
 std::string utc_now();

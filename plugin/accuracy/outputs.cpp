@@ -101,7 +101,7 @@ Trials mesh_spacing(const Scene& shot) {
                                                       at.spacing_m, at);
         trials.trials.push_back(
             {.setting = std::to_string(quads) + " quads a side",
-             .is_shots = quads == shot.surface.resolution,
+             .is_shots = shot.surface.kind == SurfaceKind::Patch && quads == shot.surface.resolution,
              .run = [sea] { sea->run(); },
              .errors =
                  [=, size_m = shot.surface.size_m] {

@@ -1,86 +1,21 @@
 // Sweeps of pictures through the shot's camera.
-#include <algorithm>
-#include <cmath>
 #include <initializer_list>
-#include <memory>
 #include <string>
 #include <utility>
 
 #include "core/plan/taps.h"
 #include "core/scene/text.h"
+#include "plugin/accuracy/picture_trials.h"
 #include "plugin/accuracy/rows.h"
-#include "plugin/accuracy/sea_answers.h"
-#include "plugin/light/light.h"
-#include "plugin/render/picture_budget.h"
-#include "plugin/render/render.h"
 
 namespace pelagic::rows {
 namespace {
-
-// So small that the references take seconds.
-Scene small(Scene shot) {
-    constexpr int kWidest = 320;
-    const int width = std::min(kWidest, shot.camera.resolution.x);
-    const double shape = static_cast<double>(shot.camera.resolution.y) / shot.camera.resolution.x;
-    shot.camera.resolution = {width, std::clamp(static_cast<int>(std::lround(shape * width)), 1, 4 * width)};
-    return shot;
-}
-
-// A picture of the shot's middle frame, each run() anew.
-class SweepPicture {
-  public:
-    SweepPicture(const Scene& scene, const RenderOptions& options, const Sky& sky)
-        : frame_(middle_frame(scene)),
-          renderer_(std::make_unique<Renderer>(scene, options, sky, std::span(&frame_, 1))) {}
-    void run() { renderer_->render(frame_, picture_); }
-    const Picture& picture() const { return picture_; }
-    std::size_t bytes() const { return renderer_->plan().sea_bytes() + renderer_->plan().frame_bytes(); }
-
-  private:
-    int frame_;
-    std::unique_ptr<Renderer> renderer_;
-    Picture picture_;
-};
-
-std::vector<double> relative_errors(const Picture& picture, const Picture& reference) {
-    const RelativeError error = relative_error(picture, reference);
-    return {error.most, error.mean};
-}
-
-struct PictureSetting {
-    std::string name;
-    bool is_shots;
-    Scene scene;
-    RenderOptions options;
-};
-
-// The reference may be one of the settings.
-Trials against(const Scene& scene, const RenderOptions& options, std::vector<PictureSetting> settings) {
-    const Sky sky = make_sky(scene);  // the same for all
-    SweepPicture made(scene, options, sky);
-    made.run();
-    const auto reference = std::make_shared<const Picture>(made.picture());
-    Trials trials;
-    for (PictureSetting& setting : settings) {
-        const auto picture = std::make_shared<SweepPicture>(setting.scene, setting.options, sky);
-        trials.trials.push_back({.setting = std::move(setting.name),
-                                 .is_shots = setting.is_shots,
-                                 .run = [picture] { picture->run(); },
-                                 .errors = [=] { return relative_errors(picture->picture(), *reference); },
-                                 .bytes = picture->bytes()});
-    }
-    return trials;
-}
 
 constexpr int kReferenceSamples = 8;
 
 Knobs knobs_of_shot(const Scene& shot) {
     return make_plan(shot, {}).knobs;
 }
-
-}  // namespace
-
-namespace {
 
 struct LightSetting {
     const char* name;
@@ -90,7 +25,7 @@ struct LightSetting {
 
 // Against the integral of the exact term.
 Trials of_light(const Scene& shot, std::initializer_list<LightSetting> lights) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     const RenderOptions own = render_options(scene);
     RenderOptions exact = own;
     exact.samples = 1;
@@ -127,7 +62,7 @@ Trials fresnel_terms(const Scene& shot) {
 }
 
 Trials samples(const Scene& shot) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     const RenderOptions own = render_options(scene);
     RenderOptions exact = own;
     exact.samples = kReferenceSamples;
@@ -141,7 +76,7 @@ Trials samples(const Scene& shot) {
 }
 
 Trials grid_cells(const Scene& shot) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     RenderOptions options = render_options(scene);
     options.samples = 1;
     Scene exact = scene;
@@ -156,7 +91,7 @@ Trials grid_cells(const Scene& shot) {
 }
 
 Trials footprint_filter(const Scene& shot) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     RenderOptions exact = render_options(scene);
     exact.samples = kReferenceSamples;
     std::vector<PictureSetting> settings;
@@ -173,7 +108,7 @@ Trials footprint_filter(const Scene& shot) {
 }
 
 Trials picture_interpolation(const Scene& shot) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     const Knobs own = knobs_of_shot(scene);
     RenderOptions exact = render_options(scene);
     exact.samples = 1;
@@ -190,7 +125,7 @@ Trials picture_interpolation(const Scene& shot) {
 }
 
 Trials foam_structure(const Scene& shot) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     const RenderOptions own = render_options(scene);
     if (!own.lighting.whitecaps) return {{}, "has nothing to sweep: the shot has no whitecaps"};
     RenderOptions exact = own;
@@ -215,7 +150,7 @@ namespace {
 
 // A part of the light, and the picture without it.
 Trials with_and_without(const Scene& shot, bool LightingChoice::*part) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     RenderOptions with = render_options(scene);
     with.samples = 1;
     RenderOptions without = with;
@@ -234,7 +169,7 @@ Trials second_reflection(const Scene& shot) {
 }
 
 Trials masking(const Scene& shot) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     const RenderOptions own = render_options(scene);
     RenderOptions one = own;
     one.samples = 1;
@@ -256,7 +191,7 @@ Trials masking(const Scene& shot) {
 }
 
 Trials ellipses(const Scene& shot) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     RenderOptions exact = render_options(scene);
     exact.samples = kReferenceSamples;
     const Knobs own = knobs_of_shot(scene);
@@ -273,7 +208,7 @@ Trials ellipses(const Scene& shot) {
 }
 
 Trials foam_times(const Scene& shot) {
-    const Scene scene = small(shot);
+    const Scene scene = with_small_pictures(shot);
     const RenderOptions own = render_options(scene);
     if (!own.lighting.whitecaps || !(scene.effects.foam_decay_s > 0.0))
         return {{}, "has nothing to sweep: the shot's foam doesn't live"};

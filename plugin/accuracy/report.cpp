@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <optional>
@@ -32,11 +33,14 @@ std::string error_text(double error) {
     return std::abs(error) >= 1e-3 ? print("%.3g", error) : print("%.1e", error);
 }
 
-std::string bytes_of(std::size_t bytes) {
+std::string bytes_of(std::int64_t bytes) {
     if (bytes == 0) return "";
     const auto size = static_cast<double>(bytes);
-    if (size < 1024.0 * 1024.0) return print("%.0f KiB", size / 1024.0);
+    if (std::abs(size) < 1024.0 * 1024.0) return print("%.0f KiB", size / 1024.0);
     return print("%.1f MiB", size / (1024.0 * 1024.0));
+}
+std::string bytes_of(std::size_t bytes) {
+    return bytes_of(static_cast<std::int64_t>(bytes));
 }
 
 std::time_t time_of(std::string_view utc) {
@@ -51,6 +55,111 @@ std::string age_text(const MeasuredRow& row, std::string_view now, const std::st
     const double days = std::difftime(time_of(now), time_of(row.when)) / 86400.0;
     std::string text = days < 0.5 ? "measured today" : print("measured %.0f days ago", std::ceil(days));
     if (row.shot != shot) text += ", of the shot as it was then";
+    return text;
+}
+
+// A line of a row of parts: the price of one, or a sum.
+struct Price {
+    std::string name;
+    double ms = 0.0;
+    int transforms = 0;
+    std::int64_t bytes = 0;
+    std::vector<double> errors;  // of the shot without the part; none of a sum
+    bool is_part = false;
+};
+
+Price price_of(const std::string& name, const MeasuredSetting& setting) {
+    return {name, setting.ms, setting.transforms, static_cast<std::int64_t>(setting.bytes), {}};
+}
+
+constexpr const char* kRest = "the rest";
+
+// The parts, the dearest first; what is left without them; what these add up to; the whole; and the same again less the
+// whole, which is how exact all this is.
+std::vector<Price> prices_of(const MeasuredRow& row) {
+    const Price whole = price_of(kWholeShot, row.settings.front()),
+                rest = price_of(kRest, row.settings.back());
+    Price sum = rest, again;
+    sum.name = "parts and rest together";
+    std::vector<Price> prices;
+    for (auto setting = row.settings.begin() + 1; setting + 1 < row.settings.end(); ++setting) {
+        const Price without = price_of("", *setting);
+        Price part{.name = setting->setting,
+                   .ms = whole.ms - without.ms,
+                   .transforms = whole.transforms - without.transforms,
+                   .bytes = whole.bytes - without.bytes,
+                   .errors = setting->errors,
+                   .is_part = true};
+        if (setting->setting == kShotAgain) {
+            again = {.name = "the shot less the same again", .ms = part.ms, .errors = {}};
+            continue;
+        }
+        part.name.erase(0, std::string_view(kWithout).size());
+        sum.ms += part.ms;
+        sum.transforms += part.transforms;
+        sum.bytes += part.bytes;
+        prices.push_back(std::move(part));
+    }
+    std::stable_sort(prices.begin(), prices.end(),
+                     [](const Price& a, const Price& b) { return a.ms > b.ms; });
+    for (const Price& last : {rest, sum, whole, again}) prices.push_back(last);
+    return prices;
+}
+
+// Whether a row of parts has all its lines: a table that was cut hasn't.
+bool is_complete(const ApproximationRow& row, const MeasuredRow& measured) {
+    return row.kind != RowKind::Parts || !measured.why_none.empty() ||
+           (measured.settings.size() >= 3 && measured.settings[0].setting == kWholeShot &&
+            measured.settings[1].setting == kShotAgain && measured.settings.back().setting == kBareShot);
+}
+
+int width_of(const std::vector<std::string>& names) {
+    std::size_t widest = 7;
+    for (const std::string& name : names) widest = std::max(widest, name.size());
+    return static_cast<int>(widest);
+}
+
+// In that many columns; "×" and "²" take more bytes than columns.
+std::string padded(const std::string& text, int columns) {
+    const auto wide = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) == 0x80; });
+    return print("%-*s", columns + static_cast<int>(wide), text.c_str());
+}
+
+std::string text_of_sweep(const ApproximationRow& row, const MeasuredRow& measured) {
+    std::vector<std::string> names;
+    for (const MeasuredSetting& setting : measured.settings) names.push_back(setting.setting);
+    const int width = width_of(names);
+    std::string text = print("    %-*s %10s", width, "setting", "ms");
+    for (std::size_t e = 0; e < row.errors.size(); ++e) text += print(" %9s %zu", "error", e + 1);
+    text += row.bytes ? "      bytes\n" : "\n";
+    for (const MeasuredSetting& setting : measured.settings) {
+        text += (setting.is_shots ? "  * " : "    ") + padded(setting.setting, width) +
+                print(" %10.3f", setting.ms);
+        for (const double error : setting.errors) text += print(" %11s", error_text(error).c_str());
+        if (row.bytes) text += print(" %10s", bytes_of(setting.bytes).c_str());
+        text += "\n";
+    }
+    return text;
+}
+
+std::string text_of_parts(const ApproximationRow& row, const MeasuredRow& measured) {
+    const std::vector<Price> prices = prices_of(measured);
+    std::vector<std::string> names;
+    for (const Price& price : prices) names.push_back(price.name);
+    const int width = width_of(names);
+    std::string text =
+        print("    %-*s %10s %11s %10s %10s", width, "part", "ms", "of the shot", "transforms", "bytes");
+    for (std::size_t e = 0; e < row.errors.size(); ++e) text += print(" %9s %zu", "error", e + 1);
+    text += '\n';
+    const double whole_ms = measured.settings.front().ms;
+    for (const Price& price : prices) {
+        if (price.name == kRest) text += '\n';
+        text += "    " + padded(price.name, width) +
+                print(" %10.3f %9.1f %% %10d %10s", price.ms, 100.0 * price.ms / whole_ms, price.transforms,
+                      price.bytes == 0 ? "0" : bytes_of(price.bytes).c_str());
+        for (const double error : price.errors) text += print(" %11s", error_text(error).c_str());
+        text += '\n';
+    }
     return text;
 }
 
@@ -69,23 +178,7 @@ std::string text_report(const std::vector<MeasuredRow>& rows, std::string_view n
         for (std::size_t e = 0; e < row.errors.size(); ++e)
             text += "  error " + std::to_string(e + 1) + "    " + row.errors[e] + "\n";
         text += "  " + age_text(measured, now, shot) + ", " + measured.machine + "\n\n";
-        std::size_t widest = 7;
-        for (const MeasuredSetting& setting : measured.settings)
-            widest = std::max(widest, setting.setting.size());
-        const int width = static_cast<int>(widest);
-        text += print("    %-*s %10s", width, "setting", "ms");
-        for (std::size_t e = 0; e < row.errors.size(); ++e) text += print(" %9s %zu", "error", e + 1);
-        text += row.bytes ? "      bytes\n" : "\n";
-        for (const MeasuredSetting& setting : measured.settings) {
-            // "×" and "²" take more bytes than columns.
-            const auto wide = std::count_if(setting.setting.begin(), setting.setting.end(),
-                                            [](char c) { return (c & 0xc0) == 0x80; });
-            text += print("  %s %-*s %10.3f", setting.is_shots ? "*" : " ", width + static_cast<int>(wide),
-                          setting.setting.c_str(), setting.ms);
-            for (const double error : setting.errors) text += print(" %11s", error_text(error).c_str());
-            if (row.bytes) text += print(" %10s", bytes_of(setting.bytes).c_str());
-            text += "\n";
-        }
+        text += row.kind == RowKind::Parts ? text_of_parts(row, measured) : text_of_sweep(row, measured);
         text += std::string("\n  ") + row.lesson + "\n\n";
     }
     return text + "* the shot's own setting\n";
@@ -97,7 +190,7 @@ namespace {
 
 constexpr std::size_t kErrors = 3;
 constexpr std::string_view kNames =
-    "row,shot,when,machine,setting,is_shots,ms,bytes,error_1,error_2,error_3,why_none";
+    "row,shot,when,machine,setting,is_shots,ms,bytes,transforms,error_1,error_2,error_3,why_none";
 
 std::string quoted(std::string_view field) {
     std::string text = "\"";
@@ -134,8 +227,8 @@ Number number_of(const std::string& field) {
 }
 
 void add_line(std::vector<MeasuredRow>& rows, const std::vector<std::string>& fields) {
-    if (fields.size() != 12)
-        throw std::invalid_argument("it has " + std::to_string(fields.size()) + " fields, not 12");
+    if (fields.size() != 13)
+        throw std::invalid_argument("it has " + std::to_string(fields.size()) + " fields, not 13");
     const auto table = approximation_table();
     const auto known = std::find_if(table.begin(), table.end(),
                                     [&](const ApproximationRow& row) { return fields[0] == row.name; });
@@ -143,15 +236,16 @@ void add_line(std::vector<MeasuredRow>& rows, const std::vector<std::string>& fi
     if (rows.empty() || rows.back().name != fields[0])
         rows.push_back(
             {.name = fields[0], .shot = fields[1], .when = fields[2], .machine = fields[3], .settings = {}});
-    rows.back().why_none = fields[11];
-    if (!fields[11].empty()) return;
+    rows.back().why_none = fields[12];
+    if (!fields[12].empty()) return;
     MeasuredSetting setting{.setting = fields[4],
                             .is_shots = fields[5] == "1",
                             .errors = {},
                             .ms = number_of<double>(fields[6]),
-                            .bytes = number_of<std::size_t>(fields[7])};
+                            .bytes = number_of<std::size_t>(fields[7]),
+                            .transforms = number_of<int>(fields[8])};
     for (std::size_t e = 0; e < known->errors.size(); ++e)
-        setting.errors.push_back(number_of<double>(fields[8 + e]));
+        setting.errors.push_back(number_of<double>(fields[9 + e]));
     rows.back().settings.push_back(std::move(setting));
 }
 
@@ -162,10 +256,11 @@ std::string csv_report(const std::vector<MeasuredRow>& rows) {
     for (const MeasuredRow& row : rows) {
         const std::string begin = quoted(row.name) + ',' + quoted(row.shot) + ',' + quoted(row.when) + ',' +
                                   quoted(row.machine) + ',';
-        if (!row.why_none.empty()) text += begin + ",,,,,,," + quoted(row.why_none) + "\r\n";
+        if (!row.why_none.empty()) text += begin + ",,,,,,,," + quoted(row.why_none) + "\r\n";
         for (const MeasuredSetting& setting : row.settings) {
             text += begin + quoted(setting.setting) + (setting.is_shots ? ",1," : ",0,") +
-                    number_text(setting.ms) + ',' + std::to_string(setting.bytes);
+                    number_text(setting.ms) + ',' + std::to_string(setting.bytes) + ',' +
+                    std::to_string(setting.transforms);
             for (std::size_t e = 0; e < kErrors; ++e)
                 text += ',' + (e < setting.errors.size() ? number_text(setting.errors[e]) : std::string());
             text += ",\r\n";
@@ -199,6 +294,7 @@ std::vector<MeasuredRow> read_csv_report(std::string_view text) {
         }
     }
     if (number == 0) throw std::invalid_argument("it is empty");
+    std::erase_if(rows, [](const MeasuredRow& row) { return !is_complete(row_of(row), row); });
     return rows;
 }
 
@@ -319,6 +415,71 @@ std::string plot(const ApproximationRow& row, const MeasuredRow& measured) {
     return svg + "</svg>\n";
 }
 
+// Of a row of parts: a bar for each, and for what they add up to.
+std::string bars(const ApproximationRow& row, const MeasuredRow& measured) {
+    constexpr double kLine = 22.0, kNameWidth = 210.0, kNumberWidth = 80.0;
+    const std::vector<Price> prices = prices_of(measured);
+    double longest = 1e-12;
+    for (const Price& price : prices) longest = std::max(longest, price.ms);
+    const double height = kTop + kLine * static_cast<double>(prices.size() - 1) + kBottom;
+    std::string svg = print("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\">\n<title>", kWidth, height) +
+                      escaped(row.title) + ": time</title>\n";
+    double y = kTop;
+    for (std::size_t p = 0; p + 1 < prices.size(); ++p) {
+        const Price& price = prices[p];
+        const double length = std::max(price.ms, 0.0) / longest * (kWidth - kNameWidth - kNumberWidth);
+        svg += print("<text class=\"label\" x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">", kNameWidth - 8.0,
+                     y + 0.68 * kLine) +
+               escaped(price.name) + "</text>";
+        svg += print("<rect class=\"%s\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>",
+                     price.is_part ? "point" : "own", kNameWidth, y + 3.0, length, kLine - 6.0);
+        svg += print("<text class=\"label\" x=\"%.1f\" y=\"%.1f\">%.1f ms</text>\n",
+                     kNameWidth + length + 6.0, y + 0.68 * kLine, price.ms);
+        y += kLine;
+    }
+    svg += print("<text class=\"axis\" x=\"%.1f\" y=\"%.1f\">ms: ", 8.0, y + 20.0) + escaped(row.time) +
+           "</text>\n";
+    return svg + "</svg>\n";
+}
+
+std::string drawing(const ApproximationRow& row, const MeasuredRow& measured) {
+    return row.kind == RowKind::Parts ? bars(row, measured) : plot(row, measured);
+}
+
+std::string page_table(const ApproximationRow& row, const MeasuredRow& measured) {
+    const bool is_of_parts = row.kind == RowKind::Parts;
+    const auto head = [](const std::string& text) { return "<th class=\"number\">" + text + "</th>"; };
+    const auto cell = [](const std::string& text) { return "<td class=\"number\">" + text + "</td>"; };
+    std::string table =
+        std::string("<table><thead><tr><th>") + (is_of_parts ? "Part" : "Setting") + "</th>" + head("ms");
+    if (is_of_parts) table += head("of the shot") + head("transforms") + head(escaped(row.bytes));
+    for (const char* error : row.errors) table += head(escaped(error));
+    if (!is_of_parts && row.bytes) table += head(escaped(row.bytes));
+    table += "</tr></thead><tbody>\n";
+    const auto begin = [&](bool is_bold, const std::string& name) {
+        table += (is_bold ? "<tr class=\"own\"><td>" : "<tr><td>") + escaped(name) + "</td>";
+    };
+    if (is_of_parts)
+        for (const Price& price : prices_of(measured)) {
+            begin(!price.is_part, price.name);
+            table += cell(print("%.3f", price.ms)) +
+                     cell(print("%.1f %%", 100.0 * price.ms / measured.settings.front().ms)) +
+                     cell(print("%d", price.transforms)) +
+                     cell(price.bytes == 0 ? "0" : bytes_of(price.bytes));
+            for (const double error : price.errors) table += cell(error_text(error));
+            table += "</tr>\n";
+        }
+    else
+        for (const MeasuredSetting& setting : measured.settings) {
+            begin(setting.is_shots, setting.setting);
+            table += cell(print("%.3f", setting.ms));
+            for (const double error : setting.errors) table += cell(error_text(error));
+            if (row.bytes) table += cell(bytes_of(setting.bytes));
+            table += "</tr>\n";
+        }
+    return table + "</tbody></table>\n";
+}
+
 std::string setting_text(const MeasuredSetting& setting) {
     return escaped(setting.setting) + ": " + error_text(setting.errors[0]) + ", " +
            print("%.3g ms", setting.ms);
@@ -329,6 +490,15 @@ std::string summary_line(const ApproximationRow& row, const MeasuredRow& measure
         "<tr><td><a href=\"#" + std::string(row.name) + "\">" + escaped(row.title) + "</a></td>";
     if (!measured.why_none.empty())
         return cells + "<td colspan=\"3\">" + escaped(measured.why_none) + "</td></tr>\n";
+    if (row.kind == RowKind::Parts) {
+        const Price dearest = prices_of(measured).front();
+        cells += "<td colspan=\"3\">" +
+                 (dearest.is_part ? "dearest: " + escaped(dearest.name) +
+                                        print(", %.1f of %.1f ms", dearest.ms, measured.settings.front().ms)
+                                  : std::string("nothing is on")) +
+                 "</td></tr>\n";
+        return cells;
+    }
     const auto own = std::find_if(measured.settings.begin(), measured.settings.end(),
                                   [](const MeasuredSetting& setting) { return setting.is_shots; });
     const auto front = pareto_front(measured);
@@ -343,7 +513,7 @@ constexpr const char* kStyle = R"css(
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 56rem; margin: 2rem auto; padding: 0 1rem; color: #1c2b36; }
 h1, h2 { line-height: 1.2; } h2 { margin-top: 3rem; border-top: 1px solid #ccd6dd; padding-top: 1.5rem; }
 table { border-collapse: collapse; margin: 1rem 0; width: 100%; } th, td { text-align: left; padding: .2rem .7rem .2rem 0; vertical-align: top; }
-td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; } tr.own td { font-weight: 600; }
+td.number { white-space: nowrap; } td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; } tr.own td { font-weight: 600; }
 tbody tr { border-top: 1px solid #e4eaee; } .old { color: #8a5a00; } .what { color: #4d6272; margin: .2rem 0; }
 svg { width: 100%; height: auto; }
 )css";
@@ -375,23 +545,12 @@ std::string html_report(const std::vector<MeasuredRow>& rows, std::string_view n
         }
         const bool is_old = measured.shot != shot;
         page += "<p>" + escaped(row.lesson) + "</p>\n<p class=\"what\">Knob: " + escaped(row.knob) +
-                ". Reference: " + escaped(row.reference) + ". Error drawn: " + escaped(row.errors[0]) +
+                ". Reference: " + escaped(row.reference) +
+                (row.kind == RowKind::Parts ? std::string()
+                                            : std::string(". Error drawn: ") + escaped(row.errors[0])) +
                 ".</p>\n<p class=\"what" + (is_old ? " old" : "") + "\">" +
                 escaped(age_text(measured, now, shot)) + ", " + escaped(measured.machine) + "</p>\n" +
-                plot(row, measured) + "<table><thead><tr><th>Setting</th><th class=\"number\">ms</th>";
-        for (const char* error : row.errors) page += "<th class=\"number\">" + escaped(error) + "</th>";
-        if (row.bytes) page += "<th class=\"number\">" + escaped(row.bytes) + "</th>";
-        page += "</tr></thead><tbody>\n";
-        for (const MeasuredSetting& setting : measured.settings) {
-            page += std::string(setting.is_shots ? "<tr class=\"own\"><td>" : "<tr><td>") +
-                    escaped(setting.setting) + "</td><td class=\"number\">" + print("%.3f", setting.ms) +
-                    "</td>";
-            for (const double error : setting.errors)
-                page += "<td class=\"number\">" + error_text(error) + "</td>";
-            if (row.bytes) page += "<td class=\"number\">" + bytes_of(setting.bytes) + "</td>";
-            page += "</tr>\n";
-        }
-        page += "</tbody></table>\n";
+                drawing(row, measured) + page_table(row, measured);
     }
     return page + "</body></html>\n";
 }
@@ -399,12 +558,14 @@ std::string html_report(const std::vector<MeasuredRow>& rows, std::string_view n
 std::string svg_report(const MeasuredRow& measured) {
     if (!measured.why_none.empty()) return {};
     const ApproximationRow& row = row_of(measured);
-    std::string svg = plot(row, measured);
+    std::string svg = drawing(row, measured);
     const std::size_t at = svg.find('>'), style = svg.find('\n', at) + 1;
-    svg.insert(style, std::string("<style>") + kPlotStyle +
-                          "</style><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" +
-                          print("<text class=\"axis\" x=\"%.1f\" y=\"11\">", kLeft) + escaped(row.title) +
-                          ": " + escaped(row.errors[0]) + "</text>\n");
+    svg.insert(style,
+               std::string("<style>") + kPlotStyle +
+                   "</style><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>" +
+                   print("<text class=\"axis\" x=\"%.1f\" y=\"11\">", kLeft) + escaped(row.title) +
+                   (row.kind == RowKind::Parts ? std::string() : std::string(": ") + escaped(row.errors[0])) +
+                   "</text>\n");
     return svg.insert(4, " xmlns=\"http://www.w3.org/2000/svg\"");
 }
 

@@ -43,4 +43,9 @@ Trials masking(const Scene& shot);
 Trials ellipses(const Scene& shot);
 Trials foam_times(const Scene& shot);
 
+// Of effects that are on.
+Trials picture_steps(const Scene& shot);
+Trials picture_effects(const Scene& shot);
+Trials bake_effects(const Scene& shot);
+
 }  // namespace pelagic::rows

@@ -14,6 +14,8 @@
 namespace pelagic {
 namespace {
 
+constexpr std::chrono::seconds kPartTime{3};
+
 void check(const SweepWatch& watch) {
     if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) throw SweepCancelled();
 }
@@ -61,9 +63,19 @@ MeasuredRow sweep(const ApproximationRow& row, const Scene& shot, int repeats, c
             !std::all_of(errors.begin(), errors.end(), [](double e) { return std::isfinite(e); }))
             throw std::logic_error(std::string(row.name) + ", " + trial.setting +
                                    ": its errors aren't the row's, or aren't finite");
-        measured.settings.push_back({trial.setting, trial.is_shots, std::move(errors), 0.0, trial.bytes});
+        measured.settings.push_back(
+            {trial.setting, trial.is_shots, std::move(errors), 0.0, trial.bytes, trial.transforms});
+        if (watch.picture && trial.picture)
+            watch.picture(row.name, measured.settings.size(), trial.picture());
     }
-    for (int i = 0; i < repeats; ++i)
+    const bool is_of_parts = row.kind == RowKind::Parts;
+    const auto begin = Clock::now();
+    const auto is_enough = [&](int rounds) {
+        if (!is_of_parts) return rounds >= repeats;
+        return rounds >= kPartRepeats * repeats &&
+               (Clock::now() - begin > kPartTime || rounds >= 10 * kPartRepeats * repeats);
+    };
+    for (int i = 0; !is_enough(i); ++i)
         for (std::size_t t = 0; t < laid.trials.size(); ++t) {
             check(watch);
             if (watch.progress) watch.progress(row.name, laid.trials[t].setting);
@@ -71,7 +83,13 @@ MeasuredRow sweep(const ApproximationRow& row, const Scene& shot, int repeats, c
             laid.trials[t].run();
             ms[t].push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
         }
-    for (std::size_t t = 0; t < ms.size(); ++t) measured.settings[t].ms = median(ms[t]);
+    for (std::size_t t = 0; t < ms.size(); ++t) {
+        measured.settings[t].ms = median(ms[t]);
+        if (!is_of_parts || t == 0) continue;
+        std::vector<double> less;
+        for (std::size_t i = 0; i < ms[t].size(); ++i) less.push_back(ms[0][i] - ms[t][i]);
+        measured.settings[t].ms = measured.settings[0].ms - median(less);
+    }
     return measured;
 }
 

@@ -9,9 +9,9 @@ std::span<const ApproximationRow> approximation_table() {
     static constexpr const char* kRadiance =
         "95th percentile over water pixels of the relative error of radiance";
     static constexpr const char* kMeanRadiance = "its mean";
-    static constexpr const char* kPictureTime = "a picture, at most 320 pixels wide";
+    static constexpr const char* kPictureTime = "a picture after the one before, at most 320 pixels wide";
     static constexpr const char* kPointsTime = "a frame of the patch's points, at most 256 a side";
-    static constexpr const char* kSeaBytes = "the sea and a frame of it";
+    static constexpr const char* kSeaBytes = "the sea, a frame of it and what its foam remembers";
     static const std::vector<ApproximationRow> kTable{
         {"cascade-resolution",
          "Resolution of the finest cascade",
@@ -270,6 +270,37 @@ std::span<const ApproximationRow> approximation_table() {
          nullptr,
          "Without air the far sea is too dark and too sharp; it costs a few per cent of the picture.",
          rows::air},
+        {"picture-steps",
+         "A picture, effect by effect",
+         "effects, and the light's terms: pelagic render --terms, --sky-quality",
+         "all effects, and the integral over the sky",
+         {kRadiance, kMeanRadiance, "the 95th percentile of the change since the step before"},
+         "a picture after the one before, at most 480 pixels wide, one sample a pixel",
+         kSeaBytes,
+         "Each step adds an effect that is on in the shot to those before it.",
+         rows::picture_steps},
+        {"picture-effects",
+         "What each effect costs a picture",
+         "effects, and the light's terms: pelagic render --terms, --sky-quality",
+         "the shot's own picture",
+         {kRadiance, kMeanRadiance},
+         "a picture after the one before, at most 320 pixels wide, one sample a pixel",
+         kSeaBytes,
+         "An effect's price is the picture's less that of the same picture without it. What whitecaps carry is in their price "
+         "and in its own, so that the sum may exceed the whole.",
+         rows::picture_effects,
+         RowKind::Parts},
+        {"bake-effects",
+         "What each effect and output costs a bake",
+         "effects, output.attributes, output.maps, output.volumes",
+         "the shot as it is",
+         {},
+         "a frame after the one before, without its files",
+         "the sea, a frame of it, what its foam remembers, points and values",
+         "What isn't listed costs a bake nothing. Work that two share, such as transforms that both read, is in neither's "
+         "price; what is left without all is the mesh's positions.",
+         rows::bake_effects,
+         RowKind::Parts},
     };
     return kTable;
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 
+#include "core/plan/fingerprint.h"
 #include "core/scene/names.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/sequence.h"
@@ -59,20 +60,19 @@ Milliseconds summary(std::vector<double> ms) {
     return {quantile(ms, 0.5), 0.5 * (quantile(ms, 0.75) - quantile(ms, 0.25))};
 }
 
-// Whether both plans compute the same numbers in the same way.
-bool same_work(const Plan& a, const Plan& b) {
-    return a.dropped == b.dropped && std::equal(a.queries.begin(), a.queries.end(), b.queries.begin(),
-                                                b.queries.end(), [](const auto& x, const auto& y) {
-                                                    return x.query.name == y.query.name &&
-                                                           x.query.products == y.query.products;
-                                                });
-}
-
 }  // namespace
+
+bool same_work(const Plan& a, const Plan& b) {
+    return std::equal(a.outputs.begin(), a.outputs.end(), b.outputs.begin(), b.outputs.end(),
+                      [&](const PlannedOutput& x, const PlannedOutput& y) {
+                          return output_fingerprint(a, x) == output_fingerprint(b, y);
+                      });
+}
 
 PlanCost cost_of(const Plan& plan) {
     return {plan.transforms_per_frame(), plan.lines_per_frame(), static_cast<std::int64_t>(plan.sea_bytes()),
-            static_cast<std::int64_t>(plan.frame_bytes()), static_cast<std::int64_t>(plan.output_bytes())};
+            static_cast<std::int64_t>(plan.frame_bytes() + plan.foam_history_bytes()),
+            static_cast<std::int64_t>(plan.output_bytes())};
 }
 
 PlanCost operator-(const PlanCost& a, const PlanCost& b) {

@@ -20,8 +20,10 @@ namespace pelagic {
 
 // A plan's price, or the difference of two.
 struct PlanCost {
-    std::int64_t transforms = 0, lines = 0;  // a frame
-    std::int64_t sea_bytes = 0, frame_bytes = 0, output_bytes = 0;
+    std::int64_t transforms = 0, lines = 0;  // a frame, beside those of its foam's history
+    std::int64_t sea_bytes = 0;
+    std::int64_t frame_bytes = 0;  // with its foam's history
+    std::int64_t output_bytes = 0;
 };
 PlanCost cost_of(const Plan& plan);
 PlanCost operator-(const PlanCost& a, const PlanCost& b);
@@ -34,6 +36,9 @@ struct MeasureItem {
 // Those of the shot, in the order of the plan's tables: the mesh with all that is on it, each of its
 // attributes, each map with its tiles, the tiles, the effects.
 std::vector<MeasureItem> measure_items(const Scene& scene);
+
+// Whether both bakes compute the same numbers.
+bool same_work(const Plan& a, const Plan& b);
 
 struct Milliseconds {
     double median = 0.0, spread = 0.0;  // spread: half of what holds the middle half of the values

@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 struct Arguments {
     std::string shot, out, threads;
     std::vector<std::string> rows;
-    bool list = false;
+    bool list = false, pictures = false;
     int repeats = 5;
 };
 
@@ -130,6 +130,14 @@ int run(const Arguments& arguments) {
                                            ": " + row + ", " + setting);
                          },
                      .cancel = &stop.cancelled()};
+    if (arguments.pictures) {
+        files::ensure_folder(folder / "pictures");
+        watch.picture = [&](const std::string& row, std::size_t setting, const PictureBytes& picture) {
+            const fs::path stem = folder / "pictures" / (row + '.' + std::to_string(setting));
+            files::write_atomically(stem.string() + ".exr", picture.exr);
+            files::write_atomically(stem.string() + ".png", picture.png);
+        };
+    }
     try {
         for (const ApproximationRow* row : rows) {
             put(measured, threads.execute([&] { return sweep(*row, shot, arguments.repeats, watch); }));
@@ -161,6 +169,7 @@ Verb add_accuracy(CLI::App& program) {
     command->add_option("--repeats", arguments->repeats, help::kAccuracyRepeats)
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
+    command->add_flag("--pictures", arguments->pictures, help::kAccuracyPictures);
     command->add_flag("--list", arguments->list, help::kAccuracyList);
     add_threads(*command, arguments->threads, help::kAccuracyThreads);
     return {command, [arguments] { return run(*arguments); }};

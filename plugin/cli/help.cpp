@@ -189,7 +189,8 @@ const char* const kMeasureThreads =
     "Default: one for each core that the process may use";
 
 const char* const kAccuracy =
-    "Measure what accuracy costs on a shot: error against time for each approximation.\n"
+    "Measure what accuracy costs on a shot: error against time for each approximation, and what\n"
+    "each effect that is on costs a picture and a bake.\n"
     "Sweeps the knob of each, with errors against a named reference and times of the same run, and\n"
     "writes DIR/accuracy.html with plots, accuracy.csv, accuracy.txt and ROW.svg. Rows that were measured before\n"
     "stay, with their age.";
@@ -199,6 +200,8 @@ const char* const kAccuracyFooter =
     "  pelagic accuracy storm.toml --out storm-accuracy\n"
     "  pelagic accuracy storm.toml --out storm-accuracy --rows sky,samples\n"
     "                                               two rows again; the others stay\n"
+    "  pelagic accuracy storm.toml --rows picture-effects,bake-effects\n"
+    "                                               the price of each effect and output\n"
     "\n"
     "Times are medians of settings that are measured in turn, so that they compare within a row, also on\n"
     "a machine with other work.";
@@ -210,6 +213,9 @@ const char* const kAccuracyRows =
     "Measure only these rows, separated by commas (see --list).\n"
     "Default: all of them";
 const char* const kAccuracyRepeats = "How often each setting is timed. Default: 5";
+const char* const kAccuracyPictures =
+    "Also write the pictures that the rows compare: DIR/pictures/ROW.N.exr and .png, N being the\n"
+    "setting's place in the row";
 const char* const kAccuracyList = "Print the rows with their knobs, and exit";
 const char* const kAccuracyThreads =
     "How many threads compute, 1 to 256.\n"

@@ -57,6 +57,7 @@ extern const char* const kAccuracyShot;
 extern const char* const kAccuracyOut;
 extern const char* const kAccuracyRows;
 extern const char* const kAccuracyRepeats;
+extern const char* const kAccuracyPictures;
 extern const char* const kAccuracyList;
 extern const char* const kAccuracyThreads;
 

@@ -24,7 +24,17 @@ std::vector<MeasuredRow> made_up() {
                      .machine = "avx2, 2 threads",
                      .settings = {},
                      .why_none = "has nothing to sweep: the shot has no whitecaps"};
-    return {sky, none};
+    // 1000 ms, of which the foam takes 600, the air 100 and both leave 250: 50 are in neither's price.
+    MeasuredRow effects{.name = "picture-effects",
+                        .shot = "0123456789abcdef",
+                        .when = "2026-11-23T09:00:00Z",
+                        .machine = "avx2, 2 threads",
+                        .settings = {{kWholeShot, true, {0.0, 0.0}, 1000.0, 9 << 20, 30},
+                                     {kShotAgain, false, {0.0, 0.0}, 995.0, 9 << 20, 30},
+                                     {"without <air>", false, {0.1, 0.2}, 900.0, 9 << 20, 30},
+                                     {"without foam", false, {0.3, 0.4}, 400.0, 5 << 20, 22},
+                                     {kBareShot, false, {0.5, 0.6}, 250.0, 4 << 20, 20}}};
+    return {sky, none, effects};
 }
 
 constexpr const char* kNow = "2026-11-23T10:00:00Z";
@@ -54,6 +64,8 @@ TEST(AccuracyReport, CsvComesBackToTheBit) {
             EXPECT_EQ(back[r].settings[s].is_shots, rows[r].settings[s].is_shots);
             EXPECT_EQ(back[r].settings[s].errors, rows[r].settings[s].errors);
             EXPECT_EQ(back[r].settings[s].ms, rows[r].settings[s].ms);
+            EXPECT_EQ(back[r].settings[s].bytes, rows[r].settings[s].bytes);
+            EXPECT_EQ(back[r].settings[s].transforms, rows[r].settings[s].transforms);
         }
     }
     EXPECT_EQ(csv_report(back), csv_report(rows));
@@ -75,7 +87,11 @@ TEST(AccuracyReport, DamagedTablesAreRefusedWithTheirLine) {
     std::string other = csv;
     for (std::size_t at; (at = other.find("\"sky\"")) != std::string::npos;)
         other.replace(at, 5, "\"skies\"");
-    EXPECT_EQ(read_csv_report(other).size(), 1u);
+    EXPECT_EQ(read_csv_report(other).size(), 2u);
+    // Of parts without their end nothing can be said.
+    const std::size_t bare = csv.rfind("\"picture-effects\"");
+    EXPECT_EQ(read_csv_report(csv.substr(0, bare)).size(), 2u);
+    EXPECT_EQ(read_csv_report(csv).size(), 3u);
     // Cut anywhere, it is read or refused.
     for (std::size_t length = 0; length < csv.size(); ++length) problem_of(csv.substr(0, length));
 }
@@ -86,6 +102,21 @@ TEST(AccuracyReport, TextSaysWhatEachNumberIsAndHowOldItIs) {
                              "  * nine", "the shot has no whitecaps"})
         EXPECT_NE(text.find(part), std::string::npos) << part << '\n' << text;
     EXPECT_EQ(text.find("as it was then"), std::string::npos);
+    // Parts, the dearest first, with their shares; what is left; the sum; the whole; how exact it is.
+    std::size_t at = 0;
+    for (
+        const char* line : {
+            "    foam                            600.000      60.0 %          8    4.0 MiB         0.3         0.4\n",
+            "    <air>                           100.000      10.0 %          0          0         0.1         0.2\n",
+            "    the rest                        250.000      25.0 %         20    4.0 MiB\n",
+            "    parts and rest together         950.000      95.0 %         28    8.0 MiB\n",
+            "    the shot                       1000.000     100.0 %         30    9.0 MiB\n",
+            "    the shot less the same again      5.000       0.5 %          0          0\n",
+        }) {
+        const std::size_t found = text.find(line, at);
+        ASSERT_NE(found, std::string::npos) << line << text;
+        at = found;
+    }
     EXPECT_NE(text_report(made_up(), kNow, "another").find("of the shot as it was then"), std::string::npos);
 }
 
@@ -96,6 +127,8 @@ TEST(AccuracyReport, ThePageStandsAlone) {
         EXPECT_EQ(page.find(outside), std::string::npos) << outside;
     EXPECT_EQ(page.find("<b>"), std::string::npos);
     EXPECT_EQ(page.find("<shot>"), std::string::npos);
+    EXPECT_EQ(page.find("<air>"), std::string::npos);
+    EXPECT_NE(page.find("dearest: foam, 600.0 of 1000.0 ms"), std::string::npos);
     EXPECT_NE(page.find("nine, &quot;quoted&quot;, &lt;b&gt;: 0.0333, 11.5 ms"), std::string::npos);
     for (const std::string number : {"nan", "inf\""})
         EXPECT_EQ(page.find(number), std::string::npos) << number;
@@ -121,6 +154,10 @@ TEST(AccuracyReport, PlotsAreFilesOfTheirOwn) {
     EXPECT_TRUE(svg.ends_with("</svg>\n"));
     EXPECT_NE(svg.find("<style>"), std::string::npos);
     EXPECT_EQ(svg_report(made_up()[1]), "");
+    // A bar as long as the longest is 1000 ms.
+    const std::string bars = svg_report(made_up()[2]);
+    EXPECT_NE(bars.find("width=\"350.0\""), std::string::npos);
+    EXPECT_NE(bars.find("width=\"210.0\""), std::string::npos) << bars;
 }
 
 }  // namespace

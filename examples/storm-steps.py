@@ -16,6 +16,10 @@ from skimage.metrics import structural_similarity
 
 COLUMNS = 2
 GAP = 6  # pixels between pictures
+LESSON = ("Breaking makes the storm: the horizontal displacement, the foam with its past and its structure, and the spray are seen at a "
+          "glance, and nine lookups of the sky side by side. Air changes the horizon; multiple reflections and the integral over "
+          "the sky are seen by switching between two pictures at most. The foam's past is the dearest effect, and the integral "
+          "takes as long as everything before it, for a change that no eye notices.")
 
 
 def lab_of(picture):
@@ -73,7 +77,7 @@ def main():
         "that of the step before: the 95th percentile over pixels of water of the relative error of radiance; and of the "
         "pictures as a screen shows them the mean of ΔE (CIEDE2000), of which an eye just notices 1, and 1 − SSIM, 0 where "
         "the structure is the same. *Adds*: of the whole picture's time.\n\n"
-        + table_of(steps, pictures) +
+        + table_of(steps, pictures) + "\n" + LESSON + "\n"
         "\n![The steps, from left to right and down](storm-steps.png)\n", encoding="utf-8")
     io.imsave(out / "storm-steps.png", sheet_of(pictures), check_contrast=False)
 

@@ -86,6 +86,7 @@ TEST_F(Explain, GivesEachOutputAndEffectAPrice) {
                                             "tiles",
                                             "horizontal displacement",
                                             "whitecaps",
+                                            "foam structure",
                                             "the whole"};
     EXPECT_EQ(names(rows), expected);
 }
@@ -115,12 +116,12 @@ TEST_F(Explain, PricesAddUpWhereNothingIsShared) {
     const auto rows =
         prices(std::string(kOneCascade) +
                "[output]\nmesh = \"none\"\nmaps = [\"displacement\", \"normal\"]\nmap_resolution = 32\n");
-    ASSERT_EQ(rows.size(), 5u);
+    ASSERT_EQ(rows.size(), 6u);
     EXPECT_EQ(rows[0].name, "map displacement");
     EXPECT_EQ(rows[0].transforms, 3);
     EXPECT_EQ(rows[1].transforms, 5);
-    EXPECT_EQ(rows[4].transforms, rows[0].transforms + rows[1].transforms);
-    EXPECT_EQ(rows[4].lines, rows[0].lines + rows[1].lines);
+    EXPECT_EQ(rows[5].transforms, rows[0].transforms + rows[1].transforms);
+    EXPECT_EQ(rows[5].lines, rows[0].lines + rows[1].lines);
 }
 
 TEST_F(Explain, HasNoRowForWhatIsOff) {

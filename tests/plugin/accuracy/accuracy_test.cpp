@@ -249,10 +249,10 @@ TEST(Accuracy, SeasWithoutWavesAndWithoutCascadesAreNoSpecialCase) {
     Scene bare = small_shot();
     bare.effects.whitecaps = false;
     for (const Scene& scene : {calm, trains, bare})
-        for (const char* name : {"interpolation", "cascade-number", "trains", "mesh-spacing", "mesh-variance",
-                                 "fitted-cage", "files", "whitecap-moments", "instruction-sets",
-                                 "foam-structure", "rays", "planning", "cage-level", "picture-effects",
-                                 "picture-steps", "bake-effects"}) {
+        for (const char* name :
+             {"interpolation", "cascade-number", "trains", "mesh-spacing", "mesh-variance", "fitted-cage",
+              "files", "whitecap-moments", "instruction-sets", "foam-structure", "rays", "planning",
+              "cage-level", "picture-effects", "picture-steps", "bake-effects"}) {
             const MeasuredRow result = sweep(row_called(name), scene, 1, {});  // throws for what isn't finite
             EXPECT_NE(result.settings.empty(), result.why_none.empty()) << name;
         }

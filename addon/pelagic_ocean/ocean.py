@@ -69,7 +69,8 @@ def _with_settings(settings, obj, depsgraph):
     return scene
 
 
-_settled = {}  # settings, and what else counts, → settings
+_settled = {}  # settings, and what else counts, → settings, or the words that refuse them
+NOT_CHOSEN = ("planet", "near-far")  # surfaces that are baked alone: their budget is the bake's
 
 
 def settled(settings, obj, bpy_scene, depsgraph=None):
@@ -78,15 +79,27 @@ def settled(settings, obj, bpy_scene, depsgraph=None):
     values = {field.path: value for field, value in zip(FIELDS, settings)}
     if all(values[path] is None for path in BUDGETS):
         return settings
-    cage = values["surface.kind"] == "cage" and cage_of(obj, values["surface.cage_file"] or "", depsgraph)
-    key = (settings, cage.content if cage else "")
+    kind = values["surface.kind"]
+    if obj.pelagic.own_mesh or kind in NOT_CHOSEN or (kind, values["surface.cage_level"]) == ("cage", "adaptive"):
+        return tuple(None if field.path in BUDGETS else value for field, value in zip(FIELDS, settings))
+    cage = kind == "cage" and cage_of(obj, values["surface.cage_file"] or "", depsgraph)
+    render = bpy_scene.render
+    key = (settings, cage.content if cage else "", frame_rate(bpy_scene), render.resolution_x, render.resolution_y,
+           render.resolution_percentage)
     if key not in _settled:
         if len(_settled) > 64:
             _settled.clear()
-        scene = scene_of(obj, bpy_scene, depsgraph, settings).settled()
-        for path in (*BUDGETS, "quality.level", "surface.resolution", "surface.cell_px", "surface.cage_level"):
-            values[path] = getattr(getattr(scene, BY_PATH[path].table), BY_PATH[path].name)
-        _settled[key] = tuple(values[field.path] for field in FIELDS)
+        scene = scene_of(obj, bpy_scene, depsgraph, settings)
+        try:
+            scene = scene.settled()
+        except ValueError as error:  # asked for once, not at every frame
+            _settled[key] = str(error)
+        else:
+            for path in (*BUDGETS, "quality.level", "surface.resolution", "surface.cell_px", "surface.cage_level"):
+                values[path] = getattr(getattr(scene, BY_PATH[path].table), BY_PATH[path].name)
+            _settled[key] = tuple(values[field.path] for field in FIELDS)
+    if isinstance(_settled[key], str):
+        raise ValueError(_settled[key])
     return _settled[key]
 
 

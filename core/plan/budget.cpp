@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "core/plan/cost_model.h"
@@ -40,8 +41,6 @@ std::shared_ptr<const PreparedScene> with(const PreparedScene& prepared, Quality
     changed.scene = without_budget(std::move(changed.scene));
     changed.scene.quality.level = level;
     changed.scene.surface = surface;
-    // Who has no mesh to bake asks for points of another kind, and wants them as fine.
-    if (changed.scene.output.mesh == MeshFormat::None) changed.scene.output.mesh = MeshFormat::Usdc;
     return std::make_shared<const PreparedScene>(std::move(changed));
 }
 
@@ -50,9 +49,15 @@ class Chooser {
     explicit Chooser(const PreparedScene& prepared)
         : prepared_(prepared),
           model_(prepared),
-          surfaces_(rising_fineness(prepared.scene)),
-          errors_(surfaces_.size(), -1.0),
-          frames_(representative_frames(prepared.scene, kFrames)) {}
+          frames_(representative_frames(prepared.scene, kFrames)),
+          has_mesh_(prepared.scene.output.mesh != MeshFormat::None),
+          surfaces_(has_mesh_ ? rising_fineness(prepared.scene) : std::vector{prepared.scene.surface}) {
+        // Beyond what can be laid out nothing is looked at.
+        surfaces_.erase(std::partition_point(surfaces_.begin() + 1, surfaces_.end(),
+                                             [&](const Surface& at) { return can_be_laid_out(at); }),
+                        surfaces_.end());
+        errors_.assign(surfaces_.size(), has_mesh_ ? -1.0 : 0.0);
+    }
 
     struct Setting {
         const LevelError* level;
@@ -69,9 +74,11 @@ class Chooser {
         for (const LevelError& level : kLevels) {
             const std::size_t surface =
                 first([&](std::size_t i) { return std::hypot(missed(i), level.error) <= most; });
-            if (surface == surfaces_.size()) continue;
-            const Setting here = at(level, surface);
-            if (!best || here.ms < best->ms) best = here;
+            for (std::size_t i = surface; i < surfaces_.size(); ++i) {
+                const Setting here = at(level, i);
+                if (!best || here.ms < best->ms) best = here;
+                if (!may_be_cheaper_finer()) break;
+            }
         }
         return best ? *best : at(kLevels.back(), surfaces_.size() - 1);
     }
@@ -79,7 +86,10 @@ class Chooser {
     Setting finest(double most_ms) {
         std::optional<Setting> best;
         for (const LevelError& level : kLevels) {
-            const std::size_t too_dear = first([&](std::size_t i) { return cost(level, i) > most_ms; });
+            std::size_t too_dear = first([&](std::size_t i) { return cost(level, i) > most_ms; });
+            if (may_be_cheaper_finer())
+                for (std::size_t i = surfaces_.size(); i > too_dear; --i)
+                    if (cost(level, i - 1) <= most_ms) too_dear = i;
             if (too_dear == 0) continue;
             const Setting here = at(level, too_dear - 1);
             if (!best || here.error < best->error) best = here;
@@ -87,8 +97,32 @@ class Chooser {
         return best ? *best : at(kLevels.front(), 0);
     }
     const Surface& surface(std::size_t i) const { return surfaces_[i]; }
+    bool has_mesh() const { return has_mesh_; }
 
   private:
+    // Points on the nodes of periodic tiles are read as they are, and cost less than fewer points between them.
+    bool may_be_cheaper_finer() const {
+        return prepared_.scene.waves.tiling == Tiling::Periodic &&
+               prepared_.scene.surface.kind == SurfaceKind::Patch;
+    }
+    // An even grid is never laid out here. Others hold some bytes for each point while they are.
+    bool can_be_laid_out(const Surface& surface) const {
+        constexpr std::size_t kMostPoints = std::size_t{1} << 21;
+        try {
+            const SurfaceNeeds needs = made(surface)->needs(frames_);
+            return !needs.own_footprints || needs.points <= kMostPoints;
+        } catch (const std::invalid_argument&) {
+            return false;  // more points than a surface may have
+        }
+    }
+    std::unique_ptr<const RestSurface> made(const Surface& surface) const {
+        const Extent& extent = prepared_.extent;
+        return make_surface(with(prepared_, QualityLevel::Final, surface)->scene,
+                            {.height_m = extent.height_m,
+                             .reach_m = extent.reach_m,
+                             .significant_height_m = extent.significant_height_m,
+                             .hidden = extent.hidden});
+    }
     template <class Holds>
     std::size_t first(const Holds& holds) const {
         // Coarse ones are looked at first: the finest take long to lay out.
@@ -105,16 +139,8 @@ class Chooser {
         return low;
     }
     double missed(std::size_t surface) {
-        if (errors_[surface] < 0.0) {
-            const auto changed = with(prepared_, QualityLevel::Final, surfaces_[surface]);
-            const Extent& extent = prepared_.extent;
-            errors_[surface] = model_.error(
-                *make_surface(changed->scene, {.height_m = extent.height_m,
-                                               .reach_m = extent.reach_m,
-                                               .significant_height_m = extent.significant_height_m,
-                                               .hidden = extent.hidden}),
-                changed->scene.camera, frames_);
-        }
+        if (errors_[surface] < 0.0)
+            errors_[surface] = model_.error(*made(surfaces_[surface]), prepared_.scene.camera, frames_);
         return errors_[surface];
     }
     double cost(const LevelError& level, std::size_t surface) const {
@@ -123,9 +149,10 @@ class Chooser {
 
     const PreparedScene& prepared_;
     MeshErrorModel model_;
+    std::vector<int> frames_;
+    bool has_mesh_;  // without one, all that a budget chooses is how waves are read
     std::vector<Surface> surfaces_;
     std::vector<double> errors_;
-    std::vector<int> frames_;
 };
 
 // "surface.resolution = 384": what differs among rising_fineness().
@@ -158,7 +185,10 @@ Scene without_budget(Scene scene) {
 }
 
 Scene settled(Scene scene) {
-    return has_budget(scene.quality) ? prepare(std::move(scene))->scene : scene;
+    if (!has_budget(scene.quality)) return scene;
+    const auto prepared = prepare(std::move(scene));
+    if (!prepared->holds_budget) throw std::invalid_argument(prepared->budget + "; raise the budget");
+    return prepared->scene;
 }
 
 std::vector<Surface> rising_fineness(const Scene& scene) {
@@ -170,7 +200,7 @@ std::vector<Surface> rising_fineness(const Scene& scene) {
         const int most = surface.kind == SurfaceKind::NearFar
                              ? limits::kNearFarResolution
                              : static_cast<int>(limits::kSurfaceResolution.high);
-        // An eighth more at most from one to the next, and numbers with small factors.
+        // From 64 on an eighth more at most from one to the next, and numbers with small factors.
         for (int quads = 8; quads <= most;
              quads += std::max(8, static_cast<int>(std::bit_floor(static_cast<unsigned>(quads))) / 8)) {
             surface.resolution = quads;
@@ -207,9 +237,11 @@ MeshBudget mesh_budget(const PreparedScene& prepared) {
                   (budget.holds ? "" : ", which nothing holds") + ": the " +
                   (quality.max_error ? (budget.holds ? "cheapest" : "most accurate")
                                      : (budget.holds ? "most accurate" : "cheapest")) +
-                  " mesh is quality.level = \"" + std::string(word_of(chosen.level->level)) + "\" with " +
-                  fineness_text(budget.scene.surface) + ", an error of " + rough_text(chosen.error) +
-                  " and about " + rough_text(chosen.ms) + " ms a frame";
+                  (chooser.has_mesh() ? " mesh is" : " frame has") + " quality.level = \"" +
+                  std::string(word_of(chosen.level->level)) + "\"" +
+                  (chooser.has_mesh() ? " with " + fineness_text(budget.scene.surface) : std::string()) +
+                  ", an error of " + rough_text(chosen.error) + " and about " + rough_text(chosen.ms) +
+                  " ms a frame";
     return budget;
 }
 

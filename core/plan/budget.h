@@ -15,7 +15,8 @@ namespace pelagic {
 
 bool has_budget(const Quality& quality);
 Scene without_budget(Scene scene);
-// The scene with the keys that its budget asks for, as prepare() has it; the scene itself without a budget. Valid.
+// The scene with the keys that its budget asks for, as prepare() has it; the scene itself without a budget. It must be valid.
+// Throws std::invalid_argument, saying what comes nearest, where nothing holds the budget.
 Scene settled(Scene scene);
 
 // The settings that a mesh's budget asks for: quality.level, and how fine the surface is, whatever the shot says of both.
@@ -30,7 +31,7 @@ struct MeshBudget {
 
 // Of a valid scene with a budget. max_error: the cheapest settings that err by no more; frame_ms: the most accurate ones that
 // cost no more. A patch or near-far mesh gets another surface.resolution, a projected grid, planet or adaptive cage another
-// surface.cell_px, other cages another surface.cage_level.
+// surface.cell_px, other cages another surface.cage_level; a scene that bakes no mesh only another level.
 MeshBudget mesh_budget(const PreparedScene& prepared);
 
 // The surfaces that mesh_budget() chooses from, from coarse to fine.

@@ -45,7 +45,7 @@ void add_points(const Plan& plan, const PlannedQuery& planned, WorkDone& work) {
         }
         if (grids > 0.0) at(work, Work::Reads) += points * reads * std::min(1.0, levels_read / grids);
     }
-    if (plan.trains) {
+    if (plan.trains && !planned.query.only_cascade) {
         int shown = 0;
         for (const double length_m : plan.trains->wavelengths_m)
             shown += plan.filter.weight(kTwoPi / length_m, planned.query.pixel_m.front()) > 0.0;

@@ -90,7 +90,7 @@ double MeshErrorModel::tabled(double cell_m, double pixel_m, Drawn drawn) const 
         pixel_m > 0.0 ? static_cast<int>(std::lround(std::clamp(std::log2(pixel_m / cell_m), -12.0, 4.0)))
                       : kNoPixel;
     const auto node = [&](int i) {
-        const auto [found, is_new] = table_.try_emplace({i, octaves}, 0.0);
+        const auto [found, is_new] = table_.try_emplace({i, octaves, drawn}, 0.0);
         const double cell = std::exp2(0.5 * i);
         if (is_new) found->second = error(cell, octaves == kNoPixel ? 0.0 : std::ldexp(cell, octaves), drawn);
         return found->second;

@@ -16,7 +16,7 @@
 #pragma once
 
 #include <map>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "core/plan/prepared_scene.h"
@@ -46,7 +46,7 @@ class MeshErrorModel {
     double tabled(double cell_m, double pixel_m, Drawn drawn) const;
 
     std::vector<Wave> waves_;
-    mutable std::map<std::pair<int, int>, double> table_;  // by tabled(); of triangles
+    mutable std::map<std::tuple<int, int, Drawn>, double> table_;  // by tabled()
 };
 
 }  // namespace pelagic

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/instruction_set.h"
+#include "core/plan/budget.h"
 #include "core/plan/memory.h"
 #include "core/plan/plan.h"
 #include "plugin/bake/bake.h"
@@ -112,16 +113,24 @@ int print_prices(const Scene& scene, const Arguments& arguments) {
 
 // Of a shot with a budget: what pictures of it take. What a mesh of it takes is in the plan's page.
 PictureBudget print_picture_budget(const Scene& scene) {
+    if (!has_budget(scene.quality)) return picture_budget(scene);
     Progress progress;
-    const PictureBudget budget =
-        picture_budget(scene, {.progress =
-                                   [&](double done) {
-                                       progress.show("measuring a small picture of the shot: " +
-                                                     std::to_string(std::lround(100.0 * done)) + " %");
-                                   },
-                               .cancel = nullptr});
+    PictureBudget budget;
+    try {
+        budget = picture_budget(scene, {}, 0,
+                                {.progress =
+                                     [&](double done) {
+                                         progress.show("measuring a small picture of the shot: " +
+                                                       std::to_string(std::lround(100.0 * done)) + " %");
+                                     },
+                                 .cancel = nullptr});
+    } catch (const std::exception& error) {  // who only bakes needs no picture
+        budget.scene = without_budget(scene);
+        budget.options = render_options(budget.scene);
+        budget.text = std::string("none: ") + error.what();
+    }
     progress.clear();
-    if (!budget.text.empty()) std::cout << "\nBudget of pictures\n  " << budget.text << "\n\n";
+    std::cout << "\nBudget of pictures\n  " << budget.text << "\n\n";
     return budget;
 }
 

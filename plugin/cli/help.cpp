@@ -153,7 +153,8 @@ const char* const kPreviewSize =
     "Width and height of the window or picture in pixels.\n"
     "Default: the shot's camera.resolution; a window is no larger than the screen";
 const char* const kPreviewQuality =
-    "Instead of the shot's quality.level: draft, preview, final, reference; a budget is none of previews";
+    "Instead of the shot's quality.level: draft, preview, final, reference.\n"
+    "Budgets (quality.max_error, quality.frame_ms) are of bakes and renders, not of previews";
 const char* const kScale =
     "Draw fewer pixels than the window has: each covers N × N of them, N = 1, 2 or 4.\n"
     "Also in the window's panel. Default: 1, or 2 where the processor draws";

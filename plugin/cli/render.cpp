@@ -151,25 +151,25 @@ struct Cancelled {};
 // Turns the shot's budget into settings, in the light of which the rest of the job is done. Throws BuildCancelled.
 void spend_budget(Job& job, StopSignals& stop, Progress& progress) {
     if (!has_budget(job.scene.quality)) return;
-    if (job.has_samples && job.has_sky_quality) {
-        job.scene = without_budget(job.scene);
-        return;
-    }
+    FixedSettings fixed;
+    if (job.has_samples) fixed.samples = job.options.samples;
+    if (job.has_sky_quality) fixed.sky_quality = job.options.lighting.sky_quality;
     const PictureBudget budget =
-        picture_budget(job.scene, {.progress =
-                                       [&](double done) {
-                                           progress.show("measuring a small picture of the shot: " +
-                                                         std::to_string(std::lround(100.0 * done)) + " %");
-                                       },
-                                   .cancel = &stop.cancelled()});
+        picture_budget(job.scene, fixed, job.max_memory_bytes,
+                       {.progress =
+                            [&](double done) {
+                                progress.show("measuring a small picture of the shot: " +
+                                              std::to_string(std::lround(100.0 * done)) + " %");
+                            },
+                        .cancel = &stop.cancelled()});
     progress.clear();
-    if (!budget.holds && !job.has_samples && !job.has_sky_quality)
+    if (!budget.holds)
         throw std::invalid_argument(budget.text +
                                     "; raise the budget, or give --samples and --sky-quality instead of it");
-    std::cout << budget.text << std::endl;
+    if (!budget.text.empty()) std::cout << budget.text << std::endl;
     job.scene = budget.scene;
-    if (!job.has_samples) job.options.samples = budget.options.samples;
-    if (!job.has_sky_quality) job.options.lighting.sky_quality = budget.options.lighting.sky_quality;
+    job.options.samples = budget.options.samples;
+    job.options.lighting.sky_quality = budget.options.lighting.sky_quality;
     job.options.lighting.fresnel = budget.options.lighting.fresnel;
 }
 

@@ -55,6 +55,8 @@ Verb add_validate(CLI::App& program) {
                     try {
                         const Scene scene = load_shot(file, check_scene);
                         const Plan plan = plan_bake(scene);
+                        if (!plan.from->holds_budget)
+                            throw ShotError(file + ": " + plan.from->budget + "; raise the budget");
                         std::cout << file << ": fine\n    " << summary(scene, plan) << std::endl;
                         print_warnings(file, scene);
                     } catch (const ShotError& error) {

@@ -52,10 +52,13 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     Watch watch(progress, cancel);
     RenderOptions options = render_options(kept);
     if (has_budget(kept.quality)) {
+        FixedSettings fixed{.samples = samples};
+        if (sky_quality) fixed.sky_quality = sky_quality_of(*sky_quality);
         PictureBudget budget;
         try {
             const OthersMayRun others_may_run;
-            budget = picture_budget(kept, {.progress = {}, .cancel = watch.flag()});
+            budget = picture_budget(kept, fixed, max_memory_bytes.value_or(0),
+                                    {.progress = {}, .cancel = watch.flag()});
         } catch (const BuildCancelled&) {
             watch.rethrow();
             throw Cancelled("rendering was cancelled");

@@ -1,21 +1,26 @@
 #include "plugin/render/picture_budget.h"
 
+#include <oneapi/tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "core/plan/budget.h"
 #include "core/plan/cost_model.h"
+#include "core/plan/memory.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "core/surface/rest_surface.h"
 #include "core/surface/view.h"
 #include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
 #include "plugin/render/batch.h"
 
 namespace pelagic {
@@ -27,6 +32,7 @@ constexpr double kCell_px = 2.0;
 // The small picture that a shot is measured on.
 constexpr int kProbeWidth = 96;
 constexpr int kReferenceSamples = 8;
+constexpr double kReferenceCell_px = 0.5;
 constexpr std::array kMeasuredSamples{1, 2, 4, 6};
 
 struct SkyCost {
@@ -86,7 +92,7 @@ struct MeasuredErrors {
 // Of most pictures: by which settings are put in order where nothing is measured.
 constexpr MeasuredErrors kTypical{{0.30, 0.21, 0.13, 0.09}, 0.08};
 
-MeasuredErrors measured(const Scene& scene, const Sky& sky, const BuildWatch& watch) {
+MeasuredErrors measured(const Scene& scene, std::size_t max_memory_bytes, const BuildWatch& watch) {
     Scene small = scene;
     small.effects.foam_decay_s =
         0.0;  // the foam's past takes most of the time, and hardly changes how pictures err
@@ -95,7 +101,18 @@ MeasuredErrors measured(const Scene& scene, const Sky& sky, const BuildWatch& wa
     small.camera.resolution = {std::max(1, static_cast<int>(std::lround(width))),
                                std::max(1, static_cast<int>(std::lround(width * shape)))};
     const std::vector<int> frames = frames_to_measure(scene);
-    const RenderOptions own = render_options(scene);
+    const Sky sky = make_sky(scene);
+    RenderOptions own = render_options(scene);
+    own.knobs = Knobs{.double_precision = true};
+    {
+        RenderOptions dearest = own;
+        dearest.samples = kReferenceSamples;
+        Scene fine = small;
+        fine.surface.cell_px = kReferenceCell_px;
+        require_memory(render_memory(fine, dearest, frames, std::nullopt,
+                                     oneapi::tbb::this_task_arena::max_concurrency()),
+                       machine::memory_limit_or(max_memory_bytes), "measuring this shot for its budget");
+    }
     double done = 0.0;
     const double all = static_cast<double>(frames.size()) * 9.0;
     const auto picture = [&](int frame, double cell_px, int samples, SkyQuality quality, double weight) {
@@ -103,7 +120,6 @@ MeasuredErrors measured(const Scene& scene, const Sky& sky, const BuildWatch& wa
         RenderOptions options = own;
         options.samples = samples;
         options.lighting.sky_quality = quality;
-        options.knobs = Knobs{.double_precision = true};
         Picture made;
         Renderer renderer(small, options, sky, std::span(&frame, 1),
                           {.progress = {}, .cancel = watch.cancel});
@@ -113,33 +129,50 @@ MeasuredErrors measured(const Scene& scene, const Sky& sky, const BuildWatch& wa
         return made;
     };
     MeasuredErrors errors;
-    for (const int frame : frames) {
-        const Picture reference = picture(frame, 0.5, kReferenceSamples, SkyQuality::Nine, 5.0);
-        std::optional<Picture> one;
-        for (std::size_t i = 0; i < kMeasuredSamples.size(); ++i) {
-            Picture made = picture(frame, kCell_px, kMeasuredSamples[i], SkyQuality::Nine, 0.75);
-            errors.by_samples[i] = std::max(errors.by_samples[i], relative_error(made, reference).most);
-            if (i == 0) one = std::move(made);
+    std::string under_water;
+    std::size_t measured_frames = 0;
+    for (const int frame : frames) try {
+            const Picture reference =
+                picture(frame, kReferenceCell_px, kReferenceSamples, SkyQuality::Nine, 5.0);
+            std::optional<Picture> one;
+            for (std::size_t i = 0; i < kMeasuredSamples.size(); ++i) {
+                Picture made = picture(frame, kCell_px, kMeasuredSamples[i], SkyQuality::Nine, 0.75);
+                errors.by_samples[i] = std::max(errors.by_samples[i], relative_error(made, reference).most);
+                if (i == 0) one = std::move(made);
+            }
+            const Picture integral = picture(frame, kCell_px, 1, SkyQuality::Integral, 1.0);
+            errors.of_nine = std::max(errors.of_nine, relative_error(*one, integral).most);
+            ++measured_frames;
+        } catch (const std::invalid_argument& error) {
+            under_water = error.what();
         }
-        const Picture integral = picture(frame, kCell_px, 1, SkyQuality::Integral, 1.0);
-        errors.of_nine = std::max(errors.of_nine, relative_error(*one, integral).most);
-    }
+    if (measured_frames == 0) throw std::invalid_argument(under_water);
     return errors;
 }
 
 // All that a budget chooses from, from few samples to many.
-std::vector<Setting> settings_of(const Scene& scene, const MeasuredErrors& errors) {
+std::vector<Setting> settings_of(const Scene& scene, const FixedSettings& fixed,
+                                 const MeasuredErrors& errors) {
     const std::vector<int> frames = frames_to_measure(scene);
     const double pixels =
         static_cast<double>(scene.camera.resolution.x) * static_cast<double>(scene.camera.resolution.y);
     double water = 0.0;
     for (const int frame : frames) water = std::max(water, water_share(scene, frame));
     std::vector<Setting> settings;
-    for (int samples = kMeasuredSamples.front(); samples <= kMeasuredSamples.back(); ++samples) {
+    const int fewest = fixed.samples.value_or(kMeasuredSamples.front()),
+              most = fixed.samples.value_or(kMeasuredSamples.back());
+    for (int samples = fewest; samples <= most; ++samples) {
         RenderOptions options = render_options(scene);
         options.samples = samples;
+        try {
+            check_render(scene, options);
+        } catch (const std::invalid_argument&) {
+            if (samples == fewest) throw;
+            break;  // more samples a side than a picture has
+        }
         const double sea_ms = frame_ms(picture_plan(of_samples(scene, samples), frames, options));
         for (const SkyCost& sky : kSkies) {
+            if (fixed.sky_quality && *fixed.sky_quality != sky.sky) continue;
             const double us = water * sky.us_a_sample + (1.0 - water) * kAir_us;
             const double of_sky = sky.sky == SkyQuality::Integral ? 0.0 : errors.of_nine;
             settings.push_back({&sky, samples, std::hypot(errors.at(samples), of_sky),
@@ -169,7 +202,7 @@ RelativeError relative_error(const Picture& picture, const Picture& reference) {
 
 PictureSettings reference_settings(const Scene& scene) {
     PictureSettings reference{without_budget(scene), {}};
-    reference.scene.surface.cell_px = 0.5;
+    reference.scene.surface.cell_px = kReferenceCell_px;
     reference.options = render_options(reference.scene);
     reference.options.samples = kReferenceSamples;
     reference.options.lighting.sky_quality = SkyQuality::Integral;
@@ -177,22 +210,23 @@ PictureSettings reference_settings(const Scene& scene) {
     return reference;
 }
 
-PictureBudget picture_budget(const Scene& scene, const BuildWatch& watch) {
-    const bool is_measured = scene.quality.max_error.has_value();
-    return picture_budget(scene, is_measured ? make_sky(scene) : Sky{}, watch);
-}
-
-PictureBudget picture_budget(const Scene& scene, const Sky& sky, const BuildWatch& watch) {
+PictureBudget picture_budget(const Scene& scene, const FixedSettings& fixed, std::size_t max_memory_bytes,
+                             const BuildWatch& watch) {
     PictureBudget budget{.scene = without_budget(scene), .options = {}};
-    if (!has_budget(scene.quality)) {
-        budget.options = render_options(scene);
+    const bool is_known = std::any_of(kSkies.begin(), kSkies.end(), [&](const SkyCost& sky) {
+        return !fixed.sky_quality || *fixed.sky_quality == sky.sky;
+    });
+    if (!has_budget(scene.quality) || !is_known || (fixed.samples && fixed.sky_quality)) {
+        budget.options = render_options(budget.scene);
+        budget.options.samples = fixed.samples.value_or(budget.options.samples);
+        budget.options.lighting.sky_quality = fixed.sky_quality.value_or(budget.options.lighting.sky_quality);
         return budget;
     }
     budget.scene.quality.level = QualityLevel::Final;
     budget.scene.surface.cell_px = kCell_px;
     const auto [max_error, most_ms] = std::pair(scene.quality.max_error, scene.quality.frame_ms);
-    const std::vector<Setting> settings =
-        settings_of(budget.scene, max_error ? measured(budget.scene, sky, watch) : kTypical);
+    const std::vector<Setting> settings = settings_of(
+        budget.scene, fixed, max_error ? measured(budget.scene, max_memory_bytes, watch) : kTypical);
     std::optional<Setting> best;
     for (const Setting& setting : settings) {
         const bool holds = max_error ? setting.error <= *max_error : setting.ms <= *most_ms;

@@ -5,10 +5,11 @@
 // are recorded. Nothing is timed: every machine chooses alike.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/lighting/sky.h"
 #include "core/scene/scene.h"
 #include "plugin/render/render.h"
 
@@ -31,12 +32,18 @@ struct PictureBudget {
     std::vector<PricedSetting> settings{};  // all that it was chosen from
 };
 
+// What isn't left to the budget.
+struct FixedSettings {
+    std::optional<int> samples{};
+    std::optional<SkyQuality> sky_quality{};
+};
+
 // max_error: the cheapest settings that err by no more; frame_ms: the most accurate ones that cost no more. The scene must be
-// valid. Without a budget, the scene and its own options, at once; with max_error, seconds. Throws BuildCancelled and what
-// Renderer::render() throws.
-PictureBudget picture_budget(const Scene& scene, const BuildWatch& watch = {});
-// The same with the shot's light at hand.
-PictureBudget picture_budget(const Scene& scene, const Sky& sky, const BuildWatch& watch = {});
+// valid. Without a budget, or with everything fixed, at once; with max_error, seconds. Frames whose camera is under water aren't
+// measured. Throws BuildCancelled, NotEnoughMemory (0: what the system gives), and std::invalid_argument where no picture can be
+// made: all cameras are under water, or even one sample a pixel is too many.
+PictureBudget picture_budget(const Scene& scene, const FixedSettings& fixed = {},
+                             std::size_t max_memory_bytes = 0, const BuildWatch& watch = {});
 
 // Of the pixels of water in both pictures: |L − L′|/|L′| of the radiance, L′ being the reference's: what 95 % of them don't exceed, and
 // the mean. A reference without light counts what is there as it is.

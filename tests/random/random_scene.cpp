@@ -41,6 +41,8 @@ constexpr Cap kCaps[] = {
     {"surface.cage_level", {0, 2}, "each level has four times the faces"},
     {"camera.resolution", {1, 24}, "each pixel is lit"},
     {"output.map_resolution", {1, 12}, "texels grow with the square"},
+    {"quality.max_error", {0.45, 1.0}, "a budget of error makes a mesh finer than all caps"},
+    {"quality.frame_ms", {0.01, 0.4}, "and so does one of time"},
     {"effects.foam_decay_s",
      {0, 0.5},
      "foam's past is computed before the first frame: some ten times this long"},
@@ -319,6 +321,7 @@ class Drawing {
             Draw& draw = key.path.starts_with("light.") ? light_ : draw_;
             if (draw.chance(is_data                                          ? 0.1
                             : costs_too_much(key) || key.path == "light.sky" ? 1.0
+                            : is_budget(key)                                 ? 0.1
                             : &draw == &light_                               ? of_light
                                                                              : each))
                 give(key, draw.value(key));
@@ -336,6 +339,9 @@ class Drawing {
     }
 
   private:
+    static bool is_budget(const Key& key) {
+        return key.path == "quality.max_error" || key.path == "quality.frame_ms";
+    }
     void give(const Key& key, KeyValue value) {
         const auto at = std::find_if(made_.keys.begin(), made_.keys.end(),
                                      [&](const GivenKey& given) { return given.key >= &key; });

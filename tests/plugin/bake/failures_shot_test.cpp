@@ -75,8 +75,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "3:13", "camera.look_at_m = [1, 2, 3]: ", "a target"},
         Refused{"CageWithoutItsFile", "[surface]\nkind = \"cage\"\n", "2:8",
                 "surface.kind = \"cage\": comes without cage_file", "\"cage\" together with cage_file"},
-        Refused{"KeyNotBuiltYet", "[quality]\nframe_ms = 8\n", "2:1",
-                "quality.frame_ms = 8: is not built yet", "a file without this key"},
+        Refused{"TwoBudgets", "[quality]\nmax_error = 0.1\nframe_ms = 8\n", "3:12",
+                "quality.frame_ms = 8: is a second budget", "one of the two"},
         Refused{"NoToml", "[output\nmesh = \"none\"\n", "1:8", "", "TOML"}),
     [](const auto& one) { return one.param.name; });
 

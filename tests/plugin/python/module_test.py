@@ -85,7 +85,8 @@ class Scene(unittest.TestCase):
         self.assertEqual((wind["unit"], wind["default"], wind["range"]), ("m/s", 10.0, (0.0, 80.0)))
         self.assertEqual((wind["feeds"], wind["built"], wind["label"]), (["waves"], True, "Wind speed"))
         self.assertLess(wind["soft_range"][1], wind["range"][1])
-        self.assertFalse(keys["quality.max_error"]["built"])
+        self.assertTrue(all(key["built"] for key in keys.values()))
+        self.assertEqual((keys["quality.max_error"]["default"], keys["quality.max_error"]["range"]), (None, (1e-6, 1.0)))
         self.assertEqual([c["word"] for c in keys["surface.kind"]["choices"] if c["built"]], ["patch", "projected-grid", "near-far", "cage", "planet"])
         self.assertEqual([k["name"] for k in keys["sea.swell"]["keys"]], ["height_m", "period_s", "direction_deg"])
 

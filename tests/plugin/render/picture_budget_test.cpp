@@ -34,7 +34,11 @@ const std::array kShots = std::to_array<BudgetShot>({
     {"gale", [](Scene& s) { s.sea.wind_speed_mps = 20.0; }, 0.3},
     {"gale, better", [](Scene& s) { s.sea.wind_speed_mps = 16.0; }, 0.18},
     {"no foam", [](Scene& s) { s.sea.wind_speed_mps = 13.0, s.effects.whitecaps = false; }, 0.15},
-    {"from a mast", [](Scene& s) { s.sea.wind_speed_mps = 10.0, s.camera.position_m.z = 25.0; }, 0.13},
+    {"from a mast",
+     [](Scene& s) {
+         s.sea.wind_speed_mps = 10.0, s.camera.position_m.z = 25.0, s.effects.foam_decay_s = 4.0;
+     },
+     0.13},
     {"from a plane",
      [](Scene& s) {
          s.sea.wind_speed_mps = 8.0, s.camera.position_m = {0.0, -500.0, 250.0};

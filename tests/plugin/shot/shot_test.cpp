@@ -440,13 +440,18 @@ TEST(Shot, ACageIsReadFromItsFile) {
     EXPECT_EQ(lines(refused_with(cage + "cage_file = 3\n")), 1u);
 }
 
-TEST(Shot, WhatIsNotBuiltYetIsRefused) {
-    for (const auto& [table, key] : {std::pair{"quality", "max_error"}, {"quality", "frame_ms"}}) {
-        const std::string name = std::string(table) + '.' + key;
-        expect_refused(name + " = 3\n",
-                       "1:" + std::to_string(name.find('.') + 2) + ": " + name + " = 3: is not built yet",
-                       "a file without this key: use ");
-    }
+TEST(Shot, BudgetsAreInsteadOfALevel) {
+    EXPECT_FALSE(Scene{}.quality.max_error || Scene{}.quality.frame_ms);
+    const Scene scene = parse("[quality]\nmax_error = 0.02\n");
+    EXPECT_EQ(scene.quality.max_error, 0.02);
+    EXPECT_EQ(parse("[quality]\nframe_ms = 40\n").quality.frame_ms, 40.0);
+    expect_refused("quality.max_error = 3\n", "1:21: quality.max_error = 3: is outside the range",
+                   "1e-6 … 1");
+    expect_refused("quality.frame_ms = 0\n", "1:20: quality.frame_ms = 0: is outside the range",
+                   "0.01 … 1e7");
+    expect_refused("[quality]\nmax_error = 0.1\nframe_ms = 9\n",
+                   "3:12: quality.frame_ms = 9: is a second budget beside quality.max_error",
+                   "one of the two");
 }
 
 TEST(Shot, AllProblemsInTheOrderOfTheFile) {

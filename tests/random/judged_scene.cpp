@@ -397,9 +397,21 @@ Judgement judge(const fs::path& shot, std::uint64_t variant) {
             judge_refusal(shot, judgement.refusal);
             return judgement;
         }
+        const std::shared_ptr<const PreparedScene> prepared = prepare(*scene);
+        if (!prepared->holds_budget) {
+            judgement.refusal = prepared->budget;
+            try {
+                bake(*scene, {.out = folder / "baked", .frames = {}, .progress = {}, .cancel = nullptr});
+            } catch (const std::invalid_argument& error) {
+                if (std::string(error.what()).find(prepared->budget) == std::string::npos)
+                    throw Failed("budget", error.what());
+                return judgement;
+            }
+            throw Failed("budget", "baked, and nothing holds " + prepared->budget);
+        }
         if (variant % 2 == 0) judge_energy_of(plan_bake(*scene));
         judge_bake(*scene, folder);
-        judgement.is_pictured = judge_pictures(*scene, variant);
+        judgement.is_pictured = judge_pictures(prepared->scene, variant);
     } catch (const Failed& failed) {
         judgement.failure = failed.kind;
         judgement.detail = failed.what();

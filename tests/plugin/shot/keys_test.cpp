@@ -151,6 +151,8 @@ TEST(ShotKeys, AreWrittenAndReadBack) {
             if (!key.set) continue;
             // Keys of trains are refused without them, and only then.
             Scene other = scene;
+            // One budget at a time.
+            if (key.path == "quality.frame_ms" && seed % 2 == 0) other.quality.max_error.reset();
             ASSERT_FALSE(set_value(other, key, random.of(key)).has_value()) << key.path;
             if (!validate(other).empty()) continue;
             scene = other;

@@ -670,7 +670,7 @@ TEST(Shot, HelpNamesEveryKey) {
     const std::string help = describe_keys();
     for (const char* part :
          {"[shot]", "  shot.fps = 24\n", "[1/s]", "sea.swell[].period_s", "camera.keys[].frame",
-          "waves.cascades = \"auto\"", "waves.trains = 60", "  waves.longest_m\n", "not built yet: use level",
+          "waves.cascades = \"auto\"", "waves.trains = 60", "  waves.longest_m\n", "  quality.max_error\n",
           "0 … 80", "output.attributes = [\"normal\", \"velocity\", \"slope-variance\", \"whitecaps\"]"}) {
         EXPECT_NE(help.find(part), std::string::npos) << part;
     }

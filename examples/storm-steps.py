@@ -18,8 +18,17 @@ COLUMNS = 2
 GAP = 6  # pixels between pictures
 LESSON = ("Breaking makes the storm: the horizontal displacement, the foam with its past and its structure, and the spray are seen at a "
           "glance, and nine lookups of the sky side by side. Air changes the horizon; multiple reflections and the integral over "
-          "the sky are seen by switching between two pictures at most. The foam's past is the dearest effect, and the integral "
-          "takes as long as everything before it, for a change that no eye notices.")
+          "the sky are seen by switching between two pictures at most.")
+
+
+def prices_of(steps):
+    """What was dear, in a sentence."""
+    whole, before, added = float(steps[-1]["ms"]), 0.0, []
+    for step in steps:
+        added.append(((float(step["ms"]) - before) / whole, step["setting"].removeprefix("+ ")))
+        before = float(step["ms"])
+    dearest = sorted(added, reverse=True)[:2]
+    return "The dearest steps: " + ", then ".join(f"{name} ({100 * share:.0f} % of the time)" for share, name in dearest) + "."
 
 
 def lab_of(picture):
@@ -77,7 +86,7 @@ def main():
         "that of the step before: the 95th percentile over pixels of water of the relative error of radiance; and of the "
         "pictures as a screen shows them the mean of ΔE (CIEDE2000), of which an eye just notices 1, and 1 − SSIM, 0 where "
         "the structure is the same. *Adds*: of the whole picture's time.\n\n"
-        + table_of(steps, pictures) + "\n" + LESSON + "\n"
+        + table_of(steps, pictures) + "\n" + LESSON + " " + prices_of(steps) + "\n"
         "\n![The steps, from left to right and down](storm-steps.png)\n", encoding="utf-8")
     io.imsave(out / "storm-steps.png", sheet_of(pictures), check_contrast=False)
 

@@ -66,14 +66,14 @@ class Chooser {
     };
 
     Setting at(const LevelError& level, std::size_t surface) {
-        return {&level, surface, std::hypot(missed(surface), level.error), cost(level, surface)};
+        return {&level, surface, std::hypot(missed(surface), read_error(level)), cost(level, surface)};
     }
     // The cheapest that errs by no more; otherwise the most accurate.
     Setting cheapest(double most) {
         std::optional<Setting> best;
         for (const LevelError& level : kLevels) {
             const std::size_t surface =
-                first([&](std::size_t i) { return std::hypot(missed(i), level.error) <= most; });
+                first([&](std::size_t i) { return std::hypot(missed(i), read_error(level)) <= most; });
             for (std::size_t i = surface; i < surfaces_.size(); ++i) {
                 const Setting here = at(level, i);
                 if (!best || here.ms < best->ms) best = here;
@@ -100,6 +100,9 @@ class Chooser {
     bool has_mesh() const { return has_mesh_; }
 
   private:
+    double read_error(const LevelError& level) const {
+        return prepared_.spectrum.m0() > 0.0 ? level.error : 0.0;  // a calm is flat however it is read
+    }
     // Points on the nodes of periodic tiles are read as they are, and cost less than fewer points between them.
     bool may_be_cheaper_finer() const {
         return prepared_.scene.waves.tiling == Tiling::Periodic &&

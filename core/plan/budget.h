@@ -34,7 +34,8 @@ struct MeshBudget {
 // surface.cell_px, other cages another surface.cage_level; a scene that bakes no mesh only another level.
 MeshBudget mesh_budget(const PreparedScene& prepared);
 
-// The surfaces that mesh_budget() chooses from, from coarse to fine.
+// The surfaces that mesh_budget() chooses from, from coarse to fine; of those that aren't even grids only the ones of up to two
+// million points.
 std::vector<Surface> rising_fineness(const Scene& scene);
 
 }  // namespace pelagic

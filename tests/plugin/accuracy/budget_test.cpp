@@ -72,7 +72,7 @@ const std::array kShots = std::to_array<BudgetShot>({
      [](Scene& s) {
          s.sea.wind_speed_mps = 11.0, s.surface.kind = SurfaceKind::NearFar, s.surface.size_m = 60.0;
      },
-     0.1},
+     0.2},
     {"projected grid",
      [](Scene& s) {
          s.sea.wind_speed_mps = 13.0, s.surface.kind = SurfaceKind::ProjectedGrid,
@@ -248,6 +248,49 @@ TEST_P(BudgetOfMesh, HoldsAndHalfTheCostWouldNot) {
         cheap.surface = *(too_dear - 1);
         EXPECT_GT(measured_error(cheap), most) << prepared->budget;
     }
+}
+
+// Of time: what is chosen costs no more, and is the most accurate of a list of all that cost no more.
+TEST(BudgetOfMeshes, OfTimeIsSpent) {
+    for (const Tiling tiling : {Tiling::Random, Tiling::Periodic})
+        for (const double most_ms : {1.0, 4.0, 20.0}) {
+            Scene scene;
+            scene.waves.tiling = tiling;
+            scene.waves.cascades = {{128.0, 256}, {16.0, 128}};
+            scene.surface.size_m = 128.0;
+            scene.quality.frame_ms = most_ms;
+            const auto prepared = prepare(scene);
+            ASSERT_TRUE(prepared->holds_budget) << prepared->budget;
+            EXPECT_LE(frame_ms(plan_bake(prepared->scene)), 1.001 * most_ms) << prepared->budget;
+            const MeshErrorModel model(*prepared);
+            const auto spacing_error = [&](const Surface& at) {
+                return model.error(at.size_m / at.resolution, 0.0, Drawn::Triangles);
+            };
+            for (const Surface& surface : rising_fineness(scene)) {
+                Scene other = prepared->scene;
+                other.surface = surface;
+                if (frame_ms(plan_bake(other)) > most_ms) continue;
+                EXPECT_GE(spacing_error(surface), 0.999 * spacing_error(prepared->scene.surface))
+                    << prepared->budget << ", and " << surface.resolution << " costs no more";
+            }
+        }
+}
+
+// A calm has no error, whatever its mesh; a bake without a mesh has no surface to choose.
+TEST(BudgetOfMeshes, OfACalmAndOfMapsAlone) {
+    Scene calm;
+    calm.sea.wind_speed_mps = 0.0;
+    calm.quality.max_error = 1e-6;
+    EXPECT_TRUE(prepare(calm)->holds_budget);
+    EXPECT_EQ(prepare(calm)->scene.quality.level, QualityLevel::Draft) << prepare(calm)->budget;
+    Scene maps;
+    maps.output.mesh = MeshFormat::None;
+    maps.output.maps = {MapKind::Displacement};
+    maps.quality.max_error = 0.001;
+    const auto prepared = prepare(maps);
+    EXPECT_TRUE(prepared->holds_budget) << prepared->budget;
+    EXPECT_EQ(prepared->scene.surface.resolution, maps.surface.resolution);
+    EXPECT_EQ(prepared->scene.quality.level, QualityLevel::Preview) << prepared->budget;
 }
 
 INSTANTIATE_TEST_SUITE_P(Shots, BudgetOfMesh, testing::ValuesIn(kShots), [](const auto& shot) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/plan/budget.h"
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
 #include "core/scene/shot_text.h"
@@ -63,7 +64,8 @@ std::string refuse_file(const fs::path& file, const std::vector<std::string>& ex
            joined(extensions);
 }
 
-int draw_offscreen(Scene scene, const fs::path& file, const Arguments& arguments) {
+int draw_offscreen(const Scene& shot, const fs::path& file, const Arguments& arguments) {
+    Scene scene = without_budget(shot);  // of bakes and renders
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
     const OffscreenContext context;

@@ -1,8 +1,8 @@
 // A budget of pictures: quality.max_error or quality.frame_ms, turned into what a render takes.
 //
 // How much pictures of a sea err differs between shots by more than ten, and hardly with the picture's size: so the shot is
-// measured on a small picture of its own, in double precision, and the errors of all settings follow from a law whose numbers
-// are recorded. Nothing is timed: every machine chooses alike.
+// measured on a small picture of its own, with four numbers of samples, and what lies between follows. Nothing is timed, and the
+// waves are in double precision, whose last digits no choice depends on: every machine chooses alike.
 #pragma once
 
 #include <cstddef>

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/plan/budget.h"
+#include "core/plan/prepared_scene.h"
 #include "core/scene/keys.h"
 #include "core/scene/scene.h"
 #include "core/scene/validate.h"
@@ -273,6 +275,8 @@ inline std::vector<KeyValue> chosen_values(const std::string& path, const BaseSh
         return {value_of(slower, key_of(path)), value_of(between, key_of(path))};
     }
     if (path == "light.sky") return {base.skies.begin(), base.skies.end()};
+    if (path == "quality.max_error") return {0.3, 0.1};
+    if (path == "quality.frame_ms") return {1.0, 3.0};
     if (path == "surface.cage_level") return {std::int64_t{1}, std::int64_t{3}, std::string("adaptive")};
     return {};
 }
@@ -333,6 +337,13 @@ inline std::vector<Edit> edits_of(const BaseShot& base) {
         for (const KeyValue& value : values) {
             Scene changed = base.scene;
             if (value == now || set_value(changed, key, value)) continue;
+            if (has_budget(changed.quality)) {
+                // Of meshes that a bake writes in a moment; a picture's budget becomes options before it is rendered.
+                const auto prepared = base.is_picture ? nullptr : prepare(changed);
+                constexpr int kMostQuads = 64;
+                if (!prepared || !prepared->holds_budget || prepared->scene.surface.resolution > kMostQuads)
+                    continue;
+            }
             const std::string text = value_text(key, value);
             add(std::move(changed), text.empty() ? "none" : text);
         }

@@ -1,10 +1,8 @@
 #include "core/plan/budget.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "core/plan/cost_model.h"
 #include "core/plan/mesh_error_model.h"
 #include "core/plan/plan.h"
+#include "core/plan/quality.h"
 #include "core/scene/limits.h"
 #include "core/scene/names.h"
 #include "core/scene/text.h"
@@ -19,19 +18,6 @@
 
 namespace pelagic {
 namespace {
-
-// What reading between a grid's nodes adds (RMS of positions over Hs): the largest of the examples' in `pelagic accuracy
-// --rows interpolation`. From cheap to accurate.
-struct LevelError {
-    QualityLevel level;
-    double error;
-};
-constexpr std::array kLevels = std::to_array<LevelError>({
-    {QualityLevel::Draft, 0.0045},
-    {QualityLevel::Preview, 4e-4},
-    {QualityLevel::Final, 3e-5},
-    {QualityLevel::Reference, 1e-6},
-});
 
 constexpr int kFrames = 3;  // that stand for a shot whose camera moves
 
@@ -60,18 +46,18 @@ class Chooser {
     }
 
     struct Setting {
-        const LevelError* level;
+        const QualityRow* level;
         std::size_t surface;
         double error, ms;
     };
 
-    Setting at(const LevelError& level, std::size_t surface) {
+    Setting at(const QualityRow& level, std::size_t surface) {
         return {&level, surface, std::hypot(missed(surface), read_error(level)), cost(level, surface)};
     }
     // The cheapest that errs by no more; otherwise the most accurate.
     Setting cheapest(double most) {
         std::optional<Setting> best;
-        for (const LevelError& level : kLevels) {
+        for (const QualityRow& level : quality_table()) {
             const std::size_t surface =
                 first([&](std::size_t i) { return std::hypot(missed(i), read_error(level)) <= most; });
             for (std::size_t i = surface; i < surfaces_.size(); ++i) {
@@ -80,12 +66,12 @@ class Chooser {
                 if (!may_be_cheaper_finer()) break;
             }
         }
-        return best ? *best : at(kLevels.back(), surfaces_.size() - 1);
+        return best ? *best : at(quality_table().back(), surfaces_.size() - 1);
     }
     // The most accurate that costs no more; otherwise the cheapest.
     Setting finest(double most_ms) {
         std::optional<Setting> best;
-        for (const LevelError& level : kLevels) {
+        for (const QualityRow& level : quality_table()) {
             std::size_t too_dear = first([&](std::size_t i) { return cost(level, i) > most_ms; });
             if (may_be_cheaper_finer())
                 for (std::size_t i = surfaces_.size(); i > too_dear; --i)
@@ -94,14 +80,14 @@ class Chooser {
             const Setting here = at(level, too_dear - 1);
             if (!best || here.error < best->error) best = here;
         }
-        return best ? *best : at(kLevels.front(), 0);
+        return best ? *best : at(quality_table().front(), 0);
     }
     const Surface& surface(std::size_t i) const { return surfaces_[i]; }
     bool has_mesh() const { return has_mesh_; }
 
   private:
-    double read_error(const LevelError& level) const {
-        return prepared_.spectrum.m0() > 0.0 ? level.error : 0.0;  // a calm is flat however it is read
+    double read_error(const QualityRow& level) const {
+        return prepared_.spectrum.m0() > 0.0 ? level.read_error : 0.0;  // a calm is flat however it is read
     }
     // Points on the nodes of periodic tiles are read as they are, and cost less than fewer points between them.
     bool may_be_cheaper_finer() const {
@@ -146,7 +132,7 @@ class Chooser {
             errors_[surface] = model_.error(*made(surfaces_[surface]), prepared_.scene.camera, frames_);
         return errors_[surface];
     }
-    double cost(const LevelError& level, std::size_t surface) const {
+    double cost(const QualityRow& level, std::size_t surface) const {
         return frame_ms(plan_bake(with(prepared_, level.level, surfaces_[surface]), frames_));
     }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <random>
 
@@ -15,12 +16,16 @@
 #include "core/plan/cost_model.h"
 #include "core/plan/mesh_error_model.h"
 #include "core/plan/plan.h"
+#include "core/plan/quality.h"
 #include "core/scene/text.h"
 #include "core/scene/validate.h"
 #include "core/surface/view.h"
 #include "core/waves/frame.h"
 #include "core/waves/sea.h"
+#include "plugin/accuracy/accuracy.h"
 #include "plugin/accuracy/sea_answers.h"
+#include "plugin/light/light.h"
+#include "plugin/shot/shot.h"
 
 namespace pelagic {
 namespace {
@@ -274,6 +279,29 @@ TEST(BudgetOfMeshes, OfTimeIsSpent) {
                     << prepared->budget << ", and " << surface.resolution << " costs no more";
             }
         }
+}
+
+// The recorded errors of reading, over every example that has grids.
+TEST(BudgetOfMeshes, ReadingErrsByNoMoreThanIsRecorded) {
+    const auto table = approximation_table();
+    const auto row = std::find_if(table.begin(), table.end(), [](const ApproximationRow& each) {
+        return std::string(each.name) == "interpolation";
+    });
+    ASSERT_NE(row, table.end());
+    int compared = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(PELAGIC_SOURCE_DIR "/examples")) {
+        if (entry.path().extension() != ".toml") continue;
+        const MeasuredRow measured = sweep(*row, load_shot(entry.path(), check_scene), 1, {});
+        for (const MeasuredSetting& setting : measured.settings)
+            for (const QualityRow& level : quality_table()) {
+                const std::string name = (level.spline_taps == 4 ? "cubic, " : "quintic, ") +
+                                         number_text(level.oversampling) + " nodes a sample";
+                if (setting.setting != name) continue;
+                EXPECT_LE(setting.errors.front(), level.read_error) << entry.path() << ", " << name;
+                ++compared;
+            }
+    }
+    EXPECT_GE(compared, 3 * 7) << "seven examples have grids, and three levels are swept";
 }
 
 // A calm has no error, whatever its mesh; a bake without a mesh has no surface to choose.

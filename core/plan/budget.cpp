@@ -173,6 +173,13 @@ Scene without_budget(Scene scene) {
     return scene;
 }
 
+std::string text_of_budget(const Quality& quality, bool holds) {
+    return (quality.max_error ? "quality.max_error = " + number_text(*quality.max_error)
+                              : "quality.frame_ms = " + number_text(*quality.frame_ms)) +
+           (holds ? "" : ", which nothing holds") + ": the " +
+           (quality.max_error.has_value() == holds ? "cheapest" : "most accurate");
+}
+
 Scene settled(Scene scene) {
     if (!has_budget(scene.quality)) return scene;
     const auto prepared = prepare(std::move(scene));
@@ -221,13 +228,8 @@ MeshBudget mesh_budget(const PreparedScene& prepared) {
     budget.scene.quality.level = chosen.level->level;
     budget.scene.surface = chooser.surface(chosen.surface);
     budget.holds = quality.max_error ? chosen.error <= *quality.max_error : chosen.ms <= *quality.frame_ms;
-    budget.text = (quality.max_error ? "quality.max_error = " + number_text(*quality.max_error)
-                                     : "quality.frame_ms = " + number_text(*quality.frame_ms)) +
-                  (budget.holds ? "" : ", which nothing holds") + ": the " +
-                  (quality.max_error ? (budget.holds ? "cheapest" : "most accurate")
-                                     : (budget.holds ? "most accurate" : "cheapest")) +
-                  (chooser.has_mesh() ? " mesh is" : " frame has") + " quality.level = \"" +
-                  std::string(word_of(chosen.level->level)) + "\"" +
+    budget.text = text_of_budget(quality, budget.holds) + (chooser.has_mesh() ? " mesh is" : " frame has") +
+                  " quality.level = \"" + std::string(word_of(chosen.level->level)) + "\"" +
                   (chooser.has_mesh() ? " with " + fineness_text(budget.scene.surface) : std::string()) +
                   ", an error of " + rough_text(chosen.error) + " and about " + rough_text(chosen.ms) +
                   " ms a frame";

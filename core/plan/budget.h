@@ -19,6 +19,9 @@ Scene without_budget(Scene scene);
 // Throws std::invalid_argument, saying what comes nearest, where nothing holds the budget.
 Scene settled(Scene scene);
 
+// "quality.max_error = 0.01: the cheapest", or "…, which nothing holds: the most accurate".
+std::string text_of_budget(const Quality& quality, bool holds);
+
 // The settings that a mesh's budget asks for: quality.level, and how fine the surface is, whatever the shot says of both.
 struct MeshBudget {
     Scene scene;  // with them, and without a budget

@@ -55,7 +55,7 @@ TEST_F(Budget, WhatNothingHoldsIsRefusedWithWhatComesNearest) {
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "s"));
     const Ended picture = ended("render", "frame_ms = 0.01");
     EXPECT_EQ(picture.status, 1);
-    EXPECT_TRUE(has(picture.err, "which no setting holds")) << picture.err;
+    EXPECT_TRUE(has(picture.err, "which nothing holds")) << picture.err;
 }
 
 TEST_F(Budget, PicturesTakeItAndNamedSettingsStay) {

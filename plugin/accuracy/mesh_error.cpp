@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/evaluate/evaluate.h"
+#include "plugin/accuracy/sea_answers.h"
 
 namespace pelagic {
 namespace {
@@ -78,11 +79,7 @@ double error_px(const SeenSurface& seen, const RestPoints<float>& at, const Mesh
         errors.push_back(std::abs(glm::dot(samples.face_m[i] - exact, glm::dvec3(normal[i]))) /
                          picture.pixel_m(exact));
     }
-    if (errors.empty()) return 0.0;
-    const auto last =
-        errors.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(errors.size() - 1));
-    std::nth_element(errors.begin(), last, errors.end());
-    return *last;
+    return percentile(errors, share);
 }
 
 FaceSamples samples_of(const SeenSurface& seen, const RestPoints<float>& at, const Faces& faces,

@@ -99,14 +99,6 @@ class TracedPicture {
     std::vector<SeaRay> rays_;
 };
 
-double percentile(std::vector<double>& values, double share) {
-    if (values.empty()) return 0.0;
-    const auto at =
-        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 }  // namespace
 
 Trials ray_tolerance(const Scene& shot) {

@@ -69,6 +69,14 @@ SeaAnswers::SeaAnswers(const Scene& scene, ProductSet wanted, double footprint_m
                    [&]<class T>(T) { sea_ = std::make_shared<Of<T>>(plan, at); });
 }
 
+double percentile(std::vector<double>& values, double share) {
+    if (values.empty()) return 0.0;
+    const auto at =
+        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
 double rms(std::span<const glm::dvec3> a, std::span<const glm::dvec3> b) {
     double sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) sum += glm::dot(a[i] - b[i], a[i] - b[i]);

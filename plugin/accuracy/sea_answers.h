@@ -59,6 +59,9 @@ class SeaAnswers {
     std::shared_ptr<Precision> sea_;
 };
 
+// What `share` of the values don't exceed; their order is changed. 0 without values.
+double percentile(std::vector<double>& values, double share);
+
 // Root of the mean squared distance.
 double rms(std::span<const glm::dvec3> a, std::span<const glm::dvec3> b);
 double rms(std::span<const double> a, std::span<const double> b);

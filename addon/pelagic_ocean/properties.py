@@ -111,7 +111,7 @@ READERS = {
     "point": lambda field, value: tuple(shortest(number) for number in value),
     "pair": lambda field, value: tuple(value),
     "word": lambda field, value: value,
-    "words": lambda field, value: tuple(choice["word"] for choice in field.key["choices"] if choice["word"] in value),
+    "words": lambda field, value: tuple(choice for choice in field.key["choices"] if choice in value),
     "text": _text,
     "data file": _text,
     "data time": _text,
@@ -133,9 +133,9 @@ def _field(key):
 
 
 def _has_property(key):
-    if key["choices"] and sum(choice["built"] for choice in key["choices"]) < 2:
+    if key["choices"] and len(key["choices"]) < 2:
         return False  # nothing to choose
-    return key["built"] and key["path"] not in FROM_BLENDER and not key["path"].startswith("camera.")
+    return key["path"] not in FROM_BLENDER and not key["path"].startswith("camera.")
 
 
 FIELDS = tuple(_field(key) for key in pelagic.keys() if _has_property(key)) if pelagic else ()
@@ -197,9 +197,9 @@ def _spoken(word):
 
 def _choices(key, flags):
     """Items whose numbers, which are what a file keeps, don't change when the core gets another word."""
-    return [(choice["word"], _spoken(choice["word"]), "",
-             1 << place if flags else zlib.crc32(choice["word"].encode()) & 0x7FFFFFFF)
-            for place, choice in enumerate(key["choices"]) if choice["built"]]
+    return [(choice, _spoken(choice), "",
+             1 << place if flags else zlib.crc32(choice.encode()) & 0x7FFFFFFF)
+            for place, choice in enumerate(key["choices"])]
 
 
 def _number(key):
@@ -265,7 +265,7 @@ CUSTOM = "custom"  # in place of a level: a budget
 
 def _quality_items():
     levels = BY_PATH["quality.level"].key["choices"] if "quality.level" in BY_PATH else ()
-    return [(choice["word"], _spoken(choice["word"]), "", number) for number, choice in enumerate(levels)] + [
+    return [(choice, _spoken(choice), "", number) for number, choice in enumerate(levels)] + [
         (CUSTOM, "Custom budget", "The cheapest settings within an error, or the most accurate within a time", len(levels))]
 
 

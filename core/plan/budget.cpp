@@ -105,12 +105,7 @@ class Chooser {
         }
     }
     std::unique_ptr<const RestSurface> made(const Surface& surface) const {
-        const Extent& extent = prepared_.extent;
-        return make_surface(with(prepared_, QualityLevel::Final, surface)->scene,
-                            {.height_m = extent.height_m,
-                             .reach_m = extent.reach_m,
-                             .significant_height_m = extent.significant_height_m,
-                             .hidden = extent.hidden});
+        return make_surface(with(prepared_, QualityLevel::Final, surface)->scene, prepared_.extent);
     }
     template <class Holds>
     std::size_t first(const Holds& holds) const {

@@ -55,7 +55,7 @@ void add_points(const Plan& plan, const PlannedQuery& planned, WorkDone& work) {
     double values = 0.0;
     for (const ProductRow& row : kProductTable)
         if (planned.query.products[index(row.product)]) values += static_cast<double>(row.components);
-    at(work, Work::Values) += points * values;
+    at(work, Work::Answers) += points * values;
 }
 
 // Pictures ask for all of the past at once; frames of a bake for what has been since the last one.
@@ -89,11 +89,14 @@ WorkDone work_of(const Plan& plan) {
     return work;
 }
 
-double frame_ms(const Plan& plan) {
-    const WorkDone work = work_of(plan);
+double cost_ms(const WorkDone& work, bool double_precision) {
     double ms = 0.0;
     for (std::size_t i = 0; i < kWorkCount; ++i) ms += kMs[i] * work[i];
-    return plan.knobs.double_precision ? kDouble * ms : ms;
+    return double_precision ? kDouble * ms : ms;
+}
+
+double frame_ms(const Plan& plan) {
+    return cost_ms(work_of(plan), plan.knobs.double_precision);
 }
 
 }  // namespace pelagic

@@ -18,13 +18,14 @@ enum class Work {
     Modes,       // that fill the grids, for each field
     Reads,       // of a grid's node at a point, for each field
     Trains,      // that a point adds up
-    Values,      // that points have in the end
+    Answers,     // numbers that points have in the end
     Foam,        // the past of a cell's corner, in one interval
 };
 inline constexpr std::size_t kWorkCount = 7;
 using WorkDone = std::array<double, kWorkCount>;
 
 WorkDone work_of(const Plan& plan);
+double cost_ms(const WorkDone& work, bool double_precision);
 
 // Of a frame: the sea, all outputs' points, and of the foam's past what a frame of a bake adds to the one before, or all that a
 // picture asks for. Without what is encoded, written, and lit.

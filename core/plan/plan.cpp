@@ -378,12 +378,7 @@ Plan plan_of_foam_level(const Plan& plan, double cell_m) {
 }
 
 Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const int> frames) {
-    const Extent& extent = prepared->extent;
-    const std::shared_ptr<const RestSurface> surface =
-        make_surface(prepared->scene, {.height_m = extent.height_m,
-                                       .reach_m = extent.reach_m,
-                                       .significant_height_m = extent.significant_height_m,
-                                       .hidden = extent.hidden});
+    const std::shared_ptr<const RestSurface> surface = make_surface(prepared->scene, prepared->extent);
     const OutputContext context{
         .prepared = *prepared, .surface = *surface, .frames = frames, .gone = products_gone(prepared->scene)};
     std::vector<OutputRequest> requests;

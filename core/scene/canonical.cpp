@@ -28,7 +28,7 @@ std::string content_text(const MeasuredSpectrum& measured) {
 std::string canonical(const Scene& scene, FeedSet parts) {
     std::string text;
     for (const Key& key : keys()) {
-        if (!key.has_value() || (key.feeds & parts).none()) continue;
+        if ((key.feeds & parts).none()) continue;
         std::string value;
         if (key.type == KeyType::DataFile) {
             if (scene.sea.measured && key.path == kSpectrumFile) value = content_text(*scene.sea.measured);

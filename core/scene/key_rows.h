@@ -201,8 +201,6 @@ struct About {
     const char* accepted = "";  // instead of what type and range say
     FeedSet feeds = {};
     bool may_be_infinite = false;
-    bool is_built = true;
-    std::vector<std::string> unbuilt_choices = {};
     const char* other_word = "";
     std::size_t most_entries = ~std::size_t{0};
     bool are_entries_independent = true;
@@ -245,11 +243,7 @@ Key key_of_member(const About& about) {
     if constexpr (requires { MemberValue<Value>::kOtherWord; })
         key.other_word = MemberValue<Value>::kOtherWord;
     const auto add_choices = [&]<class Choice>(Choice) {
-        for (const Word<Choice>& entry : words_of(Choice{})) {
-            const bool is_built = std::find(about.unbuilt_choices.begin(), about.unbuilt_choices.end(),
-                                            entry.word) == about.unbuilt_choices.end();
-            key.choices.push_back({std::string(entry.word), is_built});
-        }
+        for (const Word<Choice>& entry : words_of(Choice{})) key.choices.emplace_back(entry.word);
     };
     if constexpr (std::is_enum_v<Value>) add_choices(Value{});
     if constexpr (requires { typename Value::value_type; }) {
@@ -274,16 +268,6 @@ template <auto kMember>
 auto required(const About& about) {
     auto made = row<kMember>(about);
     made.key.is_required = true;
-    return made;
-}
-
-// A key whose feature comes later: known, so that its name is taken, and refused, saying what to do
-// meanwhile.
-template <class Owner>
-Row<Owner, 0> not_built(const About& about, const char* meanwhile) {
-    Row<Owner, 0> made{key_about(about, KeyType::Number), {}, {}};
-    made.key.is_built = false;
-    made.key.meanwhile = meanwhile;
     return made;
 }
 

@@ -18,9 +18,9 @@ constexpr std::array<std::string_view, 11> kTypeWords{"truth",   "integer",   "n
                                                       "word",    "point",     "pair",     "words",
                                                       "entries", "data file", "data time"};
 
-std::string words_text(const std::vector<KeyChoice>& choices) {
+std::string words_text(const std::vector<std::string>& choices) {
     std::string out;
-    for (const KeyChoice& choice : choices) out += (out.empty() ? "" : " ") + quoted_text(choice.word);
+    for (const std::string& word : choices) out += (out.empty() ? "" : " ") + quoted_text(word);
     return out;
 }
 
@@ -150,7 +150,6 @@ Key key_about(const About& about, KeyType type) {
     key.other_word = about.other_word;
     key.entry_name = about.entry_name;
     key.feeds = about.feeds;
-    key.is_built = about.is_built;
     key.accepted = about.accepted;
     return key;
 }
@@ -163,22 +162,17 @@ KeyValue value_of(const Scene& scene, const Key& key) {
 }
 
 Problem unknown_word(const Key& key, const std::string& path, std::string_view word) {
-    std::vector<std::string> words;
-    for (const KeyChoice& choice : key.choices) words.push_back(choice.word);
-    const std::string near = nearest(word, words);
+    const std::string near = nearest(word, key.choices);
     return {path, quoted_text(word),
             "is not one of the words" + (near.empty() ? "" : ", the nearest is " + quoted_text(near)),
             "one of " + words_text(key.choices)};
 }
 
 std::optional<Problem> set_value(Scene& scene, const Key& key, const KeyValue& value) {
-    if (!key.set)
-        return Problem{key.path, value_text(key, value), key.is_built ? "can't be set" : "is not built yet",
-                       key.accepted};
+    if (!key.set) return Problem{key.path, value_text(key, value), "can't be set", key.accepted};
     if (key.set(scene, value)) return std::nullopt;
     const auto is_unknown = [&](const std::string& word) {
-        return std::none_of(key.choices.begin(), key.choices.end(),
-                            [&](const KeyChoice& choice) { return choice.word == word; });
+        return std::find(key.choices.begin(), key.choices.end(), word) == key.choices.end();
     };
     if (const auto* word = std::get_if<std::string>(&value); word && key.type == KeyType::Word)
         return unknown_word(key, key.path, *word);
@@ -242,7 +236,7 @@ std::variant<double, std::string> DescribedKey::number_or_text() const {
 std::vector<DescribedKey> described(const Scene& scene, FeedSet parts) {
     std::vector<DescribedKey> out;
     for (const Key& key : keys()) {
-        if (!key.has_value() || (key.feeds & parts).none()) continue;
+        if ((key.feeds & parts).none()) continue;
         if (key.type == KeyType::DataFile) {
             if (const auto& cage = scene.surface.cage; cage && key.path == kCageFile)
                 out.push_back({"surface.cage", cage->content(), quoted_text(cage->content())});

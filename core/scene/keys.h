@@ -96,11 +96,6 @@ enum class KeyType {
 // "integer", "point", …
 std::string_view word_of(KeyType type);
 
-struct KeyChoice {
-    std::string word;
-    bool is_built = true;
-};
-
 // What a slider shows: the useful part of a range.
 struct SoftRange {
     double low = 0.0, high = 1.0;
@@ -116,16 +111,16 @@ struct Key {
     std::string help;
     std::string accepted;  // what a shot file may say: "a number, 0 … 80"
 
-    std::optional<Range> range;      // of the number, or of each one
-    std::optional<SoftRange> soft;   // of a number
-    bool may_be_infinite = false;    // besides what is in the range
-    bool is_optional = false;        // a number that may be left out, and has no default
-    bool is_required = false;        // in an entry: it has no default
-    std::int64_t least = 0;          // of an integer, or each of two: what its member holds
-    std::int64_t largest = 0;        // likewise
-    std::vector<KeyChoice> choices;  // of words
-    std::vector<Key> entry_keys;     // of entries
-    std::string entry_name;          // of entries: "Swell"
+    std::optional<Range> range;        // of the number, or of each one
+    std::optional<SoftRange> soft;     // of a number
+    bool may_be_infinite = false;      // besides what is in the range
+    bool is_optional = false;          // a number that may be left out, and has no default
+    bool is_required = false;          // in an entry: it has no default
+    std::int64_t least = 0;            // of an integer, or each of two: what its member holds
+    std::int64_t largest = 0;          // likewise
+    std::vector<std::string> choices;  // of words
+    std::vector<Key> entry_keys;       // of entries
+    std::string entry_name;            // of entries: "Swell"
     std::size_t most_entries = ~std::size_t{0};
     bool are_entries_independent = true;  // none is judged by another one
     std::string other_word;               // of entries: the word that stands for none of them, "auto"; of an
@@ -133,14 +128,9 @@ struct Key {
 
     KeyValue fallback;  // the value that a Scene begins with
     FeedSet feeds;
-    bool is_built = true;
-    std::string meanwhile;  // where it isn't built, and no value of it is: what to do instead
 
-    std::function<KeyValue(const Scene&)> get;         // empty: not built, or a key of entries
+    std::function<KeyValue(const Scene&)> get;         // empty: a key of an entry
     std::function<bool(Scene&, const KeyValue&)> set;  // empty: likewise, and for data, which hosts load
-
-    // Whether a scene has a value of this key.
-    bool has_value() const { return get != nullptr; }
 };
 
 // A table of the shot file and the keys in it.
@@ -151,8 +141,7 @@ struct KeyTable {
     std::function<void(const Scene& from, Scene& to)> copy;  // the whole table
 };
 
-// All tables and all their keys, in the order of the shot file's documentation. Keys that aren't built are
-// among them: their names are taken.
+// All tables and all their keys, in the order of the shot file's documentation.
 std::span<const KeyTable> key_tables();
 std::span<const Key> keys();
 

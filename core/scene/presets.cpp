@@ -53,7 +53,7 @@ Preset named(const char* name, const char* label, const char* help, const Scene&
         if (table.name != "sea" && table.name != "waves" && table.name != "light" && table.name != "water")
             continue;
         for (const Key& key : table.keys)
-            if (key.set && key.is_built) preset.values.emplace_back(key.path, value_of(scene, key));
+            if (key.set) preset.values.emplace_back(key.path, value_of(scene, key));
     }
     return preset;
 }

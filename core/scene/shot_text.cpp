@@ -9,7 +9,6 @@ std::string shot_text(const Scene& scene, const Scene& base) {
     for (const KeyTable& table : key_tables()) {
         std::string lines;
         for (const Key& key : table.keys) {
-            if (!key.has_value()) continue;
             const std::string value = value_text(key, value_of(scene, key));
             if (!value.empty() && value != value_text(key, value_of(base, key)))
                 lines += key.name + " = " + value + '\n';

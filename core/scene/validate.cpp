@@ -74,14 +74,6 @@ std::string range_text(const Key& key) {
     return text_of(*key.range) + (key.may_be_infinite ? ", or inf" : "");
 }
 
-// The words that are built, or else the value that doesn't ask for any.
-std::string built_text(const Key& key) {
-    std::string text;
-    for (const KeyChoice& choice : key.choices)
-        if (choice.is_built) text += (text.empty() ? "" : " or ") + quoted_text(choice.word);
-    return text.empty() ? value_text(key, key.fallback) : text;
-}
-
 struct Place {
     const Key& key;
     std::string path;
@@ -96,12 +88,6 @@ struct ValueCheck {
     void refuse(const KeyValue& value, const char* problem) const {
         check.refuse({at.path, value_text(at.key, value), problem, range_text(at.key)});
     }
-    void word(const std::string& path, const std::string& word) const {
-        const auto choice = std::find_if(at.key.choices.begin(), at.key.choices.end(),
-                                         [&](const KeyChoice& each) { return each.word == word; });
-        if (choice != at.key.choices.end() && !choice->is_built)
-            check.refuse({path, quoted_text(word), "is not built yet", built_text(at.key)});
-    }
 
     void operator()(std::monostate) const {}
     void operator()(bool) const {}
@@ -112,9 +98,7 @@ struct ValueCheck {
         if (!is_in_range(at.key, value))
             refuse(value, std::isnan(value) ? "is not a number" : "is outside the range");
     }
-    void operator()(const std::string& value) const {
-        if (at.key.type == KeyType::Word) word(at.path, value);
-    }
+    void operator()(const std::string&) const {}
     template <class Number>
     void operator()(const std::vector<Number>& list) const {
         const auto is_good = [&](Number value) { return is_in_range(at.key, static_cast<double>(value)); };
@@ -126,7 +110,6 @@ struct ValueCheck {
             if (std::find(list.begin(), here, *here) != here)
                 check.refuse(
                     {indexed(at.path, i), quoted_text(*here), "is in the list twice", "each word once"});
-            word(indexed(at.path, i), *here);
         }
     }
     void operator()(const std::vector<KeyEntry>& list) const {
@@ -147,26 +130,8 @@ void check_value(Checker& check, const Place& at, const KeyValue& value) {
     std::visit(ValueCheck{check, at}, value);
 }
 
-// A key that nothing uses yet: refused, rather than ignored, where it isn't the default.
-void check_unused(Checker& check, const Key& key, const KeyValue& value) {
-    if (value == key.fallback) return;
-    const auto* number = std::get_if<double>(&value);
-    if (number && !std::isfinite(*number)) {
-        check.refuse({key.path, value_text(key, value), "is not a finite number",
-                      value_text(key, key.fallback) + ", the only value built so far"});
-    } else {
-        check.refuse({key.path, value_text(key, value), "is not built yet", value_text(key, key.fallback)});
-    }
-}
-
 void check_each_value(Checker& check, const Scene& scene) {
-    for (const Key& key : keys()) {
-        if (!key.has_value()) continue;
-        if (key.is_built)
-            check_value(check, {key, key.path}, value_of(scene, key));
-        else
-            check_unused(check, key, value_of(scene, key));
-    }
+    for (const Key& key : keys()) check_value(check, {key, key.path}, value_of(scene, key));
 }
 
 // ---- What no range says, and what the values mean together

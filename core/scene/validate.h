@@ -11,8 +11,7 @@ namespace pelagic {
 
 // Every problem of the scene, in the order of the shot file's tables; empty: the scene can be planned.
 //
-// Ranges are those of scene/limits.h: a NaN is never accepted, infinity only as a depth. Values whose feature
-// is not built yet are refused, each with what to use meanwhile. Cascades must come largest first and leave
+// Ranges are those of scene/limits.h: a NaN is never accepted, infinity only as a depth. Cascades must come largest first and leave
 // no wavenumber out between two of them (scene/cascade_bands.h).
 //
 // Whitecaps that are off: the attribute "whitecaps" is then simply not written, because the attributes'

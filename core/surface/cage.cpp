@@ -163,7 +163,7 @@ double CageAdaption::finest_of(const CageRates& rates) const {
 
 // ---- The surface
 
-CageSurface::CageSurface(const Scene& scene, const SeaReach& reach)
+CageSurface::CageSurface(const Scene& scene, const Extent& reach)
     : cage_(given(scene.surface.cage)),
       level_(scene.surface.cage_level),
       camera_(scene.camera),

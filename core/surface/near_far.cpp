@@ -52,7 +52,7 @@ double longest(glm::dvec2 a, glm::dvec2 b) {
 
 }  // namespace
 
-NearFar::NearFar(const Scene& scene, const SeaReach& reach)
+NearFar::NearFar(const Scene& scene, const Extent& reach)
     : camera_(scene.camera),
       size_m_(scene.surface.size_m),
       cell_m_(rounded_cell_m(size_m_ / scene.surface.resolution)),

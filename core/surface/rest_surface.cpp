@@ -68,14 +68,14 @@ class SquareLattice : public RestSurface {
 // A square of quads, centred on the origin.
 class Patch final : public SquareLattice {
   public:
-    Patch(const Scene& scene, const SeaReach&) : SquareLattice(scene, 0) {}
+    Patch(const Scene& scene, const Extent&) : SquareLattice(scene, 0) {}
     void faces_at(int, Faces& faces) const override { set_grid_faces(quads(), quads(), faces); }
 };
 
 // The same as the limit surface of a cage.
 class FittedPatch final : public SquareLattice {
   public:
-    FittedPatch(const Scene& scene, const SeaReach&) : SquareLattice(scene, FittedCage::kMargin) {}
+    FittedPatch(const Scene& scene, const Extent&) : SquareLattice(scene, FittedCage::kMargin) {}
     std::string describe() const override {
         return SquareLattice::describe() +
                ", as the limit surface of a cage with a ring of vertices round it";
@@ -97,7 +97,7 @@ class FittedPatch final : public SquareLattice {
 // whole shot would make each frame depend on all others.
 class CameraGrid : public RestSurface {
   public:
-    CameraGrid(const Scene& scene, const SeaReach& reach)
+    CameraGrid(const Scene& scene, const Extent& reach)
         : camera_(scene.camera),
           has_ladder_(scene.waves.model == WaveModel::Fft || !scene.waves.cascades.empty()),
           first_frame_(scene.shot.first_frame),
@@ -185,7 +185,7 @@ class CameraGrid : public RestSurface {
 // where the plane's lie as far from the origin in the same direction (azimuthal equidistant projection).
 class Planet final : public CameraGrid {
   public:
-    Planet(const Scene& scene, const SeaReach& reach) : CameraGrid(scene, reach) {
+    Planet(const Scene& scene, const Extent& reach) : CameraGrid(scene, reach) {
         options_.curvature_per_m = kEarthCurvature_per_m;
     }
     std::string describe() const override { return CameraGrid::describe() + ", on the earth's sphere"; }
@@ -208,16 +208,16 @@ class Planet final : public CameraGrid {
 };
 
 template <class Kind>
-std::unique_ptr<const RestSurface> make(const Scene& scene, const SeaReach& reach) {
+std::unique_ptr<const RestSurface> make(const Scene& scene, const Extent& reach) {
     return std::make_unique<const Kind>(scene, reach);
 }
 
 struct SurfaceRow {
     SurfaceKind kind;
-    std::unique_ptr<const RestSurface> (*make)(const Scene&, const SeaReach&);
+    std::unique_ptr<const RestSurface> (*make)(const Scene&, const Extent&);
 };
 
-std::unique_ptr<const RestSurface> make_patch(const Scene& scene, const SeaReach& reach) {
+std::unique_ptr<const RestSurface> make_patch(const Scene& scene, const Extent& reach) {
     return scene.output.mesh_scheme == MeshScheme::CatmullClark ? make<FittedPatch>(scene, reach)
                                                                 : make<Patch>(scene, reach);
 }
@@ -270,11 +270,10 @@ Faces grid_faces(int columns, int rows) {
     return faces;
 }
 
-std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const SeaReach& reach) {
+std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const Extent& reach) {
     for (const SurfaceRow& row : kSurfaceTable)
         if (row.kind == scene.surface.kind) return row.make(scene, reach);
-    throw std::invalid_argument("surface.kind = \"" + std::string(word_of(scene.surface.kind)) +
-                                "\": is not built yet");
+    throw std::logic_error("a surface without a row");
 }
 
 std::vector<int> representative_frames(const Scene& scene, int most) {

@@ -16,18 +16,12 @@
 
 #include "core/scene/keys.h"
 #include "core/scene/scene.h"
+#include "core/surface/extent.h"
 #include "core/surface/faces.h"
 #include "core/surface/fitted_cage.h"
-#include "core/surface/hidden_height.h"
 #include "core/surface/view.h"
 
 namespace pelagic {
-
-// How far the sea that lies on the surface goes from its rest, by expectation [m], and what cells hide of it.
-struct SeaReach {
-    double height_m = 0.0, reach_m = 0.0, significant_height_m = 0.0;
-    HiddenHeight hidden{};
-};
 
 // Points that lie at first_m + i·spacing_m in x and in y, i ≥ 0, seen from the world's origin.
 struct Lattice {
@@ -117,8 +111,8 @@ class RestSurface {
     virtual std::optional<FittedCage> fitted() const { return {}; }
 };
 
-// The surface of a valid scene. Throws std::invalid_argument for a kind that isn't built.
-std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const SeaReach& reach);
+// The surface of a valid scene.
+std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const Extent& reach);
 
 // Some frames of the shot that stand for all where a look at each would take too long: those between which
 // the camera moves, evenly spaced, both ends included, at most `most`.

@@ -23,17 +23,13 @@ Trials of_surfaces(const Scene& shot, const std::vector<SurfaceSetting>& setting
     const double time_s = middle_time_s(shot);
     const auto seen = std::make_shared<SeenSurface>(seen_surface(shot, view_at(shot.camera, frame)));
     seen->sea->set(time_s);
-    const Extent& extent = seen->prepared->extent;
     Trials trials;
     for (const SurfaceSetting& setting : settings) {
         Scene scene = shot;
         scene.surface = setting.surface;
         const auto points = std::make_shared<RestPoints<float>>();
         const auto faces = std::make_shared<Faces>();
-        const auto rest = make_surface(scene, {.height_m = extent.height_m,
-                                               .reach_m = extent.reach_m,
-                                               .significant_height_m = extent.significant_height_m,
-                                               .hidden = extent.hidden});
+        const auto rest = make_surface(scene, seen->prepared->extent);
         rest->points_at(frame, *points);
         rest->faces_at(frame, *faces);
         trials.trials.push_back(

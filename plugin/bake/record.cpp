@@ -55,11 +55,10 @@ struct ToJson {
     }
 };
 
-// Every key that a scene has a value of, by its path.
+// Every key's value, by its path.
 Json settings(const Scene& scene) {
     Json json = Json::object();
-    for (const Key& key : keys())
-        if (key.has_value()) json[key.path] = std::visit(ToJson{}, value_of(scene, key));
+    for (const Key& key : keys()) json[key.path] = std::visit(ToJson{}, value_of(scene, key));
     return json;
 }
 

@@ -117,13 +117,9 @@ PictureBudget print_picture_budget(const Scene& scene) {
     Progress progress;
     PictureBudget budget;
     try {
-        budget = picture_budget(scene, {}, 0,
-                                {.progress =
-                                     [&](double done) {
-                                         progress.show("measuring a small picture of the shot: " +
-                                                       std::to_string(std::lround(100.0 * done)) + " %");
-                                     },
-                                 .cancel = nullptr});
+        budget = picture_budget(
+            scene, {}, 0,
+            {.progress = [&](double done) { progress.show_measuring(done); }, .cancel = nullptr});
     } catch (const std::exception& error) {  // who only bakes needs no picture
         budget.scene = without_budget(scene);
         budget.options = render_options(budget.scene);

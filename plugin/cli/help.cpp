@@ -205,7 +205,7 @@ const char* const kAccuracyFooter =
     "                                               the price of each effect and output\n"
     "\n"
     "Times are medians of settings that are measured in turn, so that they compare within a row, also on\n"
-    "a machine with other work.";
+    "a machine with other work. Of a shot with a budget, rows start from what it chose for the mesh.";
 const char* const kAccuracyShot = "The shot file. Default: the default sea";
 const char* const kAccuracyOut =
     "The folder for the report; created if it is missing.\n"

@@ -34,7 +34,7 @@ int print_one(const std::string& name) {
     for (const KeyTable& table : key_tables())
         for (const Key& key : table.keys)
             for (const auto& [path, value] : preset->values) {
-                if (path != key.path || !key.has_value()) continue;
+                if (path != key.path) continue;
                 const std::string text = value_text(key, value);
                 if (text.empty()) continue;
                 if (last != &table) std::cout << '[' << table.name << "]\n";

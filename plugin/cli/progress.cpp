@@ -138,6 +138,10 @@ void Progress::show_building(double built) {
     print("building the sea" + share + '\n');
 }
 
+void Progress::show_measuring(double done) {
+    show("measuring a small picture of the shot: " + std::to_string(std::lround(100.0 * done)) + " %");
+}
+
 void Progress::show(const std::string& line) {
     const Clock::time_point now = Clock::now();
     if (frame_said_ && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery)) return;

@@ -17,6 +17,7 @@ class Progress {
 
     void show(const BakeProgress& progress);
     void show(const std::string& line);  // progress of other work than a bake, as a text
+    void show_measuring(double done);    // of a small picture of the shot, for its budget
     void clear();                        // erases the line, so that a message can follow
 
   private:

@@ -151,17 +151,12 @@ struct Cancelled {};
 // Turns the shot's budget into settings, in the light of which the rest of the job is done. Throws BuildCancelled.
 void spend_budget(Job& job, StopSignals& stop, Progress& progress) {
     if (!has_budget(job.scene.quality)) return;
-    FixedSettings fixed;
+    FixedSettings fixed{.shutter_frames = job.options.shutter_frames, .layers = job.options.layers};
     if (job.has_samples) fixed.samples = job.options.samples;
     if (job.has_sky_quality) fixed.sky_quality = job.options.lighting.sky_quality;
-    const PictureBudget budget =
-        picture_budget(job.scene, fixed, job.max_memory_bytes,
-                       {.progress =
-                            [&](double done) {
-                                progress.show("measuring a small picture of the shot: " +
-                                              std::to_string(std::lround(100.0 * done)) + " %");
-                            },
-                        .cancel = &stop.cancelled()});
+    const PictureBudget budget = picture_budget(
+        job.scene, fixed, job.max_memory_bytes,
+        {.progress = [&](double done) { progress.show_measuring(done); }, .cancel = &stop.cancelled()});
     progress.clear();
     if (!budget.holds)
         throw std::invalid_argument(budget.text +

@@ -145,10 +145,9 @@ bool key_words(const Key& key, std::string& word) {
     bool changed = false;
     ImGui::BeginDisabled(word == kOfFile);
     if (ImGui::BeginCombo(key.label.c_str(), shown(word).c_str())) {
-        for (const KeyChoice& choice : key.choices)
-            if (choice.is_built && choice.word != kOfFile &&
-                ImGui::Selectable(shown(choice.word).c_str(), choice.word == word)) {
-                word = choice.word;
+        for (const std::string& choice : key.choices)
+            if (choice != kOfFile && ImGui::Selectable(shown(choice).c_str(), choice == word)) {
+                word = choice;
                 changed = true;
             }
         ImGui::EndCombo();

@@ -52,7 +52,7 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     Watch watch(progress, cancel);
     RenderOptions options = render_options(kept);
     if (has_budget(kept.quality)) {
-        FixedSettings fixed{.samples = samples};
+        FixedSettings fixed{.samples = samples, .shutter_frames = shutter, .layers = data_layers_of(layers)};
         if (sky_quality) fixed.sky_quality = sky_quality_of(*sky_quality);
         PictureBudget budget;
         try {

@@ -38,7 +38,6 @@ std::string doc_of(const Key& key) {
     if (!key.accepted.empty()) text += "; " + key.accepted;
     const std::string fallback = key.is_required ? "" : value_text(key, key.fallback);
     if (!fallback.empty()) text += "; default " + fallback;
-    if (!key.is_built) text += "; not built yet";
     return text;
 }
 
@@ -88,9 +87,8 @@ void add_methods(const std::string& table, const py::object& base, py::dict& mem
 std::string repr_of(const KeyTable& table, const Scene& scene) {
     std::string text;
     for (const Key& key : table.keys)
-        if (key.has_value())
-            text += (text.empty() ? "" : ", ") + key.name + "=" +
-                    std::string(py::repr(to_python(key, value_of(scene, key))));
+        text += (text.empty() ? "" : ", ") + key.name + "=" +
+                std::string(py::repr(to_python(key, value_of(scene, key))));
     return table.name + "(" + text + ")";
 }
 
@@ -103,7 +101,6 @@ py::object add_table_class(py::module_& module, const py::object& base, const Ke
     members["__repr__"] = py::cpp_function(
         [&table](const TableOfScene& self) { return repr_of(table, *self.scene); }, py::is_method(base));
     for (const Key& key : table.keys) {
-        if (!key.has_value()) continue;
         const py::cpp_function get(
             [&key](const TableOfScene& self) { return to_python(key, value_of(*self.scene, key)); });
         const py::cpp_function set([&key](const TableOfScene& self, const py::object& value) {
@@ -144,13 +141,7 @@ py::object range_of(const Key& key) {
 }
 
 py::dict described_key(const Key& key) {
-    py::list choices, feeds, inner;
-    for (const KeyChoice& choice : key.choices) {
-        py::dict made;
-        made["word"] = choice.word;
-        made["built"] = choice.is_built;
-        choices.append(made);
-    }
+    py::list feeds, inner;
     for (std::size_t part = 0; part < kFeeds; ++part)
         if (key.feeds[part]) feeds.append(text_of(FeedSet(1ull << part)));
     for (const Key& each : key.entry_keys) inner.append(described_key(each));
@@ -167,9 +158,8 @@ py::dict described_key(const Key& key) {
     out["range"] = range_of(key);
     out["soft_range"] = key.soft ? py::make_tuple(key.soft->low, key.soft->high) : py::object(py::none());
     out["logarithmic"] = key.soft && key.soft->is_logarithmic;
-    out["choices"] = choices;
+    out["choices"] = py::cast(key.choices);
     out["feeds"] = feeds;
-    out["built"] = key.is_built;
     out["keys"] = inner;
     out["entry"] = key.entry_name;
     out["other_word"] = key.other_word;

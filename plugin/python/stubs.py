@@ -164,7 +164,7 @@ def kind_of(key):
     if key["type"] == "entries":
         kind = f"tuple[{key['entry']}, ...]"
     elif key["type"] == "word":
-        kind = "Literal[" + ", ".join(f'"{choice["word"]}"' for choice in key["choices"]) + "]"
+        kind = "Literal[" + ", ".join(f'"{choice}"' for choice in key["choices"]) + "]"
     else:
         kind = KINDS[key["type"]]
     if key["type"] == "integer" and key["other_word"]:

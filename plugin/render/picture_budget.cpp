@@ -13,14 +13,13 @@
 #include <vector>
 
 #include "core/plan/budget.h"
-#include "core/plan/cost_model.h"
 #include "core/plan/memory.h"
 #include "core/scene/text.h"
 #include "core/surface/rest_surface.h"
-#include "core/surface/view.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/render/batch.h"
+#include "plugin/render/picture_cost.h"
 
 namespace pelagic {
 namespace {
@@ -34,34 +33,19 @@ constexpr int kReferenceSamples = 8;
 constexpr double kReferenceCell_px = 0.5;
 constexpr std::array kMeasuredSamples{1, 2, 4, 6};
 
-struct SkyCost {
-    SkyQuality sky;
+struct SkyWords {
+    SkyQuality quality;
     const char* words;
-    double us_a_sample;  // of a sample that shows the sea (bench_cost_model)
 };
-constexpr std::array kSkies = std::to_array<SkyCost>({
-    {SkyQuality::Nine, "nine lookups", 1.8},
-    {SkyQuality::Integral, "the integral", 27.0},
+constexpr std::array kSkies = std::to_array<SkyWords>({
+    {SkyQuality::Nine, "nine lookups"},
+    {SkyQuality::Integral, "the integral"},
 });
-constexpr double kAir_us = 0.05;  // of a sample that shows the sky
 
-struct Setting {
-    const SkyCost* sky;
-    int samples;
-    double error = 0.0, ms = 0.0;
-};
-
-// The larger a picture's share of water, the longer it takes.
-double water_share(const Scene& scene, int frame) {
-    constexpr int kLines = 64;
-    const View view = view_at(scene.camera, frame);
-    int water = 0;
-    for (int y = 0; y < kLines; ++y)
-        for (int x = 0; x < kLines; ++x)
-            water += view.direction((glm::dvec2(x, y) + 0.5) / static_cast<double>(kLines) *
-                                    glm::dvec2(view.resolution))
-                         .z < 0.0;
-    return static_cast<double>(water) / (kLines * kLines);
+const char* words_of_sky(SkyQuality quality) {
+    return std::find_if(kSkies.begin(), kSkies.end(),
+                        [&](const SkyWords& sky) { return sky.quality == quality; })
+        ->words;
 }
 
 std::vector<int> frames_to_measure(const Scene& scene) {
@@ -154,19 +138,25 @@ MeasuredErrors measured(const Scene& scene, std::size_t max_memory_bytes, const 
     return errors;
 }
 
+// The shot's own, with what isn't left to the budget.
+RenderOptions fixed_options(const Scene& scene, const FixedSettings& fixed) {
+    RenderOptions options = render_options(scene);
+    options.samples = fixed.samples.value_or(options.samples);
+    options.lighting.sky_quality = fixed.sky_quality.value_or(options.lighting.sky_quality);
+    options.shutter_frames = fixed.shutter_frames;
+    options.layers = fixed.layers;
+    return options;
+}
+
 // All that a budget chooses from, from few samples to many.
-std::vector<Setting> settings_of(const Scene& scene, const FixedSettings& fixed,
-                                 const MeasuredErrors& errors) {
+std::vector<PricedSetting> settings_of(const Scene& scene, const FixedSettings& fixed,
+                                       const MeasuredErrors& errors) {
     const std::vector<int> frames = frames_to_measure(scene);
-    const double pixels =
-        static_cast<double>(scene.camera.resolution.x) * static_cast<double>(scene.camera.resolution.y);
-    double water = 0.0;
-    for (const int frame : frames) water = std::max(water, water_share(scene, frame));
-    std::vector<Setting> settings;
+    std::vector<PricedSetting> settings;
     const int fewest = fixed.samples.value_or(kMeasuredSamples.front()),
               most = fixed.samples.value_or(kMeasuredSamples.back());
     for (int samples = fewest; samples <= most; ++samples) {
-        RenderOptions options = render_options(scene);
+        RenderOptions options = fixed_options(scene, fixed);
         options.samples = samples;
         try {
             check_render(scene, options);
@@ -174,13 +164,13 @@ std::vector<Setting> settings_of(const Scene& scene, const FixedSettings& fixed,
             if (samples == fewest) throw;
             break;  // more samples a side than a picture has
         }
-        const double sea_ms = frame_ms(picture_plan(of_samples(scene, samples), frames, options));
-        for (const SkyCost& sky : kSkies) {
-            if (fixed.sky_quality && *fixed.sky_quality != sky.sky) continue;
-            const double us = water * sky.us_a_sample + (1.0 - water) * kAir_us;
-            const double of_sky = sky.sky == SkyQuality::Integral ? 0.0 : errors.of_nine;
-            settings.push_back({&sky, samples, std::hypot(errors.at(samples), of_sky),
-                                sea_ms + 1e-3 * us * pixels * samples * samples});
+        const Plan plan = picture_plan(of_samples(scene, samples), frames, options);
+        for (const SkyWords& sky : kSkies) {
+            if (fixed.sky_quality && *fixed.sky_quality != sky.quality) continue;
+            options.lighting.sky_quality = sky.quality;
+            const double of_sky = sky.quality == SkyQuality::Integral ? 0.0 : errors.of_nine;
+            settings.push_back({options, std::hypot(errors.at(samples), of_sky),
+                                picture_ms(picture_work(plan, frames, options))});
         }
     }
     return settings;
@@ -217,46 +207,40 @@ PictureSettings reference_settings(const Scene& scene) {
 PictureBudget picture_budget(const Scene& scene, const FixedSettings& fixed, std::size_t max_memory_bytes,
                              const BuildWatch& watch) {
     PictureBudget budget{.scene = without_budget(scene), .options = {}};
-    const bool is_known = std::any_of(kSkies.begin(), kSkies.end(), [&](const SkyCost& sky) {
-        return !fixed.sky_quality || *fixed.sky_quality == sky.sky;
+    const bool is_known = std::any_of(kSkies.begin(), kSkies.end(), [&](const SkyWords& sky) {
+        return !fixed.sky_quality || *fixed.sky_quality == sky.quality;
     });
     if (!has_budget(scene.quality) || !is_known || (fixed.samples && fixed.sky_quality)) {
-        budget.options = render_options(budget.scene);
-        budget.options.samples = fixed.samples.value_or(budget.options.samples);
-        budget.options.lighting.sky_quality = fixed.sky_quality.value_or(budget.options.lighting.sky_quality);
+        budget.options = fixed_options(budget.scene, fixed);
         return budget;
     }
     budget.scene.quality.level = QualityLevel::Final;
     budget.scene.surface.cell_px = kCell_px;
     const auto [max_error, most_ms] = std::pair(scene.quality.max_error, scene.quality.frame_ms);
-    const std::vector<Setting> settings = settings_of(
+    const std::vector<PricedSetting> settings = settings_of(
         budget.scene, fixed, max_error ? measured(budget.scene, max_memory_bytes, watch) : kTypical);
-    std::optional<Setting> best;
-    for (const Setting& setting : settings) {
+    std::optional<PricedSetting> best;
+    for (const PricedSetting& setting : settings) {
         const bool holds = max_error ? setting.error <= *max_error : setting.ms <= *most_ms;
         if (!holds) continue;
         if (!best || (max_error ? setting.ms < best->ms : setting.error < best->error)) best = setting;
     }
-    for (const Setting& setting : settings) {
-        RenderOptions options = render_options(budget.scene);
-        options.samples = setting.samples;
-        options.lighting.sky_quality = setting.sky->sky;
-        budget.settings.push_back(
-            {options, max_error ? setting.error : std::numeric_limits<double>::quiet_NaN(), setting.ms});
-    }
+    budget.settings = settings;
+    if (!max_error)
+        for (PricedSetting& setting : budget.settings)
+            setting.error = std::numeric_limits<double>::quiet_NaN();
     budget.holds = best.has_value();
     if (!best)
-        best = *std::min_element(settings.begin(), settings.end(), [&](const Setting& a, const Setting& b) {
-            return max_error ? a.error < b.error : a.ms < b.ms;
-        });
-    budget.options = render_options(budget.scene);
-    budget.options.samples = best->samples;
-    budget.options.lighting.sky_quality = best->sky->sky;
+        best = *std::min_element(settings.begin(), settings.end(),
+                                 [&](const PricedSetting& a, const PricedSetting& b) {
+                                     return max_error ? a.error < b.error : a.ms < b.ms;
+                                 });
+    budget.options = best->options;
     budget.error = max_error ? best->error : std::numeric_limits<double>::quiet_NaN();
     budget.ms = best->ms;
     budget.text = text_of_budget(scene.quality, budget.holds) + " pictures have " +
-                  std::to_string(best->samples) + " × " + std::to_string(best->samples) +
-                  " samples a pixel and " + best->sky->words + " of the sky" +
+                  std::to_string(best->options.samples) + " × " + std::to_string(best->options.samples) +
+                  " samples a pixel and " + words_of_sky(best->options.lighting.sky_quality) + " of the sky" +
                   (max_error ? ", an error of " + rough_text(best->error) : std::string()) + " and about " +
                   rough_text(best->ms) + " ms a picture";
     return budget;

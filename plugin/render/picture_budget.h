@@ -22,7 +22,8 @@ struct PricedSetting {
 
 struct PictureBudget {
     Scene scene;  // with the quality.level and surface.cell_px that it asks for, and without a budget
-    RenderOptions options;  // render_options(scene), with samples and lookups of the sky
+    RenderOptions
+        options;  // render_options(scene), with samples and lookups of the sky, and with what is fixed
     // Expected: the relative error of radiance that 95 % of the water's pixels don't exceed, against 8 × 8 samples of the
     // integral of the sky, with cells of half a pixel. NaN where only time was asked for.
     double error = 0.0;
@@ -36,6 +37,8 @@ struct PictureBudget {
 struct FixedSettings {
     std::optional<int> samples{};
     std::optional<SkyQuality> sky_quality{};
+    double shutter_frames = 0.0;  // as RenderOptions'
+    PictureLayerSet layers = light_layers();
 };
 
 // max_error: the cheapest settings that err by no more; frame_ms: the most accurate ones that cost no more. The scene must be

@@ -7,23 +7,11 @@ namespace pelagic {
 
 namespace {
 
-// "one of "a" "b"; not built yet: "b""
-std::string accepted_text(const Key& key) {
-    if (!key.is_built) {
-        const bool has_value = !key.meanwhile.empty();
-        return "not built yet: " + (has_value ? key.meanwhile : "only " + value_text(key, key.fallback));
-    }
-    std::string unbuilt;
-    for (const KeyChoice& choice : key.choices)
-        if (!choice.is_built) unbuilt += ' ' + quoted_text(choice.word);
-    return key.accepted + (unbuilt.empty() ? "" : "; not built yet:" + unbuilt);
-}
-
 void describe(std::string& out, const Key& key) {
     const std::string fallback = key.is_required ? "" : value_text(key, key.fallback);
     out += "  " + key.path + (fallback.empty() ? "" : " = " + fallback) + '\n';
     out += "      " + key.help + (key.unit.empty() ? "" : " [" + key.unit + "]") + '\n';
-    out += "      " + accepted_text(key) + '\n';
+    out += "      " + key.accepted + '\n';
     if (key.feeds.any()) out += "      feeds " + text_of(key.feeds) + '\n';
     for (const Key& inner : key.entry_keys) describe(out, inner);
 }

@@ -125,8 +125,8 @@ std::optional<std::string> read_text(Reader& reader, const Asked& asked) {
 std::optional<std::string> read_word(Reader& reader, const Asked& asked) {
     const auto* text = asked.node.as_string();
     if (!text) return refuse_type(reader, asked);
-    for (const KeyChoice& choice : asked.key.choices)
-        if (choice.word == text->get()) return choice.word;
+    for (const std::string& word : asked.key.choices)
+        if (word == text->get()) return word;
     Problem problem = unknown_word(asked.key, asked.path, text->get());
     problem.value = text_of(asked.node);
     reader.refuse(asked.node.source().begin, problem);
@@ -166,7 +166,7 @@ std::optional<KeyValue> read_words(Reader& reader, const Asked& asked) {
         reader.remember(path, element.source().begin);
         const std::optional<std::string> word = read_word(reader, {element, path, asked.key});
         if (!word) reader.mark_failed(asked.path);
-        words.push_back(word.value_or(asked.key.choices.front().word));
+        words.push_back(word.value_or(asked.key.choices.front()));
     }
     return words;
 }
@@ -334,9 +334,6 @@ void read_table(Reader& reader, const toml::table& table, const KeyTable& about,
                          [&, name = name_in_file.str()](const Key& k) { return k.name == name; });
         if (key == about.keys.end()) {
             refuse_unknown(reader, about.name, at, known);
-        } else if (!key->has_value()) {
-            reader.refuse(name_in_file.source().begin, {key->path, text_of(*node), "is not built yet",
-                                                        "a file without this key: " + key->meanwhile});
         } else {
             reader.remember(key->path, node->source().begin);
             read_key(reader, {*node, key->path, *key}, scene);

@@ -17,7 +17,7 @@ import pelagic
 program = sys.argv[-1]
 folder = Path(tempfile.mkdtemp())
 SIZE = 64
-KINDS = [choice["word"] for key in pelagic.keys() if key["path"] == "output.maps" for choice in key["choices"]]
+KINDS = [word for key in pelagic.keys() if key["path"] == "output.maps" for word in key["choices"]]
 # What a map shows in red, green and blue, and how far the file may round it: halves have 11 significant bits.
 SHOWS = {"displacement": ("displacement", 0.0), "normal": ("normal", 2.0**-11), "slope-variance": ("slope_variance", 0.0),
          "whitecaps": ("coverage", 2.0**-11)}

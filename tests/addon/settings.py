@@ -34,7 +34,7 @@ def ends(key):
         return low, min(high, properties.INTEGER_LIMIT) if key["type"] == "integer" else high
     if key["type"] == "truth":
         return False, True
-    words = [choice["word"] for choice in key["choices"] if choice["built"]]
+    words = key["choices"]
     if key["type"] == "word":
         return words
     if key["type"] == "words":
@@ -69,7 +69,7 @@ with checking("one menu for quality: levels, and a budget that chooses the mesh"
 
 
 def words_of(path):
-    return [choice["word"] for choice in properties.BY_PATH[path].key["choices"] if choice["built"]]
+    return list(properties.BY_PATH[path].key["choices"])
 
 
 def kind(key, value):

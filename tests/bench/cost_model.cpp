@@ -1,4 +1,4 @@
-// The numbers of core/plan/cost_model.cpp and of plugin/render/picture_budget.cpp, fitted anew: frames of the examples' meshes at all
+// The numbers of core/plan/cost_model.cpp and of plugin/render/picture_cost.cpp, fitted anew: frames of the examples' meshes at all
 // levels, and small pictures of them, timed; then the least relative error with costs that aren't negative.
 //   bench_cost_model
 #include "core/plan/cost_model.h"
@@ -18,6 +18,7 @@
 #include "plugin/bake/sequence.h"
 #include "plugin/light/light.h"
 #include "plugin/render/batch.h"
+#include "plugin/render/picture_cost.h"
 #include "plugin/render/render.h"
 #include "plugin/shot/shot.h"
 
@@ -107,46 +108,65 @@ std::vector<Timed> meshes() {
     return rows;
 }
 
-// By what the sea costs according to the model, and the samples that show the sea with nine lookups, with the integral, and
-// those that show the sky [millions].
+// A picture's work, of the sea and of its light.
+std::vector<double> row_of(const PictureWork& work) {
+    std::vector<double> row(work.sea.begin(), work.sea.end());
+    row.insert(row.end(), work.light.begin(), work.light.end());
+    return row;
+}
+
+struct PictureCase {
+    const char* name;
+    SkyQuality sky = SkyQuality::Nine;
+    int samples = 1;
+    double shutter_frames = 0.0;
+    bool spray = false;
+};
+
+double picture_taken_ms(const Scene& scene, const RenderOptions& options, const Sky& sky) {
+    const int frame = scene.shot.first_frame;
+    Renderer renderer(scene, options, sky, std::span(&frame, 1));
+    Picture picture;
+    double least = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const auto start = std::chrono::steady_clock::now();
+        renderer.render(frame, picture);
+        const double ms =
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        least = i == 0 ? ms : std::min(least, ms);
+    }
+    return least;
+}
+
 std::vector<Timed> pictures() {
+    constexpr std::array kCases = std::to_array<PictureCase>({
+        {"nine"},
+        {"nine, 3 x 3", SkyQuality::Nine, 3},
+        {"integral", SkyQuality::Integral},
+        {"shutter, 2 x 2", SkyQuality::Nine, 2, 0.5},
+        {"shutter, 3 x 3", SkyQuality::Nine, 3, 0.5},
+        {"spray", SkyQuality::Nine, 1, 0.0, true},
+        {"spray, 3 x 3", SkyQuality::Nine, 3, 0.0, true},
+        {"spray, shutter, 2 x 2", SkyQuality::Nine, 2, 0.5, true},
+    });
     std::vector<Timed> rows;
     for (const char* name : kExamples) {
         Scene scene = example(name);
         scene.camera.resolution = {160, 90};
         scene.surface.cell_px = 2.0;
         const Sky sky = make_sky(scene);
-        const int frame = scene.shot.first_frame;
-        for (const SkyQuality quality : {SkyQuality::Nine, SkyQuality::Integral})
-            for (const int samples : {1, 3}) {
-                if (quality == SkyQuality::Integral && samples > 1) continue;
-                RenderOptions options = render_options(scene);
-                options.samples = samples;
-                options.lighting.sky_quality = quality;
-                const WorkDone work =
-                    work_of(picture_plan(of_samples(scene, samples), std::span(&frame, 1), options));
-                Renderer renderer(scene, options, sky, std::span(&frame, 1));
-                Picture picture;
-                double least = 0.0;
-                for (int i = 0; i < 3; ++i) {
-                    const auto start = std::chrono::steady_clock::now();
-                    renderer.render(frame, picture);
-                    const double ms =
-                        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-                            .count();
-                    least = i == 0 ? ms : std::min(least, ms);
-                }
-                const double water =
-                    static_cast<double>(std::count(picture.sea.begin(), picture.sea.end(), std::uint8_t{1})) *
-                    1e-6 * samples * samples;
-                const double all = 1e-6 * samples * samples * static_cast<double>(picture.sea.size());
-                std::vector<double> row(work.begin(), work.end());
-                const bool is_nine = quality == SkyQuality::Nine;
-                row.insert(row.end(), {is_nine ? water : 0.0, is_nine ? 0.0 : water, all - water});
-                rows.push_back({std::string(name) + (is_nine ? ", nine, " : ", integral, ") +
-                                    std::to_string(samples) + " x " + std::to_string(samples),
-                                std::move(row), least});
-            }
+        for (const PictureCase& each : kCases) {
+            scene.effects.spray = each.spray;
+            RenderOptions options = render_options(scene);
+            if (each.spray && !options.lighting.spray) continue;  // nothing breaks
+            options.samples = each.samples;
+            options.lighting.sky_quality = each.sky;
+            options.shutter_frames = each.shutter_frames;
+            const std::array frames{scene.shot.first_frame};
+            const Plan plan = picture_plan(of_samples(scene, each.samples), frames, options);
+            rows.push_back({std::string(name) + ", " + each.name, row_of(picture_work(plan, frames, options)),
+                            picture_taken_ms(scene, options, sky)});
+        }
     }
     return rows;
 }
@@ -169,6 +189,7 @@ int main() {
         row.ms = std::max(row.ms - sea_ms, 0.5 * row.ms);
     }
     print(
-        "pictures without what the sea costs in bakes [ms]: foam, samples with nine, with the integral, of sky",
+        "pictures without what the sea costs in bakes [ms]: foam, samples with nine, with the integral, of sky; texels and samples "
+        "of spray",
         of_pictures, fitted(of_pictures));
 }

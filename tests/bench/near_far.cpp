@@ -59,11 +59,7 @@ Surface grid(double cell_px) {
 Row row_of(const Seen& seen, const Surface& surface) {
     Scene scene = seen.prepared->scene;
     scene.surface = surface;
-    const Extent& extent = seen.prepared->extent;
-    const auto rest = make_surface(scene, {.height_m = extent.height_m,
-                                           .reach_m = extent.reach_m,
-                                           .significant_height_m = extent.significant_height_m,
-                                           .hidden = extent.hidden});
+    const auto rest = make_surface(scene, seen.prepared->extent);
     RestPoints<float> at;
     Faces faces;
     rest->points_at(1, at);

@@ -39,11 +39,11 @@ def learn(pelagic):
     """The table of keys: before anything is drawn. The rows of tables, without those of lists' entries."""
     for row in pelagic.keys():
         _rows[row["path"]] = row
-    return [row for row in _rows.values() if row["built"] and "[]" not in row["path"]]
+    return [row for row in _rows.values() if "[]" not in row["path"]]
 
 
 def _words(path):
-    return [choice["word"] for choice in _rows[path]["choices"] if choice["built"]]
+    return list(_rows[path]["choices"])
 
 
 def _frames(draw):
@@ -215,7 +215,7 @@ def shot(draw, folder, each=0.35):
     """Keys of a random shot, each key drawn with this probability: {path: value}."""
     keys = {}
     for row in _rows.values():
-        if not row["built"] or "[]" in row["path"]:
+        if "[]" in row["path"]:
             continue
         if draw.random() < each:
             drawn = value(draw, row)

@@ -118,8 +118,8 @@ class Draw {
 
     std::vector<std::string> words(const Key& key) {
         std::vector<std::string> all;
-        for (const KeyChoice& choice : key.choices)
-            if (choice.is_built && chance(0.6)) all.push_back(choice.word);
+        for (const std::string& word : key.choices)
+            if (chance(0.6)) all.push_back(word);
         for (std::size_t i = all.size(); i > 1; --i) std::swap(all[i - 1], all[index(i)]);
         return all;
     }
@@ -147,7 +147,7 @@ class Draw {
             case KeyType::Text:
                 return text(key);
             case KeyType::Word:
-                return key.choices[index(key.choices.size())].word;
+                return key.choices[index(key.choices.size())];
             case KeyType::Point:
                 return point(key);
             case KeyType::Pair:
@@ -316,7 +316,6 @@ class Drawing {
         // Few keys, or most of them.
         const double each = draw_.uniform(0.1, 0.7), of_light = 0.5;
         for (const Key& key : keys()) {
-            if (!key.is_built || !key.has_value()) continue;
             const bool is_data = key.type == KeyType::DataFile || key.type == KeyType::DataTime;
             Draw& draw = key.path.starts_with("light.") ? light_ : draw_;
             if (draw.chance(is_data                                          ? 0.1

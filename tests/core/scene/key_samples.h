@@ -54,9 +54,8 @@ inline KeyValue another_value(const Key& key, const KeyValue& now) {
         }
         KeyValue operator()(const std::string& text) const {
             if (key.choices.empty()) return text + "x";
-            const auto here = std::find_if(key.choices.begin(), key.choices.end(),
-                                           [&](const KeyChoice& choice) { return choice.word == text; });
-            return here + 1 == key.choices.end() ? key.choices.front().word : (here + 1)->word;
+            const auto here = std::find(key.choices.begin(), key.choices.end(), text);
+            return here + 1 == key.choices.end() ? key.choices.front() : *(here + 1);
         }
         KeyValue operator()(std::vector<double> point) const {
             point[2] = moved(point[2]);
@@ -68,7 +67,7 @@ inline KeyValue another_value(const Key& key, const KeyValue& now) {
         }
         KeyValue operator()(std::vector<std::string> words) const {
             if (words.empty())
-                words.push_back(key.choices.front().word);
+                words.push_back(key.choices.front());
             else
                 words.pop_back();
             return words;

@@ -37,15 +37,10 @@ TEST(Keys, EachIsDescribed) {
         EXPECT_TRUE(paths.insert(key.path).second) << "twice";
         EXPECT_TRUE(key.path.ends_with('.' + key.name));
         EXPECT_FALSE(key.help.empty() || key.label.empty());
-        EXPECT_EQ(key.help.find("not built"), std::string::npos) << "is a property, not a word of the help";
         const bool is_inner = key.path.find("[]") != std::string::npos;
         EXPECT_TRUE(is_inner || !key.is_required) << "an empty file is a sea";
         EXPECT_EQ(key.feeds.any(), !is_inner);
-        if (!is_inner && !key.has_value()) {
-            EXPECT_FALSE(key.is_built);
-            EXPECT_FALSE(key.meanwhile.empty()) << "what to do instead?";
-            return;
-        }
+        EXPECT_EQ(key.get == nullptr, is_inner);
         EXPECT_FALSE(key.accepted.empty());
         EXPECT_EQ(std::holds_alternative<std::monostate>(key.fallback), key.is_optional) << "its default";
         const bool is_choice = key.type == KeyType::Word || key.type == KeyType::Words;
@@ -98,7 +93,7 @@ TEST(Keys, EachReachesAMemberOfItsOwn) {
         EXPECT_FALSE(set_value(scene, key, wanted).has_value());
         EXPECT_EQ(value_of(scene, key), wanted);
         for (const Key& other : keys()) {
-            if (!other.has_value() || other.path == key.path) continue;
+            if (other.path == key.path) continue;
             EXPECT_EQ(value_of(scene, other), other.fallback) << other.path;
         }
         Scene copied;
@@ -185,25 +180,6 @@ TEST(Keys, RangesAreCheckedEndsIncluded) {
             });
     }
     EXPECT_GT(checked, 20);
-}
-
-TEST(Keys, WhatIsNotBuiltIsRefusedAsTheTableSays) {
-    for (const Key& key : keys()) {
-        if (!key.has_value()) continue;
-        for (const KeyChoice& choice : key.choices) {
-            if (choice.is_built) continue;
-            const bool is_list = key.type == KeyType::Words;
-            const auto problems = validate(scene_with(
-                key, is_list ? KeyValue(std::vector<std::string>{choice.word}) : KeyValue(choice.word)));
-            ASSERT_EQ(problems.size(), 1u) << key.path << ' ' << choice.word << '\n' << text_of(problems);
-            EXPECT_EQ(problems[0].problem, "is not built yet");
-        }
-        if (key.is_built) continue;
-        const auto problems = validate(scene_with(key, another_value(key, key.fallback)));
-        ASSERT_EQ(problems.size(), 1u) << key.path;
-        EXPECT_EQ(problems[0].problem, "is not built yet");
-        EXPECT_EQ(problems[0].accepted, value_text(key, key.fallback));
-    }
 }
 
 // The whole point of the parts: a key changes the texts of those that it feeds, and of no other.

@@ -323,7 +323,7 @@ Scene cage_scene(CageMesh mesh) {
     return scene;
 }
 
-constexpr SeaReach kReach{.height_m = 1.0, .reach_m = 1.0, .significant_height_m = 0.5, .hidden = {}};
+constexpr Extent kReach{.height_m = 1.0, .reach_m = 1.0, .significant_height_m = 0.5, .hidden = {}};
 
 TEST(CageSurface, AUniformOneIsTheSameAtEveryFrame) {
     Scene scene = cage_scene(cube());
@@ -429,7 +429,7 @@ TEST(CageSurface, ACameraInTheSurfaceIsNoSpecialCase) {
     for (const glm::dvec3 position : {glm::dvec3(0.3, 0.6, 0.0), glm::dvec3(1e9, 0.0, 1.0)}) {
         scene.camera.position_m = position;
         scene.camera.look_at_m = position + glm::dvec3(0.0, 1.0, 0.0);
-        const auto surface = make_surface(scene, SeaReach{});
+        const auto surface = make_surface(scene, Extent{});
         RestPoints<float> points;
         surface->points_at(1, points);
         EXPECT_GE(points.rest_m.size(), 4u);
@@ -459,7 +459,7 @@ TEST(CageSurface, AnEyeAtAPointOfACalmCageEnds) {
         scene.surface.cell_px = 64.0;
         scene.camera.position_m = glm::dvec3(0.0);
         scene.camera.look_at_m = {0.0, 1.0, 0.0};
-        const auto surface = make_surface(scene, SeaReach{});
+        const auto surface = make_surface(scene, Extent{});
         RestPoints<double> points;
         surface->points_at(1, points);
         EXPECT_GE(points.rest_m.size(), 4u);
@@ -477,7 +477,7 @@ TEST(CageSurface, CellsThatMakeTooManyPointsAreRefused) {
     const std::string key = "raise it to ";
     std::string message;
     try {
-        make_surface(scene, SeaReach{});
+        make_surface(scene, Extent{});
     } catch (const std::invalid_argument& error) {
         message = error.what();
     }

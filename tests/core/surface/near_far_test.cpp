@@ -21,7 +21,7 @@
 namespace pelagic {
 namespace {
 
-constexpr SeaReach kReach{.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0};
+constexpr Extent kReach{.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0};
 
 Scene near_far_scene(double size_m, int resolution, bool is_round = false) {
     Scene scene;

@@ -13,7 +13,7 @@
 namespace pelagic {
 namespace {
 
-constexpr SeaReach kReach{.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0};
+constexpr Extent kReach{.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0};
 
 Scene camera_scene() {
     Scene scene;

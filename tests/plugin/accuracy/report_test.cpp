@@ -98,8 +98,9 @@ TEST(AccuracyReport, DamagedTablesAreRefusedWithTheirLine) {
 
 TEST(AccuracyReport, TextSaysWhatEachNumberIsAndHowOldItIs) {
     const std::string text = text_report(made_up(), kNow, kShot);
-    for (const char* part : {"Lookups of the reflected sky (sky)", "the integral", "measured 3 days ago",
-                             "  * nine", "the shot has no whitecaps"})
+    for (const char* part :
+         {"Lookups of the reflected sky (sky)", "the integral", "measured on 2026-11-20, 3 days before",
+          "  * nine", "the shot has no whitecaps"})
         EXPECT_NE(text.find(part), std::string::npos) << part << '\n' << text;
     EXPECT_EQ(text.find("as it was then"), std::string::npos);
     // Parts, the dearest first, with their shares; what is left; the sum; the whole; how exact it is.

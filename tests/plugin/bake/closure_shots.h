@@ -224,11 +224,11 @@ inline std::vector<KeyValue> other_entries(const Key& key, const std::vector<Key
 
 inline std::vector<KeyValue> other_words(const Key& key, const std::vector<std::string>& now) {
     std::vector<KeyValue> others;
-    for (const KeyChoice& choice : key.choices) {
+    for (const std::string& word : key.choices) {
         std::vector<std::string> words = now;
-        const auto here = std::find(words.begin(), words.end(), choice.word);
+        const auto here = std::find(words.begin(), words.end(), word);
         if (here == words.end())
-            words.push_back(choice.word);
+            words.push_back(word);
         else
             words.erase(here);
         others.emplace_back(std::move(words));
@@ -285,7 +285,6 @@ inline std::vector<KeyValue> chosen_values(const std::string& path, const BaseSh
 inline std::vector<Edit> edits_of(const BaseShot& base) {
     std::vector<Edit> edits;
     for (const Key& key : keys()) {
-        if (!key.is_built || !key.has_value()) continue;
         const std::string table = key.path.substr(0, key.path.find('.'));
         if (!base.tables.empty() &&
             std::find(base.tables.begin(), base.tables.end(), table) == base.tables.end())
@@ -330,7 +329,7 @@ inline std::vector<Edit> edits_of(const BaseShot& base) {
             const auto others = other_words(key, *words);
             values.insert(values.end(), others.begin(), others.end());
         } else if (key.type == KeyType::Word) {
-            for (const KeyChoice& choice : key.choices) values.emplace_back(choice.word);
+            for (const std::string& word : key.choices) values.emplace_back(word);
         } else if (values.empty() && !(base.is_picture && key.path == "light.sky")) {
             values.push_back(another_value(key, now));
         }

@@ -67,14 +67,6 @@ Quality quality_of(const Mesh& mesh) {
 
 class FarOut : public BakedMeshes {};
 
-// Words of a key that can be made.
-std::vector<std::string> built_words(const std::string& path) {
-    std::vector<std::string> words;
-    for (const KeyChoice& choice : key_of(path).choices)
-        if (choice.is_built) words.push_back(choice.word);
-    return words;
-}
-
 Scene scene_at(glm::dvec2 place_m, double height_m = 4.0) {
     Scene scene;
     scene.shot.last_frame = 4;
@@ -118,8 +110,8 @@ const std::vector<glm::dvec2> kPlacesOfAPlanet_m{
     {0.0, 0.0}, {-1e4, 1e4}, {1e6, 0.0}, {-1e6, 1234.567}, {2.1e6, -3e6}};
 
 TEST_F(FarOut, EverySurfaceInEveryFormatIsAsExactAsAtTheOrigin) {
-    for (const std::string& kind : built_words("surface.kind"))
-        for (const std::string& format : built_words("output.mesh")) {
+    for (const std::string& kind : key_of("surface.kind").choices)
+        for (const std::string& format : key_of("output.mesh").choices) {
             if (format == "none") continue;
             Quality near;
             const bool is_planet = kind == word_of(SurfaceKind::Planet),

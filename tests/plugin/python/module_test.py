@@ -57,15 +57,12 @@ class Scene(unittest.TestCase):
             if key["type"] in ("data file", "data time"):
                 self.assertIsNone(getattr(holder, name))
                 continue
-            if not key["built"] and key["default"] is None:
-                self.assertNotIn(name, dir(holder), key["path"])  # nothing holds it yet
-                continue
             default = getattr(holder, name)
             self.assertEqual(default, key["default"], key["path"])
             self.assertIn(key["help"], getattr(type(holder), name).__doc__)
             other = {"truth": lambda: not default, "integer": lambda: default + 2, "number": lambda: 7.25,
-                     "text": lambda: "other", "word": lambda: key["choices"][-1]["word"],
-                     "words": lambda: tuple(c["word"] for c in key["choices"][:1]),
+                     "text": lambda: "other", "word": lambda: key["choices"][-1],
+                     "words": lambda: tuple(key["choices"][:1]),
                      "point": lambda: (1.0, 2.0, 3.5), "pair": lambda: (3, 5), "entries": lambda: ()}[key["type"]]()
             if key["type"] == "entries":
                 entry = getattr(pelagic, key["entry"])
@@ -83,11 +80,10 @@ class Scene(unittest.TestCase):
         keys = {key["path"]: key for key in pelagic.keys()}
         wind = keys["sea.wind_speed_mps"]
         self.assertEqual((wind["unit"], wind["default"], wind["range"]), ("m/s", 10.0, (0.0, 80.0)))
-        self.assertEqual((wind["feeds"], wind["built"], wind["label"]), (["waves"], True, "Wind speed"))
+        self.assertEqual((wind["feeds"], wind["label"]), (["waves"], "Wind speed"))
         self.assertLess(wind["soft_range"][1], wind["range"][1])
-        self.assertTrue(all(key["built"] for key in keys.values()))
         self.assertEqual((keys["quality.max_error"]["default"], keys["quality.max_error"]["range"]), (None, (1e-6, 1.0)))
-        self.assertEqual([c["word"] for c in keys["surface.kind"]["choices"] if c["built"]], ["patch", "projected-grid", "near-far", "cage", "planet"])
+        self.assertEqual(keys["surface.kind"]["choices"], ["patch", "projected-grid", "near-far", "cage", "planet"])
         self.assertEqual([k["name"] for k in keys["sea.swell"]["keys"]], ["height_m", "period_s", "direction_deg"])
 
     def test_a_table_lives_as_long_as_somebody_holds_it_and_can_be_given_to_another_scene(self):

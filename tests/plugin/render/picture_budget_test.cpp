@@ -13,6 +13,8 @@
 #include "core/plan/budget.h"
 #include "core/scene/text.h"
 #include "plugin/light/light.h"
+#include "plugin/render/batch.h"
+#include "plugin/render/picture_cost.h"
 
 namespace pelagic {
 namespace {
@@ -110,6 +112,63 @@ INSTANTIATE_TEST_SUITE_P(Shots, BudgetOfPictures, testing::ValuesIn(kShots), [](
     std::erase_if(name, [](char c) { return c == ' ' || c == ','; });
     return name;
 });
+
+Scene timed_scene() {
+    Scene scene;
+    scene.sea.wind_speed_mps = 15.0;
+    scene.camera.resolution = {320, 180};
+    scene.quality.frame_ms = 1e6;
+    return scene;
+}
+
+double dearest_ms(const Scene& scene, const FixedSettings& fixed) {
+    return picture_budget(scene, fixed).ms;
+}
+
+// Whatever makes a picture longer in the making is in its price.
+TEST(PriceOfPictures, HoldsWhatIsAskedForBesides) {
+    const FixedSettings plain{.samples = 2};
+    Scene spray = timed_scene();
+    spray.effects.spray = true;
+    FixedSettings shutter = plain, motion = plain;
+    shutter.shutter_frames = 0.5;
+    motion.layers |= parse_picture_layers("motion");
+    const double ms = dearest_ms(timed_scene(), plain);
+    EXPECT_GT(dearest_ms(timed_scene(), shutter), 1.2 * ms);
+    EXPECT_GT(dearest_ms(timed_scene(), motion), ms);
+    EXPECT_GT(dearest_ms(spray, plain), ms);
+}
+
+// The frame's own moment and one for each sample; foam's past only grows by what the shutter is open.
+TEST(PriceOfPictures, AShutterComputesTheSeaForEachSample) {
+    const Scene scene = timed_scene();
+    const std::array frames{1};
+    RenderOptions options = render_options(scene);
+    options.samples = 3;
+    const auto work_with = [&](double shutter_frames) {
+        options.shutter_frames = shutter_frames;
+        return picture_work(picture_plan(of_samples(scene, options.samples), frames, options), frames,
+                            options);
+    };
+    const PictureWork still = work_with(0.0), open = work_with(1.0);
+    for (std::size_t i = 0; i < kWorkCount; ++i)
+        if (static_cast<Work>(i) == Work::Foam) {
+            EXPECT_GT(open.sea[i], still.sea[i]);
+            EXPECT_LT(open.sea[i], 1.2 * still.sea[i]);
+        } else {
+            EXPECT_NEAR(open.sea[i], 10.0 * still.sea[i], 1e-9 * open.sea[i]);
+        }
+    EXPECT_EQ(open.light, still.light);
+}
+
+// So fewer samples stay within a time.
+TEST(PriceOfPictures, AShutterLeavesFewerSamplesWithinATime) {
+    Scene scene = timed_scene();
+    scene.quality.frame_ms = 1.1 * dearest_ms(scene, {.samples = 4, .sky_quality = {}});
+    FixedSettings shutter;
+    shutter.shutter_frames = 0.5;
+    EXPECT_LT(picture_budget(scene, shutter).options.samples, picture_budget(scene).options.samples);
+}
 
 }  // namespace
 }  // namespace pelagic

@@ -85,7 +85,7 @@ TEST(EditShot, EveryKeyComesBack) {
     int changed = 0;
     for (const KeyTable& table : key_tables())
         for (const Key& key : table.keys) {
-            if (!key.set || !key.has_value()) continue;
+            if (!key.set) continue;
             Scene scene = base;
             KeyValue value = value_of(scene, key);
             if (auto* number = std::get_if<double>(&value); number && key.soft)

@@ -1,0 +1,16 @@
+// How far the sea's surface goes from its rest, by expectation [m]: what a view must look beyond its border for.
+#pragma once
+
+#include "core/surface/hidden_height.h"
+
+namespace pelagic {
+
+// All 0 for a calm. Of a spectrum: expected_extent() (plan/extent.h).
+struct Extent {
+    double height_m = 0.0;              // |z|
+    double reach_m = 0.0;               // of the horizontal displacement, choppiness included
+    double significant_height_m = 0.0;  // Hs = 4 √m0
+    HiddenHeight hidden{};              // by the footprints of a mesh's cells
+};
+
+}  // namespace pelagic

@@ -36,6 +36,13 @@ auto order_of(const FoamPlace& place) {
     return std::tuple(place.level, place.y, place.x);
 }
 
+// In order, each once.
+void only_once(std::vector<FoamPlace>& places) {
+    std::sort(places.begin(), places.end(),
+              [](const FoamPlace& a, const FoamPlace& b) { return order_of(a) < order_of(b); });
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+}
+
 }  // namespace
 
 template <class T>
@@ -171,6 +178,12 @@ FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
     : sea_(std::move(sea)), kernels_(foam_kernels()) {
     if (!sea_->plan().foam) throw std::invalid_argument("foam that doesn't live has no history");
     foam_ = *sea_->plan().foam;
+    const Plan& plan = sea_->plan();
+    is_of_pictures_ = plan.outputs.empty();
+    std::vector<Query> asked;
+    for (const PlannedQuery& planned : plan.queries) asked.push_back(planned.query);
+    for (const double count : foam_tiles(foam_, plan.from->scene, asked, is_of_pictures_))
+        most_tiles_ += static_cast<std::size_t>(count);
     const FoamPlan::Weight all = foam_.weight(0.0, foam_.window_s);
     mean_ = static_cast<float>(std::min(sea_->left_coverage(), 1.0));
     mean_age_s_ = static_cast<float>(all.age_s2 / all.foam_s);
@@ -189,7 +202,8 @@ void FoamHistory<T>::set(double t_s) {
     last_ = static_cast<std::int64_t>(std::floor(time_s_ / foam_.step_s));
     first_ = last_ + 1 - foam_.intervals();
     std::erase_if(tiles_, [&](const auto& entry) {
-        return entry.second->used.load() + 1 < round_ || !entry.second->continues_at(first_);
+        return !entry.second->continues_at(first_) ||
+               (!is_of_pictures_ && entry.second->used.load() + 1 < round_);
     });
     weights_.clear();
     for (std::int64_t n = first_; n <= last_; ++n) {
@@ -249,10 +263,9 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
 // some are read again when those are made.
 template <class T>
 template <class Use>
-void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWatch& watch, bool is_all,
-                               const Use& use) {
+void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use) {
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
-    if (!is_all) renew(watch);
+    renew(watch);
     const Locator locate(*this, points, query);
     std::vector<std::size_t> parts, later;
     for (std::size_t first = 0; first < points.count; first += kPart) parts.push_back(first);
@@ -276,26 +289,51 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWa
             places.insert(places.end(), own.begin(), own.end()), own.clear();
         for (std::vector<std::size_t>& own : undone)
             parts.insert(parts.end(), own.begin(), own.end()), own.clear();
-        if (is_all && !is_renewed_) forget_unused();
         make(places, watch);
     }
 }
 
 template <class T>
-void FoamHistory<T>::prepare(const Points<T>& points, int query, const BuildWatch& watch) {
-    if (leaves_nothing()) return;
-    for_parts(points, query, watch, true, [](std::size_t, std::span<const float>, std::span<const float>) {});
+std::vector<FoamPlace> FoamHistory<T>::places(const Points<T>& points, int query) const {
+    if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
+    if (leaves_nothing()) return {};
+    const Locator locate(*this, points, query);
+    tbb::enumerable_thread_specific<std::vector<Place>> found;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.count, kPart), [&](const auto& range) {
+        std::vector<Place>& own = found.local();
+        std::array<Place, FoamPlan::kLevels> before;
+        before.fill({-1, 0, 0});
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const typename Locator::Point point = locate(i);
+            for (std::size_t k = 0; k < point.count; ++k) {
+                const Place& place = point.nodes[k].place;
+                Place& last = before[static_cast<std::size_t>(place.level)];
+                if (!(place == last)) own.push_back(last = place);
+            }
+        }
+        only_once(own);
+    });
+    std::vector<Place> all;
+    for (const std::vector<Place>& own : found) all.insert(all.end(), own.begin(), own.end());
+    only_once(all);
+    return all;
 }
 
 template <class T>
 void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& watch) {
     if (leaves_nothing()) return;
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
-    if (!is_renewed_) {
-        for (const FoamPlace& place : places)
-            if (const auto found = tiles_.find(place); found != tiles_.end()) found->second->used = round_;
-        forget_unused();
+    only_once(places);
+    is_renewed_ = true;
+    std::size_t missing = 0;
+    for (const FoamPlace& place : places) {
+        const auto found = tiles_.find(place);
+        if (found != tiles_.end())
+            found->second->used = round_;
+        else
+            ++missing;
     }
+    make_room(missing);
     make(places, watch);
     for (const FoamPlace& place : places) tiles_.at(place)->used.store(round_, std::memory_order_relaxed);
 }
@@ -311,11 +349,16 @@ std::vector<FoamNodes> FoamHistory<T>::nodes() const {
     return nodes;
 }
 
-// Where all that is asked for is known, those that aren't are let go before others are made.
+// For so many more tiles: lets those go that nobody has read for longest, but none that this time has asked for.
 template <class T>
-void FoamHistory<T>::forget_unused() {
-    std::erase_if(tiles_, [&](const auto& entry) { return entry.second->used.load() != round_; });
-    is_renewed_ = true;
+void FoamHistory<T>::make_room(std::size_t count) {
+    if (tiles_.size() + count <= most_tiles_) return;
+    std::vector<std::pair<long, Place>> unused;
+    for (const auto& [place, tile] : tiles_)
+        if (const long used = tile->used.load(); used != round_) unused.emplace_back(used, place);
+    std::sort(unused.begin(), unused.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    const std::size_t too_many = tiles_.size() + count - most_tiles_;
+    for (std::size_t i = 0; i < std::min(too_many, unused.size()); ++i) tiles_.erase(unused[i].second);
 }
 
 // Brings the tiles of the time before to this one.
@@ -324,15 +367,14 @@ void FoamHistory<T>::renew(const BuildWatch& watch) {
     if (is_renewed_) return;
     is_renewed_ = true;
     std::vector<Place> places;
-    for (const auto& [place, tile] : tiles_) places.push_back(place);
+    for (const auto& [place, tile] : tiles_)
+        if (tile->used.load() + 1 >= round_) places.push_back(place);
     make(places, watch);
 }
 
 template <class T>
 void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
-    std::sort(places.begin(), places.end(),
-              [](const Place& a, const Place& b) { return order_of(a) < order_of(b); });
-    places.erase(std::unique(places.begin(), places.end()), places.end());
+    only_once(places);
     std::vector<Tile*> old;
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
     for (const Place& place : places) {
@@ -452,7 +494,7 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& 
         }
         return;
     }
-    for_parts(points, query, watch, false,
+    for_parts(points, query, watch,
               [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
                   for (std::size_t i = 0; i < foam.size(); ++i) {
                       const float active = results.coverage[first + i];

@@ -61,13 +61,18 @@ class FoamHistory {
     // most.
     void set(double t_s);
 
-    // Makes what add() will read at these points, which are all that is asked for at this time: where add() is called for a
-    // few at a time, it needn't take the earlier times again for each. What only other times' points read is let go.
-    // `query`: of the sea's plan, whose footprint points without their own have. Where it has to go through many earlier
-    // times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and may be asked again.
-    void prepare(const Points<T>& points, int query, const BuildWatch& watch = {});
-    // The same for whole tiles.
+    // The tiles that add() will read at these points at this time, in order, each once. `query`: of the sea's plan, whose
+    // footprint points without their own have.
+    std::vector<FoamPlace> places(const Points<T>& points, int query) const;
+    // Makes these tiles, which are all that is asked for at this time: where add() is called for a few points at a time, it
+    // needn't take the earlier times again for each. Of other tiles those that were read last are kept, as long as there is
+    // room in the plan's foam_history_bytes(): a tile that a wave hides for a moment needn't begin anew. Where it has to go
+    // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and
+    // may be asked again.
     void prepare(std::vector<FoamPlace> places, const BuildWatch& watch = {});
+    void prepare(const Points<T>& points, int query, const BuildWatch& watch = {}) {
+        prepare(places(points, query), watch);
+    }
     // The tiles that were asked for since set(), in order. They last until the next call of anything else.
     std::vector<FoamNodes> nodes() const;
     const FoamPlan& plan() const { return foam_; }
@@ -96,12 +101,12 @@ class FoamHistory {
 
     bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
     template <class Use>
-    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, bool is_all, const Use& use);
+    void for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use);
     bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
               std::vector<Place>& missing) const;
     void make(std::vector<Place>& places, const BuildWatch& watch);
     void renew(const BuildWatch& watch);
-    void forget_unused();
+    void make_room(std::size_t count);
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n) const;
@@ -110,6 +115,8 @@ class FoamHistory {
     std::shared_ptr<const Sea<T>> sea_;
     FoamPlan foam_;
     FoamKernels kernels_;
+    bool is_of_pictures_ = false;                                   // which ask for all of a time at once
+    std::size_t most_tiles_ = 0;                                    // of pictures
     std::array<std::unique_ptr<Level>, FoamPlan::kLevels> levels_;  // made where tiles are
     std::unordered_map<Place, std::unique_ptr<Tile>, HashOf> tiles_;
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea

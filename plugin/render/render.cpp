@@ -79,30 +79,31 @@ class RendererOf final : public Impl {
             sampling_ = passes == 1 ? Sampling{}
                         : is_own    ? Sampling{n, glm::ivec2(n / 2)}
                                     : Sampling{n, {sample % n, sample / n}};
+            const bool is_answered = is_lit || has_data();
             begun = 0.0;
-            try {
-                begin(moments[pass], {.progress =
+            begin(moments[pass]);
+            const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
+            if (is_answered && sea_.foam_lives()) {
+                const BuildWatch past{.progress =
                                           [&](double done) {
                                               begun = 0.5 * done;
                                               go_on(0.0);
                                           },
-                                      .cancel = watch.cancel});
-            } catch (const BuildCancelled&) {
-                return false;
+                                      .cancel = watch.cancel};
+                if (!prepare_foam(moments[pass], past)) return false;
             }
-            const int step = rows_of_batch(raster_size().x, n / sampling_.stride);
-            for (int row = 0; row < raster_size().y; row += step) {
-                const int rows = std::min(step, raster_size().y - row);
+            for (int row = 0; row < height; row += step) {
+                const int rows = std::min(step, height - row);
                 draw(row, rows);
                 if (is_lit) light_sky(row);
-                if ((is_lit || has_data()) && !batch_.sea.empty()) {
+                if (is_answered && !batch_.sea.empty()) {
                     find_places(row);
                     sea_.answer(batch_.seen);
                 }
                 if (is_lit) light_sea();
                 if (is_lit) average(row, rows, picture);
                 if (is_own) describe(row, rows, frame, picture);
-                if (!go_on(static_cast<double>(row + rows) / raster_size().y)) return false;
+                if (!go_on(static_cast<double>(row + rows) / height)) return false;
             }
             ++ended;
         }
@@ -137,15 +138,36 @@ class RendererOf final : public Impl {
                 !row.light && options_.layers[index(row.layer)] ? pixels * row.components : 0);
     }
 
-    // Throws BuildCancelled.
-    void begin(double moment, const BuildWatch& watch) {
+    // Rows that are computed at once.
+    int rows_of_pass() const { return rows_of_batch(raster_size().x, options_.samples / sampling_.stride); }
+
+    // What earlier times have left where the samples look: those are found twice, which takes far less than to go through the
+    // past once for each batch. False when it was cancelled.
+    bool prepare_foam(double moment, const BuildWatch& watch) {
+        sea_.begin_foam(scene_.shot.time_s(moment));
+        const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
+        for (int row = 0; row < height; row += step) {
+            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
+            draw(row, std::min(step, height - row));
+            if (batch_.sea.empty()) continue;
+            find_places(row);
+            sea_.ask_foam(batch_.seen);
+        }
+        try {
+            sea_.prepare_foam(watch);
+        } catch (const BuildCancelled&) {
+            return false;
+        }
+        return true;
+    }
+
+    void begin(double moment) {
         sea_.set(scene_.shot.time_s(moment));
         refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
         const double height_m = view_.position_m.z;
         view_ = view_at(scene_.camera, moment);
         if (air_.empty() || view_.position_m.z != height_m) air_ = sea_.air_before(view_.position_m.z);
         lay_out_grid();
-        sea_.prepare_foam(scene_.shot.time_s(moment), grid_, watch);
         spray_ = sea_.spray_before(view_, grid_options_);
     }
 

@@ -40,18 +40,20 @@ Spray SeaLight<T>::spray_before(const View& view, const ProjectedGridOptions& gr
 }
 
 template <class T>
-void SeaLight<T>::prepare_foam(double time_s, const ProjectedGrid& grid, const BuildWatch& watch) {
-    if (!history_) return;
+void SeaLight<T>::begin_foam(double time_s) {
     history_->set(time_s);
-    const std::vector<glm::vec<2, T>> rest_m(grid.rest_m.begin(), grid.rest_m.end());
-    const std::vector<T> pixel_m(grid.pixel_m.begin(), grid.pixel_m.end());
-    const std::vector<glm::vec<2, T>> axis_m(grid.pixel_axis_m.begin(), grid.pixel_axis_m.end());
-    history_->prepare(Points<T>{.origin_m = grid.origin_m,
-                                .count = rest_m.size(),
-                                .rest_m = {rest_m.data()},
-                                .pixel_m = {pixel_m.data()},
-                                .pixel_axis_m = {axis_m.data()}},
-                      kQuery, watch);
+    foam_places_.clear();
+}
+
+template <class T>
+void SeaLight<T>::ask_foam(const SeenSea<T>& seen) {
+    const std::vector<FoamPlace> places = history_->places(seen.points(), kQuery);
+    foam_places_.insert(foam_places_.end(), places.begin(), places.end());
+}
+
+template <class T>
+void SeaLight<T>::prepare_foam(const BuildWatch& watch) {
+    history_->prepare(foam_places_, watch);
 }
 
 template <class T>

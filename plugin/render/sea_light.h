@@ -77,9 +77,11 @@ class SeaLight {
     Air air_before(double height_m) const;
     // The spray before a camera at the frame's time, with its light; none where the light or the scene has none.
     Spray spray_before(const View& view, const ProjectedGridOptions& grid) const;
-    // The foam of all that a picture of this time shows, so that its parts don't each go through the earlier times: of the grid of
-    // its view. Before the first answer. Throws BuildCancelled.
-    void prepare_foam(double time_s, const ProjectedGrid& grid, const BuildWatch& watch);
+    // Where foam lives, before the first answer of a picture: its time, all places that it will show, and what earlier times have
+    // left there, so that its parts don't each go through them. The last throws BuildCancelled.
+    void begin_foam(double time_s);
+    void ask_foam(const SeenSea<T>& seen);
+    void prepare_foam(const BuildWatch& watch);
 
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
@@ -106,6 +108,7 @@ class SeaLight {
     std::shared_ptr<const Sea<T>> sea_;
     Frame<T> frame_;
     std::optional<FoamHistory<T>> history_;
+    std::vector<FoamPlace> foam_places_;  // that the picture asks for
     QueryRunner<T> runner_;
     Values answers_;
     std::vector<float> foam_active_, foam_age_s_;

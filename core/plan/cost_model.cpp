@@ -58,11 +58,11 @@ void add_points(const Plan& plan, const PlannedQuery& planned, WorkDone& work) {
     at(work, Work::Answers) += points * values;
 }
 
-// Pictures ask for all of the past at once; frames of a bake for what has been since the last one.
+// A frame of a run goes on from the one before; one that stands alone goes through all of the past.
 double intervals_of_frame(const Plan& plan) {
     const double all = plan.foam->intervals();
-    if (plan.outputs.empty()) return all;
     const Shot& shot = plan.from->scene.shot;
+    if (shot.first_frame == shot.last_frame) return all;
     return std::min(all, std::max(1.0, shot.time_scale / shot.fps / plan.foam->step_s));
 }
 

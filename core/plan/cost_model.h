@@ -27,8 +27,8 @@ using WorkDone = std::array<double, kWorkCount>;
 WorkDone work_of(const Plan& plan);
 double cost_ms(const WorkDone& work, bool double_precision);
 
-// Of a frame: the sea, all outputs' points, and of the foam's past what a frame of a bake adds to the one before, or all that a
-// picture asks for. Without what is encoded, written, and lit.
+// Of a frame: the sea, all outputs' points, and of the foam's past what a frame of a run adds to the one before, or all of it where
+// the shot has one frame. Without what is encoded, written, and lit.
 double frame_ms(const Plan& plan);
 
 }  // namespace pelagic

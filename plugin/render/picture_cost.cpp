@@ -10,7 +10,9 @@ namespace pelagic {
 namespace {
 
 // [ms] of each LightWork.
-constexpr LightWorkDone kMs{1800.0, 27000.0, 50.0, 0.0, 0.0};
+constexpr LightWorkDone kMs{2400.0, 31000.0, 50.0, 3000.0, 600.0};
+// Pictures look at few tiles of foam on many levels, each of which has a sea of its own, and pay more for each than bakes.
+constexpr double kFoamOfPictures = 4.0;
 
 double& at(LightWorkDone& work, LightWork what) {
     return work[static_cast<std::size_t>(what)];
@@ -28,16 +30,25 @@ double water_share(const Camera& camera, int frame) {
     return static_cast<double>(water) / (kLines * kLines);
 }
 
-// The sea's own at each moment; of the foam's past all of it once, and then what is between the first moment and the last.
-WorkDone at_moments(WorkDone work, const Plan& plan, const RenderOptions& options, std::size_t moments) {
-    constexpr auto kFoam = static_cast<std::size_t>(Work::Foam);
-    for (std::size_t i = 0; i < kWorkCount; ++i)
-        if (i != kFoam) work[i] *= static_cast<double>(moments);
-    if (plan.foam) {
-        const Shot& shot = plan.from->scene.shot;
-        const double open_s = options.shutter_frames * shot.time_scale / shot.fps;
-        work[kFoam] *= 1.0 + open_s / plan.foam->step_s / plan.foam->intervals();
-    }
+// Of a plan whose points are those of the camera's grid: with the samples that show the sea, and at so many moments. A point of the
+// grid asks for its position alone, which about half of the fields answer. The foam's past is as long with a shutter as without.
+WorkDone with_samples(WorkDone work, double points, double samples, double moments) {
+    const double points_factor = 0.5 * moments + samples / points;
+    for (std::size_t i = 0; i < kWorkCount; ++i) switch (static_cast<Work>(i)) {
+            case Work::Frame:
+            case Work::Transforms:
+            case Work::Modes:
+                work[i] *= moments;
+                break;
+            case Work::Reads:
+            case Work::Trains:
+            case Work::Answers:
+                work[i] *= points_factor;
+                break;
+            case Work::Foam:
+                work[i] *= kFoamOfPictures;
+                break;
+        }
     return work;
 }
 
@@ -46,11 +57,13 @@ WorkDone at_moments(WorkDone work, const Plan& plan, const RenderOptions& option
 PictureWork picture_work(const Plan& plan, std::span<const int> frames, const RenderOptions& options) {
     const Camera& camera = plan.from->scene.camera;
     const std::size_t moments = moments_of(frames.front(), options).size();
-    PictureWork work{.sea = at_moments(work_of(plan), plan, options, moments),
-                     .double_precision = plan.knobs.double_precision};
     double water = 0.0;
     for (const int frame : frames) water = std::max(water, water_share(camera, frame));
     const double samples = 1e-6 * camera.resolution.x * camera.resolution.y;
+    const double points = 1e-6 * static_cast<double>(plan.queries.front().query.points);
+    PictureWork work{
+        .sea = with_samples(work_of(plan), points, water * samples, static_cast<double>(moments)),
+        .double_precision = plan.knobs.double_precision};
     const bool is_integral = options.lighting.sky_quality == SkyQuality::Integral;
     at(work.light, is_integral ? LightWork::SeaByIntegral : LightWork::SeaByLookups) = water * samples;
     at(work.light, LightWork::Sky) = (1.0 - water) * samples;

@@ -31,9 +31,9 @@ struct PictureWork {
     bool double_precision = false;
 };
 
-// Of one picture by this plan (picture_plan() of of_samples(), whatever its lookups of the sky), the frame that shows the most
-// water. With a shutter the sea is computed once more for each sample of a pixel, but its foam's past is gone through once.
-// Without what is encoded and written.
+// Of a picture of a run by this plan (picture_plan() of of_samples(), whatever its lookups of the sky), the frame that shows the
+// most water. With a shutter the sea is computed once more for each sample of a pixel, but its foam's past is gone through
+// once. Without what is encoded and written.
 PictureWork picture_work(const Plan& plan, std::span<const int> frames, const RenderOptions& options);
 
 double picture_ms(const PictureWork& work);

@@ -151,7 +151,7 @@ class RendererOf final : public Impl {
             draw(row, std::min(step, height - row));
             if (batch_.sea.empty()) continue;
             find_places(row);
-            sea_.ask_foam(batch_.seen);
+            sea_.ask_foam(batch_.seen.points());
         }
         try {
             sea_.prepare_foam(watch);

@@ -46,8 +46,8 @@ void SeaLight<T>::begin_foam(double time_s) {
 }
 
 template <class T>
-void SeaLight<T>::ask_foam(const SeenSea<T>& seen) {
-    const std::vector<FoamPlace> places = history_->places(seen.points(), kQuery);
+void SeaLight<T>::ask_foam(const Points<T>& points) {
+    const std::vector<FoamPlace> places = history_->places(points, kQuery);
     foam_places_.insert(foam_places_.end(), places.begin(), places.end());
 }
 

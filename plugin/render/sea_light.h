@@ -80,7 +80,7 @@ class SeaLight {
     // Where foam lives, before the first answer of a picture: its time, all places that it will show, and what earlier times have
     // left there, so that its parts don't each go through them. The last throws BuildCancelled.
     void begin_foam(double time_s);
-    void ask_foam(const SeenSea<T>& seen);
+    void ask_foam(const Points<T>& points);
     void prepare_foam(const BuildWatch& watch);
 
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.

@@ -245,6 +245,66 @@ TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
     EXPECT_EQ(total, whole.total);
 }
 
+// Of points with footprints of their own, from a cell's to those of levels far up: what was made for them is all that they read.
+// Who needs more is told to make it, and a cancelled one can't.
+TEST(LivingFoam, PlacesAreAllThatIsRead) {
+    const auto sea = sea_of(scene_of(2.0), 0.7);
+    const auto rest_m = square(40, 1.7);
+    std::vector<float> pixel_m(rest_m.size()), total(rest_m.size());
+    std::vector<glm::vec2> axis_m(rest_m.size());
+    for (std::size_t i = 0; i < rest_m.size(); ++i) {
+        pixel_m[i] = std::exp2(static_cast<float>(i % 37) / 6.0f - 2.0f);
+        axis_m[i] = pixel_m[i] * glm::vec2(1.0f + static_cast<float>(i % 5), 0.5f);
+    }
+    const Points<float> points{.count = rest_m.size(),
+                               .rest_m = {rest_m.data()},
+                               .pixel_m = {pixel_m.data()},
+                               .pixel_axis_m = {axis_m.data()}};
+    const std::atomic<bool> enough = true;
+    const BuildWatch none{.progress = {}, .cancel = &enough};
+    FoamHistory<float> history(sea);
+    EXPECT_THROW(history.places(points, 0), std::invalid_argument) << "no time yet";
+    history.set(7.0);
+    const std::vector<FoamPlace> places = history.places(points, 0);
+    EXPECT_GT(places.size(), 10u);
+    history.prepare(places);
+    EXPECT_NO_THROW(history.add(points, 0, {.coverage = {total.data()}}, none));
+    EXPECT_EQ(history.nodes().size(), places.size());
+    history.set(7.01);
+    history.prepare(std::vector(places.begin(), places.end() - 1));
+    EXPECT_EQ(history.nodes().size(), places.size() - 1);
+}
+
+// A wave hides some of the sea from a camera, and shows it again: it needn't begin anew, as long as there is room.
+TEST(LivingFoam, OfPicturesIsKeptWhileItIsHidden) {
+    const auto rest_m = square(50, 0.9);
+    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    query.points = 2 * rest_m.size();
+    const auto sea =
+        std::make_shared<const Sea<float>>(make_plan(scene_of(2.0), {query}, {.living_foam = true}));
+    const Points<float> all{.count = rest_m.size(), .rest_m = {rest_m.data()}},
+        few{.count = rest_m.size() / 2, .rest_m = {rest_m.data()}};
+    FoamHistory<float> history(sea);
+    int told = 0;
+    const BuildWatch watch{.progress = [&](double) { ++told; }, .cancel = nullptr};
+    history.set(9.0);
+    history.prepare(all, 0, watch);
+    EXPECT_GT(told, 10);
+    told = 0;
+    for (const double t_s : {9.04, 9.08, 9.12}) {
+        history.set(t_s);
+        history.prepare(few, 0, watch);
+    }
+    history.set(9.16);
+    history.prepare(all, 0, watch);
+    EXPECT_EQ(told, 0);
+    Shown<> cold(sea);
+    const Foam whole = cold.at(9.16, rest_m);
+    std::vector<float> total(whole.active);
+    history.add(all, 0, {.coverage = {total.data()}});
+    EXPECT_EQ(total, whole.total);
+}
+
 // Also while a level's own sea is built, which takes long for large cascades.
 TEST(LivingFoam, IsCancelledWhereALevelIsBuilt) {
     Scene scene = scene_of(2.0);

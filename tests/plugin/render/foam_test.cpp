@@ -98,5 +98,21 @@ TEST(FoamInPictures, OfATimeLapseGoesThroughItsPastOnce) {
     EXPECT_LT(lapse, brief + 3);
 }
 
+// What each sample of a picture reads is asked for before, so that pictures of a run take a few steps each: a long past would tell how
+// far it is, beside the batches of rows.
+TEST(FoamInPictures, OfARunGoesOnFromThePictureBefore) {
+    Scene scene = scene_of(2.0);
+    scene.camera.resolution = {96, 54};
+    Renderer renderer(scene, options_of(scene), uniform_sky(), std::array{1, 2, 3, 4});
+    Picture picture;
+    const auto told_of = [&](int frame) {
+        int told = 0;
+        EXPECT_TRUE(renderer.render(frame, picture, {.progress = [&](double) { ++told; }}));
+        return told;
+    };
+    EXPECT_GT(told_of(1), 10);
+    for (const int frame : {2, 3, 4}) EXPECT_EQ(told_of(frame), 1) << frame;
+}
+
 }  // namespace
 }  // namespace pelagic

@@ -325,8 +325,11 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
     only_once(places);
     is_renewed_ = true;
+    std::vector<FoamPlace> made = places;
+    const std::vector<FoamPlace> round = surroundings_of(places);
+    made.insert(made.end(), round.begin(), round.end());
     std::size_t missing = 0;
-    for (const FoamPlace& place : places) {
+    for (const FoamPlace& place : made) {
         const auto found = tiles_.find(place);
         if (found != tiles_.end())
             found->second->used = round_;
@@ -334,8 +337,37 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
             ++missing;
     }
     make_room(missing);
-    make(places, watch);
+    make(made, watch);
     for (const FoamPlace& place : places) tiles_.at(place)->used.store(round_, std::memory_order_relaxed);
+    for (const FoamPlace& place : round) tiles_.at(place)->used = round_ - 1;  // nobody has read them yet
+}
+
+// A level that lacks one tile goes through its past for that one: in a run the missing tiles round all that are asked for come
+// along, as many as there is room for, so that moving waves and cameras don't ask for that at each frame. A picture alone asks
+// once.
+template <class T>
+std::vector<FoamPlace> FoamHistory<T>::surroundings_of(const std::vector<FoamPlace>& places) const {
+    std::array<bool, FoamPlan::kLevels> goes_on{}, lacks{};
+    for (const auto& [place, tile] : tiles_) goes_on[static_cast<std::size_t>(place.level)] = true;
+    for (const FoamPlace& place : places)
+        if (!tiles_.contains(place)) lacks[static_cast<std::size_t>(place.level)] = true;
+    std::vector<FoamPlace> round;
+    for (const FoamPlace& place : places) {
+        const auto level = static_cast<std::size_t>(place.level);
+        if (!goes_on[level] || !lacks[level]) continue;
+        for (const int x : {-1, 0, 1})
+            for (const int y : {-1, 0, 1}) {
+                const FoamPlace beside{place.level, place.x + x, place.y + y};
+                if (!tiles_.contains(beside)) round.push_back(beside);
+            }
+    }
+    only_once(round);
+    std::erase_if(round, [&](const FoamPlace& place) {
+        return std::binary_search(places.begin(), places.end(), place,
+                                  [](const auto& a, const auto& b) { return order_of(a) < order_of(b); });
+    });
+    round.resize(std::min(round.size(), most_tiles_ - std::min(most_tiles_, places.size())));
+    return round;
 }
 
 template <class T>

@@ -65,8 +65,9 @@ class FoamHistory {
     // footprint points without their own have.
     std::vector<FoamPlace> places(const Points<T>& points, int query) const;
     // Makes these tiles, which are all that is asked for at this time: where add() is called for a few points at a time, it
-    // needn't take the earlier times again for each. Of other tiles those that were read last are kept, as long as there is
-    // room in the plan's foam_history_bytes(): a tile that a wave hides for a moment needn't begin anew. Where it has to go
+    // needn't take the earlier times again for each. Of other tiles those that were read last are kept, and in a run some
+    // are made that are close, as long as there is room in the plan's foam_history_bytes(): a tile that a wave hides for a
+    // moment needn't begin anew. Where it has to go
     // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and
     // may be asked again.
     void prepare(std::vector<FoamPlace> places, const BuildWatch& watch = {});
@@ -106,6 +107,7 @@ class FoamHistory {
               std::vector<Place>& missing) const;
     void make(std::vector<Place>& places, const BuildWatch& watch);
     void renew(const BuildWatch& watch);
+    std::vector<Place> surroundings_of(const std::vector<Place>& places) const;
     void make_room(std::size_t count);
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);

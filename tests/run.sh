@@ -3,7 +3,7 @@
 #   tests/run.sh [PRESET] [--label LABEL]
 #   tests/run.sh --nightly
 # PRESET: release (default), debug, sanitize (addresses and undefined behaviour) or tsan (threads).
-# LABEL: unit (in under a minute, once built), slow, gl (OpenGL) or external (with Blender, OpenUSD, node, clang-format);
+# LABEL: unit (three minutes on two cores, once built), slow, gl (OpenGL) or external (with Blender, OpenUSD, node, clang-format);
 # default: all.
 # --nightly takes hours: every test in release and under both sanitizers, six million rays, ten thousand random scenes, an hour
 # of fuzzing, then the campaigns in full. It goes on after a failure, ends with a line for each part, and fails if one did.

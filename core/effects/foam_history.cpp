@@ -14,6 +14,7 @@
 
 #include "core/base/buffer.h"
 #include "core/evaluate/gusts.h"
+#include "core/plan/foam_tiles.h"
 #include "core/waves/loop.h"
 #include "core/waves/whitecaps.h"
 
@@ -36,14 +37,16 @@ auto order_of(const FoamPlace& place) {
     return std::tuple(place.level, place.y, place.x);
 }
 
-// In order, each once.
-void only_once(std::vector<FoamPlace>& places) {
-    std::sort(places.begin(), places.end(),
-              [](const FoamPlace& a, const FoamPlace& b) { return order_of(a) < order_of(b); });
-    places.erase(std::unique(places.begin(), places.end()), places.end());
+bool is_before(const FoamPlace& a, const FoamPlace& b) {
+    return order_of(a) < order_of(b);
 }
 
 }  // namespace
+
+void keep_each_once(std::vector<FoamPlace>& places) {
+    std::sort(places.begin(), places.end(), is_before);
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+}
 
 template <class T>
 struct FoamHistory<T>::Level {
@@ -178,12 +181,8 @@ FoamHistory<T>::FoamHistory(std::shared_ptr<const Sea<T>> sea)
     : sea_(std::move(sea)), kernels_(foam_kernels()) {
     if (!sea_->plan().foam) throw std::invalid_argument("foam that doesn't live has no history");
     foam_ = *sea_->plan().foam;
-    const Plan& plan = sea_->plan();
-    is_of_pictures_ = plan.outputs.empty();
-    std::vector<Query> asked;
-    for (const PlannedQuery& planned : plan.queries) asked.push_back(planned.query);
-    for (const double count : foam_tiles(foam_, plan.from->scene, asked, is_of_pictures_))
-        most_tiles_ += static_cast<std::size_t>(count);
+    for (const double count : foam_tiles(sea_->plan()))
+        most_tiles_ += static_cast<std::size_t>(std::ceil(count));
     const FoamPlan::Weight all = foam_.weight(0.0, foam_.window_s);
     mean_ = static_cast<float>(std::min(sea_->left_coverage(), 1.0));
     mean_age_s_ = static_cast<float>(all.age_s2 / all.foam_s);
@@ -203,8 +202,9 @@ void FoamHistory<T>::set(double t_s) {
     first_ = last_ + 1 - foam_.intervals();
     std::erase_if(tiles_, [&](const auto& entry) {
         return !entry.second->continues_at(first_) ||
-               (!is_of_pictures_ && entry.second->used.load() + 1 < round_);
+               (!is_prepared_ && entry.second->used.load() + 1 < round_);
     });
+    is_prepared_ = false;
     weights_.clear();
     for (std::int64_t n = first_; n <= last_; ++n) {
         const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
@@ -267,7 +267,7 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWa
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
     renew(watch);
     const Locator locate(*this, points, query);
-    std::vector<std::size_t> parts, later;
+    std::vector<std::size_t> parts;
     for (std::size_t first = 0; first < points.count; first += kPart) parts.push_back(first);
     tbb::enumerable_thread_specific<std::vector<Place>> missing;
     tbb::enumerable_thread_specific<std::vector<std::size_t>> undone;
@@ -311,11 +311,11 @@ std::vector<FoamPlace> FoamHistory<T>::places(const Points<T>& points, int query
                 if (!(place == last)) own.push_back(last = place);
             }
         }
-        only_once(own);
+        keep_each_once(own);
     });
     std::vector<Place> all;
     for (const std::vector<Place>& own : found) all.insert(all.end(), own.begin(), own.end());
-    only_once(all);
+    keep_each_once(all);
     return all;
 }
 
@@ -323,11 +323,11 @@ template <class T>
 void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& watch) {
     if (leaves_nothing()) return;
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
-    only_once(places);
-    is_renewed_ = true;
+    keep_each_once(places);
+    is_renewed_ = is_prepared_ = true;
+    const std::vector<FoamPlace> beside = surroundings_of(places);
     std::vector<FoamPlace> made = places;
-    const std::vector<FoamPlace> round = surroundings_of(places);
-    made.insert(made.end(), round.begin(), round.end());
+    made.insert(made.end(), beside.begin(), beside.end());
     std::size_t missing = 0;
     for (const FoamPlace& place : made) {
         const auto found = tiles_.find(place);
@@ -337,37 +337,55 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
             ++missing;
     }
     make_room(missing);
-    make(made, watch);
-    for (const FoamPlace& place : places) tiles_.at(place)->used.store(round_, std::memory_order_relaxed);
-    for (const FoamPlace& place : round) tiles_.at(place)->used = round_ - 1;  // nobody has read them yet
+    const auto were_read = [&](const std::vector<FoamPlace>& of, long round) {
+        for (const FoamPlace& place : of)
+            if (const auto found = tiles_.find(place); found != tiles_.end()) found->second->used = round;
+    };
+    try {
+        make(made, watch);
+    } catch (...) {
+        were_read(beside, round_ - 1);
+        throw;
+    }
+    were_read(places, round_);
+    were_read(beside, round_ - 1);  // by nobody yet
 }
 
-// A level that lacks one tile goes through its past for that one: in a run the missing tiles round all that are asked for come
-// along, as many as there is room for, so that moving waves and cameras don't ask for that at each frame. A picture alone asks
-// once.
+// A level that lacks one tile goes through its past for that one. In a run the missing tiles round all that are asked for come
+// along, so that moving waves and cameras don't ask for that at each frame: as many as there is room for, beside those that were
+// read not long ago. A picture alone asks once, with a shutter twice.
 template <class T>
 std::vector<FoamPlace> FoamHistory<T>::surroundings_of(const std::vector<FoamPlace>& places) const {
-    std::array<bool, FoamPlan::kLevels> goes_on{}, lacks{};
-    for (const auto& [place, tile] : tiles_) goes_on[static_cast<std::size_t>(place.level)] = true;
+    constexpr long kNotLong = 24;  // times
+    std::array<bool, FoamPlan::kLevels> goes_on{};
+    std::size_t kept = 0;
+    for (const auto& [place, tile] : tiles_) {
+        goes_on[static_cast<std::size_t>(place.level)] = true;
+        kept += tile->used.load() + kNotLong >= round_ &&
+                !std::binary_search(places.begin(), places.end(), place, is_before);
+    }
+    const std::size_t room = most_tiles_ - std::min(most_tiles_, places.size() + kept);
+    std::array<bool, FoamPlan::kLevels> lacks{};
     for (const FoamPlace& place : places)
         if (!tiles_.contains(place)) lacks[static_cast<std::size_t>(place.level)] = true;
-    std::vector<FoamPlace> round;
-    for (const FoamPlace& place : places) {
-        const auto level = static_cast<std::size_t>(place.level);
-        if (!goes_on[level] || !lacks[level]) continue;
-        for (const int x : {-1, 0, 1})
-            for (const int y : {-1, 0, 1}) {
-                const FoamPlace beside{place.level, place.x + x, place.y + y};
-                if (!tiles_.contains(beside)) round.push_back(beside);
-            }
+    // Round all of a level's tiles, or where there is no room for that, round those that it lacks.
+    for (const bool are_all : {true, false}) {
+        std::vector<FoamPlace> beside;
+        for (const FoamPlace& place : places) {
+            const auto level = static_cast<std::size_t>(place.level);
+            if (!goes_on[level] || !lacks[level] || !(are_all || !tiles_.contains(place))) continue;
+            for (const int x : {-1, 0, 1})
+                for (const int y : {-1, 0, 1}) {
+                    const FoamPlace at{place.level, place.x + x, place.y + y};
+                    if (!tiles_.contains(at) &&
+                        !std::binary_search(places.begin(), places.end(), at, is_before))
+                        beside.push_back(at);
+                }
+        }
+        keep_each_once(beside);
+        if (beside.size() <= room) return beside;
     }
-    only_once(round);
-    std::erase_if(round, [&](const FoamPlace& place) {
-        return std::binary_search(places.begin(), places.end(), place,
-                                  [](const auto& a, const auto& b) { return order_of(a) < order_of(b); });
-    });
-    round.resize(std::min(round.size(), most_tiles_ - std::min(most_tiles_, places.size())));
-    return round;
+    return {};
 }
 
 template <class T>
@@ -406,7 +424,7 @@ void FoamHistory<T>::renew(const BuildWatch& watch) {
 
 template <class T>
 void FoamHistory<T>::make(std::vector<Place>& places, const BuildWatch& watch) {
-    only_once(places);
+    keep_each_once(places);
     std::vector<Tile*> old;
     const auto kept = static_cast<std::size_t>(foam_.intervals() + FoamPlan::kSpareIntervals);
     for (const Place& place : places) {

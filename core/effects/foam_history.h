@@ -44,6 +44,9 @@ struct FoamPlace {
     bool operator==(const FoamPlace&) const = default;
 };
 
+// In the order that tiles are made in, each once.
+void keep_each_once(std::vector<FoamPlace>& places);
+
 // What a tile has at its nodes, rows of kTileCells + 1: what add() reads, for who reads it elsewhere.
 struct FoamNodes {
     FoamPlace place;
@@ -65,11 +68,10 @@ class FoamHistory {
     // footprint points without their own have.
     std::vector<FoamPlace> places(const Points<T>& points, int query) const;
     // Makes these tiles, which are all that is asked for at this time: where add() is called for a few points at a time, it
-    // needn't take the earlier times again for each. Of other tiles those that were read last are kept, and in a run some
-    // are made that are close, as long as there is room in the plan's foam_history_bytes(): a tile that a wave hides for a
-    // moment needn't begin anew. Where it has to go
-    // through many earlier times it says how far it is, and looks whether it shall end: it throws BuildCancelled then, and
-    // may be asked again.
+    // needn't take the earlier times again for each. Others are kept for the next time as long as there is room in the plan's
+    // foam_history_bytes(), those that were read last before all: a tile that a wave hides for a moment needn't begin anew. In
+    // a run some close ones are made as well. Where it has to go through many earlier times it says how far it is, and looks
+    // whether it shall end: it throws BuildCancelled then, and may be asked again.
     void prepare(std::vector<FoamPlace> places, const BuildWatch& watch = {});
     void prepare(const Points<T>& points, int query, const BuildWatch& watch = {}) {
         prepare(places(points, query), watch);
@@ -88,7 +90,8 @@ class FoamHistory {
     // `watch`: as prepare()'s.
     void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
 
-    // Bytes of all tiles, and of the seas that they are sampled from: at most the plan's foam_history_bytes() where all that was asked is the plan's queries.
+    // Bytes of all tiles, and of the seas that they are sampled from: at most the plan's foam_history_bytes() where all that was
+    // asked is the plan's queries.
     std::size_t held_bytes() const;
 
   private:
@@ -117,8 +120,8 @@ class FoamHistory {
     std::shared_ptr<const Sea<T>> sea_;
     FoamPlan foam_;
     FoamKernels kernels_;
-    bool is_of_pictures_ = false;                                   // which ask for all of a time at once
-    std::size_t most_tiles_ = 0;                                    // of pictures
+    std::size_t most_tiles_ = 0;  // that the plan has room for
+    bool is_prepared_ = false;    // by prepare(), which says what is read at this time
     std::array<std::unique_ptr<Level>, FoamPlan::kLevels> levels_;  // made where tiles are
     std::unordered_map<Place, std::unique_ptr<Tile>, HashOf> tiles_;
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/constants.h"
+#include "core/plan/foam_tiles.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
 
@@ -67,11 +68,8 @@ double intervals_of_frame(const Plan& plan) {
 }
 
 void add_foam(const Plan& plan, WorkDone& work) {
-    std::vector<Query> asked;
-    for (const PlannedQuery& planned : plan.queries) asked.push_back(planned.query);
     const double intervals = intervals_of_frame(plan);
-    const std::array<double, FoamPlan::kLevels> tiles =
-        foam_tiles(*plan.foam, plan.from->scene, asked, plan.outputs.empty());
+    const std::array<double, FoamPlan::kLevels> tiles = foam_tiles(plan);
     for (int level = 0; level < FoamPlan::kLevels; ++level) {
         const double count = tiles[static_cast<std::size_t>(level)];
         at(work, Work::Foam) += 1e-6 * intervals * count * static_cast<double>(FoamPlan::kTileNodes);

@@ -9,6 +9,7 @@
 #include "core/base/constants.h"
 #include "core/plan/copies.h"
 #include "core/plan/extent.h"
+#include "core/plan/foam_tiles.h"
 #include "core/plan/grid_layout.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
@@ -478,12 +479,15 @@ std::size_t Plan::frame_bytes() const {
     return bytes;
 }
 
+std::array<double, FoamPlan::kLevels> foam_tiles(const Plan& plan) {
+    std::vector<Query> asked;
+    for (const PlannedQuery& planned : plan.queries) asked.push_back(planned.query);
+    return foam_tiles(*plan.foam, plan.from->scene, asked, plan.outputs.empty());
+}
+
 std::size_t Plan::foam_history_bytes() const {
     if (!foam) return 0;
-    std::vector<Query> asked;
-    for (const PlannedQuery& planned : queries) asked.push_back(planned.query);
-    const std::array<double, FoamPlan::kLevels> tiles =
-        foam_tiles(*foam, from->scene, asked, outputs.empty());
+    const std::array<double, FoamPlan::kLevels> tiles = foam_tiles(*this);
     std::size_t bytes = 0;
     for (int level = 0; level < FoamPlan::kLevels; ++level) {
         const double count = tiles[static_cast<std::size_t>(level)];

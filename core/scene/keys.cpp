@@ -505,14 +505,14 @@ void add_effects_and_quality(Built& out) {
              .range = limits::kMaxError,
              .soft = SoftRange{1e-3, 0.3, true},
              .feeds = kQuality}),
-        row<&Quality::frame_ms>({.name = "frame_ms",
-                                 .help =
-                                     "instead of level: the most accurate settings that compute a frame in "
-                                     "this time, on the two cores on which costs are recorded",
-                                 .unit = "ms",
-                                 .range = limits::kFrame_ms,
-                                 .soft = SoftRange{1.0, 1e4, true},
-                                 .feeds = kQuality}));
+        row<&Quality::frame_ms>(
+            {.name = "frame_ms",
+             .help = "instead of level: the most accurate settings that compute a frame of a run "
+                     "in this time, on the two cores on which costs are recorded",
+             .unit = "ms",
+             .range = limits::kFrame_ms,
+             .soft = SoftRange{1.0, 1e4, true},
+             .feeds = kQuality}));
 }
 
 void add_output(Built& out) {

@@ -163,14 +163,14 @@ double CageAdaption::finest_of(const CageRates& rates) const {
 
 // ---- The surface
 
-CageSurface::CageSurface(const Scene& scene, const Extent& reach)
+CageSurface::CageSurface(const Scene& scene, const Extent& extent)
     : cage_(given(scene.surface.cage)),
       level_(scene.surface.cage_level),
       camera_(scene.camera),
       first_frame_(scene.shot.first_frame),
       cell_px_(scene.surface.cell_px),
       limit_(cage_->mesh()),
-      adaption_(limit_, cage_->mesh().points_m, scene.surface.cell_px, reach.significant_height_m) {
+      adaption_(limit_, cage_->mesh().points_m, scene.surface.cell_px, extent.significant_height_m) {
     const glm::dvec3 centre_m = centre_of(cage_->mesh(), limit_);
     origin_m_ = local_origin({centre_m.x, centre_m.y, 0.0}, fineness_at(first_frame_)->rates.finest_m);
 }

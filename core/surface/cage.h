@@ -46,7 +46,7 @@ class CageAdaption {
 
 class CageSurface final : public RestSurface {
   public:
-    CageSurface(const Scene& scene, const Extent& reach);
+    CageSurface(const Scene& scene, const Extent& extent);
 
     std::string describe() const override;
     std::string remedy() const override;

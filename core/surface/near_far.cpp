@@ -52,11 +52,11 @@ double longest(glm::dvec2 a, glm::dvec2 b) {
 
 }  // namespace
 
-NearFar::NearFar(const Scene& scene, const Extent& reach)
+NearFar::NearFar(const Scene& scene, const Extent& extent)
     : camera_(scene.camera),
       size_m_(scene.surface.size_m),
       cell_m_(rounded_cell_m(size_m_ / scene.surface.resolution)),
-      crest_m_(reach.height_m),
+      crest_m_(extent.height_m),
       curvature_per_m_(scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0),
       mesh_(size_m_, scene.surface.resolution) {
     const NearFarMesh::Level& last = mesh_.levels().back();

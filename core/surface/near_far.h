@@ -43,7 +43,7 @@ struct NearFarPlace {
 class NearFar final : public RestSurface {
   public:
     // Of a valid scene.
-    NearFar(const Scene& scene, const Extent& reach);
+    NearFar(const Scene& scene, const Extent& extent);
 
     const NearFarMesh& mesh() const { return mesh_; }
     // Of a camera anywhere; its height counts below the sea, too.

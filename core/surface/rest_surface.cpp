@@ -9,7 +9,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "core/surface/cage.h"
 #include "core/surface/earth.h"
@@ -97,14 +96,14 @@ class FittedPatch final : public SquareLattice {
 // whole shot would make each frame depend on all others.
 class CameraGrid : public RestSurface {
   public:
-    CameraGrid(const Scene& scene, const Extent& reach)
+    CameraGrid(const Scene& scene, const Extent& extent)
         : camera_(scene.camera),
           has_ladder_(scene.waves.model == WaveModel::Fft || !scene.waves.cascades.empty()),
           first_frame_(scene.shot.first_frame),
           options_{.cell_px = scene.surface.cell_px,
-                   .bounds = {.height_m = reach.height_m, .reach_m = reach.reach_m},
-                   .significant_height_m = reach.significant_height_m,
-                   .hidden = reach.hidden,
+                   .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
+                   .significant_height_m = extent.significant_height_m,
+                   .hidden = extent.hidden,
                    .curvature_per_m = scene.surface.earth_curvature ? kEarthCurvature_per_m : 0.0} {}
 
     std::string describe() const override {
@@ -185,7 +184,7 @@ class CameraGrid : public RestSurface {
 // where the plane's lie as far from the origin in the same direction (azimuthal equidistant projection).
 class Planet final : public CameraGrid {
   public:
-    Planet(const Scene& scene, const Extent& reach) : CameraGrid(scene, reach) {
+    Planet(const Scene& scene, const Extent& extent) : CameraGrid(scene, extent) {
         options_.curvature_per_m = kEarthCurvature_per_m;
     }
     std::string describe() const override { return CameraGrid::describe() + ", on the earth's sphere"; }
@@ -208,8 +207,8 @@ class Planet final : public CameraGrid {
 };
 
 template <class Kind>
-std::unique_ptr<const RestSurface> make(const Scene& scene, const Extent& reach) {
-    return std::make_unique<const Kind>(scene, reach);
+std::unique_ptr<const RestSurface> make(const Scene& scene, const Extent& extent) {
+    return std::make_unique<const Kind>(scene, extent);
 }
 
 struct SurfaceRow {
@@ -217,9 +216,9 @@ struct SurfaceRow {
     std::unique_ptr<const RestSurface> (*make)(const Scene&, const Extent&);
 };
 
-std::unique_ptr<const RestSurface> make_patch(const Scene& scene, const Extent& reach) {
-    return scene.output.mesh_scheme == MeshScheme::CatmullClark ? make<FittedPatch>(scene, reach)
-                                                                : make<Patch>(scene, reach);
+std::unique_ptr<const RestSurface> make_patch(const Scene& scene, const Extent& extent) {
+    return scene.output.mesh_scheme == MeshScheme::CatmullClark ? make<FittedPatch>(scene, extent)
+                                                                : make<Patch>(scene, extent);
 }
 
 constexpr std::array kSurfaceTable = std::to_array<SurfaceRow>({
@@ -270,9 +269,9 @@ Faces grid_faces(int columns, int rows) {
     return faces;
 }
 
-std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const Extent& reach) {
+std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const Extent& extent) {
     for (const SurfaceRow& row : kSurfaceTable)
-        if (row.kind == scene.surface.kind) return row.make(scene, reach);
+        if (row.kind == scene.surface.kind) return row.make(scene, extent);
     throw std::logic_error("a surface without a row");
 }
 

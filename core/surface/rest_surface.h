@@ -112,7 +112,7 @@ class RestSurface {
 };
 
 // The surface of a valid scene.
-std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const Extent& reach);
+std::unique_ptr<const RestSurface> make_surface(const Scene& scene, const Extent& extent);
 
 // Some frames of the shot that stand for all where a look at each would take too long: those between which
 // the camera moves, evenly spaced, both ends included, at most `most`.

@@ -54,7 +54,9 @@ std::time_t time_of(std::string_view utc) {
 std::string age_text(const MeasuredRow& row, std::string_view now, const std::string& shot) {
     const double days = std::difftime(time_of(now), time_of(row.when)) / 86400.0;
     std::string text = "measured on " + row.when.substr(0, std::string_view("2026-11-21").size());
-    if (days >= 1.0) text += print(", %.0f days before this report", std::floor(days));
+    if (days >= 1.0)
+        text += print(days < 2.0 ? ", %.0f day before this report" : ", %.0f days before this report",
+                      std::floor(days));
     if (row.shot != shot) text += ", of the shot as it was then";
     return text;
 }

@@ -317,7 +317,7 @@ void add_scene(py::module_& module) {
     module.def(
         "keys", &described_keys,
         "Every key of a shot file as a dictionary: path, name, label, type, unit, help, accepted, default, "
-        "required, range, soft_range (of a slider), logarithmic, choices, feeds (what depends on it), built, "
+        "required, range, soft_range (of a slider), logarithmic, choices (words), feeds (what depends on it), "
         "the keys of a list's entries, the entries' class, and other_word (that may stand in the place of a list or an "
         "integer).");
 }

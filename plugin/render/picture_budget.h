@@ -22,8 +22,7 @@ struct PricedSetting {
 
 struct PictureBudget {
     Scene scene;  // with the quality.level and surface.cell_px that it asks for, and without a budget
-    RenderOptions
-        options;  // render_options(scene), with samples and lookups of the sky, and with what is fixed
+    RenderOptions options;  // render_options(scene), with what was chosen and what is fixed
     // Expected: the relative error of radiance that 95 % of the water's pixels don't exceed, against 8 × 8 samples of the
     // integral of the sky, with cells of half a pixel. NaN where only time was asked for.
     double error = 0.0;
@@ -33,7 +32,8 @@ struct PictureBudget {
     std::vector<PricedSetting> settings{};  // all that it was chosen from
 };
 
-// What isn't left to the budget.
+// What isn't left to the budget. Nothing of which frames are made: a farm's tasks choose alike, and a frame's time is that of a run
+// through the shot, which goes on with the foam of the frame before.
 struct FixedSettings {
     std::optional<int> samples{};
     std::optional<SkyQuality> sky_quality{};

@@ -31,7 +31,8 @@ double water_share(const Camera& camera, int frame) {
 }
 
 // Of a plan whose points are those of the camera's grid: with the samples that show the sea, and at so many moments. A point of the
-// grid asks for its position alone, which about half of the fields answer. The foam's past is as long with a shutter as without.
+// grid asks for its position alone, which about half of the fields answer. The foam's past is as long with a shutter as without,
+// and adding it up again at each moment takes little beside (bench_cost_model has shutters).
 WorkDone with_samples(WorkDone work, double points, double samples, double moments) {
     const double points_factor = 0.5 * moments + samples / points;
     for (std::size_t i = 0; i < kWorkCount; ++i) switch (static_cast<Work>(i)) {

@@ -41,19 +41,22 @@ Spray SeaLight<T>::spray_before(const View& view, const ProjectedGridOptions& gr
 
 template <class T>
 void SeaLight<T>::begin_foam(double time_s) {
-    history_->set(time_s);
     foam_places_.clear();
+    if (history_) history_->set(time_s);
 }
 
 template <class T>
 void SeaLight<T>::ask_foam(const Points<T>& points) {
+    if (!history_) return;
     const std::vector<FoamPlace> places = history_->places(points, kQuery);
     foam_places_.insert(foam_places_.end(), places.begin(), places.end());
+    keep_each_once(foam_places_);
 }
 
 template <class T>
 void SeaLight<T>::prepare_foam(const BuildWatch& watch) {
-    history_->prepare(foam_places_, watch);
+    if (history_) history_->prepare(std::move(foam_places_), watch);
+    foam_places_.clear();
 }
 
 template <class T>

@@ -77,8 +77,8 @@ class SeaLight {
     Air air_before(double height_m) const;
     // The spray before a camera at the frame's time, with its light; none where the light or the scene has none.
     Spray spray_before(const View& view, const ProjectedGridOptions& grid) const;
-    // Where foam lives, before the first answer of a picture: its time, all places that it will show, and what earlier times have
-    // left there, so that its parts don't each go through them. The last throws BuildCancelled.
+    // Before the first answer of a picture: its time, all places that it will show, and what earlier times have left there, so that
+    // its parts don't each go through them. Nothing where no foam lives. The last throws BuildCancelled.
     void begin_foam(double time_s);
     void ask_foam(const Points<T>& points);
     void prepare_foam(const BuildWatch& watch);

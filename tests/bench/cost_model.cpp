@@ -186,12 +186,13 @@ int main() {
     print("frames of bakes [ms]", of_meshes, cost);
     // Of pictures, the sea costs what it costs in bakes, but for the foam.
     constexpr auto kFoam = static_cast<std::size_t>(Work::Foam);
+    static_assert(kFoam + 1 == kWorkCount);
     std::vector<Timed> of_pictures = pictures();
     for (Timed& row : of_pictures) {
         for (std::size_t i = 0; i < kFoam; ++i) row.known_ms += cost[i] * row.work[i];
         row.work.erase(row.work.begin(), row.work.begin() + kFoam);
     }
     print(
-        "pictures [ms], the sea as in bakes: foam; samples with nine, with the integral, of sky; texels and samples of spray",
+        "pictures [ms], the sea as in bakes: foam (times kFoamOfPictures what it is in bakes); samples with nine, with the integral, of sky; texels and samples of spray",
         of_pictures, fitted(of_pictures));
 }

@@ -246,7 +246,7 @@ TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
 }
 
 // Of points with footprints of their own, from a cell's to those of levels far up: what was made for them is all that they read.
-// Who needs more is told to make it, and a cancelled one can't.
+// With a watch that is cancelled, add() throws where it would have to make a tile.
 TEST(LivingFoam, PlacesAreAllThatIsRead) {
     const auto sea = sea_of(scene_of(2.0), 0.7);
     const auto rest_m = square(40, 1.7);
@@ -273,6 +273,61 @@ TEST(LivingFoam, PlacesAreAllThatIsRead) {
     history.set(7.01);
     history.prepare(std::vector(places.begin(), places.end() - 1));
     EXPECT_EQ(history.nodes().size(), places.size() - 1);
+    FoamHistory<float> other(sea);
+    other.set(7.0);
+    other.prepare(std::vector(places.begin(), places.end() - 1));
+    EXPECT_THROW(other.add(points, 0, {.coverage = {total.data()}}, none), BuildCancelled);
+}
+
+// Who only adds keeps the tiles of the time before, wherever the points were at earlier ones.
+TEST(LivingFoam, WithoutPreparingHoldsTwoTimes) {
+    const auto sea = sea_of(scene_of(2.0), 0.7);
+    const auto rest_m = square(20, 0.9);
+    std::vector<float> total(rest_m.size());
+    FoamHistory<float> history(sea);
+    std::size_t held = 0;
+    for (int i = 0; i < 20; ++i) {
+        history.set(5.0 + 0.02 * i);
+        history.add({.origin_m = {300.0 * i, 0.0}, .count = rest_m.size(), .rest_m = {rest_m.data()}}, 0,
+                    {.coverage = {total.data()}});
+        if (i == 1) held = history.held_bytes();
+    }
+    EXPECT_LE(history.held_bytes(), held + held / 8);
+}
+
+// A run that is prepared at each time, over water that is new, hidden and seen again, back and forth in time and round a loop, and
+// cancelled on the way: the foam is that of the time alone, and the history holds no more than its plan says.
+TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
+    Scene scene = scene_of(2.0);
+    scene.shot.loop_s = 12.0;
+    const auto rest_m = square(40, 0.9);
+    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    query.points = 3 * rest_m.size();
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}, {.living_foam = true}));
+    FoamHistory<float> history(sea);
+    const auto at = [&](int place) {
+        return Points<float>{
+            .origin_m = {9.0 * place, 4.0 * place}, .count = rest_m.size(), .rest_m = {rest_m.data()}};
+    };
+    int step = 0;
+    for (const double t_s : {3.0, 3.04, 3.3, 3.26, 4.1, 11.9, 12.05, 23.9, 2.0, 2.04, 2.5, 3.2}) {
+        SCOPED_TRACE(t_s);
+        const Points<float> points = at(step++ % 7);
+        history.set(t_s);
+        std::atomic<bool> enough = step % 3 == 0;
+        try {
+            history.prepare(points, 0, {.progress = {}, .cancel = &enough});
+        } catch (const BuildCancelled&) {
+            history.prepare(points, 0);
+        }
+        EXPECT_LE(history.held_bytes(), sea->plan().foam_history_bytes());
+        std::vector<float> total(rest_m.size(), 0.0f), alone(total);
+        history.add(points, 0, {.coverage = {total.data()}});
+        FoamHistory<float> cold(sea);
+        cold.set(t_s);
+        cold.add(points, 0, {.coverage = {alone.data()}});
+        EXPECT_EQ(total, alone);
+    }
 }
 
 // A wave hides some of the sea from a camera, and shows it again: it needn't begin anew, as long as there is room.

@@ -107,8 +107,8 @@ TEST(Planet, IsTheCamerasGridOnOneSphere) {
         const glm::dvec3 up = earth_up(place_m, kEarthCurvature_per_m);
         scene.camera.position_m = on_earth(glm::dvec3(place_m, 100.0), kEarthCurvature_per_m);
         scene.camera.look_at_m = scene.camera.position_m + 1e3 * from_level(glm::dvec3(0.6, 0.79, -0.05), up);
-        const Extent reach{.height_m = 2.0, .reach_m = 2.0, .significant_height_m = 1.0, .hidden = {}};
-        const auto planet = make_surface(scene, reach);
+        const Extent extent{.height_m = 2.0, .reach_m = 2.0, .significant_height_m = 1.0, .hidden = {}};
+        const auto planet = make_surface(scene, extent);
         RestPoints<double> points;
         planet->points_at(1, points);
         EXPECT_EQ(points.touches_at_m, glm::dvec2(0.0));
@@ -117,8 +117,8 @@ TEST(Planet, IsTheCamerasGridOnOneSphere) {
         const ProjectedGrid local =
             projected_grid(over_nadir(view_at(scene.camera, 1)),
                            {.cell_px = scene.surface.cell_px,
-                            .bounds = {.height_m = reach.height_m, .reach_m = reach.reach_m},
-                            .significant_height_m = reach.significant_height_m,
+                            .bounds = {.height_m = extent.height_m, .reach_m = extent.reach_m},
+                            .significant_height_m = extent.significant_height_m,
                             .curvature_per_m = kEarthCurvature_per_m});
         ASSERT_EQ(points.rest_m.size(), local.rest_m.size());
         for (std::size_t i = 0; i < local.rest_m.size(); i += 7) {

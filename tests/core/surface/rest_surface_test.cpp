@@ -13,7 +13,7 @@
 namespace pelagic {
 namespace {
 
-constexpr Extent kReach{.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0};
+constexpr Extent kExtent{.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0};
 
 Scene camera_scene() {
     Scene scene;
@@ -29,7 +29,7 @@ TEST(RestSurface, APatchIsOneSquareForAllFrames) {
     Scene scene;
     scene.surface.resolution = 8;
     scene.surface.size_m = 40.0;
-    const auto surface = make_surface(scene, kReach);
+    const auto surface = make_surface(scene, kExtent);
     EXPECT_EQ(surface->describe(), "a patch of 8 × 8 quads over 40 m");
     EXPECT_TRUE(surface->is_constant());
     const std::array frames{1};
@@ -53,7 +53,7 @@ TEST(RestSurface, TheCamerasGridOfAFrameDependsOnItsPoseAlone) {
     other.shot.first_frame = 5;
     other.shot.last_frame = 9;
     other.camera.keys.push_back({.frame = 40, .position_m = {0.0, 0.0, 900.0}, .look_at_m = {9.0, 0.0, 0.0}});
-    const auto a = make_surface(scene, kReach), b = make_surface(other, kReach);
+    const auto a = make_surface(scene, kExtent), b = make_surface(other, kExtent);
     EXPECT_FALSE(a->is_constant());
     EXPECT_TRUE(a->origin_follows_camera());
     std::size_t sizes = 0, last = 0;
@@ -77,7 +77,7 @@ TEST(RestSurface, TheCamerasGridOfAFrameDependsOnItsPoseAlone) {
 }
 
 TEST(RestSurface, NeedsOfFramesTogetherAreThoseOfEach) {
-    const auto surface = make_surface(camera_scene(), kReach);
+    const auto surface = make_surface(camera_scene(), kExtent);
     const std::array all{3, 11, 19, 25, 30};
     const SurfaceNeeds together = surface->needs(all);
     double finest_m = 1e9;
@@ -112,9 +112,9 @@ TEST(RestSurface, KindsWithoutAPartAreRefused) {
         Scene scene;
         scene.surface.kind = kind;
         if (validate(scene).empty())
-            EXPECT_NO_THROW(make_surface(scene, kReach));
+            EXPECT_NO_THROW(make_surface(scene, kExtent));
         else
-            EXPECT_THROW(make_surface(scene, kReach), std::invalid_argument);
+            EXPECT_THROW(make_surface(scene, kExtent), std::invalid_argument);
     }
 }
 

@@ -137,6 +137,11 @@ TEST(FoamInPictures, OfAFlightGoesThroughThePastOfNewWaterAFewTimes) {
     }
     RecordProperty("frames that went through a past", with_past);
     EXPECT_LT(with_past, 14);
+    Renderer single(scene, options_of(scene), uniform_sky(), frames);
+    Picture alone;
+    ASSERT_TRUE(single.render(40, alone));
+    EXPECT_EQ(layer(picture, PictureLayer::Coverage), layer(alone, PictureLayer::Coverage));
+    EXPECT_EQ(layer(picture, PictureLayer::FoamAge), layer(alone, PictureLayer::FoamAge));
 }
 
 }  // namespace

@@ -118,10 +118,11 @@ Scene timed_scene() {
     scene.sea.wind_speed_mps = 15.0;
     scene.camera.resolution = {320, 180};
     scene.quality.frame_ms = 1e6;
+    scene.shot.last_frame = 24;
     return scene;
 }
 
-double dearest_ms(const Scene& scene, const FixedSettings& fixed) {
+double ms_of(const Scene& scene, const FixedSettings& fixed) {
     return picture_budget(scene, fixed).ms;
 }
 
@@ -133,10 +134,13 @@ TEST(PriceOfPictures, HoldsWhatIsAskedForBesides) {
     FixedSettings shutter = plain, motion = plain;
     shutter.shutter_frames = 0.5;
     motion.layers |= parse_picture_layers("motion");
-    const double ms = dearest_ms(timed_scene(), plain);
-    EXPECT_GT(dearest_ms(timed_scene(), shutter), 1.2 * ms);
-    EXPECT_GT(dearest_ms(timed_scene(), motion), ms);
-    EXPECT_GT(dearest_ms(spray, plain), ms);
+    const double ms = ms_of(timed_scene(), plain);
+    EXPECT_GT(ms_of(timed_scene(), shutter), 1.2 * ms);
+    EXPECT_GT(ms_of(timed_scene(), motion), ms);
+    EXPECT_GT(ms_of(spray, plain), ms);
+    Scene still = timed_scene();
+    still.shot.last_frame = still.shot.first_frame;
+    EXPECT_GT(ms_of(still, plain), 1.2 * ms) << "all of the foam's past";
 }
 
 // The frame's own moment and one for each sample; foam's past is as long as without.
@@ -170,7 +174,7 @@ TEST(PriceOfPictures, AShutterComputesTheSeaForEachSample) {
 // So fewer samples stay within a time.
 TEST(PriceOfPictures, AShutterLeavesFewerSamplesWithinATime) {
     Scene scene = timed_scene();
-    scene.quality.frame_ms = 1.1 * dearest_ms(scene, {.samples = 4, .sky_quality = {}});
+    scene.quality.frame_ms = 1.1 * ms_of(scene, {.samples = 4, .sky_quality = {}});
     FixedSettings shutter;
     shutter.shutter_frames = 0.5;
     EXPECT_LT(picture_budget(scene, shutter).options.samples, picture_budget(scene).options.samples);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -86,7 +87,9 @@ struct FoamHistory<T>::Tile {
     std::int64_t begin = 0, end = 0, next = 0;
     double made_at = 0.0;
     bool is_begun = false, is_made = false;
-    mutable std::atomic<long> used = 0;  // the last round that read it
+    // When it was read last: the round, and its time.
+    mutable std::atomic<long> used = 0;
+    mutable std::atomic<double> used_at_s = 0.0;
 
     // Whether it has what a time reads whose first interval this is, or goes on to it.
     bool continues_at(std::int64_t first) const {
@@ -94,6 +97,10 @@ struct FoamHistory<T>::Tile {
         return begin <= first && first >= end - kept && first <= end;
     }
     bool is_of(double time_s) const { return is_made && made_at == time_s; }
+    void was_read(long round, double time_s) const {
+        used.store(round, std::memory_order_relaxed);
+        used_at_s.store(time_s, std::memory_order_relaxed);
+    }
 };
 
 // Finds the nodes round points: in two levels where a footprint lies between them.
@@ -202,9 +209,9 @@ void FoamHistory<T>::set(double t_s) {
     first_ = last_ + 1 - foam_.intervals();
     std::erase_if(tiles_, [&](const auto& entry) {
         return !entry.second->continues_at(first_) ||
-               (!is_prepared_ && entry.second->used.load() + 1 < round_);
+               (is_unprepared_ && entry.second->used.load() + 1 < round_);
     });
-    is_prepared_ = false;
+    is_unprepared_ = false;
     weights_.clear();
     for (std::int64_t n = first_; n <= last_; ++n) {
         const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
@@ -237,7 +244,7 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
                 before[k] = node.place;
                 const auto found = tiles_.find(node.place);
                 tile[k] = found == tiles_.end() ? nullptr : found->second.get();
-                if (tile[k]) tile[k]->used.store(round_, std::memory_order_relaxed);
+                if (tile[k]) tile[k]->was_read(round_, time_s_);
                 if (tile[k] && !tile[k]->is_of(time_s_)) tile[k] = nullptr;
                 if (!tile[k]) missing.push_back(node.place);
             }
@@ -324,7 +331,8 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
     if (leaves_nothing()) return;
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
     keep_each_once(places);
-    is_renewed_ = is_prepared_ = true;
+    is_renewed_ = true;
+    is_unprepared_ = false;
     const std::vector<FoamPlace> beside = surroundings_of(places);
     std::vector<FoamPlace> made = places;
     made.insert(made.end(), beside.begin(), beside.end());
@@ -332,60 +340,69 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
     for (const FoamPlace& place : made) {
         const auto found = tiles_.find(place);
         if (found != tiles_.end())
-            found->second->used = round_;
+            found->second->was_read(round_, time_s_);
         else
             ++missing;
     }
     make_room(missing);
-    const auto were_read = [&](const std::vector<FoamPlace>& of, long round) {
+    const auto mark = [&](const std::vector<FoamPlace>& of, long round) {
         for (const FoamPlace& place : of)
-            if (const auto found = tiles_.find(place); found != tiles_.end()) found->second->used = round;
+            if (const auto found = tiles_.find(place); found != tiles_.end())
+                found->second->was_read(round, time_s_);
     };
+    // As if at the time before: what nobody has asked for isn't among the nodes, and needn't go on.
+    const auto mark_those_beside = [&] { mark(beside, round_ - 1); };
     try {
         make(made, watch);
     } catch (...) {
-        were_read(beside, round_ - 1);
+        mark_those_beside();
         throw;
     }
-    were_read(places, round_);
-    were_read(beside, round_ - 1);  // by nobody yet
+    mark(places, round_);
+    mark_those_beside();
 }
 
 // A level that lacks one tile goes through its past for that one. In a run the missing tiles round all that are asked for come
-// along, so that moving waves and cameras don't ask for that at each frame: as many as there is room for, beside those that were
-// read not long ago. A picture alone asks once, with a shutter twice.
+// along, so that moving waves and cameras don't ask for that at each frame: level by level, where there is room beside those that
+// were read not long ago. The first time of all has none beside: a picture alone would have no use for them.
 template <class T>
 std::vector<FoamPlace> FoamHistory<T>::surroundings_of(const std::vector<FoamPlace>& places) const {
-    constexpr long kNotLong = 24;  // times
+    constexpr double kNotLong_s = 1.0;
     std::array<bool, FoamPlan::kLevels> goes_on{};
-    std::size_t kept = 0;
+    std::size_t held = places.size();
     for (const auto& [place, tile] : tiles_) {
         goes_on[static_cast<std::size_t>(place.level)] = true;
-        kept += tile->used.load() + kNotLong >= round_ &&
+        held += std::abs(tile->used_at_s.load() - time_s_) <= kNotLong_s &&
                 !std::binary_search(places.begin(), places.end(), place, is_before);
     }
-    const std::size_t room = most_tiles_ - std::min(most_tiles_, places.size() + kept);
-    std::array<bool, FoamPlan::kLevels> lacks{};
-    for (const FoamPlace& place : places)
-        if (!tiles_.contains(place)) lacks[static_cast<std::size_t>(place.level)] = true;
-    // Round all of a level's tiles, or where there is no room for that, round those that it lacks.
-    for (const bool are_all : {true, false}) {
-        std::vector<FoamPlace> beside;
-        for (const FoamPlace& place : places) {
-            const auto level = static_cast<std::size_t>(place.level);
-            if (!goes_on[level] || !lacks[level] || !(are_all || !tiles_.contains(place))) continue;
-            for (const int x : {-1, 0, 1})
-                for (const int y : {-1, 0, 1}) {
-                    const FoamPlace at{place.level, place.x + x, place.y + y};
-                    if (!tiles_.contains(at) &&
-                        !std::binary_search(places.begin(), places.end(), at, is_before))
-                        beside.push_back(at);
-                }
+    std::size_t room = most_tiles_ - std::min(most_tiles_, held);
+    std::vector<FoamPlace> beside;
+    for (auto first = places.begin(), last = first; first != places.end(); first = last) {
+        last = std::find_if(first, places.end(),
+                            [&](const Place& place) { return place.level != first->level; });
+        std::vector<FoamPlace> lacking;
+        std::copy_if(first, last, std::back_inserter(lacking),
+                     [&](const Place& place) { return !tiles_.contains(place); });
+        if (lacking.empty() || !goes_on[static_cast<std::size_t>(first->level)]) continue;
+        // Round all of a level's tiles, or where there is no room for that, round those that it lacks.
+        for (const std::span<const FoamPlace> middle :
+             {std::span<const FoamPlace>(first, last), std::span<const FoamPlace>(lacking)}) {
+            std::vector<FoamPlace> round;
+            for (const FoamPlace& place : middle)
+                for (const int x : {-1, 0, 1})
+                    for (const int y : {-1, 0, 1}) {
+                        const FoamPlace at{place.level, place.x + x, place.y + y};
+                        if (!tiles_.contains(at) && !std::binary_search(first, last, at, is_before))
+                            round.push_back(at);
+                    }
+            keep_each_once(round);
+            if (round.size() > room) continue;
+            room -= round.size();
+            beside.insert(beside.end(), round.begin(), round.end());
+            break;
         }
-        keep_each_once(beside);
-        if (beside.size() <= room) return beside;
     }
-    return {};
+    return beside;
 }
 
 template <class T>
@@ -415,7 +432,7 @@ void FoamHistory<T>::make_room(std::size_t count) {
 template <class T>
 void FoamHistory<T>::renew(const BuildWatch& watch) {
     if (is_renewed_) return;
-    is_renewed_ = true;
+    is_renewed_ = is_unprepared_ = true;
     std::vector<Place> places;
     for (const auto& [place, tile] : tiles_)
         if (tile->used.load() + 1 >= round_) places.push_back(place);
@@ -463,7 +480,7 @@ void FoamHistory<T>::advance(const std::vector<Tile*>& tiles, const BuildWatch& 
     try {
         sample_from(from, tiles, watch);
     } catch (const BuildCancelled&) {
-        for (Tile* tile : tiles) tile->used = round_;  // what they have is kept for the next time
+        for (Tile* tile : tiles) tile->was_read(round_, time_s_);  // what they have is kept for the next time
         throw;
     }
 }

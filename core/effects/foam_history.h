@@ -87,11 +87,11 @@ class FoamHistory {
     float mean_times_age_s() const { return mean_ * mean_age_s_; }
 
     // Adds to answers of evaluate() what earlier breaking has left. On all threads of the calling arena, one call at a time.
-    // `watch`: as prepare()'s.
+    // `watch`: as prepare()'s; of a call that was cancelled the results are worthless.
     void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
 
     // Bytes of all tiles, and of the seas that they are sampled from: at most the plan's foam_history_bytes() where all that was
-    // asked is the plan's queries.
+    // asked is the plan's queries, after prepare() if the plan has no outputs.
     std::size_t held_bytes() const;
 
   private:
@@ -121,7 +121,7 @@ class FoamHistory {
     FoamPlan foam_;
     FoamKernels kernels_;
     std::size_t most_tiles_ = 0;  // that the plan has room for
-    bool is_prepared_ = false;    // by prepare(), which says what is read at this time
+    bool is_unprepared_ = false;  // what is read at this time was found out by add(), not by prepare()
     std::array<std::unique_ptr<Level>, FoamPlan::kLevels> levels_;  // made where tiles are
     std::unordered_map<Place, std::unique_ptr<Tile>, HashOf> tiles_;
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea

@@ -8,7 +8,7 @@
 namespace pelagic {
 
 // Tiles by level, as the history of a plan with living foam holds them at most: of all its queries, at two times, or of a plan
-// without outputs, which is of pictures, at one.
+// without outputs, for pictures and views, which prepare what they read, at one.
 std::array<double, FoamPlan::kLevels> foam_tiles(const Plan& plan);
 
 }  // namespace pelagic

@@ -25,7 +25,7 @@ PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
                                   (history.plan().cell_of(tile.place.level) * FoamPlan::kTileCells);
         return !(std::max(std::abs(at.x), std::abs(at.y)) < kFarthestTile);
     });
-    tiles_ = tiles.size();
+    history_bytes_ = history.held_bytes();
     pages_size_ = {1, 0};
     for (int level = 0; level < FoamPlan::kLevels; ++level) {
         Box& box = boxes_[static_cast<std::size_t>(level)];

@@ -33,7 +33,8 @@ class PackedFoam {
     // For points relative to an origin [m]: a row for each level and one for the sea, as foam_history.glsl has them.
     std::vector<glm::vec4> level_texels(glm::dvec2 origin_m) const;
 
-    std::size_t tiles() const { return tiles_; }
+    // What the history held when this was made.
+    std::size_t history_bytes() const { return history_bytes_; }
     std::size_t bytes() const { return nodes_.size() * sizeof(glm::vec2) + pages_.size() * sizeof(float); }
     // Of foam that takes so much in a history, at most.
     static std::size_t bytes_for(const FoamPlan& foam, std::size_t history_bytes);
@@ -47,7 +48,7 @@ class PackedFoam {
         glm::dvec2 drifted_m{0.0};
     };
     std::array<Box, FoamPlan::kLevels> boxes_{};
-    std::size_t tiles_ = 0;
+    std::size_t history_bytes_ = 0;
     std::vector<glm::vec2> nodes_{glm::vec2(0.0f)};
     glm::ivec2 nodes_size_{1};
     std::vector<float> pages_{-1.0f};

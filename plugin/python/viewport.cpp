@@ -347,7 +347,7 @@ class GpuSea {
 
     std::size_t bytes() const {
         std::size_t sum = sea_->plan().sea_bytes() + sea_->plan().frame_bytes();
-        if (foam_) sum += foam_->bytes() + foam_->tiles() * sea_->plan().foam->tile_bytes();
+        if (foam_) sum += foam_->bytes() + foam_->history_bytes();
         for (const SeaLayout::Plane& plane : packed_.layout()->planes())
             sum += sizeof(float) * static_cast<std::size_t>(plane.channels) * plane.size.x * plane.size.y;
         return sum;

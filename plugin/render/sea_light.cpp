@@ -50,12 +50,12 @@ void SeaLight<T>::ask_foam(const Points<T>& points) {
     if (!history_) return;
     const std::vector<FoamPlace> places = history_->places(points, kQuery);
     foam_places_.insert(foam_places_.end(), places.begin(), places.end());
-    keep_each_once(foam_places_);
+    keep_each_once(foam_places_);  // batches ask for much the same
 }
 
 template <class T>
 void SeaLight<T>::prepare_foam(const BuildWatch& watch) {
-    if (history_) history_->prepare(std::move(foam_places_), watch);
+    if (history_) history_->prepare(foam_places_, watch);
     foam_places_.clear();
 }
 

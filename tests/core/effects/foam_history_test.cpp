@@ -309,15 +309,17 @@ TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
         return Points<float>{
             .origin_m = {9.0 * place, 4.0 * place}, .count = rest_m.size(), .rest_m = {rest_m.data()}};
     };
-    int step = 0;
+    int step = 0, cancelled = 0;
     for (const double t_s : {3.0, 3.04, 3.3, 3.26, 4.1, 11.9, 12.05, 23.9, 2.0, 2.04, 2.5, 3.2}) {
         SCOPED_TRACE(t_s);
         const Points<float> points = at(step++ % 7);
         history.set(t_s);
-        std::atomic<bool> enough = step % 3 == 0;
+        std::atomic<bool> enough = false;
+        const auto stop_halfway = [&](double done) { enough = step % 3 == 0 && done > 0.4; };
         try {
-            history.prepare(points, 0, {.progress = {}, .cancel = &enough});
+            history.prepare(points, 0, {.progress = stop_halfway, .cancel = &enough});
         } catch (const BuildCancelled&) {
+            ++cancelled;
             history.prepare(points, 0);
         }
         EXPECT_LE(history.held_bytes(), sea->plan().foam_history_bytes());
@@ -328,6 +330,37 @@ TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
         cold.add(points, 0, {.coverage = {alone.data()}});
         EXPECT_EQ(total, alone);
     }
+    EXPECT_GT(cancelled, 0);
+}
+
+// Cancelled on the way through the past of new water and of what is round it: only what was asked for goes on.
+TEST(LivingFoam, WhatNobodyAskedForDoesNotGoOnAfterACancel) {
+    const auto rest_m = square(40, 0.9);
+    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    query.points = 9 * rest_m.size();
+    const auto sea =
+        std::make_shared<const Sea<float>>(make_plan(scene_of(2.0), {query}, {.living_foam = true}));
+    const Points<float> old{.count = rest_m.size(), .rest_m = {rest_m.data()}};
+    Points<float> fresh = old;
+    fresh.origin_m = {25.0, 0.0};
+    FoamHistory<float> history(sea);
+    history.set(9.0);
+    history.prepare(old, 0);
+    const std::size_t before = history.held_bytes();
+    history.set(9.02);
+    std::atomic<bool> enough = false;
+    EXPECT_THROW(
+        history.prepare(fresh, 0, {.progress = [&](double done) { enough = done > 0.4; }, .cancel = &enough}),
+        BuildCancelled);
+    history.prepare(fresh, 0);
+    EXPECT_GT(history.held_bytes(), before + sea->plan().foam->tile_bytes() * history.nodes().size())
+        << "nothing beside what was asked for";
+    history.set(9.04);
+    int told = 0;
+    std::vector<float> total(rest_m.size());
+    history.add(fresh, 0, {.coverage = {total.data()}},
+                {.progress = [&](double) { ++told; }, .cancel = nullptr});
+    EXPECT_EQ(told, 0);
 }
 
 // A wave hides some of the sea from a camera, and shows it again: it needn't begin anew, as long as there is room.
@@ -350,6 +383,7 @@ TEST(LivingFoam, OfPicturesIsKeptWhileItIsHidden) {
         history.set(t_s);
         history.prepare(few, 0, watch);
     }
+    history.set(9.14);  // and nothing is asked
     history.set(9.16);
     history.prepare(all, 0, watch);
     EXPECT_EQ(told, 0);

@@ -2,10 +2,10 @@
 # Installs what is missing, builds, and passes the tests.
 #   tests/run.sh [PRESET] [--label LABEL]
 #   tests/run.sh --nightly
-# PRESET: release (default), debug, sanitize (addresses and undefined behaviour) or tsan (threads).
+# PRESET: release (default), debug, sanitize (addresses and undefined behaviour) or tsan (threads: the tests of what has some).
 # LABEL: unit (three minutes on two cores, once built), slow, gl (OpenGL) or external (with Blender, OpenUSD, node, clang-format);
 # default: all.
-# --nightly takes hours: every test in release and under both sanitizers, six million rays, ten thousand random scenes, an hour
+# --nightly takes hours: every test in release and under the sanitizers, six million rays, ten thousand random scenes, an hour
 # of fuzzing, then the campaigns in full. It goes on after a failure, ends with a line for each part, and fails if one did.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -49,6 +49,7 @@ source "$here/../examples/setup.sh"
 pass() {
     install_packages
     "$here/plugin/usd/openusd/install.sh"
+    [ "$1" != tsan ] || "$here/sanitizers/onetbb.sh"
     build "$1"
     cd "$PELAGIC_ROOT"
     # None of the tests minds another beside it; each uses all cores itself, and takes up to 2 GiB.

@@ -14,7 +14,7 @@ enum class Planning {
 // forgets what FFTW knows of plans when it begins and when it ends, so that those of others are again the recorded ones.
 class PlannedBy {
   public:
-    explicit PlannedBy(Planning planning);
+    explicit PlannedBy(Planning wanted);
     ~PlannedBy();
     PlannedBy(const PlannedBy&) = delete;
     PlannedBy& operator=(const PlannedBy&) = delete;

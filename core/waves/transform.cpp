@@ -89,8 +89,8 @@ struct LineTransform<T>::Plan {
     }
 };
 
-PlannedBy::PlannedBy(Planning planning) {
-    plan_by(planning);
+PlannedBy::PlannedBy(Planning wanted) {
+    plan_by(wanted);
 }
 PlannedBy::~PlannedBy() {
     plan_by(Planning::Recorded);

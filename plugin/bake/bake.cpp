@@ -27,6 +27,7 @@
 #include "plugin/files/files.h"
 #include "plugin/machine/memory.h"
 #include "plugin/usd/layers.h"
+#include "plugin/vdb/vdb.h"
 
 namespace pelagic {
 namespace {
@@ -207,6 +208,8 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     if (plan.outputs.empty())
         throw std::invalid_argument(
             "the shot asks for no output: accepted: output.mesh, output.maps, output.volumes");
+    if (!scene.output.volumes.empty())
+        vdb::load();  // before anything is known to be enough, since it takes its part
     require_memory(bake_memory(plan, frames.size(), tbb::this_task_arena::max_concurrency()),
                    machine::memory_limit_or(options.max_memory_bytes), "this bake");
     if (scene.output.mesh != MeshFormat::None) prepare_light(scene);

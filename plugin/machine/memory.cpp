@@ -1,5 +1,8 @@
 #include "plugin/machine/memory.h"
 
+#include <malloc.h>
+#include <oneapi/tbb/global_control.h>
+#include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -64,30 +67,90 @@ std::size_t groups_bytes(const Sources& sources) {
     return least;
 }
 
-// What is left of the limit of address space: what is mapped now, the program and its libraries, stays.
-std::size_t address_bytes(const Sources& sources) {
+// The n-th number of the process's "statm" [bytes]: 0 all that is mapped, 5 data and stacks.
+std::size_t mapped_bytes(const Sources& sources, int n) {
+    std::ifstream stream(sources.process / "statm");
+    std::size_t pages = 0;
+    for (int i = 0; i <= n; ++i)
+        if (!(stream >> pages)) return 0;
+    return pages * static_cast<std::size_t>(std::max(sysconf(_SC_PAGE_SIZE), 1L));
+}
+
+constexpr std::size_t kMebi = std::size_t{1} << 20;
+constexpr std::size_t kStack = 2 * kMebi;      // of threads that aren't TBB's
+constexpr std::size_t kMainStack = 8 * kMebi;  // what Linux gives where nobody limits it
+constexpr std::size_t kArena = 64 * kMebi;     // glibc: HEAP_MAX_SIZE, reserved for a thread that allocates
+constexpr std::size_t kBesidePlans =
+    24 * kMebi;  // shot, record, the light's tables, files' libraries: found by the campaign "limits"
+bool shares_one_heap = false;
+
+// Of threads that are to come: TBB's, and one that writes.
+std::size_t threads_bytes(std::size_t heap) {
+    using Control = tbb::global_control;
+    const std::size_t workers = Control::active_value(Control::max_allowed_parallelism) - 1;
+    return workers * (Control::active_value(Control::thread_stack_size) + heap) + kStack + heap;
+}
+
+// What a limit of the process leaves. What is mapped now, the program and its libraries, stays.
+std::size_t left_of(decltype(RLIMIT_AS) kind, std::size_t mapped, std::size_t heap) {
     rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+    if (getrlimit(kind, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
         return std::numeric_limits<std::size_t>::max();
-    const std::size_t mapped = number_in(sources.process / "statm").value_or(0) *
-                               static_cast<std::size_t>(std::max(sysconf(_SC_PAGE_SIZE), 1L));
-    return limit.rlim_cur > mapped ? limit.rlim_cur - mapped : 0;
+    const std::size_t taken = mapped + threads_bytes(heap) + kBesidePlans;
+    return limit.rlim_cur > taken ? limit.rlim_cur - taken : 0;
 }
 
 }  // namespace
 
 MemoryLimit memory_limit(const Sources& sources) {
     MemoryLimit limit{machine_bytes(), "this machine has"};
-    if (const std::size_t bytes = groups_bytes(sources); bytes < limit.bytes)
-        limit = {bytes, "its container or control group allows"};
-    if (const std::size_t bytes = address_bytes(sources); bytes < limit.bytes)
-        limit = {bytes, "its limit of address space (ulimit -v) leaves"};
+    const auto take = [&](std::size_t bytes, const char* whose) {
+        if (bytes < limit.bytes) limit = {bytes, whose};
+    };
+    take(groups_bytes(sources), "its container or control group allows");
+    take(left_of(RLIMIT_AS, mapped_bytes(sources, 0), shares_one_heap ? 0 : kArena),
+         "its limit of address space (ulimit -v) leaves, beside libraries and threads,");
+    // A heap that is only reserved is no data yet.
+    take(left_of(RLIMIT_DATA, mapped_bytes(sources, 5), 0),
+         "its limit of data (ulimit -d) leaves, beside libraries and threads,");
     return limit;
 }
 
 MemoryLimit memory_limit_or(std::size_t max_memory_bytes) {
     return max_memory_bytes > 0 ? MemoryLimit{max_memory_bytes, "the limit that was asked for is"}
                                 : memory_limit();
+}
+
+void settle_threads() {
+    pthread_attr_t attributes;
+    if (pthread_attr_init(&attributes) == 0) {
+        pthread_attr_setstacksize(&attributes, kStack);
+        pthread_setattr_default_np(&attributes);
+        pthread_attr_destroy(&attributes);
+    }
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        shares_one_heap = mallopt(M_ARENA_MAX, 1) == 1;
+}
+
+bool run_on_large_stack(const std::function<void()>& work) {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= kMainStack) {
+        work();
+        return true;
+    }
+    pthread_attr_t attributes;
+    if (pthread_attr_init(&attributes) != 0) return false;
+    pthread_t thread{};
+    const auto run = [](void* what) -> void* {
+        (*static_cast<const std::function<void()>*>(what))();
+        return nullptr;
+    };
+    const bool is_running =
+        pthread_attr_setstacksize(&attributes, kMainStack) == 0 &&
+        pthread_create(&thread, &attributes, run, const_cast<std::function<void()>*>(&work)) == 0;
+    pthread_attr_destroy(&attributes);
+    return is_running && pthread_join(thread, nullptr) == 0;
 }
 
 }  // namespace pelagic::machine

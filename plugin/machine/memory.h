@@ -1,8 +1,10 @@
-// How much memory the system gives this process. Linux; elsewhere the machine's own alone.
+// How much memory the system gives this process, and what a program does first so that it is enough. Linux; elsewhere the
+// machine's own alone.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 
 #include "core/plan/memory.h"
 
@@ -14,11 +16,21 @@ struct Sources {
     std::filesystem::path groups = "/sys/fs/cgroup";  // where they are mounted, of version 1 or 2
 };
 
-// The least of the machine's memory, what the process's control groups (containers) allow, and what its own limit
-// of address space (ulimit -v) leaves. Not what is free at the moment: a run is refused or not whatever else runs.
+// The least of the machine's memory, what the process's control groups (containers) allow, and what its own limits of
+// address space and data (ulimit -v, -d) leave beside what is mapped, the threads that are to come, and what a run takes
+// that no plan counts. Not what is free at the moment: a run is refused or not whatever else runs.
 MemoryLimit memory_limit(const Sources& sources = {});
 
 // The limit that somebody asks for, or memory_limit() where he asks for none (0).
 MemoryLimit memory_limit_or(std::size_t max_memory_bytes);
+
+// For a program's main(), before it has threads: those that it and its libraries make get stacks of 2 MiB, whatever the
+// limit of stacks (ulimit -s) is, and under a limit of address space all share one heap: each further one of glibc's takes
+// 64 MiB of it.
+void settle_threads();
+
+// Runs `work` here, or on a thread with a stack of 8 MiB where the limit of stacks leaves less than that here. False where
+// there is no such thread to be had.
+bool run_on_large_stack(const std::function<void()>& work);
 
 }  // namespace pelagic::machine

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <new>
 #include <stdexcept>
 #include <system_error>
 
@@ -56,9 +57,26 @@ class MemoryFile {
     int descriptor_;
 };
 
+// That loading OpenVDB has room. Where it has too little, under a limit of addresses or data (ulimit -v, -d), the loader
+// doesn't fail but ends the process, or never returns: OpenVDB's log starts threads then, whose failure nobody handles.
+void require_room() {
+    constexpr std::size_t kAddresses = std::size_t{112}
+                                       << 20;             // found 69 MiB, and 92 with four stacks of 8 MiB
+    constexpr std::size_t kData = std::size_t{40} << 20;  // of them; found 9 and 33
+    void* const data =
+        ::mmap(nullptr, kData, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    void* const rest =
+        ::mmap(nullptr, kAddresses - kData, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    const bool has_room = data != MAP_FAILED && rest != MAP_FAILED;
+    if (data != MAP_FAILED) ::munmap(data, kData);
+    if (rest != MAP_FAILED) ::munmap(rest, kAddresses - kData);
+    if (!has_room) throw std::bad_alloc();
+}
+
 // For as long as the process lives: OpenVDB's threads can't be taken away.
 const OpenVdbWriter& writer() {
     static const OpenVdbWriter& loaded = []() -> const OpenVdbWriter& {
+        require_room();
         const MemoryFile file;
         void* const library = ::dlopen(file.path().c_str(), RTLD_NOW | RTLD_LOCAL);
         void* const symbol = library ? ::dlsym(library, "pelagic_openvdb_writer") : nullptr;
@@ -84,6 +102,10 @@ std::string identifier_of(const std::string& fingerprint) {
 struct Grid::Impl {
     std::unique_ptr<GridWriter> writer;
 };
+
+void load() {
+    writer();
+}
 
 Grid::Grid(const GridOptions& options) : impl_(std::make_unique<Impl>(writer().make_grid(options))) {}
 Grid::~Grid() = default;

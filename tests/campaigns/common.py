@@ -59,19 +59,19 @@ class Campaign:
         if not self.program.exists():
             parser.error(f"{self.program} isn't there: build it first, or say --program")
 
-    def run(self, *arguments, timeout=60, memory_gib=8, cwd=None, env=None, stdin=None):
+    def run(self, *arguments, timeout=60, memory_gib=8, limits=None, cwd=None, env=None, stdin=None):
         """Runs the program. A run that takes longer than `timeout` seconds is a failure; one that wants more memory
-        is told so by the system."""
+        is told so by the system. limits: more of them, {resource.RLIMIT_…: bytes}."""
 
-        def limits():
-            resource.setrlimit(resource.RLIMIT_AS, (memory_gib << 30, memory_gib << 30))
-            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        def set_limits():
+            for kind, most in {resource.RLIMIT_AS: memory_gib << 30, resource.RLIMIT_CORE: 0, **(limits or {})}.items():
+                resource.setrlimit(kind, (most, most))
 
         command = [str(self.program), *map(str, arguments)]
         start = time.monotonic()
         try:
             done = subprocess.run(command, capture_output=True, timeout=timeout, cwd=cwd, env=env, input=stdin,
-                                  preexec_fn=limits if memory_gib and self._limits_memory else None)
+                                  preexec_fn=set_limits if memory_gib and self._limits_memory else None)
         except subprocess.TimeoutExpired:
             raise Failure(f"more than {timeout} s: {' '.join(command)}") from None
         return Run(command, done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace"),

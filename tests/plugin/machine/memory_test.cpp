@@ -2,11 +2,13 @@
 #include "plugin/machine/memory.h"
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <thread>
 
 namespace pelagic::machine {
 namespace {
@@ -84,19 +86,69 @@ TEST(MachineMemory, TakesTheMountsTopForAGroupNamedFromOutside) {
     EXPECT_EQ(system.limit().bytes, 512 * kMebi);
 }
 
-TEST(MachineMemory, IsWhatTheLimitOfAddressSpaceLeaves) {
+// Under a limit of the process, for as long as the object lives.
+class Limited {
+  public:
+    Limited(decltype(RLIMIT_AS) kind, std::size_t bytes) : kind_(kind) {
+        EXPECT_EQ(getrlimit(kind_, &before_), 0);
+        const rlimit limit{bytes, before_.rlim_max};
+        is_set_ = setrlimit(kind_, &limit) == 0;
+    }
+    ~Limited() { setrlimit(kind_, &before_); }
+    Limited(const Limited&) = delete;
+    Limited& operator=(const Limited&) = delete;
+    bool is_set() const { return is_set_; }
+
+  private:
+    decltype(RLIMIT_AS) kind_;
+    rlimit before_{};
+    bool is_set_ = false;
+};
+
+// Of address space all that is mapped counts, 1000 pages in the description, of data its 400; each leaves less for the
+// threads that are to come, the more of them there are.
+TEST(MachineMemory, IsWhatLimitsOfTheProcessLeaveBesideItsThreads) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "sanitizers take terabytes of addresses themselves";
 #endif
     const Described system;
-    rlimit before{};
-    ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
-    const rlimit lower{.rlim_cur = 800 * kMebi, .rlim_max = before.rlim_max};
-    ASSERT_EQ(setrlimit(RLIMIT_AS, &lower), 0);
-    const MemoryLimit limit = system.limit();
-    ASSERT_EQ(setrlimit(RLIMIT_AS, &before), 0);
-    EXPECT_EQ(limit.bytes, 800 * kMebi - 1000 * static_cast<std::size_t>(sysconf(_SC_PAGE_SIZE)));
-    EXPECT_NE(limit.whose.find("ulimit -v"), std::string::npos);
+    const auto left = [&](decltype(RLIMIT_AS) kind, std::size_t threads, std::string& whose) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        const Limited limited(kind, 2048 * kMebi);
+        if (!limited.is_set()) return std::size_t{0};
+        const MemoryLimit limit = system.limit();
+        whose = limit.whose;
+        return limit.bytes;
+    };
+    std::string of_addresses, of_data;
+    const std::size_t addresses = left(RLIMIT_AS, 2, of_addresses), data = left(RLIMIT_DATA, 2, of_data);
+    ASSERT_GT(addresses, 0u);
+    ASSERT_GT(data, 0u);
+    EXPECT_NE(of_addresses.find("ulimit -v"), std::string::npos) << of_addresses;
+    EXPECT_NE(of_data.find("ulimit -d"), std::string::npos) << of_data;
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGE_SIZE));
+    // The same threads and heaps; heaps count as addresses alone, one of 64 MiB for the worker and one for who writes.
+    EXPECT_EQ(data - addresses, (1000 - 400) * page + 128 * kMebi);
+    EXPECT_LT(data, 2048 * kMebi - 400 * page);
+    const std::size_t stack = tbb::global_control::active_value(tbb::global_control::thread_stack_size);
+    EXPECT_EQ(data - left(RLIMIT_DATA, 8, of_data), 6 * stack);
+    EXPECT_EQ(addresses - left(RLIMIT_AS, 8, of_addresses), 6 * (stack + 64 * kMebi));
+}
+
+// A limit of stacks is the new threads' in other programs: here it is ours, and work that needs more has its own.
+TEST(MachineMemory, WorkHasAStackWhereTheLimitLeavesNone) {
+    const auto deep_work = [] {
+        volatile char room[std::size_t{1} << 20];
+        for (std::size_t i = 0; i < sizeof room; i += 4096) room[i] = 1;
+    };
+    const Limited limited(RLIMIT_STACK, 64 * 1024);
+    ASSERT_TRUE(limited.is_set());
+    std::thread::id worker;
+    EXPECT_TRUE(run_on_large_stack([&] {
+        worker = std::this_thread::get_id();
+        deep_work();
+    }));
+    EXPECT_NE(worker, std::this_thread::get_id());
 }
 
 TEST(MachineMemory, WhatIsAskedForComesFirst) {

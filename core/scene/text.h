@@ -1,9 +1,9 @@
 // How values are written in messages and in the canonical text: one spelling each, independent of the locale.
 #pragma once
 
-#include <cstddef>
 #include <string>
-#include <string_view>
+
+#include "core/base/text.h"
 
 namespace pelagic {
 
@@ -12,21 +12,5 @@ std::string number_text(double value);
 
 // The same of the number to two digits, for people: "0.071", "120".
 std::string rough_text(double value);
-
-// The text between quotes, with quotes, backslashes and control characters escaped as TOML and JSON do: one
-// line of UTF-8, whatever is in it. A byte that isn't part of UTF-8 (a file name's: Unix allows any) has no
-// escape in either; it stands there as in utf8_text(), the backslash escaped like any other.
-std::string quoted_text(std::string_view text);
-
-// The text with "\xe9" in place of a byte that isn't part of UTF-8; any other is as it was.
-std::string utf8_text(std::string_view text);
-
-// A file's name or another text of the user's as a message shows it: one line of UTF-8 that moves no cursor and
-// turns no writing direction; what would is shown as its escape.
-std::string line_text(std::string_view text);
-
-// The text, or its beginning and "…" where it has more bytes than that; cut between characters.
-inline constexpr std::size_t kShort = 80;
-std::string shortened(std::string_view text, std::size_t most_bytes = kShort);
 
 }  // namespace pelagic

@@ -146,10 +146,10 @@ void check_shot(Checker& check, const Shot& shot) {
         check.refuse({"shot.name", quoted_text(shot.name), "is empty", kNameRule});
     } else if (const auto bad = std::find_if_not(shot.name.begin(), shot.name.end(), allowed);
                bad != shot.name.end()) {
-        check.refuse(
-            {"shot.name", quoted_text(shot.name),
-             "is no file name for every system: it has " + quoted_text(std::string_view(&*bad, 1)) + " in it",
-             kNameRule});
+        check.refuse({"shot.name", quoted_text(shot.name),
+                      "is no file name for every system: it has " +
+                          quoted_text(first_character(std::string_view(bad, shot.name.end()))) + " in it",
+                      kNameRule});
     } else if (shot.name.size() > static_cast<std::size_t>(limits::kNameLength)) {
         check.refuse({"shot.name", quoted_text(shot.name), "is too long for a file name", kNameRule});
     }

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/base/text.h"
 #include "core/plan/plan.h"
 #include "core/spectrum/possible.h"
 #include "plugin/bake/check.h"
@@ -163,7 +164,7 @@ std::map<int, FrameRecord> recorded_frames(BakeReport& report, const Shot& shot,
     const RecordReading reading = read_record(
         report.record, [&](int frame, FrameRecord record) { frames[frame] = std::move(record); }, watch);
     if (reading.is_blocked)
-        throw files::FileError("the record '" + report.record.string() + "' " + reading.problem +
+        throw files::FileError("the record '" + line_text(report.record.string()) + "' " + reading.problem +
                                    ": move it away or choose another folder",
                                report.record, std::make_error_code(std::errc::file_exists));
     const std::string name = report.record.filename().string();
@@ -270,11 +271,14 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
         record.set(file.path, files::write_if_different(options.out / file.path, file.content));
     };
     // A frame's lock is soon free again; whoever holds it for longer is named, and needn't be awaited.
-    const auto save = [&] {
-        record.save(report.record, [&](double) {
-            stop_if_cancelled();
-            report_progress(BakeStage::Waiting);
-        });
+    const auto waiting = [&](double) {
+        stop_if_cancelled();
+        report_progress(BakeStage::Waiting);
+    };
+    const auto save = [&] { record.save(report.record, waiting); };
+    const auto finish = [&] {
+        record.finish(report.record, waiting);
+        report.unlocked = record.unlocked();
     };
     try {
         stop_if_cancelled();
@@ -365,7 +369,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
             }
             throw;
         }
-        save();
+        finish();
         report.foreign = foreign_files(options.out, scene.shot, parts, static_files);
     } catch (const Cancelled&) {
         report.cancelled = true;

@@ -68,6 +68,9 @@ struct BakeReport {
     // altered: not asked for, not touched.
     std::vector<int> stale;
     std::vector<std::string> foreign;  // files in DIR that aren't this shot's (plugin/bake/foreign.h)
+    // Why other bakes into DIR weren't kept from writing the record at the same time, in words; empty where they were, as far
+    // as the system says. What they have written was merged.
+    std::string unlocked;
     // What wasn't as it was recorded, and was made again, a line each: "mesh/sea.0007.usdc holds other bytes …".
     std::vector<std::string> damaged;
 };

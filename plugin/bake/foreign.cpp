@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/base/text.h"
 #include "plugin/files/files.h"
 #include "plugin/usd/layers.h"
 
@@ -41,9 +42,9 @@ void add(Groups& groups, const std::string& path, const std::string& reason) {
 std::vector<std::string> lines_of(const Groups& groups) {
     std::vector<std::string> lines;
     for (const auto& [key, group] : groups)
-        lines.push_back(group.files == 1
-                            ? group.example + ": " + key.second
-                            : key.first + ": " + std::to_string(group.files) + " files " + key.second);
+        lines.push_back(group.files == 1 ? line_text(group.example) + ": " + key.second
+                                         : line_text(key.first) + ": " + std::to_string(group.files) +
+                                               " files " + key.second);
     return lines;
 }
 

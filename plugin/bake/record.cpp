@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <istream>
@@ -10,6 +11,7 @@
 #include <sstream>
 #include <streambuf>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "core/base/constants.h"
@@ -346,13 +348,38 @@ void Record::set(const std::string& path, const files::FileState& file) {
 
 void Record::save(const std::filesystem::path& file, const files::LockWatch& waiting) {
     const files::FolderLock lock(file.parent_path(), waiting);
-    files::write_atomically(file, [&](const files::ByteSink& sink) { write(file, sink); });
-    unsaved_.clear();
+    unlocked_ = lock.problem();
+    // With a lock that holds, once.
+    for (bool is_saved = false; !is_saved;) {
+        const files::FileIdentity former = files::identity_of(file);
+        is_saved =
+            files::replace_if_same(file, former, [&](const files::ByteSink& sink) { write(file, sink); });
+    }
+}
+
+void Record::finish(const std::filesystem::path& file, const files::LockWatch& waiting) {
+    // Longer than a run needs between its last look at the record and its renaming of the next one.
+    constexpr std::chrono::milliseconds kMoment{200};
+    constexpr int kMostTimes = 10;  // two runs that make the same frames of different shots would never agree
+    save(file, waiting);
+    for (int times = 0; has_others_ && times < kMostTimes; ++times) {
+        std::this_thread::sleep_for(kMoment);
+        if (is_all_in(file)) return;
+        save(file, waiting);
+    }
+}
+
+bool Record::is_all_in(const std::filesystem::path& file) const {
+    std::size_t found = 0;
+    read_record(file, [&](int number, const FrameRecord& frame) {
+        const auto ours = ours_.find(number);
+        found += ours != ours_.end() && to_json(ours->second) == to_json(frame);
+    });
+    return found == ours_.size();
 }
 
 // As one JSON object would be printed, frames by rising number, those of `former` merged with ours.
-void Record::write(const std::filesystem::path& former,
-                   const std::function<void(std::string_view)>& sink) const {
+void Record::write(const std::filesystem::path& former, const std::function<void(std::string_view)>& sink) {
     constexpr std::size_t kPiece = 1 << 16;  // bytes: a piece is a call of the system
     Json shot = shot_;
     shot["checksum"] = checksum_of("", shot);
@@ -371,13 +398,14 @@ void Record::write(const std::filesystem::path& former,
         sink(piece);
         piece.clear();
     };
-    auto ours = unsaved_.begin();
+    auto ours = ours_.begin();
     const auto add_ours_up_to = [&](int number) {
-        for (; ours != unsaved_.end() && ours->first <= number; ++ours) add(ours->first, ours->second);
+        for (; ours != ours_.end() && ours->first <= number; ++ours) add(ours->first, ours->second);
     };
     // Where the former one can't be read any further, ours goes on without it.
     read_record(former, [&](int number, FrameRecord frame) {
         add_ours_up_to(number);
+        has_others_ = has_others_ || !ours_.contains(number);
         if (is_stale_) frame.is_stale = is_stale_(number, frame);
         add(number, frame);
     });

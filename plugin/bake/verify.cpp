@@ -65,7 +65,8 @@ void read_shot(const fs::path& folder, const std::string& record, const RecordWa
     if (!reading.shot && baked.empty() && !reading.is_blocked) known.unread.insert(record);
     if (!reading.shot) return;
     const ShotRecord& shot = *reading.shot;
-    if (shot.name != name) tell(Flaw::Damaged, "is the record of the shot " + shot.name + ", renamed");
+    if (shot.name != name)
+        tell(Flaw::Damaged, "is the record of the shot " + line_text(shot.name) + ", renamed");
     for (const auto& [path, file] : shot.files) add(path, file);
     std::vector<int> missing;
     std::sort(baked.begin(), baked.end());
@@ -85,6 +86,18 @@ bool is_of_missing_frame(const std::string& path, const Known& known) {
     return frame && std::binary_search(shot->second.begin(), shot->second.end(), *frame);
 }
 
+bool is_of_frame(const std::string& path) {
+    return frame_of(fs::path(path).stem().extension().string(), {".", ""}).has_value();
+}
+
+// Whether a bake made them, and was stopped before its first record: that is written before any frame's file, and after
+// those that the whole shot has. Several of them say of themselves what made them.
+bool are_before_a_record(const fs::path& folder, const std::vector<std::string>& paths) {
+    return std::none_of(paths.begin(), paths.end(), is_of_frame) &&
+           std::any_of(paths.begin(), paths.end(),
+                       [&](const std::string& path) { return files::carries(folder / path, "pelagic"); });
+}
+
 bool is_picture(const std::string& name) {
     const std::string shot = shot_of(name) + '.';
     return frame_of(name, {shot, ".exr"}) || frame_of(name, {shot, ".png"});
@@ -102,6 +115,8 @@ const char* word_of(Flaw flaw) {
             return "stale";
         case Flaw::Foreign:
             return "foreign";
+        case Flaw::Interrupted:
+            return "interrupted";
     }
     return "";
 }
@@ -155,13 +170,23 @@ Verification verify(const fs::path& folder, const CheckWatch& watch) {
         if (!names.contains(other))
             found.findings.push_back({other, Flaw::Missing, "is missing beside " + picture.name});
     }
+    std::map<std::string, std::vector<std::string>> unrecorded;  // paths, by shot
     for_each_bake_file(folder, [&](const std::string& path) {
         if (known.paths.contains(path)) return;
         const std::string shot = shot_of(path);
         known.unread.erase(shot + ".json");
         if (!known.uncertain.contains(shot) && !is_of_missing_frame(path, known))
-            found.findings.push_back({path, Flaw::Foreign, "is in no record here"});
+            unrecorded[shot].push_back(path);
     });
+    for (const auto& [shot, paths] : unrecorded) {
+        const bool is_begun = !names.contains(shot + ".json") && are_before_a_record(folder, paths);
+        for (const std::string& path : paths)
+            found.findings.push_back(
+                is_begun
+                    ? Finding{path, Flaw::Interrupted,
+                              "is of a bake that was stopped before its first record: bake the shot again"}
+                    : Finding{path, Flaw::Foreign, "is in no record here"});
+    }
     found.shots -= static_cast<int>(known.unread.size());
     for (Finding& finding : found.findings)
         if (known.unread.contains(finding.path)) {

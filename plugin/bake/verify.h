@@ -11,10 +11,11 @@
 namespace pelagic {
 
 enum class Flaw {
-    Missing,  // a file that the record knows, or frames of the shot that aren't baked
-    Damaged,  // other bytes than were written; a record with a changed number
-    Stale,    // frames of another version of the shot than the record's
-    Foreign,  // named as a bake's files are, and no record knows it
+    Missing,      // a file that the record knows, or frames of the shot that aren't baked
+    Damaged,      // other bytes than were written; a record with a changed number
+    Stale,        // frames of another version of the shot than the record's
+    Foreign,      // named as a bake's files are, and no record knows it
+    Interrupted,  // of a bake that was stopped before it wrote its record
 };
 const char* word_of(Flaw flaw);  // "missing", …
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/plan/budget.h"
 #include "core/scene/names.h"
 #include "plugin/accuracy/report.h"
@@ -76,7 +77,7 @@ std::vector<MeasuredRow> recorded(const fs::path& table) {
     try {
         return read_csv_report(text);
     } catch (const std::invalid_argument& error) {
-        std::cerr << table.string() << ": note: " << error.what() << "; it is measured anew\n";
+        std::cerr << line_text(table.string()) << ": note: " << error.what() << "; it is measured anew\n";
         return {};
     }
 }
@@ -146,13 +147,13 @@ int run(const Arguments& arguments) {
         }
     } catch (const SweepCancelled&) {
         progress.clear();
-        std::cerr << "pelagic: stopped; " << folder.string() << " has the " << done
+        std::cerr << "pelagic: stopped; " << line_text(folder.string()) << " has the " << done
                   << " rows that were measured, and earlier ones\n";
         return kSignal + stop.number();
     }
     progress.clear();
     std::cout << text_report(measured, utc_now(), shot_hash(shot)) << '\n'
-              << (folder / "accuracy.html").string() << " has the plots\n";
+              << line_text((folder / "accuracy.html").string()) << " has the plots\n";
     return kDone;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/plan/plan.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
@@ -42,10 +43,10 @@ void print_damaged(const std::vector<std::string>& damaged, const std::string& o
 }
 
 void print_done(const BakeReport& report, const std::string& out) {
-    if (!report.root.empty()) std::cout << "stage:  " << report.root.string() << '\n';
-    if (!report.maps.empty()) std::cout << "maps:   " << report.maps.string() << '\n';
-    if (!report.volumes.empty()) std::cout << "volumes: " << report.volumes.string() << '\n';
-    std::cout << "record: " << report.record.string() << '\n';
+    if (!report.root.empty()) std::cout << "stage:  " << line_text(report.root.string()) << '\n';
+    if (!report.maps.empty()) std::cout << "maps:   " << line_text(report.maps.string()) << '\n';
+    if (!report.volumes.empty()) std::cout << "volumes: " << line_text(report.volumes.string()) << '\n';
+    std::cout << "record: " << line_text(report.record.string()) << '\n';
     std::cout << count_text(report.done, "frame", "frames") << " baked";
     if (report.kept > 0) std::cout << ", " << report.kept << " kept as they were";
     if (report.done > 0) std::cout << ", in " << duration_text(report.seconds);
@@ -53,6 +54,10 @@ void print_done(const BakeReport& report, const std::string& out) {
     if (const std::string times = time_text(report); !times.empty()) std::cout << times << '\n';
     std::cout << std::flush;
     print_damaged(report.damaged, out);
+    if (!report.unlocked.empty())
+        std::cerr
+            << "pelagic: note: " << out << " can't be locked (" << report.unlocked
+            << "); where several bakes write there at the same time, look at the end with pelagic verify\n";
     for (const std::string& line : report.foreign)
         std::cerr << "pelagic: in " << out << " lies " << line << "; nothing was deleted\n";
     if (!report.stale.empty()) {
@@ -120,11 +125,11 @@ int run(const Arguments& arguments) {
     } catch (const std::invalid_argument& error) {
         // load_shot() has looked at every value with its line: what is refused here is what it can't see.
         progress.clear();
-        std::cerr << arguments.shot << ": " << error.what() << '\n';
+        std::cerr << placed(arguments.shot, error.what()) << '\n';
         return kRefused;
     }
     progress.clear();
-    const std::string out = options.out.string();
+    const std::string out = line_text(options.out.string());
     if (report.cancelled) return stopped(report, out, stop.number());
     print_done(report, out);
     return kDone;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/base/text.h"
 #include "plugin/cli/exit_status.h"
 
 namespace pelagic::cli {
@@ -46,7 +47,7 @@ std::size_t memory_of(const std::string& memory) {
 }
 
 int refuse_memory(const std::string& shot, const NotEnoughMemory& error) {
-    std::cerr << shot << ": " << error.what() << "; or allow more with --max-memory\n";
+    std::cerr << line_text(shot) << ": " << error.what() << "; or allow more with --max-memory\n";
     return kRefused;
 }
 

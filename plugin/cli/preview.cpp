@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/text.h"
 #include "core/plan/budget.h"
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
@@ -100,7 +101,7 @@ int draw_offscreen(const Scene& shot, const fs::path& file, const Arguments& arg
     files::write_atomically(file, file.extension() == ".exr" ? encode_exr(about, drawn.picture, frame)
                                                              : encode_png(about, drawn.picture, frame));
     if (!drawn.note.empty()) std::cerr << "pelagic: note: " << drawn.note << '\n';
-    std::cout << "picture: " << file.string() << "\ndrawn by " << drawn.device << std::endl;
+    std::cout << "picture: " << line_text(file.string()) << "\ndrawn by " << drawn.device << std::endl;
     return kDone;
 }
 
@@ -111,7 +112,7 @@ void save_shot(const fs::path& file, const Scene& scene, const Scene& shot) {
     written.quality.level = scene.quality.level;  // --quality may have chosen it
     if (!shot_text(scene, written).empty())
         throw ShotError(
-            file.string() +
+            line_text(file.string()) +
             ": isn't written in a way that keys can be put into; use Copy, and put them in by hand");
     files::write_atomically(file, text);
 }
@@ -141,7 +142,7 @@ int run(const Arguments& arguments) {
         } catch (const NotEnoughMemory& error) {
             return refuse_memory(arguments.shot, error);
         } catch (const std::invalid_argument& error) {
-            std::cerr << arguments.shot << ": " << error.what() << '\n';
+            std::cerr << placed(arguments.shot, error.what()) << '\n';
             return kRefused;
         }
     }

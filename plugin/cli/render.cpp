@@ -314,9 +314,9 @@ int run(const Arguments& arguments) {
         std::cerr << "pelagic: " << error.what() << "\nSee: pelagic render --help\n";
         return kWrongUsage;
     }
-    const std::string out = job.out.string();
+    const std::string out = line_text(job.out.string());
     if (const std::string thin = spray_warning(job.scene); !thin.empty())
-        std::cerr << arguments.shot << ": note: " << thin << std::endl;
+        std::cerr << line_text(arguments.shot) << ": note: " << thin << std::endl;
     StopSignals stop;
     Progress progress;
     Threads threads(arguments.threads);
@@ -343,7 +343,7 @@ int run(const Arguments& arguments) {
         return refuse_memory(arguments.shot, error);
     } catch (const std::invalid_argument& error) {
         progress.clear();
-        std::cerr << arguments.shot << ": " << error.what() << '\n';
+        std::cerr << placed(arguments.shot, error.what()) << '\n';
         return kRefused;
     }
     progress.clear();
@@ -353,7 +353,8 @@ int run(const Arguments& arguments) {
                   << " asked for are whole in " << out << "; run the same command again to continue\n";
         return kSignal + stop.number();
     }
-    std::cout << "pictures: " << (job.out / picture_file(job.scene.shot, job.frames.front(), "exr")).string()
+    std::cout << "pictures: "
+              << line_text((job.out / picture_file(job.scene.shot, job.frames.front(), "exr")).string())
               << (job.frames.size() > 1 ? " …" : "") << " and .png\n"
               << count_text(done.frames, "frame", "frames") << " rendered in " << duration_text(done.seconds);
     if (done.kept > 0) std::cout << ", " << done.kept << " kept as they were";

@@ -56,8 +56,8 @@ Verb add_validate(CLI::App& program) {
                         const Scene scene = load_shot(file, check_scene);
                         const Plan plan = plan_bake(scene);
                         if (!plan.from->holds_budget)
-                            throw ShotError(file + ": " + plan.from->budget + "; raise the budget");
-                        std::cout << file << ": fine\n    " << summary(scene, plan) << std::endl;
+                            throw ShotError(placed(file, plan.from->budget + "; raise the budget"));
+                        std::cout << line_text(file) << ": fine\n    " << summary(scene, plan) << std::endl;
                         print_warnings(file, scene);
                     } catch (const ShotError& error) {
                         std::cerr << error.what() << std::endl;

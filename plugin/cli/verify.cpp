@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/text.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/progress.h"
@@ -30,7 +31,7 @@ std::string summary(const Verification& found) {
                        count_text(found.files, "file", "files") + ", " + bytes_text(found.bytes) + ": ";
     if (found.is_whole()) return text + "all whole";
     std::string flaws;
-    for (const Flaw flaw : {Flaw::Missing, Flaw::Damaged, Flaw::Stale, Flaw::Foreign}) {
+    for (const Flaw flaw : {Flaw::Missing, Flaw::Damaged, Flaw::Stale, Flaw::Foreign, Flaw::Interrupted}) {
         long count = 0;
         for (const Finding& finding : found.findings) count += finding.flaw == flaw ? 1 : 0;
         if (count > 0) flaws += (flaws.empty() ? "" : ", ") + std::to_string(count) + ' ' + word_of(flaw);
@@ -47,7 +48,7 @@ int run(const Arguments& arguments) {
     for (const std::string& folder : arguments.folders) {
         const CheckWatch watch{.progress =
                                    [&](double done) {
-                                       progress.show("reading " + folder + ": " +
+                                       progress.show("reading " + line_text(folder) + ": " +
                                                      std::to_string(std::lround(100.0 * done)) + " %");
                                    },
                                .cancel = &stop.cancelled()};
@@ -55,13 +56,13 @@ int run(const Arguments& arguments) {
             const Verification found = threads.execute([&] { return verify(folder, watch); });
             progress.clear();
             for (const Finding& finding : found.findings)
-                std::cout << word_of(finding.flaw) << ": " << folder << '/' << finding.path << ' '
+                std::cout << word_of(finding.flaw) << ": " << line_text(folder + '/' + finding.path) << ' '
                           << finding.what << '\n';
-            std::cout << folder << ": " << summary(found) << std::endl;
+            std::cout << line_text(folder) << ": " << summary(found) << std::endl;
             if (!found.is_whole()) status = kRefused;
         } catch (const CheckCancelled&) {
             progress.clear();
-            std::cerr << "pelagic: stopped; " << folder << " was not read to its end\n";
+            std::cerr << "pelagic: stopped; " << line_text(folder) << " was not read to its end\n";
             return kSignal + stop.number();
         } catch (const files::FileError& error) {
             progress.clear();

@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "core/base/text.h"
 #include "core/plan/budget.h"
 #include "core/waves/folding.h"
 
@@ -9,7 +10,7 @@ namespace pelagic::cli {
 
 void print_warnings(const std::string& shot, const Scene& scene) {
     for (const std::string& warning : sea_warnings(*prepare(without_budget(scene))))
-        std::cerr << shot << ": note: " << warning << std::endl;
+        std::cerr << line_text(shot) << ": note: " << warning << std::endl;
 }
 
 }  // namespace pelagic::cli

@@ -4,7 +4,8 @@
 //
 // Locks (flock()) tell which hidden files are still being written: a writer locks its own, and the kernel
 // releases the lock when the process ends, however it ends. Process numbers alone wouldn't do: they are
-// reused, and in containers every bake may have the same one.
+// reused, and in containers every bake may have the same one. They count beside it: where locks don't lock, a process that
+// lives is still writing.
 #include "plugin/files/files.h"
 
 #include <fcntl.h>
@@ -16,11 +17,14 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
+#include <csignal>
 #include <ctime>
 #include <thread>
 #include <utility>
 
+#include "core/base/text.h"
 #include "plugin/files/checksum.h"
 #include "plugin/files/read.h"
 
@@ -84,15 +88,16 @@ Advice advice(int error) {
 
 [[noreturn]] void fail_to_write(const fs::path& target, int error) {
     const Advice a = advice(error);
-    throw FileError("cannot write '" + target.string() + "': " + a.reason + ": " + a.remedy +
+    throw FileError("cannot write '" + line_text(target.string()) + "': " + a.reason + ": " + a.remedy +
                         "; files already written are whole, run again to continue",
                     target, std::error_code(error, std::generic_category()));
 }
 
 [[noreturn]] void fail_to_make_folder(const fs::path& folder, int error) {
     const Advice a = advice(error);
-    throw FileError("cannot use the folder '" + folder.string() + "': " + a.reason + ": " + a.remedy, folder,
-                    std::error_code(error, std::generic_category()));
+    throw FileError(
+        "cannot use the folder '" + line_text(folder.string()) + "': " + a.reason + ": " + a.remedy, folder,
+        std::error_code(error, std::generic_category()));
 }
 
 fs::path folder_of(const fs::path& target) {
@@ -225,6 +230,14 @@ void flush_folder(const fs::path& target) {
     }
 }
 
+// Whether the process that a hidden file's name begins with lives on this machine, and isn't this one.
+bool is_of_another_that_lives(const fs::path& path) {
+    const std::string name = path.filename().string();
+    int process = 0;
+    std::from_chars(name.data() + kTemporaryPrefix.size(), name.data() + name.size(), process);
+    return process > 0 && process != getpid() && (kill(process, 0) == 0 || errno == EPERM);
+}
+
 // Deletes the hidden file at `path` if the process that wrote it is gone. Returns whether it did.
 bool remove_if_stale(const fs::path& path, const std::string& own_host) {
     const Descriptor file(open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
@@ -232,7 +245,8 @@ bool remove_if_stale(const fs::path& path, const std::string& own_host) {
     if (!file || fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
     const std::int64_t age_s = std::time(nullptr) - status.st_mtime;
     const bool old = age_s > kForeignAge_s;
-    if (!old && !path.filename().string().ends_with(own_host)) return false;
+    if (!old && (!path.filename().string().ends_with(own_host) || is_of_another_that_lives(path)))
+        return false;
     // Deletes while holding the lock: a writer that has just made the file notices either the lock or the
     // deletion.
     return take_lock(file.number(), old) && unlink(path.c_str()) == 0;
@@ -256,6 +270,28 @@ FileState write_atomically(const std::filesystem::path& target, const Content& c
     temporary.rename_to_target();
     flush_folder(target);
     return {written, sum.text()};
+}
+
+// Opened, and not only asked for by its name: network file systems answer that from what they knew seconds ago.
+FileIdentity identity_of(const fs::path& path) {
+    const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    struct stat status {};
+    if (!file || fstat(file.number(), &status) != 0) return {};
+    return {.device = status.st_dev,
+            .number = status.st_ino,
+            .bytes = static_cast<std::uint64_t>(status.st_size),
+            .changed_s = status.st_mtim.tv_sec,
+            .changed_ns = status.st_mtim.tv_nsec};
+}
+
+bool replace_if_same(const fs::path& target, const FileIdentity& same, const Content& content) {
+    Temporary temporary(target);
+    content([&](std::string_view piece) { temporary.write(std::as_bytes(std::span(piece))); });
+    temporary.flush();
+    if (identity_of(target) != same) return false;
+    temporary.rename_to_target();
+    flush_folder(target);
+    return true;
 }
 
 FileState write_if_different(const std::filesystem::path& target, const Content& content) {
@@ -340,10 +376,14 @@ FolderLock::FolderLock(const std::filesystem::path& folder, const LockWatch& wat
     constexpr std::chrono::milliseconds kAskAgain{20};
     constexpr double kSaidAfter_s = 1.0;
     const Clock::time_point start = Clock::now();
+    if (descriptor_ < 0) problem_ = std::generic_category().message(errno);
     // Asked again and again, and not waited for in the kernel, where nobody could say so or give up.
     while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EINTR) continue;
-        if (errno != EWOULDBLOCK) return;
+        if (errno != EWOULDBLOCK) {
+            problem_ = std::generic_category().message(errno);
+            return;
+        }
         const double waited_s = std::chrono::duration<double>(Clock::now() - start).count();
         try {
             if (watch && waited_s > kSaidAfter_s) watch(waited_s);

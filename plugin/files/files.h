@@ -56,6 +56,18 @@ struct FileState {
 // comes. Exceptions of `content` pass through, and nothing is changed then.
 FileState write_atomically(const std::filesystem::path& target, const Content& content);
 
+// Which file has a name at a moment: another one after each write_atomically().
+struct FileIdentity {
+    std::uint64_t device = 0, number = 0, bytes = 0;  // all zero: none has
+    std::int64_t changed_s = 0, changed_ns = 0;
+    bool operator==(const FileIdentity&) const = default;
+};
+FileIdentity identity_of(const std::filesystem::path& path);
+
+// write_atomically(), unless another file has the name by then; false: nothing was changed. Between the last look and the
+// renaming lie microseconds: where locks don't lock this makes a lost write rare, not impossible.
+bool replace_if_same(const std::filesystem::path& target, const FileIdentity& same, const Content& content);
+
 // The same, unless the file has exactly these bytes already; then it stays untouched.
 FileState write_if_different(const std::filesystem::path& target, const Content& content);
 
@@ -76,7 +88,8 @@ void check_folder(const std::filesystem::path& folder);
 using LockWatch = std::function<void(double waited_s)>;
 
 // Locks the folder for this process during the object's lifetime, and waits for other holders: for files that
-// several runs read, change and write again. No effect on file systems without locks.
+// several runs read, change and write again. On network file systems it may lock this machine's processes alone, and
+// without a word.
 class FolderLock {
   public:
     explicit FolderLock(const std::filesystem::path& folder, const LockWatch& watch = {});
@@ -84,8 +97,12 @@ class FolderLock {
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
 
+    // Why there is no lock, in words; empty where there is one, as far as the system says.
+    const std::string& problem() const { return problem_; }
+
   private:
     int descriptor_;
+    std::string problem_{};
 };
 
 // Whether the text stands among the first or the last bytes of the file, 8 KiB at either end: where our

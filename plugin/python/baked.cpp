@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/text.h"
 #include "plugin/files/files.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
@@ -24,8 +25,8 @@ constexpr std::size_t kMostBytes = std::size_t{8} << 30;  // a frame of 8192² q
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& problem) {
     throw files::FileError(
-        path.string() + ": " + problem + "; accepted: a mesh file of a bake, mesh/NAME.####.usdc", path,
-        std::make_error_code(std::errc::io_error));
+        line_text(path.string()) + ": " + problem + "; accepted: a mesh file of a bake, mesh/NAME.####.usdc",
+        path, std::make_error_code(std::errc::io_error));
 }
 
 usd::MeshLayer read_layer(const std::filesystem::path& path) {

@@ -139,6 +139,20 @@ Scene parse_shot(std::string_view text, const std::filesystem::path& file, const
     return scene;
 }
 
+std::string placed(const std::filesystem::path& file, const std::string& problem) {
+    std::string place = line_text(file.string());
+    try {
+        const toml::table root = toml::parse(read_text_file(file, kMostShotBytes));
+        const std::string key = problem.substr(0, problem.find(' '));
+        if (const toml::node* const value = root.at_path(key).node())
+            place += ':' + std::to_string(value->source().begin.line) + ':' +
+                     std::to_string(value->source().begin.column);
+    } catch (const TextFileError&) {  // gone since
+    } catch (const toml::parse_error&) {
+    }
+    return place + ": " + problem;
+}
+
 Scene load_shot(const std::filesystem::path& file, const SceneCheck& check_scene) {
     std::string text;
     try {

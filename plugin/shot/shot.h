@@ -40,6 +40,10 @@ Scene load_shot(const std::filesystem::path& file, const SceneCheck& check_scene
 // paths from.
 Scene parse_shot(std::string_view text, const std::filesystem::path& file, const SceneCheck& check_scene);
 
+// "FILE:LINE:COLUMN: PROBLEM", where the problem begins with a key of the file ("quality.max_error = 0.01, which …"), and
+// otherwise "FILE: PROBLEM": for what is refused after the file was read.
+std::string placed(const std::filesystem::path& file, const std::string& problem);
+
 // Help: every table and key, with its default, unit, what it accepts, what it does and what depends on it;
 // the words that the parser uses.
 std::string describe_keys();

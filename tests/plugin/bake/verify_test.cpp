@@ -15,6 +15,7 @@
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -348,6 +349,30 @@ TEST_F(Verify, OfAFolderWithoutABakeFindsNothingWhole) {
     std::atomic<bool> cancel{true};
     bake_into(folder_, every_output(MeshFormat::Usdc));
     EXPECT_THROW(verify(folder_, {.progress = {}, .cancel = &cancel}), CheckCancelled);
+}
+
+// A bake that was stopped when it had written what the whole shot has, and not yet its record.
+TEST_F(Verify, ABakeThatWasStoppedBeforeItsRecordIsInterruptedAndNotForeign) {
+    bake_into(folder_, every_output(MeshFormat::Usdc));
+    fs::remove(folder_ / "sea.json");
+    const auto flaws = [&] {
+        std::set<Flaw> all;
+        for (const Finding& finding : verify(folder_).findings) all.insert(finding.flaw);
+        return all;
+    };
+    EXPECT_EQ(flaws(), std::set{Flaw::Foreign}) << "files of frames come after the record";
+    for (const fs::path folder : {"mesh", "maps", "tiles"})
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / folder))
+            if (entry.path().stem().has_extension() && entry.path().stem().extension().string()[1] == '0')
+                fs::remove(entry.path());
+    fs::remove_all(folder_ / "tiles");
+    EXPECT_EQ(flaws(), std::set{Flaw::Interrupted});
+    EXPECT_FALSE(verify(folder_).is_whole());
+    // What somebody else made isn't a bake of ours.
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    write(folder_ / "sea.usda", "#usda 1.0\n");
+    EXPECT_EQ(flaws(), std::set{Flaw::Foreign});
 }
 
 // Notes of one's own beside a bake aren't a damaged record, unless files lie there that need one.

@@ -48,6 +48,7 @@ TEST_F(Budget, WhatNothingHoldsIsRefusedWithWhatComesNearest) {
     for (const char* verb : {"bake", "validate"}) {
         const Ended refused = ended(verb, "frame_ms = 0.01");
         EXPECT_EQ(refused.status, 1) << verb;
+        EXPECT_TRUE(has(refused.err, "shot.toml:13:12: quality.frame_ms")) << verb << '\n' << refused.err;
         for (const char* part :
              {"quality.frame_ms = 0.01, which nothing holds", "surface.resolution = 8", "raise the budget"})
             EXPECT_TRUE(has(refused.err, part)) << verb << '\n' << refused.err;
@@ -55,7 +56,8 @@ TEST_F(Budget, WhatNothingHoldsIsRefusedWithWhatComesNearest) {
     EXPECT_FALSE(std::filesystem::exists(folder_.path() / "s"));
     const Ended picture = ended("render", "frame_ms = 0.01");
     EXPECT_EQ(picture.status, 1);
-    EXPECT_TRUE(has(picture.err, "which nothing holds")) << picture.err;
+    EXPECT_TRUE(has(picture.err, "shot.toml:13:12: quality.frame_ms = 0.01, which nothing holds"))
+        << picture.err;
 }
 
 TEST_F(Budget, PicturesTakeItAndNamedSettingsStay) {

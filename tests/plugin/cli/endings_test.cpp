@@ -107,6 +107,28 @@ TEST_F(Endings, ThreadsThatTheSystemRefusesAreSaid) {
         }
 }
 
+// Four tasks of one shot in one folder, whose locks keep nobody out, as on a file system that locks for each machine alone: the
+// record has the frames of all of them.
+TEST_F(Endings, TasksWhoseLocksDontLockLoseNoFrame) {
+    write_file(folder() / "task.toml",
+               text_of({.name = "task", .frames = 200, .mesh = false, .maps = "\"displacement\""}));
+    std::string tasks = "export LD_PRELOAD='" PELAGIC_NO_LOCKS "'; ";
+    for (int first = 1; first <= 200; first += 50)
+        tasks += "$P bake task.toml --out out --threads 1 --frames " + std::to_string(first) + '-' +
+                 std::to_string(first + 49) + " & ";
+    const Ended ended = shell(tasks + "wait");
+    const Ended verified = shell("$P verify out");
+    EXPECT_EQ(verified.status, 0) << ended.err << verified.out;
+}
+
+TEST_F(Endings, AFolderThatCantBeLockedIsSaid) {
+    const Ended ended = shell("export LD_PRELOAD='" PELAGIC_NO_LOCKS
+                              "' PELAGIC_TEST_LOCK_ERROR=37; "
+                              "$P bake small.toml --out out");
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_TRUE(has(ended.err, "out can't be locked (No locks available)")) << ended.err;
+}
+
 TEST_F(Endings, APipeOrADeviceIsNoFile) {
     const std::string sea = "[sea]\nspectrum = \"file\"\nspectrum_time = 2019-02-06T00:40:00Z\n";
     write_file(folder() / "buoy.toml", sea + "spectrum_file = \"pipe.txt\"\n");

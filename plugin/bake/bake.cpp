@@ -143,6 +143,22 @@ std::vector<FileCheck> files_to_check(std::span<const int> frames, const std::ma
     return checks;
 }
 
+// The frames whose volumes the stage names: all of the shot, or of a very long one those that are asked for or recorded.
+std::vector<int> staged_frames(const Shot& shot, const std::vector<int>& asked,
+                               const std::map<int, FrameRecord>& recorded) {
+    constexpr std::int64_t kMost = 8192;  // a line for each, some 70 bytes
+    std::vector<int> frames;
+    if (std::int64_t{shot.last_frame} - shot.first_frame < kMost) {
+        for (std::int64_t frame = shot.first_frame; frame <= shot.last_frame; ++frame)
+            frames.push_back(static_cast<int>(frame));
+        return frames;
+    }
+    std::set<int> named(asked.begin(), asked.end());
+    for (const auto& [frame, entry] : recorded)
+        if (frame >= shot.first_frame && frame <= shot.last_frame) named.insert(frame);
+    return {named.begin(), named.end()};
+}
+
 // Adds the files that were kept to the frame's record, and the mean coverage, the mesh's height and the spray, each from
 // the first output that has it.
 void complete(FrameRecord& record, const FrameJob& job, const Parts& parts) {
@@ -221,9 +237,11 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
     report.total = progress.total;
     report.record = options.out / (scene.shot.name + ".json");
     std::vector<FrameJob> jobs, records;  // frames to bake, and records to mend
+    std::vector<int> staged;
     try {
         const std::map<int, FrameRecord> recorded =
             recorded_frames(report, scene.shot, frames, stop_if_cancelled);
+        staged = staged_frames(scene.shot, frames, recorded);
         std::vector<FileCheck> checks = files_to_check(frames, recorded, parts);
         if (options.trust_times)
             check_times(options.out, checks, report.record);
@@ -294,7 +312,7 @@ BakeReport bake(const Scene& scene, const BakeOptions& options) {
                         sequence->residual_coverage());
         record.mark_stale(
             [&](int frame, const FrameRecord& recorded) { return is_stale(frame, recorded, parts); });
-        sequence->write_static(write_static);
+        sequence->write_static(staged, write_static);
         for (const FrameJob& job : records) {
             FrameRecord mended = job.kept;
             complete(mended, job, parts);

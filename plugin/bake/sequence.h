@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/waves/sea.h"
@@ -32,8 +33,9 @@ class Sequence {
     virtual void encode(FrameSlot& slot) const = 0;
     // Hands each wanted file of the frame to `sink`; what that throws passes through. As encode().
     virtual void write(FrameSlot& slot, const FileSink& sink) const = 0;
-    // The files that belong to no frame: the stage, topology, manifest. None without a mesh.
-    virtual void write_static(const FileSink& sink) const = 0;
+    // The files that belong to no frame: the stage, whose volumes are those of the frames that are named, topology, manifest.
+    // None without a mesh.
+    virtual void write_static(std::span<const int> volume_frames, const FileSink& sink) const = 0;
     virtual const SpectralMoments& total() const = 0;
     virtual double whitecap_threshold() const = 0;
     virtual double residual_coverage() const = 0;  // of the sea, over all of it; 0 where foam doesn't live

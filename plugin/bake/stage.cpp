@@ -52,10 +52,13 @@ usd::CustomValue custom_value(const DescribedKey& key) {
 }
 
 usd::Camera camera_of(const Scene& scene) {
+    std::vector<int> key_frames;
+    for (const CameraKey& key : scene.camera.keys) key_frames.push_back(key.frame);
     return {
         .fps = scene.shot.fps,
         .first_frame = scene.shot.first_frame,
         .last_frame = scene.shot.last_frame,
+        .key_frames = std::move(key_frames),
         .pose_at =
             [&scene](int frame) {
                 const View view = view_at(scene.camera, frame);
@@ -212,11 +215,18 @@ usd::Stage stage_of(const Plan& plan, const OutputPart& mesh, const std::optiona
 
 }  // namespace
 
+std::size_t camera_layer_bytes(const Scene& scene) {
+    std::size_t bytes = 0;
+    usd::write_camera_crate(camera_of(scene), [&](std::string_view piece) { bytes += piece.size(); });
+    return bytes;
+}
+
 void prepare_light(const Scene& scene) {
     light_of(scene);
 }
 
-void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink) {
+void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> volume_frames,
+                 const FileSink& sink) {
     const Scene& scene = plan.from->scene;
     const std::string& name = scene.shot.name;
     const std::shared_ptr<const StageLight> light = light_of(scene);
@@ -230,6 +240,7 @@ void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink)
         const usd::VolumeLayer layer{.fps = scene.shot.fps,
                                      .first_frame = scene.shot.first_frame,
                                      .last_frame = scene.shot.last_frame,
+                                     .frames = {volume_frames.begin(), volume_frames.end()},
                                      .volumes = std::move(volumes)};
         sink({.path = usd::volumes_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
                   usd::write_volumes_text(layer, take);

@@ -2,6 +2,9 @@
 // of the whole shot, whichever frames are baked. Sun, sky and water are those that pictures of the shot are lit by.
 #pragma once
 
+#include <cstddef>
+#include <span>
+
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "plugin/bake/output_part.h"
@@ -12,7 +15,12 @@ namespace pelagic {
 // Throws as make_sky() does. write_stage() takes it from here.
 void prepare_light(const Scene& scene);
 
-// Hands them to the sink, the root last. The plan must have a mesh. Throws as make_sky() does.
-void write_stage(const Plan& plan, const OutputPart& mesh, const FileSink& sink);
+// How large the camera's layer becomes [bytes].
+std::size_t camera_layer_bytes(const Scene& scene);
+
+// Hands them to the sink, the root last; the layer of volumes names those of `volume_frames`. The plan must have a mesh. Throws as
+// make_sky() does.
+void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> volume_frames,
+                 const FileSink& sink);
 
 }  // namespace pelagic

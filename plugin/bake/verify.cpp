@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <system_error>
@@ -24,10 +25,32 @@ struct Known {
     std::vector<FileCheck> files;
     std::set<std::string> paths;      // of these and of the records
     std::set<std::string> uncertain;  // shots whose record is damaged: what else is named so may be theirs
-    std::map<std::string, std::vector<int>> missing;  // by shot: the frames that aren't baked, rising
+    struct Baked {
+        int first_frame = 0, last_frame = 0;  // of the shot
+        std::set<int> frames;                 // that the record has, as they were written or altered
+    };
+    std::map<std::string, Baked> baked;  // by shot
     // What is called .json and says nothing of a bake: somebody's own, if no file here is of a shot of its name.
     std::set<std::string> unread;
 };
+
+// "1-6, 9": the shot's frames that aren't there. A shot may have very many.
+std::string gaps_text(const Known::Baked& baked) {
+    std::string text;
+    std::int64_t next = baked.first_frame;
+    const auto add_until = [&](std::int64_t end) {
+        if (next >= end) return;
+        text += (text.empty() ? "" : ", ") + std::to_string(next);
+        if (end - 1 > next) text += '-' + std::to_string(end - 1);
+    };
+    for (const int frame : baked.frames) {
+        if (frame < baked.first_frame || frame > baked.last_frame) continue;
+        add_until(frame);
+        next = std::int64_t{frame} + 1;
+    }
+    add_until(std::int64_t{baked.last_frame} + 1);
+    return text;
+}
 
 void read_shot(const fs::path& folder, const std::string& record, const RecordWatch& watch, Known& known,
                Verification& found) {
@@ -68,22 +91,21 @@ void read_shot(const fs::path& folder, const std::string& record, const RecordWa
     if (shot.name != name)
         tell(Flaw::Damaged, "is the record of the shot " + line_text(shot.name) + ", renamed");
     for (const auto& [path, file] : shot.files) add(path, file);
-    std::vector<int> missing;
-    std::sort(baked.begin(), baked.end());
-    for (long frame = shot.first_frame; frame <= shot.last_frame; ++frame)
-        if (!std::binary_search(baked.begin(), baked.end(), static_cast<int>(frame)) &&
-            std::find(reading.altered.begin(), reading.altered.end(), frame) == reading.altered.end())
-            missing.push_back(static_cast<int>(frame));
-    if (!missing.empty()) tell(Flaw::Missing, "lacks frames that aren't baked: " + frames_text(missing));
-    known.missing[name] = std::move(missing);
+    Known::Baked there{shot.first_frame, shot.last_frame, {baked.begin(), baked.end()}};
+    there.frames.insert(reading.altered.begin(), reading.altered.end());
+    if (const std::string missing = gaps_text(there); !missing.empty())
+        tell(Flaw::Missing, "lacks frames that aren't baked: " + missing);
+    known.baked[name] = std::move(there);
 }
 
 // Whether the file is of a frame that its shot's record lacks: a bake makes the files, and then the entry.
 bool is_of_missing_frame(const std::string& path, const Known& known) {
-    const auto shot = known.missing.find(shot_of(path));
-    if (shot == known.missing.end()) return false;
+    const auto shot = known.baked.find(shot_of(path));
+    if (shot == known.baked.end()) return false;
     const auto frame = frame_of(fs::path(path).stem().extension().string(), {".", ""});
-    return frame && std::binary_search(shot->second.begin(), shot->second.end(), *frame);
+    const Known::Baked& baked = shot->second;
+    return frame && *frame >= baked.first_frame && *frame <= baked.last_frame &&
+           !baked.frames.contains(*frame);
 }
 
 bool is_of_frame(const std::string& path) {

@@ -17,6 +17,7 @@
 #include "core/plan/plan.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/measure.h"
+#include "plugin/bake/stage.h"
 #include "plugin/cli/exit_status.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/progress.h"
@@ -138,6 +139,9 @@ void print_memory(const Scene& scene, const RenderOptions& options, const Plan& 
     if (!plan.outputs.empty())
         std::cout << "A bake holds " << memory_text(bake_memory(plan, alone ? 1 : kFramesInFlight, threads))
                   << ".\n";
+    if (scene.output.mesh != MeshFormat::None)
+        std::cout << "The camera of the bake's stage takes " << bytes_text(camera_layer_bytes(scene))
+                  << ", for all frames of the shot together.\n";
     std::cout << "Pictures of " << scene.camera.resolution.x << " × " << scene.camera.resolution.y << " hold "
               << memory_text(render_memory(scene, options, frames, alone ? 1 : kPicturesInFlight, threads))
               << ".\n"

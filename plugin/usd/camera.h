@@ -1,6 +1,5 @@
 // A shot's camera as a layer of its own, a crate beside the root: one prim, def Camera "Camera", with plain
-// time samples, which every importer reads. Its size grows with the frames of the shot, 72 bytes for each, 80
-// where the lens zooms; the memory to write it does not.
+// time samples, which every importer reads: 72 bytes for each, 80 where the lens zooms.
 #pragma once
 
 #include <functional>
@@ -8,6 +7,7 @@
 #include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "plugin/usd/layers.h"
 
@@ -29,6 +29,8 @@ struct Camera {
     std::string_view fingerprint{};  // letters and digits; in customLayerData, empty: not written
     int first_frame = 1;             // of the shot, both included
     int last_frame = 1;
+    // Rising; from each to the next the pose changes smoothly or not at all, and not before the first or after the last.
+    std::vector<int> key_frames{};
     // The pose at a frame of the shot. It is called more than once for a frame, and must give the same.
     std::function<CameraPose(int frame)> pose_at{};
     glm::ivec2 resolution{1280, 720};    // pixels; their ratio is the film's
@@ -55,10 +57,31 @@ void check(const CameraPose& pose, int frame);
 // interpolation from one frame's angles to the next frame's takes the short way.
 glm::dvec3 rotate_xyz_deg(const CameraPose& pose, const glm::dvec3& before_deg);
 
+// What the file has of a frame.
+struct CameraSample {
+    glm::dvec3 translate;
+    glm::dvec3 rotate_xyz_deg;
+};
+// The samples of a camera that moves; none of one that stands still.
+struct Course {
+    std::vector<double> frames;
+    std::vector<CameraSample> samples;
+    std::vector<float> focal_lengths;
+    CameraSample first{};  // of the shot's first frame
+    bool zooms = false;
+};
+
+// Asks for every pose that counts. Throws std::invalid_argument, naming what is wrong with one.
+Course course_of(const Camera& camera);
+
+// Above so many frames between the first key and the last there isn't a sample for each frame.
+inline constexpr int kMostFramesEach = 8192;
+
 // Translation and rotation have a sample for each frame, from the last frame before the first change of pose
 // to the frame of the last change, and so has the focal length where it changes; what stands still has plain
-// values. The bytes go to the sink in
-// small pieces while the poses are asked for.
+// values. Where the keys are too far apart for that, samples stand at the keys and where a line from one to the next would be
+// off by more than 0.2 mm, a fiftieth of a pixel's angle or 1e-5 of the focal length: what is written and how long that takes
+// depends on the keys, not on the length of the shot.
 // Throws std::invalid_argument, naming what is wrong, before it calls the sink.
 void write_camera_crate(const Camera& camera, const Sink& sink);
 std::string camera_crate(const Camera& camera);

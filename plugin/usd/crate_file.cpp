@@ -171,13 +171,14 @@ CrateValue Crate::time_samples(double time, CrateValue sample) {
     return value;
 }
 
-CrateValue Crate::times(double first, std::uint64_t count) {
+CrateValue Crate::times(std::vector<double> times) {
     align();
     const CrateValue value = at(ValueType::DoubleVector, size());
-    append(piece(), count);
-    produced(count * sizeof(double), [first, count](const Sink& sink) {
+    append(piece(), static_cast<std::uint64_t>(times.size()));
+    const std::size_t bytes = times.size() * sizeof(double);
+    produced(bytes, [times = std::move(times)](const Sink& sink) {
         PieceWriter writer(sink);
-        for (std::uint64_t i = 0; i < count; ++i) writer.put(first + static_cast<double>(i));
+        for (const double time : times) writer.put(time);
         writer.flush();
     });
     return value;

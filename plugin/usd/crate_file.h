@@ -132,8 +132,8 @@ class Crate {
 
     // A single sample.
     CrateValue time_samples(double time, CrateValue sample);
-    // `count` times, each 1 later than the one before. Attributes may share them.
-    CrateValue times(double first, std::uint64_t count);
+    // Rising times. Attributes may share them.
+    CrateValue times(std::vector<double> times);
     // Where the samples of an attribute are in the file: at `first`, `first + stride`, and so on.
     struct Stored {
         ValueType type;

@@ -44,10 +44,9 @@ void write_volumes_text(const VolumeLayer& layer, const Sink& sink) {
             text += "            token fieldName = \"" + field.name + "\"\n";
             if (field.is_vector) text += "            token vectorDataRoleHint = \"Vector\"\n";
             text += "            asset filePath.timeSamples = {\n";
-            for (long frame = layer.first_frame; frame <= layer.last_frame; ++frame) {
-                const int number_of = static_cast<int>(frame);
-                text += "                " + number(number_of) + ": @./" + volume.file_prefix +
-                        frame_number(number_of) + ".vdb@,\n";
+            for (const int frame : layer.frames) {
+                text += "                " + number(frame) + ": @./" + volume.file_prefix +
+                        frame_number(frame) + ".vdb@,\n";
                 if (text.size() < kPiece) continue;
                 sink(text);
                 text.clear();

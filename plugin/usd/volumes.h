@@ -34,6 +34,7 @@ struct Volume {
 struct VolumeLayer {
     double fps = 24.0;                    // > 0
     int first_frame = 1, last_frame = 1;  // of the shot, both included
+    std::vector<int> frames;              // that have files, rising
     std::vector<Volume> volumes;
 };
 

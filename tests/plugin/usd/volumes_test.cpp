@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -32,7 +33,11 @@ Volume level_set() {
 
 TEST(UsdVolumes, LayerIsThisPage) {
     EXPECT_EQ(volumes_file("a-b"), "a-b.volumes.usda");
-    EXPECT_EQ(text_of({.fps = 25.0, .first_frame = -1, .last_frame = 1, .volumes = {spray(), level_set()}}),
+    EXPECT_EQ(text_of({.fps = 25.0,
+                       .first_frame = -1,
+                       .last_frame = 1,
+                       .frames = {-1, 0, 1},
+                       .volumes = {spray(), level_set()}}),
               R"(#usda 1.0
 (
     defaultPrim = "Volumes"
@@ -99,17 +104,20 @@ def Scope "Volumes"
 )");
 }
 
-// Long shots come in pieces; the last frames a number holds end the loop.
+// Long shots come in pieces.
 TEST(UsdVolumes, EveryFrameHasItsFile) {
     constexpr int kFrames = 40000;
     constexpr int kLast = std::numeric_limits<int>::max();
     std::string text;
     int pieces = 0;
-    write_volumes_text({.first_frame = kLast - kFrames + 1, .last_frame = kLast, .volumes = {level_set()}},
-                       [&](std::string_view piece) {
-                           text += piece;
-                           ++pieces;
-                       });
+    std::vector<int> frames(kFrames);
+    std::iota(frames.begin(), frames.end(), kLast - kFrames + 1);
+    write_volumes_text(
+        {.first_frame = frames.front(), .last_frame = kLast, .frames = frames, .volumes = {level_set()}},
+        [&](std::string_view piece) {
+            text += piece;
+            ++pieces;
+        });
     EXPECT_GT(pieces, 1);
     int frame = kLast - kFrames, samples = 0;
     for (std::size_t at = text.find(": @./volumes/"); at != std::string::npos;
@@ -130,10 +138,10 @@ TEST(UsdVolumes, RefusesWhatNoStageCanSay) {
                      std::invalid_argument);
         EXPECT_FALSE(called) << "a part of a layer was handed over";
     };
-    refuses({.fps = 0.0, .volumes = {level_set()}});
+    refuses({.fps = 0.0, .frames = {1}, .volumes = {level_set()}});
     Volume endless = level_set();
     endless.extent[1].y = std::numeric_limits<float>::infinity();
-    refuses({.volumes = {endless}});
+    refuses({.frames = {1}, .volumes = {endless}});
 }
 
 }  // namespace

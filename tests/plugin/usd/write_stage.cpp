@@ -356,7 +356,7 @@ void write_camera(const std::filesystem::path& dir, const std::string& name, con
 // them.
 void write_long_camera(const std::filesystem::path& dir) {
     const usd::Camera camera{
-        .first_frame = -1000, .last_frame = 3000, .pose_at = [](int frame) {
+        .first_frame = -1000, .last_frame = 3000, .key_frames = {-1000, 3000}, .pose_at = [](int frame) {
             const double moved = std::max(frame, -7);
             usd::CameraPose pose = pose_of({{moved, -0.1 * moved, 9.0}, {70, 0, 0.3 * moved}});
             pose.fov_deg = 40.0 + 0.01 * moved;
@@ -416,6 +416,7 @@ void write_moving_stage(const std::filesystem::path& dir, const std::string& ext
     const usd::Camera camera{.fingerprint = "1234abcd",
                              .first_frame = 1,
                              .last_frame = kLast,
+                             .key_frames = {1, kLast},
                              // It zooms while it moves.
                              .pose_at = [](int frame) {
                                  usd::CameraPose pose = pose_of(moving_camera(frame));
@@ -501,7 +502,11 @@ void write_stage(const std::filesystem::path& dir, const std::string& extension)
     // It stands still and looks along +x.
     const usd::CameraPose pose{{40.0, -60.0, 4.0}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
     write_camera(dir, name,
-                 {.fps = 23.976, .first_frame = -2, .last_frame = 2, .pose_at = [&](int) { return pose; }},
+                 {.fps = 23.976,
+                  .first_frame = -2,
+                  .last_frame = 2,
+                  .key_frames = {-2, 2},
+                  .pose_at = [&](int) { return pose; }},
                  {-2});
     save(dir / usd::manifest_file(name), usd::manifest_text({.fps = 23.976, .attributes = attributes}));
     usd::Stage stage = stage_of(name, attributes);

@@ -114,6 +114,34 @@ void alone(const Work& work) {
     tbb::this_task_arena::isolate(work);
 }
 
+// Points between which one may be cancelled.
+constexpr std::size_t kPiece = std::size_t{1} << 18;
+
+template <class T>
+Strided<T> from(const Strided<T>& view, std::size_t first) {
+    return view ? Strided<T>{&view[first], view.stride_bytes} : view;
+}
+
+Points<float> piece_of(const Points<float>& points, std::size_t first) {
+    return {.origin_m = points.origin_m,
+            .count = std::min(kPiece, points.count - first),
+            .rest_m = from(points.rest_m, first),
+            .cell_m = from(points.cell_m, first),
+            .pixel_m = from(points.pixel_m, first),
+            .cell_axis_m = from(points.cell_axis_m, first),
+            .pixel_axis_m = from(points.pixel_axis_m, first),
+            .rest_normal = from(points.rest_normal, first)};
+}
+
+// work(points, first) of each piece, whose values depend on its points alone. Throws BuildCancelled.
+template <class Work>
+void in_pieces(const Points<float>& points, const BuildWatch& watch, const Work& work) {
+    for (std::size_t first = 0; first < points.count; first += kPiece) {
+        if (watch.cancel && *watch.cancel) throw BuildCancelled();
+        alone([&] { work(piece_of(points, first), first); });
+    }
+}
+
 class PythonFrame {
   public:
     explicit PythonFrame(const PythonSea& sea) : sea_(sea), frame_(sea.sea) {
@@ -121,9 +149,16 @@ class PythonFrame {
     }
 
     void set(double t_s) {
-        const OthersMayRun others_may_run;
-        const std::unique_lock writing(mutex_);
-        alone([&] { frame_.set(t_s); });
+        constexpr std::size_t kSeconds_bytes = std::size_t{1} << 28;  // of transforms, the first time
+        Watch watch{py::none(), py::none()};
+        try {
+            work(sea_.plan().frame_bytes() > kSeconds_bytes, watch, [&] {
+                const std::unique_lock writing(mutex_);
+                alone([&] { frame_.set(t_s, watch.flag()); });
+            });
+        } catch (const BuildCancelled&) {
+            throw Cancelled("setting the time was cancelled");
+        }
     }
 
     py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given,
@@ -132,10 +167,11 @@ class PythonFrame {
         py::dict written = read(asked, rest, origin_m, given);
         Watch watch(progress, cancel);
         try {
-            const OthersMayRun others_may_run;
-            require_on_the_sea(asked.points, "rest");
-            const std::shared_lock reading(mutex_);
-            run(asked, watch_of(watch));
+            work(takes_long(asked, asked.points.count), watch, [&] {
+                require_on_the_sea(asked.points, "rest");
+                const std::shared_lock reading(mutex_);
+                run(asked, watch_of(watch));
+            });
         } catch (const BuildCancelled&) {
             watch.rethrow();
             throw Cancelled("evaluating was cancelled");
@@ -154,7 +190,7 @@ class PythonFrame {
             [&frame, asked, t_s](Task& task) -> Task::Made {
                 require_on_the_sea(asked->points, "rest");
                 const std::unique_lock writing(frame.mutex_);
-                alone([&] { frame.frame_.set(t_s); });
+                alone([&] { frame.frame_.set(t_s, task.flag()); });
                 frame.run(*asked, watch_of(task));
                 return {};
             },
@@ -195,24 +231,29 @@ class PythonFrame {
         std::vector<float> residual_m(points.count), height_m(points.count);
         Watch watch(progress, cancel);
         try {
-            const OthersMayRun others_may_run;
-            require_on_the_sea(points, "xy");
-            const std::shared_lock reading(mutex_);
-            require_time();
-            add_coverage(asked, points.count);
-            ProductSet summed = asked.results.given();
-            summed.set(index(Product::Displacement));
-            const PreparedQuery<float> query(frame_, 0, summed, points.origin_m);
-            alone([&] { find_rest(query, points, {}, {rest_m.data()}, {residual_m.data()}); });
-            std::vector<glm::vec3> displacement_m(points.count);
-            if (!asked.results.holds(Product::Displacement))
-                asked.results.set(Product::Displacement, {displacement_m.data()});
-            points.rest_m = {rest_m.data()};
-            alone([&] { query.evaluate(points, asked.results); });
-            const Strided<glm::vec3> displaced_m = asked.results.vectors(Product::Displacement);
-            for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
-            asked.points = points;
-            add_foam(asked, watch_of(watch));
+            work(takes_long(asked, points.count), watch, [&] {
+                require_on_the_sea(points, "xy");
+                const std::shared_lock reading(mutex_);
+                require_time();
+                add_coverage(asked, points.count);
+                ProductSet summed = asked.results.given();
+                summed.set(index(Product::Displacement));
+                const PreparedQuery<float> query(frame_, 0, summed, points.origin_m);
+                in_pieces(points, watch_of(watch), [&](const Points<float>& piece, std::size_t first) {
+                    find_rest(query, piece, {}, {&rest_m[first]}, {&residual_m[first]});
+                });
+                std::vector<glm::vec3> displacement_m(points.count);
+                if (!asked.results.holds(Product::Displacement))
+                    asked.results.set(Product::Displacement, {displacement_m.data()});
+                points.rest_m = {rest_m.data()};
+                in_pieces(points, watch_of(watch), [&](const Points<float>& piece, std::size_t first) {
+                    query.evaluate(piece, asked.results.from_point(first));
+                });
+                const Strided<glm::vec3> displaced_m = asked.results.vectors(Product::Displacement);
+                for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
+                asked.points = points;
+                add_foam(asked, watch_of(watch));
+            });
         } catch (const BuildCancelled&) {
             watch.rethrow();
             throw Cancelled("finding heights was cancelled");
@@ -289,11 +330,24 @@ class PythonFrame {
         return {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
     }
 
+    // What takes a moment needs no thread of its own.
+    template <class Work>
+    void work(bool takes_long, Watch& watch, const Work& work) const {
+        if (takes_long) return beside_others(watch, work);
+        const OthersMayRun others_may_run;
+        work();
+    }
+    bool takes_long(const Evaluation& asked, std::size_t points) const {
+        return points > kPiece || (asked.has_foam() && foam_);
+    }
+
     // Whoever calls it holds the lock. Throws BuildCancelled.
     void run(Evaluation& asked, const BuildWatch& watch) const {
         require_time();
         add_coverage(asked, asked.points.count);
-        alone([&] { pelagic::evaluate(frame_, 0, asked.points, asked.results); });
+        in_pieces(asked.points, watch, [&](const Points<float>& piece, std::size_t first) {
+            pelagic::evaluate(frame_, 0, piece, asked.results.from_point(first));
+        });
         add_foam(asked, watch);
     }
 
@@ -445,7 +499,7 @@ void add_frame(py::module_& module) {
     frame.def(py::init<const PythonSea&>(), py::arg("sea"))
         .def(
             "set", &PythonFrame::set, py::arg("t"),
-            "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile.")
+            "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile. Interrupted by Ctrl-C it has no time.")
         .def(
             "heights", &PythonFrame::heights, py::arg("xy"), py::arg("origin") = std::array{0.0, 0.0},
             py::kw_only(), py::arg("footprint_m") = none(), py::arg("outputs") = none(),

@@ -30,6 +30,18 @@ constexpr std::size_t kGrain = 256;  // points a task computes
 constexpr std::size_t kShaded =
     kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
 
+// work(range) over as many points, by all threads, until it is interrupted.
+template <class Work>
+void over_points(py::ssize_t count, const Work& work) {
+    Watch watch{py::none(), py::none()};
+    beside_others(watch, [&] {
+        tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+            if (!*watch.flag()) work(range);
+        });
+    });
+    if (*watch.flag()) throw Cancelled("the program ends");
+}
+
 py::tuple tuple_of(glm::vec3 v) {
     return py::make_tuple(v.x, v.y, v.z);
 }
@@ -42,17 +54,11 @@ struct PythonSky {
 
 PythonSky sky_of(const Scene& scene) {
     require_valid(scene);
-    const Scene kept = scene;
-    const OthersMayRun others_may_run;
-    return {std::make_shared<const Sky>(make_sky(kept))};
+    return {beside_others([kept = scene] { return std::make_shared<const Sky>(make_sky(kept)); })};
 }
 
 py::array image_of(const PythonSky& self, int width) {
-    LatLong picture;
-    {
-        const OthersMayRun others_may_run;
-        picture = lat_long(*self.sky, width);
-    }
+    LatLong picture = beside_others([sky = self.sky, width] { return lat_long(*sky, width); });
     return array_of<float>(std::move(picture.radiance), {picture.height, picture.width});
 }
 
@@ -61,8 +67,7 @@ py::object radiance_towards(const PythonSky& self, const py::object& directions,
     if (out.is_none()) out = py::array_t<float>({count, py::ssize_t{3}});
     const Strided<glm::vec3> radiance = writable_vectors(out, {"out", count});
     const Strided<const glm::vec3> to = towards;
-    const OthersMayRun others_may_run;
-    tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+    over_points(count, [&](const Range& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
             radiance[i] = background(*self.sky, to[i], 1.0f).sky;
     });
@@ -151,8 +156,7 @@ py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArgument
         out[layer] = writable_vectors(array, {name, count});
         written[name] = array;
     }
-    const OthersMayRun others_may_run;
-    tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+    over_points(count, [&](const Range& range) {
         std::vector<SeaPoint> points(range.size());
         std::vector<SeaRadiance> radiance(range.size());
         for (std::size_t i = 0; i < points.size(); ++i) {

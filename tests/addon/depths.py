@@ -3,13 +3,14 @@
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
 import pelagic
-from pelagic_ocean import depths, light, material
+from pelagic_ocean import compat, depths, light, material, nodes
 from pictures import cycles_exr
 
 SAMPLES = 24
@@ -78,7 +79,34 @@ with checking("a plane under a level sea is dimmed by the water over it, on the 
         ratio = of_plane(plane, -2.5) / of_plane(plane, -0.5)
         expected = np.exp(-2.0 * c * (1.0 + 1.0 / pelagic.Sky(scene).sun_direction[2]))
         print("  ", water, ratio, expected)
-        assert np.allclose(ratio, expected, rtol=0.03)
+        assert np.allclose(ratio, expected, rtol=0.01)
+
+with checking("without SHARP, as since Blender 4.0, a refraction of no roughness is as sharp"):
+    def with_distributions(*names):
+        distribution = SimpleNamespace(enum_items={name: None for name in names})
+        return SimpleNamespace(bl_rna=SimpleNamespace(properties={"distribution": distribution}))
+
+    choose, node = compat.sharp_refraction, nodes.Tree.node
+    assert choose(with_distributions("SHARP", "BECKMANN", "GGX")) == choose() == "SHARP"
+
+    def node_of_4(tree, kind, inputs=(), **settings):
+        if kind == "ShaderNodeBsdfRefraction" and settings.get("distribution") not in ("BECKMANN", "GGX"):
+            raise TypeError(f"enum {settings.get('distribution')} not found in ('BECKMANN', 'GGX')")
+        return node(tree, kind, inputs, **settings)
+
+    pictures = []
+    for is_4 in (False, True):
+        if is_4:
+            compat.sharp_refraction = lambda: choose(with_distributions("BECKMANN", "GGX"))
+            nodes.Tree.node = node_of_4
+        _, obj = level_sea()
+        refraction = [each for each in obj.data.materials[0].node_tree.nodes if each.type == "BSDF_REFRACTION"]
+        assert [each.distribution for each in refraction] == ["BECKMANN" if is_4 else "SHARP"]
+        square("Plane", 0.3, -2.5).data.materials.append(painted(0.5))  # its edges are in the picture
+        pictures.append(seen())
+    compat.sharp_refraction, nodes.Tree.node = choose, node
+    print("  ", pictures[1] / pictures[0])
+    assert np.allclose(pictures[0], pictures[1], rtol=0.01)
 
 with checking("deep water is as bright as it is opaque"):
     for water in ("ocean", "turbid"):

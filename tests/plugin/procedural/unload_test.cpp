@@ -9,13 +9,14 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "pelagic/procedural.h"
 
 namespace {
 
 constexpr const char* kShot =
-    "[waves]\ncascades = [ { size_m = 60.0, resolution = 128 } ]\n[camera]\nresolution = [64, 36]\n";
+    "[waves]\ncascades = [ { size_m = 60.0, resolution = 64 } ]\n[camera]\nresolution = [64, 36]\n";
 
 std::size_t resident_bytes() {
     std::ifstream statm("/proc/self/statm");
@@ -94,8 +95,11 @@ TEST_P(UnloadRounds, LeavesNothingBehind) {
     const std::ptrdiff_t running = running_threads();
     for (int round = 0; round < 90; ++round) round_of(GetParam());
     RecordProperty("grown_kib", static_cast<int>(resident_bytes() / 1024) - static_cast<int>(bytes / 1024));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they keep what is freed
     EXPECT_LT(resident_bytes(), bytes + 10 * frame_bytes);
-    EXPECT_LE(running_threads(), running);
+#endif
+    // TBB has a thread for each processor at most, and starts it when there is work.
+    EXPECT_LE(running_threads(), std::max<std::ptrdiff_t>(running, std::thread::hardware_concurrency() + 1));
     EXPECT_EQ(libraries(), held);
 }
 INSTANTIATE_TEST_SUITE_P(Threads, UnloadRounds, testing::Values(1, 2, 8));

@@ -17,7 +17,7 @@ from bpy.props import BoolProperty, FloatVectorProperty, IntProperty, PointerPro
 from bpy_extras.io_utils import ImportHelper
 from mathutils import Vector
 
-from . import fitted, handlers, light, material, meshes, ocean, surfaces, volumes
+from . import fitted, handlers, light, look, material, meshes, ocean, surfaces, volumes
 from .module import pelagic
 from .operators import NeedsModule
 from .query import first_ocean
@@ -284,13 +284,14 @@ class PELAGIC_OT_play_bake(NeedsModule, ImportHelper, bpy.types.Operator):
         if abs(ocean.frame_rate(context.scene) / bake.scene.shot.fps - 1.0) > 1e-6:
             self.report({"WARNING"}, f"The bake has {bake.scene.shot.fps:g} frames a second, this scene "
                                      f"{ocean.frame_rate(context.scene):g}")
-        try:
+
+        def give_look():
             if self.light:
                 material.ensure_material(obj, bake.scene, bake.dense_foam)
             if self.light and first_ocean(context.scene) is None:
                 light.ensure_light(context.scene, bake.scene)
-        except ValueError as error:
-            self.report({"WARNING"}, str(error))
+
+        look.try_to(self, give_look)
         ocean.select_only(context, obj)
         return {"FINISHED"}
 

@@ -55,6 +55,12 @@ def can_denoise():
     return getattr(_cycles, "with_openimagedenoise", True)
 
 
+def sharp_refraction(node=bpy.types.ShaderNodeBsdfRefraction):
+    """The distribution by which a refraction node of no roughness bends light without spreading it."""
+    known = node.bl_rna.properties["distribution"].enum_items.keys()
+    return "SHARP" if "SHARP" in known else "BECKMANN"  # since 4.0 any does at a roughness of 0
+
+
 def voxels_off(version=bpy.app.version):
     """How far this Blender shows a volume's voxels from where their file has them, along each axis, in voxels: OpenVDB's
     transform leads to the middle of a voxel, and Cycles and the Volume to Mesh modifier take it for the corner. That is

@@ -12,6 +12,7 @@ EEVEE keeps the opaque water: a volume fills its object's box there, and the air
 
 import bpy
 
+from . import compat
 from .facets import WATER_INDEX, add_fresnel
 from .module import pelagic
 from .nodes import Tree
@@ -35,7 +36,7 @@ def add_depths(tree, part, coverage, mirror, foam, white):
     # Outside, radiance is spread over n² times the angles; Cycles leaves that to the colour.
     out = tree.vector(1.0, 1.0, 1.0) * ((1.0 - part["Fresnel"]) * WATER_INDEX**-2)
     bent = tree.add("ShaderNodeBsdfRefraction", {"Color": out, "Roughness": 0.0, "IOR": WATER_INDEX,
-                                                 "Normal": part["Normal"]}, distribution="SHARP")
+                                                 "Normal": part["Normal"]}, distribution=compat.sharp_refraction())
     seen = tree.add("ShaderNodeMixShader", {0: foam, 1: tree.add("ShaderNodeAddShader", {0: mirror, 1: bent}), 2: white})
 
     # Towards lamp and sky it is as a level surface for the light that comes in, and for rays that happen to find the sky, too,

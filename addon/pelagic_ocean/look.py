@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Oceans' materials and the scene's sun and sky follow the settings they come from."""
 
+import traceback
+
 import bpy
 from bpy.app.handlers import persistent
 
@@ -36,6 +38,17 @@ def give(obj, bpy_scene, sun_and_sky):
     material.ensure_material(obj, scene)
     if sun_and_sky and first_ocean(bpy_scene) == obj:
         light.ensure_light(bpy_scene, scene)
+
+
+def try_to(operator, give):
+    """Calls give(). What is to have the look is there without it: whatever goes wrong is a warning of the operator's."""
+    try:
+        give()
+    except (ValueError, OSError) as error:  # said for people
+        operator.report({"WARNING"}, str(error))
+    except Exception as error:  # another Blender's nodes, say
+        traceback.print_exc()
+        operator.report({"WARNING"}, f"The look isn't complete, {type(error).__name__}: {error}. The console says where")
 
 
 @persistent

@@ -32,10 +32,7 @@ class GivesLook(NeedsModule):
     def give_look(self, context, obj):
         if not self.properties.is_property_set("light"):
             self.light = look.is_untouched(context.scene.world)
-        try:
-            look.give(obj, context.scene, self.light)
-        except (ValueError, OSError) as error:
-            self.report({"WARNING"}, str(error))
+        look.try_to(self, lambda: look.give(obj, context.scene, self.light))
 
 
 def show_now(context, obj):

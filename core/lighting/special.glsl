@@ -5,7 +5,7 @@
 // namespace glm` (lighting.cpp); the preview appends them to its #version line.
 
 const float kPi = 3.14159265f;
-const float kWaterIndex = 1.34f;  // sea water's index of refraction for visible light (Hu et al. 2006)
+const float kWaterIndex = 1.34f;  // sea water's index of refraction for visible light: 1.336 … 1.350 (Quan & Fry 1995)
 
 // The part of masking that is nested (slopes.glsl); the rest is Smith's.
 const float kNested = 0.75f;

@@ -1,4 +1,4 @@
-// What a footprint lets through (Bruneton, Neyret, Holzschuch 2010, §4.1): the weight of a wave of wavelength
+// What a footprint lets through (Bruneton, Neyret, Holzschuch 2010, §3.2): the weight of a wave of wavelength
 // λ in a field that is sampled every L metres.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The projected grid (Johanson 2004; Bruneton, Neyret, Holzschuch 2010, §4): points at rest, about one cell
+// The projected grid (Johanson 2004; Bruneton, Neyret, Holzschuch 2010, §3.2): points at rest, about one cell
 // apart on the screen, wherever the camera is.
 //
 // Rows are circles round the camera's nadir. Near by they are evenly spaced in the angle at which they are seen

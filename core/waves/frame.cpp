@@ -99,15 +99,19 @@ Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)), kerne
 }
 
 template <class T>
-void Frame<T>::set(double t_s) {
+void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     if (!(std::abs(t_s) <= kLatest_s))
         throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
+    const auto go_on = [cancel] {
+        if (cancel && cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
+    };
     is_set_ = false;  // stays so if a task throws
     ++times_set_;
     time_s_ = t_s;
     time_within_loop_s_ = pelagic::time_within_loop_s(t_s, sea_->loop_s());
-    executed_lines_ += sum_of_each(blocks_, [this](const Block& block) { return transform_columns(block); });
-    executed_lines_ += sum_of_each(rows_, [this](const Rows& rows) { return transform_rows(rows); });
+    executed_lines_ +=
+        sum_of_each(blocks_, [&](const Block& block) { return go_on(), transform_columns(block); });
+    executed_lines_ += sum_of_each(rows_, [&](const Rows& rows) { return go_on(), transform_rows(rows); });
     executed_transforms_ +=
         std::count_if(rows_.begin(), rows_.end(), [](const Rows& rows) { return rows.first == 0; });
     is_set_ = true;

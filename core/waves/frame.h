@@ -4,6 +4,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <vector>
 
@@ -24,8 +25,8 @@ class Frame {
     explicit Frame(std::shared_ptr<const Sea<T>>);
 
     // Runs the plan's transforms in parallel. t [s] within ± kLatest_s; throws std::invalid_argument
-    // otherwise.
-    void set(double t_s);
+    // otherwise. cancel: set from elsewhere; then throws BuildCancelled, and has no time.
+    void set(double t_s, const std::atomic<bool>* cancel = nullptr);
 
     static constexpr double kLatest_s = limits::kTime_s.high;
     bool is_set() const { return is_set_; }

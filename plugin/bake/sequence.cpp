@@ -42,7 +42,7 @@ class SequenceOf final : public Sequence {
         slot.record = {};
         slot.record.fingerprint = statistics_fingerprint(parts_, frame);
         slot.record.time_s = sea_->plan().from->scene.shot.time_s(frame);
-        frame_.set(slot.record.time_s);
+        frame_.set(slot.record.time_s, cancel_);
         if (foam_) foam_->set(slot.record.time_s);
         describe_waves(frame, slot.record);
         while (slot.outputs.size() < parts_.size())

@@ -85,7 +85,7 @@ const char* const kRenderFooter =
     "A frame doesn't depend on other frames or on the number of threads.\n"
     "\n"
     "Layers of the EXR, as Nuke and Blender read them:\n"
-    "  sun, sky, sea, foam  .R .G .B  the light by its source; their sum is R, G, B\n"
+    "  sun, sky, sea, foam, air  .R .G .B  the light by its source; their sum is R, G, B\n"
     "  depth           Z              along the camera's axis, in metres; 1e10 in the sky\n"
     "  position        P.X .Y .Z      in the world, z up, in metres\n"
     "  normal          N.X .Y .Z      of the waves that the pixel resolves, in the world\n"
@@ -124,7 +124,7 @@ const char* const kAlpha =
     "(in the PNG it isn't, as that format wants)";
 const char* const kLayers =
     "The layers of the EXR beside R, G, B, separated by commas; or all, or none. See below.\n"
-    "Default: sun,sky,sea,foam";
+    "Default: sun,sky,sea,foam,air";
 
 const char* const kTrustPictures =
     "Don't read the pictures that are there in full: those with the right beginning and end\n"

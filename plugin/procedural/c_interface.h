@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <glm/vec3.hpp>
@@ -77,13 +78,27 @@ inline constexpr std::size_t kFirstSize<pelagic_open_options> = offsetof(pelagic
 template <>
 inline constexpr std::size_t kFirstSize<pelagic_expand_options> = offsetof(pelagic_expand_options, error_px);
 
+// No version's structures are larger: what says so has something else where its size should be.
+inline constexpr std::size_t kLargestSize = 4096;
+
+// The size that a structure says it has.
+template <class S>
+std::size_t checked_size(const S* structure, const char* name) {
+    const std::size_t size = required(structure, name).size;
+    if (size < kFirstSize<S>)
+        throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
+    if (size > kLargestSize)
+        throw std::invalid_argument(std::string(name) + " has a size of " + std::to_string(size) +
+                                    " bytes; accepted: at most " + std::to_string(kLargestSize) +
+                                    ", begin with PELAGIC_INIT");
+    return size;
+}
+
 // A structure of the caller's, as this version knows it. One of an earlier version has zeros for what came later; a longer one is of a later
 // version: what this one doesn't know of it must be 0.
 template <class S>
 S taken(const S* from, const char* name) {
-    const std::size_t size = required(from, name).size;
-    if (size < kFirstSize<S>)
-        throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
+    const std::size_t size = checked_size(from, name);
     S known{};
     std::memcpy(&known, from, std::min(size, sizeof(S)));
     if (size <= sizeof(S)) return known;
@@ -100,9 +115,7 @@ S taken_or_zeros(const S* from, const char* name) {
 // Into the caller's; its size stays.
 template <class S>
 void give(S from, S* to, const char* name) {
-    const std::size_t size = required(to, name).size;
-    if (size < kFirstSize<S>)
-        throw std::invalid_argument(std::string(name) + " has no size: begin with PELAGIC_INIT");
+    const std::size_t size = checked_size(to, name);
     from.size = size;
     std::memcpy(to, &from, std::min(size, sizeof(S)));
 }
@@ -112,6 +125,14 @@ inline void check_place(double metres, const char* name) {
     if (!limits::kCameraCoordinate_m.holds(metres))
         throw std::invalid_argument(std::string(name) + " is outside the range; accepted: " +
                                     text_of(limits::kCameraCoordinate_m) + " m");
+}
+
+// Of a batch. More vectors than memory has room for would have places that wrap.
+inline void check_count(std::size_t count, const char* name) {
+    constexpr std::size_t kMost = PTRDIFF_MAX / sizeof(glm::vec3);
+    if (count > kMost)
+        throw std::invalid_argument(std::string(name) + " is " + std::to_string(count) +
+                                    "; accepted: at most " + std::to_string(kMost));
 }
 
 inline Results<float> results_in(const pelagic_values& values) {

@@ -29,10 +29,13 @@ namespace pelagic::procedural {
 namespace {
 
 Scene scene_of(const pelagic_source& source) {
-    if (source.text)
-        return parse_shot(
-            source.text_length > 0 ? std::string_view(source.text, source.text_length) : source.text,
-            source.path ? source.path : "shot.toml", check_scene);
+    if (source.text) {
+        const std::size_t length = source.text_length > 0 ? source.text_length : std::strlen(source.text);
+        if (length > kMostShotBytes)
+            throw std::invalid_argument("source.text has " + std::to_string(length) +
+                                        " bytes; accepted: at most " + std::to_string(kMostShotBytes));
+        return parse_shot({source.text, length}, source.path ? source.path : "shot.toml", check_scene);
+    }
     return load_shot(&required(source.path, "source.path"), check_scene);
 }
 
@@ -288,6 +291,9 @@ pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points
         const Results<float> results = results_in(taken(values, "values"));
         for (const double metres : asked.origin_m) check_place(metres, "points.origin_m");
         if (asked.count == 0) return PELAGIC_OK;
+        const ShotFrame& of = required(frame, "frame").frame;
+        check_count(asked.count, "points.count");
+        of.check_times(asked.time_s, asked.count, "points.time_s");
         static_assert(sizeof(glm::vec2) == 2 * sizeof(float));
         TimedPoints timed{.points = {.origin_m = {asked.origin_m[0], asked.origin_m[1]},
                                      .count = asked.count,
@@ -296,7 +302,7 @@ pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points
                           .time_s = asked.time_s};
         if (asked.cell_m) timed.points.cell_m = {asked.cell_m};
         if (asked.pixel_m) timed.points.pixel_m = {asked.pixel_m};
-        required(frame, "frame").frame.evaluate(timed, results);
+        of.evaluate(timed, results);
         return PELAGIC_OK;
     });
 }

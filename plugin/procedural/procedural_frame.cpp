@@ -157,6 +157,20 @@ void ShotFrame::set(double open_s, double close_s) {
     });
 }
 
+void ShotFrame::check_times(const float* time_s, std::size_t count, const char* name) const {
+    if (!time_s) return;
+    // A host that scales a share of the shutter by its length in single precision lies beyond the end by what that rounds: half an epsilon
+    // each for the length, the share, their product and a sum. Late ends are themselves rounded.
+    const double open_for_s = 2.0 * half_open_s_,
+                 rounding_s = 2.0 * std::numeric_limits<float>::epsilon() * open_for_s +
+                              2.0 * std::numeric_limits<double>::epsilon() * std::abs(frame_.time_s());
+    for (std::size_t i = 0; i < count; ++i)
+        if (!(time_s[i] >= -rounding_s && time_s[i] <= open_for_s + rounding_s))
+            throw std::invalid_argument(
+                std::string(name) + "[" + std::to_string(i) + "] is " + number_text(double{time_s[i]}) +
+                " s, when the shutter isn't open; accepted: 0 to " + number_text(open_for_s) + " s");
+}
+
 const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
     const std::lock_guard<std::mutex> lock(lock_);
     auto& bounds = bounds_[rung_m];
@@ -250,11 +264,8 @@ void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const
     if (!moves) return;
     const auto position = results.vectors(Product::Position), fast = results.vectors(Product::Velocity);
     const auto half_s = static_cast<float>(half_open_s_);
-    for (std::size_t i = 0; i < count; ++i) {
-        const float from_middle_s = timed.time_s[i] - half_s;  // one that is no number is the middle
-        position[i] += std::isnan(from_middle_s) ? glm::vec3(0.0f)
-                                                 : std::clamp(from_middle_s, -half_s, half_s) * fast[i];
-    }
+    for (std::size_t i = 0; i < count; ++i)
+        position[i] += std::clamp(timed.time_s[i] - half_s, -half_s, half_s) * fast[i];
 }
 
 void ShotFrame::evaluate_by_all(const Points<float>& points, const Results<float>& results) const {

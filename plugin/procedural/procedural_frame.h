@@ -3,6 +3,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <cstddef>
 #include <glm/vec3.hpp>
 #include <map>
 #include <memory>
@@ -69,6 +70,8 @@ class ShotFrame {
     SurfaceBounds everywhere() const;
 
     double half_open_s() const { return half_open_s_; }  // half of the time for which the shutter is open
+    // Of a batch, from the shutter's opening on; null: none. Throws std::invalid_argument, which calls them `name`, for one outside.
+    void check_times(const float* time_s, std::size_t count, const char* name) const;
     // What rays see; made when asked for, as those of a frame that nobody traces cost nothing.
     const SurfaceTiles& tiles() const;
 
@@ -76,7 +79,7 @@ class ShotFrame {
     std::optional<double> remembered_cell_px(const View& view, double error_px, bool on_earth) const;
     void remember_cell_px(const View& view, double error_px, bool on_earth, double cell_px) const;
 
-    // By the calling thread alone. Times outside the shutter are its ends.
+    // By the calling thread alone. Times are the shutter's; what they lie outside by a rounding counts as its ends.
     void evaluate(const TimedPoints& points, Results<float> results) const;
     // The same in the middle of the shutter, by all threads of the calling arena.
     void evaluate_by_all(const Points<float>& points, const Results<float>& results) const;

@@ -29,6 +29,8 @@ class Batch {
                 "rays.tolerance is outside the range; accepted: 0.05 to 4 footprints, or 0");
         if (rays.count == 0) return;
         required(rays.direction, "rays.direction");
+        check_count(rays.count, "rays.count");
+        frame.check_times(rays.time_s, rays.count, "rays.time_s");
         sea_ = {.tiles = &frame.tiles(),
                 .everywhere = frame.everywhere(),
                 .finest_footprint_m = frame.shot().finest_ray_m,
@@ -56,8 +58,8 @@ class Batch {
         ray.near_m = std::max(number(rays_.near, 0.0), 0.0) * length_m;
         ray.far_m =
             std::min(number(rays_.far, std::numeric_limits<double>::infinity()) * length_m, kFarthest_m);
-        const double time_s = number(rays_.time_s, half_open_s_) - half_open_s_;
-        ray.time_s = std::isnan(time_s) ? 0.0 : std::clamp(time_s, -half_open_s_, half_open_s_);
+        ray.time_s =  // without what a host's arithmetic rounds
+            std::clamp(number(rays_.time_s, half_open_s_) - half_open_s_, -half_open_s_, half_open_s_);
         ray.footprint_m = std::max(number(rays_.footprint_m, 0.0), 0.0);
         ray.spread = std::max(number(rays_.spread, 0.0), 0.0);
         return ray.near_m <= ray.far_m && std::isfinite(ray.footprint_m + ray.spread);

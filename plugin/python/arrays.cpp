@@ -1,7 +1,9 @@
 #include "plugin/python/arrays.h"
 
+#include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <optional>
 
 namespace pelagic::python {
@@ -23,6 +25,23 @@ struct Wanted {
     bool written = false;
 };
 
+// No two numbers share a byte: steps along one axis go beyond all that lies along the other. Layouts whose steps go past each other are
+// refused as well, whether they meet or not.
+void require_apart(const py::array& array, const Wanted& wanted) {
+    py::ssize_t within = kFloatBytes;
+    std::array<int, 2> axes{0, 1};
+    if (array.ndim() == 2 && std::abs(array.strides(1)) < std::abs(array.strides(0))) axes = {1, 0};
+    for (int i = 0; i < array.ndim(); ++i) {
+        const int axis = array.ndim() == 1 ? 0 : axes[i];
+        const py::ssize_t step = std::abs(array.strides(axis));
+        if (array.shape(axis) < 2) continue;
+        if (step < within)
+            throw py::value_error(wanted.name + ": its numbers overlap, " + std::to_string(step) +
+                                  " bytes apart; accepted: at least " + std::to_string(within));
+        within += step * (array.shape(axis) - 1);
+    }
+}
+
 py::array checked(const py::handle& object, const Wanted& wanted) {
     const std::string shape = wanted.count ? std::to_string(*wanted.count) : "n";
     const std::string expected = "a float32 numpy array of shape (" + shape +
@@ -43,57 +62,90 @@ py::array checked(const py::handle& object, const Wanted& wanted) {
                               "; accepted: " + expected);
     if (wanted.written && !array.writeable())
         throw py::value_error(wanted.name + ": is read-only; accepted: an array that may be written to");
-    if (array.size() == 0) return array;
-    if (wanted.components > 1 && array.strides(1) != kFloatBytes)
-        throw py::value_error(wanted.name + ": the components of a point are " +
-                              std::to_string(array.strides(1)) +
-                              " bytes apart; accepted: 4 (points may be any distance apart)");
-    const py::ssize_t step = array.strides(0);
-    if (step % kFloatBytes != 0 || reinterpret_cast<std::uintptr_t>(array.data()) % kFloatBytes != 0)
-        throw py::value_error(wanted.name +
-                              ": its numbers don't lie at multiples of 4 bytes; accepted: aligned memory");
-    if (wanted.written && array.shape(0) > 1 && std::abs(step) < kFloatBytes * wanted.components)
-        throw py::value_error(wanted.name + ": its points overlap, " + std::to_string(step) +
-                              " bytes apart; accepted: at least " +
-                              std::to_string(kFloatBytes * wanted.components));
+    if (wanted.written && array.size() > 0) require_apart(array, wanted);
     return array;
 }
 
-template <class Element>
-Strided<Element> written_view(const py::handle& object, const Asked& asked, py::ssize_t components) {
-    py::array array = checked(
-        object, {.name = asked.name, .count = asked.count, .components = components, .written = true});
-    return {static_cast<Element*>(array.mutable_data()), array.strides(0)};
+// Whether a view can be of its own memory.
+bool is_direct(const py::array& array, py::ssize_t components) {
+    return array.size() == 0 ||
+           ((components == 1 || array.strides(1) == kFloatBytes) && array.strides(0) % kFloatBytes == 0 &&
+            reinterpret_cast<std::uintptr_t>(array.data()) % kFloatBytes == 0);
 }
 
-template <class Vector>
-Readable<Vector> readable(const py::handle& object, const Asked& asked) {
+template <class Element>
+Strided<Element> written_view(const py::handle& object, const Asked& asked, py::ssize_t components,
+                              Copies& copies) {
+    py::array array = checked(
+        object, {.name = asked.name, .count = asked.count, .components = components, .written = true});
+    if (is_direct(array, components)) return {static_cast<Element*>(array.mutable_data()), array.strides(0)};
+    return {reinterpret_cast<Element*>(copies.stand_in_for(array, components))};
+}
+
+template <class Element>
+Readable<Element> readable(const py::handle& object, const Asked& asked, py::ssize_t components,
+                           Copies& copies) {
     const py::array array =
-        checked(object, {.name = asked.name, .count = asked.count, .components = Vector::length()});
-    return {{static_cast<const Vector*>(array.data()), array.strides(0)}, array.shape(0)};
+        checked(object, {.name = asked.name, .count = asked.count, .components = components});
+    if (is_direct(array, components))
+        return {{static_cast<const Element*>(array.data()), array.strides(0)}, array.shape(0)};
+    return {{reinterpret_cast<const Element*>(copies.copy_of(array, components))}, array.shape(0)};
 }
 
 }  // namespace
 
-Strided<glm::vec3> writable_vectors(const py::handle& object, const Asked& asked) {
-    return written_view<glm::vec3>(object, asked, 3);
+Copies::Copy& Copies::add(const py::array& array, py::ssize_t components) {
+    return copies_.emplace_back(Copy{.numbers = std::vector<float>(static_cast<std::size_t>(array.size())),
+                                     .array = nullptr,
+                                     .count = array.shape(0),
+                                     .components = components,
+                                     .step = array.strides(0),
+                                     .apart = components > 1 ? array.strides(1) : 0});
 }
 
-Strided<float> writable_numbers(const py::handle& object, const Asked& asked) {
-    return written_view<float>(object, asked, 1);
+float* Copies::copy_of(const py::array& array, py::ssize_t components) {
+    Copy& copy = add(array, components);
+    float* to = copy.numbers.data();
+    for (py::ssize_t i = 0; i < copy.count; ++i)
+        for (py::ssize_t c = 0; c < components; ++c)
+            std::memcpy(to++, static_cast<const char*>(array.data()) + copy.offset(i, c), sizeof(float));
+    return copy.numbers.data();
 }
 
-Strided<const float> readable_numbers(const py::handle& object, const Asked& asked) {
-    const py::array array = checked(object, {.name = asked.name, .count = asked.count});
-    return {static_cast<const float*>(array.data()), array.strides(0)};
+float* Copies::stand_in_for(py::array& array, py::ssize_t components) {
+    Copy& copy = add(array, components);
+    copy.array = static_cast<char*>(array.mutable_data());
+    return copy.numbers.data();
 }
 
-Readable<glm::vec2> readable_points(const py::handle& object, const Asked& asked) {
-    return readable<glm::vec2>(object, asked);
+void Copies::give_back() const {
+    for (const Copy& copy : copies_) {
+        if (!copy.array) continue;
+        const float* from = copy.numbers.data();
+        for (py::ssize_t i = 0; i < copy.count; ++i)
+            for (py::ssize_t c = 0; c < copy.components; ++c)
+                std::memcpy(copy.array + copy.offset(i, c), from++, sizeof(float));
+    }
 }
 
-Readable<glm::vec3> readable_vectors(const py::handle& object, const Asked& asked) {
-    return readable<glm::vec3>(object, asked);
+Strided<glm::vec3> writable_vectors(const py::handle& object, const Asked& asked, Copies& copies) {
+    return written_view<glm::vec3>(object, asked, 3, copies);
+}
+
+Strided<float> writable_numbers(const py::handle& object, const Asked& asked, Copies& copies) {
+    return written_view<float>(object, asked, 1, copies);
+}
+
+Strided<const float> readable_numbers(const py::handle& object, const Asked& asked, Copies& copies) {
+    return readable<float>(object, asked, 1, copies).view;
+}
+
+Readable<glm::vec2> readable_points(const py::handle& object, const Asked& asked, Copies& copies) {
+    return readable<glm::vec2>(object, asked, 2, copies);
+}
+
+Readable<glm::vec3> readable_vectors(const py::handle& object, const Asked& asked, Copies& copies) {
+    return readable<glm::vec3>(object, asked, 3, copies);
 }
 
 }  // namespace pelagic::python

@@ -105,15 +105,12 @@ BakeReport baked(BakeOrder order, Watching& watch) {
 BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
                     const std::optional<FramesAsked>& frames, const py::object& progress,
                     const py::object& cancel, bool trust_times, std::optional<std::size_t> max_memory_bytes) {
-    BakeOrder order = order_of(scene, out, frames, trust_times, max_memory_bytes);
-    Watch watch(progress, cancel);
-    BakeReport report;
-    {
-        const OthersMayRun others_may_run;
-        report = baked(std::move(order), watch);
-    }
-    watch.rethrow();
-    return report;
+    const BakeOrder order = order_of(scene, out, frames, trust_times, max_memory_bytes);
+    const auto watch = shared_watch(progress, cancel);
+    const auto report = std::make_shared<BakeReport>();
+    beside_others(watch, [=] { *report = baked(order, *watch); });
+    watch->rethrow();
+    return *report;
 }
 
 std::unique_ptr<Task> begin_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
@@ -164,11 +161,10 @@ std::vector<Finding> run_verify(const std::filesystem::path& folder, const py::o
     Watch watch(progress, cancel);
     try {
         Verification found;
-        {
-            const OthersMayRun others_may_run;
+        beside_others(watch, [&] {
             found =
                 verify(folder, {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()});
-        }
+        });
         watch.rethrow();
         return found.findings;
     } catch (const CheckCancelled& cancelled) {
@@ -228,7 +224,7 @@ class MapsOf final : public Maps {
 
   private:
     Slots made_at(double t_s, const BuildWatch& watch) {
-        frame_.set(t_s);
+        frame_.set(t_s, watch.cancel);
         if (foam_) foam_->set(t_s);
         Slots slots;
         for (const auto& part : parts_) {
@@ -258,10 +254,11 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
     std::unique_ptr<Maps> made;
     try {
-        const OthersMayRun others_may_run;
-        Plan plan = plan_bake(asked);
-        made = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
-            return std::make_unique<MapsOf<T>>(std::move(plan), building);
+        beside_others(watch, [&] {
+            Plan plan = plan_bake(asked);
+            made = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
+                return std::make_unique<MapsOf<T>>(std::move(plan), building);
+            });
         });
     } catch (const BuildCancelled& cancelled) {
         watch.rethrow();
@@ -288,21 +285,25 @@ void add_arrays(py::dict& arrays, OutputSlot& slot) {
 }
 
 // By square: the patch first, then each cascade's tile.
-py::tuple maps_at(Maps& self, double t_s, const py::object& progress, const py::object& cancel) {
-    Watch watch(progress, cancel);
-    Slots slots;
+py::tuple maps_at(const std::shared_ptr<Maps>& self, double t_s, const py::object& progress,
+                  const py::object& cancel) {
+    const auto watch = shared_watch(progress, cancel);
+    const auto made = std::make_shared<Slots>();
     try {
-        const OthersMayRun others_may_run;
-        slots = self.at(t_s, {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()});
+        beside_others(watch, [=] {
+            *made =
+                self->at(t_s, {.progress = [&](double done) { watch->tell(done); }, .cancel = watch->flag()});
+        });
     } catch (const BuildCancelled&) {
-        watch.rethrow();
+        watch->rethrow();
         throw Cancelled("computing the maps was cancelled");
     }
-    watch.rethrow();
+    watch->rethrow();
+    const Slots& slots = *made;
     py::dict patch;
     py::list tiles;
     for (std::size_t i = 0; i < slots.size(); ++i) {
-        const std::optional<int> cascade = self.plan().outputs[i].cascade;
+        const std::optional<int> cascade = self->plan().outputs[i].cascade;
         while (cascade && static_cast<int>(tiles.size()) <= *cascade) tiles.append(py::dict());
         py::dict to = cascade ? tiles[*cascade].cast<py::dict>() : patch;
         add_arrays(to, *slots[i]);
@@ -334,14 +335,16 @@ void add_bake(py::module_& module) {
         "trust_times: files of the recorded size that are no newer than the record count as whole; otherwise each is "
         "read, and its checksum compared.\n"
         "FileError where a file can't be written, ShotError for a scene that is refused, ValueError for "
-        "frames outside the shot.");
+        "frames outside the shot.\n"
+        "Ctrl-C: KeyboardInterrupt, within a second. Frames that are whole are kept, and the next bake goes on; a step that "
+        "takes longer ends by itself meanwhile.");
     module.def(
         "begin_bake", &begin_bake, py::arg("scene"), py::arg("out") = py::none(),
         py::arg("frames") = py::none(), py::kw_only(), py::arg("trust_times") = false,
         py::arg("max_memory_bytes") = py::none(),
         "Begins what bake() does: a Task whose result is the BakeReport, and whose progress is what bake() "
         "calls progress with.");
-    py::class_<Maps>(
+    py::class_<Maps, std::shared_ptr<Maps>>(
         module, "Maps",
         "The maps of a scene as arrays, the values that a bake writes, in the quality's precision.\n\n"
         "maps: names of output.maps: what is computed at output.map_resolution over the patch of "

@@ -64,11 +64,7 @@ py::array as_array(usd::MeshArray& array) {
 }
 
 py::dict read_mesh(const std::filesystem::path& path) {
-    usd::MeshLayer layer;
-    {
-        const OthersMayRun others_may_run;
-        layer = read_layer(path);
-    }
+    usd::MeshLayer layer = beside_others([path] { return read_layer(path); });
     py::dict arrays;
     if (layer.frame) {
         const glm::dvec3 at = layer.origin_m.value_or(glm::dvec3(0.0));

@@ -112,15 +112,17 @@ PythonCage make_cage(const py::object& points, const py::object& face_counts, co
     for (std::size_t i = 0; i < texture.size(); i += 2) mesh.st.emplace_back(texture[i], texture[i + 1]);
     mesh.st_indices = list_of<std::int32_t>(st_indices, "st_indices", 1);
     mesh.boundary = boundary_of(boundary);
-    const OthersMayRun others_may_run;
-    return {std::make_shared<const Cage>(std::move(mesh)), ""};
+    return {beside_others(
+                [mesh = std::move(mesh)]() mutable { return std::make_shared<const Cage>(std::move(mesh)); }),
+            ""};
 }
 
 PythonCage cage_of_file(const std::filesystem::path& path) {
-    const OthersMayRun others_may_run;
     try {
-        return {std::make_shared<const Cage>(
-                    parse_obj(read_text_file(path, kMostObjBytes), line_text(path.string()))),
+        return {beside_others([path] {
+                    return std::make_shared<const Cage>(
+                        parse_obj(read_text_file(path, kMostObjBytes), line_text(path.string())));
+                }),
                 path.string()};
     } catch (const TextFileError& error) {
         throw std::invalid_argument(line_text(path.string()) + ": the cage " + error.what());
@@ -129,62 +131,72 @@ PythonCage cage_of_file(const std::filesystem::path& path) {
 
 // ---- Its surface
 
-class PythonCageSurface {
+class PythonCageSurface : public std::enable_shared_from_this<PythonCageSurface> {
   public:
-    PythonCageSurface(const PythonCage& given, int level) : cage_(given.cage) {
+    static std::shared_ptr<PythonCageSurface> make(const PythonCage& given, int level) {
         if (!limits::kCageLevel.holds(level))
             throw py::value_error("level: accepted: an integer, " + text_of(limits::kCageLevel));
-        const OthersMayRun others_may_run;
-        limit_.emplace(cage_->mesh());
-        meshing_ = limit_->mesh(limit_->uniform_rates(1 << level));
+        return beside_others(
+            [cage = given.cage, level] { return std::make_shared<PythonCageSurface>(cage, level); });
     }
+    PythonCageSurface(std::shared_ptr<const Cage> cage, int level)
+        : cage_(std::move(cage)),
+          limit_(cage_->mesh()),
+          meshing_(limit_.mesh(limit_.uniform_rates(1 << level))) {}
 
     py::dict limit(const py::object& given) const {
         std::vector<glm::dvec3> moved = points_of(given, "points");
-        if (!given.is_none() && moved.size() != limit_->control_points())
-            refuse_shape("points", "numbers of shape (" + std::to_string(limit_->control_points()) +
+        if (!given.is_none() && moved.size() != limit_.control_points())
+            refuse_shape("points", "numbers of shape (" + std::to_string(limit_.control_points()) +
                                        ", 3), as the cage's");
         for (const glm::dvec3& point : moved)
             for (int axis = 0; axis < 3; ++axis)
                 if (!limits::kCagePoint_m.holds(point[axis]))
                     refuse_shape("points", "finite numbers, each " + text_of(limits::kCagePoint_m));
-        const std::vector<glm::dvec3>& points_m = given.is_none() ? cage_->mesh().points_m : moved;
-        std::vector<glm::dvec3> places_m, normals;
-        std::vector<glm::vec2> rest;
-        std::vector<float> height, cell;
-        std::vector<glm::vec3> normal;
-        glm::dvec3 origin_m;
-        {
-            const OthersMayRun others_may_run;
-            // Made when they are first asked for.
-            std::call_once(once_, [&] { stencils_ = limit_->stencils(meshing_); });
-            CageLimit::place(meshing_, stencils_, points_m, places_m, normals);
-            const std::vector<double> cells_m = cells_of(meshing_.faces, places_m, kFinestCell_m);
-            cell.assign(cells_m.begin(), cells_m.end());
-            glm::dvec3 low = places_m.front(), high = low;
-            for (const glm::dvec3& place : places_m) low = glm::min(low, place), high = glm::max(high, place);
-            origin_m = local_origin({0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.0},
-                                    *std::min_element(cells_m.begin(), cells_m.end()));
-            for (const glm::dvec3& place : places_m) {
-                rest.emplace_back(glm::dvec2(place) - glm::dvec2(origin_m));
-                height.push_back(static_cast<float>(place.z));
-            }
-            for (const glm::dvec3& each : normals) normal.emplace_back(each);
-        }
+        Placed made =
+            beside_others([self = shared_from_this(), moved = std::move(moved), own = given.is_none()] {
+                return self->placed(own ? self->cage_->mesh().points_m : moved);
+            });
         py::dict out;
-        out["origin_m"] = py::make_tuple(origin_m.x, origin_m.y);
-        out["rest_m"] = array_of<float>(std::move(rest));
-        out["height_m"] = array_of<float>(std::move(height));
-        out["normal"] = array_of<float>(std::move(normal));
-        out["cell_m"] = array_of<float>(std::move(cell));
+        out["origin_m"] = py::make_tuple(made.origin_m.x, made.origin_m.y);
+        out["rest_m"] = array_of<float>(std::move(made.rest_m));
+        out["height_m"] = array_of<float>(std::move(made.height_m));
+        out["normal"] = array_of<float>(std::move(made.normal));
+        out["cell_m"] = array_of<float>(std::move(made.cell_m));
         return out;
     }
 
     const CageMeshing& meshing() const { return meshing_; }
 
   private:
+    struct Placed {
+        glm::dvec3 origin_m;
+        std::vector<glm::vec2> rest_m;
+        std::vector<float> height_m, cell_m;
+        std::vector<glm::vec3> normal;
+    };
+    Placed placed(const std::vector<glm::dvec3>& points_m) const {
+        // Made when they are first asked for.
+        std::call_once(once_, [&] { stencils_ = limit_.stencils(meshing_); });
+        std::vector<glm::dvec3> places_m, normals;
+        CageLimit::place(meshing_, stencils_, points_m, places_m, normals);
+        const std::vector<double> cells_m = cells_of(meshing_.faces, places_m, kFinestCell_m);
+        Placed made;
+        made.cell_m.assign(cells_m.begin(), cells_m.end());
+        glm::dvec3 low = places_m.front(), high = low;
+        for (const glm::dvec3& place : places_m) low = glm::min(low, place), high = glm::max(high, place);
+        made.origin_m = local_origin({0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.0},
+                                     *std::min_element(cells_m.begin(), cells_m.end()));
+        for (const glm::dvec3& place : places_m) {
+            made.rest_m.emplace_back(glm::dvec2(place) - glm::dvec2(made.origin_m));
+            made.height_m.push_back(static_cast<float>(place.z));
+        }
+        for (const glm::dvec3& each : normals) made.normal.emplace_back(each);
+        return made;
+    }
+
     std::shared_ptr<const Cage> cage_;
-    std::optional<CageLimit> limit_;
+    CageLimit limit_;
     CageMeshing meshing_;
     mutable std::once_flag once_;
     mutable CageStencils stencils_;
@@ -238,11 +250,11 @@ void add_cage(py::module_& module) {
                 return self.cage->content() == other.cage->content();
             },
             py::is_operator());
-    py::class_<PythonCageSurface>(
+    py::class_<PythonCageSurface, std::shared_ptr<PythonCageSurface>>(
         module, "CageSurface",
         "Points on the limit surface of a cage. What OpenSubdiv derives from faces and sharpness is made once; a cage that "
         "moves from frame to frame, its faces staying, asks limit() with its new points.")
-        .def(py::init<const PythonCage&, int>(), py::arg("cage"), py::arg("level") = CageLevel{}.splits,
+        .def(py::init(&PythonCageSurface::make), py::arg("cage"), py::arg("level") = CageLevel{}.splits,
              "level: how often each edge is halved, 0 … 6.")
         .def(
             "limit", &PythonCageSurface::limit, py::arg("points") = none,

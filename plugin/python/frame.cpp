@@ -47,14 +47,14 @@ struct Footprints {
 };
 
 // None, a number for all points, or an array of each point's own.
-void read_footprints(Footprints& footprints, const py::object& object, const Asked& asked) {
+void read_footprints(Footprints& footprints, const py::object& object, const Asked& asked, Copies& copies) {
     if (object.is_none()) return;
     py::ssize_t numbers = 1;
     if (!py::isinstance<py::array>(object) && PyNumber_Check(object.ptr()) != 0) {
         footprints.number = static_cast<float>(py::float_(object));
         footprints.view = {&footprints.number, 0};
     } else {
-        footprints.view = readable_numbers(object, asked);
+        footprints.view = readable_numbers(object, asked, copies);
         numbers = *asked.count;
     }
     for (py::ssize_t i = 0; i < numbers; ++i)
@@ -64,6 +64,7 @@ void read_footprints(Footprints& footprints, const py::object& object, const Ask
 
 // What evaluate() was asked, without Python. It stays where it is: footprints point into it.
 struct Evaluation {
+    Copies copies;
     Points<float> points;
     Footprints cell, pixel;
     Results<float> results;
@@ -77,19 +78,21 @@ void write_to(Evaluation& asked, std::size_t output, const py::object& array, py
     const OutputRow& row = kOutputs[output];
     const Asked of{row.identifier, count};
     if (row.components == 3)
-        asked.results.set(VectorProduct::checked(static_cast<Product>(output)), writable_vectors(array, of));
+        asked.results.set(VectorProduct::checked(static_cast<Product>(output)),
+                          writable_vectors(array, of, asked.copies));
     else if (output == kFoamActive)
-        asked.foam.active = writable_numbers(array, of);
+        asked.foam.active = writable_numbers(array, of, asked.copies);
     else if (output == kFoamAge)
-        asked.foam.age_s = writable_numbers(array, of);
+        asked.foam.age_s = writable_numbers(array, of, asked.copies);
     else
-        asked.results.set(NumberProduct::checked(static_cast<Product>(output)), writable_numbers(array, of));
+        asked.results.set(NumberProduct::checked(static_cast<Product>(output)),
+                          writable_numbers(array, of, asked.copies));
 }
 
 // None, or an array of each point's own.
-Strided<const glm::vec2> axes(const py::object& object, const Asked& asked) {
+Strided<const glm::vec2> axes(const py::object& object, const Asked& asked, Copies& copies) {
     if (object.is_none()) return {};
-    const Strided<const glm::vec2> view = readable_points(object, asked).view;
+    const Strided<const glm::vec2> view = readable_points(object, asked, copies).view;
     for (py::ssize_t i = 0; i < *asked.count; ++i) {
         const glm::vec2 axis = view[static_cast<std::size_t>(i)];
         if (!std::isfinite(axis.x) || !std::isfinite(axis.y))
@@ -99,8 +102,9 @@ Strided<const glm::vec2> axes(const py::object& object, const Asked& asked) {
 }
 
 // Of an array that lives as long as they do.
-Points<float> points_of(const py::object& array, std::array<double, 2> origin_m, const char* name) {
-    const auto [points, count] = readable_points(array, {name});
+Points<float> points_of(const py::object& array, std::array<double, 2> origin_m, const char* name,
+                        Copies& copies) {
+    const auto [points, count] = readable_points(array, {name}, copies);
     if (!std::isfinite(origin_m[0]) || !std::isfinite(origin_m[1]))
         throw py::value_error("origin: accepted: (x, y), finite [m]");
     return {
@@ -114,6 +118,34 @@ void alone(const Work& work) {
     tbb::this_task_arena::isolate(work);
 }
 
+// Points between which one may be cancelled.
+constexpr std::size_t kPiece = std::size_t{1} << 18;
+
+template <class T>
+Strided<T> from(const Strided<T>& view, std::size_t first) {
+    return view ? Strided<T>{&view[first], view.stride_bytes} : view;
+}
+
+Points<float> piece_of(const Points<float>& points, std::size_t first) {
+    return {.origin_m = points.origin_m,
+            .count = std::min(kPiece, points.count - first),
+            .rest_m = from(points.rest_m, first),
+            .cell_m = from(points.cell_m, first),
+            .pixel_m = from(points.pixel_m, first),
+            .cell_axis_m = from(points.cell_axis_m, first),
+            .pixel_axis_m = from(points.pixel_axis_m, first),
+            .rest_normal = from(points.rest_normal, first)};
+}
+
+// work(points, first) of each piece, whose values depend on its points alone. Throws BuildCancelled.
+template <class Work>
+void in_pieces(const Points<float>& points, const BuildWatch& watch, const Work& work) {
+    for (std::size_t first = 0; first < points.count; first += kPiece) {
+        if (watch.cancel && *watch.cancel) throw BuildCancelled();
+        alone([&] { work(piece_of(points, first), first); });
+    }
+}
+
 class PythonFrame {
   public:
     explicit PythonFrame(const PythonSea& sea) : sea_(sea), frame_(sea.sea) {
@@ -121,9 +153,16 @@ class PythonFrame {
     }
 
     void set(double t_s) {
-        const OthersMayRun others_may_run;
-        const std::unique_lock writing(mutex_);
-        alone([&] { frame_.set(t_s); });
+        constexpr std::size_t kSeconds_bytes = std::size_t{1} << 28;  // of transforms, the first time
+        Watch watch{py::none(), py::none()};
+        try {
+            work(sea_.plan().frame_bytes() > kSeconds_bytes, watch, [&] {
+                const std::unique_lock writing(mutex_);
+                alone([&] { frame_.set(t_s, watch.flag()); });
+            });
+        } catch (const BuildCancelled&) {
+            throw Cancelled("setting the time was cancelled");
+        }
     }
 
     py::dict evaluate(const py::object& rest, std::array<double, 2> origin_m, const Arguments& given,
@@ -132,10 +171,11 @@ class PythonFrame {
         py::dict written = read(asked, rest, origin_m, given);
         Watch watch(progress, cancel);
         try {
-            const OthersMayRun others_may_run;
-            require_on_the_sea(asked.points, "rest");
-            const std::shared_lock reading(mutex_);
-            run(asked, watch_of(watch));
+            work(takes_long(asked, asked.points.count), watch, [&] {
+                require_on_the_sea(asked.points, "rest");
+                const std::shared_lock reading(mutex_);
+                run(asked, watch_of(watch));
+            });
         } catch (const BuildCancelled&) {
             watch.rethrow();
             throw Cancelled("evaluating was cancelled");
@@ -154,7 +194,7 @@ class PythonFrame {
             [&frame, asked, t_s](Task& task) -> Task::Made {
                 require_on_the_sea(asked->points, "rest");
                 const std::unique_lock writing(frame.mutex_);
-                alone([&] { frame.frame_.set(t_s); });
+                alone([&] { frame.frame_.set(t_s, task.flag()); });
                 frame.run(*asked, watch_of(task));
                 return {};
             },
@@ -171,9 +211,10 @@ class PythonFrame {
         if (!places || places.ndim() != 2 || places.shape(1) != 2)
             throw py::value_error("xy: accepted: numbers of shape (n, 2)");
         const py::ssize_t count = places.shape(0);
-        Points<float> points = points_of(places, origin_m, "xy");
+        Evaluation asked;
+        Points<float> points = points_of(places, origin_m, "xy", asked.copies);
         Footprints footprints;
-        read_footprints(footprints, footprint_m, {"footprint_m", count});
+        read_footprints(footprints, footprint_m, {"footprint_m", count}, asked.copies);
         points.cell_m = points.pixel_m = footprints.view;
 
         OutputSet wanted;
@@ -182,7 +223,6 @@ class PythonFrame {
         else
             for (const Product product : {Product::Normal, Product::Velocity})
                 wanted[index(product)] = sea_.outputs[index(product)];
-        Evaluation asked;
         py::dict written;
         for (std::size_t i = 0; i < kOutputs.size(); ++i) {
             if (!wanted[i]) continue;
@@ -195,24 +235,29 @@ class PythonFrame {
         std::vector<float> residual_m(points.count), height_m(points.count);
         Watch watch(progress, cancel);
         try {
-            const OthersMayRun others_may_run;
-            require_on_the_sea(points, "xy");
-            const std::shared_lock reading(mutex_);
-            require_time();
-            add_coverage(asked, points.count);
-            ProductSet summed = asked.results.given();
-            summed.set(index(Product::Displacement));
-            const PreparedQuery<float> query(frame_, 0, summed, points.origin_m);
-            alone([&] { find_rest(query, points, {}, {rest_m.data()}, {residual_m.data()}); });
-            std::vector<glm::vec3> displacement_m(points.count);
-            if (!asked.results.holds(Product::Displacement))
-                asked.results.set(Product::Displacement, {displacement_m.data()});
-            points.rest_m = {rest_m.data()};
-            alone([&] { query.evaluate(points, asked.results); });
-            const Strided<glm::vec3> displaced_m = asked.results.vectors(Product::Displacement);
-            for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
-            asked.points = points;
-            add_foam(asked, watch_of(watch));
+            work(takes_long(asked, points.count), watch, [&] {
+                require_on_the_sea(points, "xy");
+                const std::shared_lock reading(mutex_);
+                require_time();
+                add_coverage(asked, points.count);
+                ProductSet summed = asked.results.given();
+                summed.set(index(Product::Displacement));
+                const PreparedQuery<float> query(frame_, 0, summed, points.origin_m);
+                in_pieces(points, watch_of(watch), [&](const Points<float>& piece, std::size_t first) {
+                    find_rest(query, piece, {}, {&rest_m[first]}, {&residual_m[first]});
+                });
+                std::vector<glm::vec3> displacement_m(points.count);
+                if (!asked.results.holds(Product::Displacement))
+                    asked.results.set(Product::Displacement, {displacement_m.data()});
+                points.rest_m = {rest_m.data()};
+                in_pieces(points, watch_of(watch), [&](const Points<float>& piece, std::size_t first) {
+                    query.evaluate(piece, asked.results.from_point(first));
+                });
+                const Strided<glm::vec3> displaced_m = asked.results.vectors(Product::Displacement);
+                for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
+                asked.points = points;
+                add_foam(asked, watch_of(watch));
+            });
         } catch (const BuildCancelled&) {
             watch.rethrow();
             throw Cancelled("finding heights was cancelled");
@@ -262,16 +307,17 @@ class PythonFrame {
     // A dict of the arrays that will be written.
     py::dict read(Evaluation& asked, const py::object& rest, std::array<double, 2> origin_m,
                   const Arguments& given) const {
-        asked.points = points_of(rest, origin_m, "rest");
+        asked.points = points_of(rest, origin_m, "rest", asked.copies);
         const auto count = static_cast<py::ssize_t>(asked.points.count);
-        read_footprints(asked.cell, given.cell_m, {"cell_m", count});
-        read_footprints(asked.pixel, given.pixel_m, {"pixel_m", count});
+        read_footprints(asked.cell, given.cell_m, {"cell_m", count}, asked.copies);
+        read_footprints(asked.pixel, given.pixel_m, {"pixel_m", count}, asked.copies);
         asked.points.cell_m = asked.cell.view;
         asked.points.pixel_m = asked.pixel.view;
-        asked.points.cell_axis_m = axes(given.cell_axis_m, {"cell_axis_m", count});
-        asked.points.pixel_axis_m = axes(given.pixel_axis_m, {"pixel_axis_m", count});
+        asked.points.cell_axis_m = axes(given.cell_axis_m, {"cell_axis_m", count}, asked.copies);
+        asked.points.pixel_axis_m = axes(given.pixel_axis_m, {"pixel_axis_m", count}, asked.copies);
         if (!given.rest_normal.is_none())
-            asked.points.rest_normal = readable_vectors(given.rest_normal, {"rest_normal", count}).view;
+            asked.points.rest_normal =
+                readable_vectors(given.rest_normal, {"rest_normal", count}, asked.copies).view;
 
         const auto arrays = with_fresh(given, count);
         py::dict written;
@@ -289,12 +335,26 @@ class PythonFrame {
         return {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
     }
 
+    // What takes a moment needs no thread of its own.
+    template <class Work>
+    void work(bool takes_long, Watch& watch, const Work& work) const {
+        if (takes_long) return beside_others(watch, work);
+        const OthersMayRun others_may_run;
+        work();
+    }
+    bool takes_long(const Evaluation& asked, std::size_t points) const {
+        return points > kPiece || (asked.has_foam() && foam_);
+    }
+
     // Whoever calls it holds the lock. Throws BuildCancelled.
     void run(Evaluation& asked, const BuildWatch& watch) const {
         require_time();
         add_coverage(asked, asked.points.count);
-        alone([&] { pelagic::evaluate(frame_, 0, asked.points, asked.results); });
+        in_pieces(asked.points, watch, [&](const Points<float>& piece, std::size_t first) {
+            pelagic::evaluate(frame_, 0, piece, asked.results.from_point(first));
+        });
         add_foam(asked, watch);
+        asked.copies.give_back();
     }
 
     // Foam begins with what breaks now.
@@ -382,8 +442,9 @@ const std::string kEvaluateDoc =
     "Velocities are per second of the frame's time; shot.time_scale of those make a second of the screen.\n"
     "outputs: names; arrays of those not given are made anew. With neither arrays nor outputs: all of the "
     "sea's products.\n\n"
-    "Arrays are float32. Points may lie any multiple of 4 bytes apart, the components of one are adjacent; "
-    "nothing between them is touched. Outputs must not overlap. Any thread may call; others run meanwhile.\n\n"
+    "Arrays are float32, of any strides; nothing between their numbers is touched. They are read and written in place, but "
+    "through a copy where the components of a point aren't adjacent or numbers don't lie at multiples of 4 bytes. Outputs must "
+    "not overlap. Any thread may call; others run meanwhile.\n\n"
     "Coverage is all foam: where it lives, with what earlier breaking has left. That is a sum over earlier times, of which the "
     "frame keeps what it can from one time to the next; a time far from those before it takes several times as long. "
     "progress: called with the share of those times that is done, 0 to 1, where they are many. cancel: a Cancel, or a callable "
@@ -445,7 +506,7 @@ void add_frame(py::module_& module) {
     frame.def(py::init<const PythonSea&>(), py::arg("sea"))
         .def(
             "set", &PythonFrame::set, py::arg("t"),
-            "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile.")
+            "Makes it the sea at any finite time t [s], whatever it was before. Other threads run meanwhile. Interrupted by Ctrl-C it has no time.")
         .def(
             "heights", &PythonFrame::heights, py::arg("xy"), py::arg("origin") = std::array{0.0, 0.0},
             py::kw_only(), py::arg("footprint_m") = none(), py::arg("outputs") = none(),

@@ -30,6 +30,18 @@ constexpr std::size_t kGrain = 256;  // points a task computes
 constexpr std::size_t kShaded =
     kLayers.size() - 1;  // layers of a point: the air before it depends on the eye's place
 
+// work(range) over as many points, by all threads, until it is interrupted.
+template <class Work>
+void over_points(py::ssize_t count, const Work& work) {
+    Watch watch{py::none(), py::none()};
+    beside_others(watch, [&] {
+        tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+            if (!*watch.flag()) work(range);
+        });
+    });
+    if (*watch.flag()) throw Cancelled("the program ends");
+}
+
 py::tuple tuple_of(glm::vec3 v) {
     return py::make_tuple(v.x, v.y, v.z);
 }
@@ -42,30 +54,25 @@ struct PythonSky {
 
 PythonSky sky_of(const Scene& scene) {
     require_valid(scene);
-    const Scene kept = scene;
-    const OthersMayRun others_may_run;
-    return {std::make_shared<const Sky>(make_sky(kept))};
+    return {beside_others([kept = scene] { return std::make_shared<const Sky>(make_sky(kept)); })};
 }
 
 py::array image_of(const PythonSky& self, int width) {
-    LatLong picture;
-    {
-        const OthersMayRun others_may_run;
-        picture = lat_long(*self.sky, width);
-    }
+    LatLong picture = beside_others([sky = self.sky, width] { return lat_long(*sky, width); });
     return array_of<float>(std::move(picture.radiance), {picture.height, picture.width});
 }
 
 py::object radiance_towards(const PythonSky& self, const py::object& directions, py::object out) {
-    const auto [towards, count] = readable_vectors(directions, {"directions"});
+    Copies copies;
+    const auto [towards, count] = readable_vectors(directions, {"directions"}, copies);
     if (out.is_none()) out = py::array_t<float>({count, py::ssize_t{3}});
-    const Strided<glm::vec3> radiance = writable_vectors(out, {"out", count});
+    const Strided<glm::vec3> radiance = writable_vectors(out, {"out", count}, copies);
     const Strided<const glm::vec3> to = towards;
-    const OthersMayRun others_may_run;
-    tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+    over_points(count, [&](const Range& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
             radiance[i] = background(*self.sky, to[i], 1.0f).sky;
     });
+    copies.give_back();
     return out;
 }
 
@@ -132,27 +139,28 @@ struct ShadeArguments {
 
 py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArguments& given,
                LightingChoice choice) {
-    const auto [normal, count] = readable_vectors(given.normal, {"normal"});
+    Copies copies;
+    const auto [normal, count] = readable_vectors(given.normal, {"normal"}, copies);
     const auto read = [&, n = count](const py::object& object, const char* name) {
-        return readable_vectors(object, {name, n}).view;
+        return readable_vectors(object, {name, n}, copies).view;
     };
     const Strided<const glm::vec3> to_eye = read(given.to_eye, "to_eye"),
                                    slope_variance = read(given.slope_variance, "slope_variance"),
                                    normals = normal;
     choice.whitecaps = !given.coverage.is_none();
-    const Strided<const float> coverage =
-        choice.whitecaps ? readable_numbers(given.coverage, {"coverage", count}) : Strided<const float>{};
+    const Strided<const float> coverage = choice.whitecaps
+                                              ? readable_numbers(given.coverage, {"coverage", count}, copies)
+                                              : Strided<const float>{};
     std::array<Strided<glm::vec3>, kShaded> out;
     py::dict written;
     for (std::size_t layer = 0; layer < kShaded; ++layer) {
         const char* name = kLayers[layer].first;
         py::object array = given.layers[layer];
         if (array.is_none()) array = py::array_t<float>({count, py::ssize_t{3}});
-        out[layer] = writable_vectors(array, {name, count});
+        out[layer] = writable_vectors(array, {name, count}, copies);
         written[name] = array;
     }
-    const OthersMayRun others_may_run;
-    tbb::parallel_for(Range(0, static_cast<std::size_t>(count), kGrain), [&](const Range& range) {
+    over_points(count, [&](const Range& range) {
         std::vector<SeaPoint> points(range.size());
         std::vector<SeaRadiance> radiance(range.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -167,6 +175,7 @@ py::dict shade(const PythonSky& sky, const WaterBody& water, const ShadeArgument
             for (std::size_t i = 0; i < radiance.size(); ++i)
                 out[layer][range.begin() + i] = radiance[i].*kLayers[layer].second;
     });
+    copies.give_back();
     return written;
 }
 

@@ -58,7 +58,8 @@ PYBIND11_MODULE(pelagic, module) {
         "    frame = pelagic.Frame(pelagic.Sea(scene))\n"
         "    frame.set(1.5)\n"
         "    position = frame.evaluate(rest, outputs=(\"position\",))[\"position\"]\n\n"
-        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north. At the program's end "
+        "Metres, seconds, radians unless a name says otherwise; z is up, x east, y north. Ctrl-C ends what the main thread "
+        "waits for; a step of it that takes longer than half a second ends by itself. At the program's end "
         "work in other threads is cancelled, or waited for. A process that is forked after the first computation "
         "can't compute: start workers with multiprocessing's \"spawn\" or \"forkserver\".";
     module.attr("__version__") = PELAGIC_VERSION;

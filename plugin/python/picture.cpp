@@ -49,20 +49,22 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     Scene kept = scene;
     if (size) kept.camera.resolution = {(*size)[0], (*size)[1]};
     require_valid(kept);
-    Watch watch(progress, cancel);
+    const auto watch = shared_watch(progress, cancel);
     RenderOptions options = render_options(kept);
     if (has_budget(kept.quality)) {
         FixedSettings fixed{.samples = samples, .shutter_frames = shutter, .layers = data_layers_of(layers)};
         if (sky_quality) fixed.sky_quality = sky_quality_of(*sky_quality);
-        PictureBudget budget;
+        const auto found = std::make_shared<PictureBudget>();
         try {
-            const OthersMayRun others_may_run;
-            budget = picture_budget(kept, fixed, max_memory_bytes.value_or(0),
-                                    {.progress = {}, .cancel = watch.flag()});
+            beside_others(watch, [=] {
+                *found = picture_budget(kept, fixed, max_memory_bytes.value_or(0),
+                                        {.progress = {}, .cancel = watch->flag()});
+            });
         } catch (const BuildCancelled&) {
-            watch.rethrow();
+            watch->rethrow();
             throw Cancelled("rendering was cancelled");
         }
+        const PictureBudget& budget = *found;
         if (!budget.holds) throw py::value_error(budget.text + "; raise the budget");
         kept = budget.scene;
         options = budget.options;
@@ -73,25 +75,31 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
     options.shutter_frames = shutter;
     options.alpha = alpha;
     check_render(kept, options);
-    auto picture = std::make_unique<Picture>();
-    bool is_whole = false;
+    struct Drawn {
+        Picture picture;
+        bool is_whole = false;
+    };
+    const auto drawn = std::make_shared<Drawn>();
     try {
-        const OthersMayRun others_may_run;
-        const std::array frames{frame};
-        require_memory(
-            render_memory(kept, options, frames, std::nullopt, tbb::this_task_arena::max_concurrency()),
-            machine::memory_limit_or(max_memory_bytes.value_or(0)), "this picture");
-        // Half of the way is the sea's: the first frame is about as long in the making.
-        Renderer renderer(kept, options, make_sky(kept), frames,
-                          {.progress = [&](double done) { watch.tell(0.5 * done); }, .cancel = watch.flag()});
-        is_whole = renderer.render(
-            frame, *picture,
-            {.progress = [&](double done) { watch.tell(0.5 + 0.5 * done); }, .cancel = watch.flag()});
+        beside_others(watch, [=] {
+            const std::array frames{frame};
+            require_memory(
+                render_memory(kept, options, frames, std::nullopt, tbb::this_task_arena::max_concurrency()),
+                machine::memory_limit_or(max_memory_bytes.value_or(0)), "this picture");
+            // Half of the way is the sea's: the first frame is about as long in the making.
+            Renderer renderer(
+                kept, options, make_sky(kept), frames,
+                {.progress = [&](double done) { watch->tell(0.5 * done); }, .cancel = watch->flag()});
+            drawn->is_whole = renderer.render(
+                frame, drawn->picture,
+                {.progress = [&](double done) { watch->tell(0.5 + 0.5 * done); }, .cancel = watch->flag()});
+        });
     } catch (const BuildCancelled&) {
-        is_whole = false;
+        drawn->is_whole = false;
     }
-    watch.rethrow();
-    if (!is_whole) throw Cancelled("rendering was cancelled");
+    watch->rethrow();
+    if (!drawn->is_whole) throw Cancelled("rendering was cancelled");
+    auto picture = std::make_unique<Picture>(std::move(drawn->picture));
     py::dict answer;
     const Picture& made = *picture;
     const py::capsule owner(picture.release(), [](void* held) { delete static_cast<Picture*>(held); });

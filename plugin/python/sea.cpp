@@ -136,8 +136,7 @@ PythonSea built(const SeaOrder& order, Watching& watch) {
 PythonSea build_sea(const SeaOrder& order, Watch& watch) {
     std::optional<PythonSea> sea;
     try {
-        const OthersMayRun others_may_run;
-        sea = built(order, watch);
+        beside_others(watch, [&] { sea = built(order, watch); });
     } catch (const BuildCancelled& cancelled) {
         watch.rethrow();
         throw Cancelled(cancelled.what());

@@ -26,11 +26,7 @@ namespace py = pybind11;
 using Triple = std::array<double, 3>;
 
 py::array grid_quads(int columns, int rows) {
-    Faces faces;
-    {
-        const OthersMayRun others_may_run;
-        faces = grid_faces(columns, rows);
-    }
+    Faces faces = beside_others([=] { return grid_faces(columns, rows); });
     const auto quads = static_cast<py::ssize_t>(faces.counts.size());
     return array_of<std::int32_t>(std::move(faces.indices), {quads, 4});
 }
@@ -41,8 +37,10 @@ py::tuple patch(double size_m, int resolution) {
     if (!limits::kSurfaceResolution.holds(resolution))
         throw py::value_error("resolution: is outside the range; accepted: " +
                               text_of(limits::kSurfaceResolution));
-    auto points = rest_points<float>(
-        {.per_side = resolution + 1, .spacing_m = size_m / resolution, .first_m = -0.5 * size_m});
+    auto points = beside_others([=] {
+        return rest_points<float>(
+            {.per_side = resolution + 1, .spacing_m = size_m / resolution, .first_m = -0.5 * size_m});
+    });
     return py::make_tuple(array_of<float>(std::move(points)), grid_quads(resolution, resolution));
 }
 
@@ -128,12 +126,11 @@ ProjectedGridOptions options_of(const PythonSea& sea) {
 PythonGrid grid_of(const PythonSea& sea, const View& view, const std::optional<std::array<int, 2>>& size) {
     ProjectedGridOptions options = options_of(sea);
     options.size = checked_size(size);
-    ProjectedGrid grid;
-    {
-        const OthersMayRun others_may_run;
-        grid = projected_grid(view, options);
-        if (sea.query().cell_m.size() > 1) keep_to_rungs(grid, projected_grid_needs(view, options));
-    }
+    ProjectedGrid grid = beside_others([view, options, has_rungs = sea.query().cell_m.size() > 1] {
+        ProjectedGrid made = projected_grid(view, options);
+        if (has_rungs) keep_to_rungs(made, projected_grid_needs(view, options));
+        return made;
+    });
     return {.columns = grid.columns,
             .rows = grid.rows,
             .origin_m = grid.origin_m,

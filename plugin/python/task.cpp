@@ -48,8 +48,8 @@ bool Task::is_done() const {
 
 void Task::wait() const {
     if (is_done()) return;
-    const OthersMayRun others_may_run;
-    made_.wait();
+    if (const std::exception_ptr raised = wait_for(made_, {}, std::chrono::milliseconds(0)))
+        std::rethrow_exception(raised);
 }
 
 py::object Task::result() {
@@ -78,7 +78,9 @@ void add_task(py::module_& module) {
             "progress", &Task::progress,
             "What the blocking form last called its progress with, a tuple; None before that.")
         .def("cancel", &Task::cancel, "The work ends soon, where it can.")
-        .def("wait", &Task::wait, "Until it has ended. Other threads run meanwhile.")
+        .def(
+            "wait", &Task::wait,
+            "Until it has ended. Other threads run meanwhile; Ctrl-C ends the waiting, and the work goes on.")
         .def("result", &Task::result, "What came of it, after waiting for it; raises what went wrong.");
 }
 

@@ -119,9 +119,8 @@ double checked_footprint(double finest_m) {
 template <class Made, class... More>
 std::shared_ptr<Made> make_beside_others(const Scene& scene, More... more) {
     require_valid(scene);
-    const Scene kept = scene;  // other threads may change the caller's meanwhile
-    const OthersMayRun others_may_run;
-    return std::make_shared<Made>(kept, more...);
+    // A copy: other threads may change the caller's meanwhile.
+    return beside_others([kept = scene, more...] { return std::make_shared<Made>(kept, more...); });
 }
 
 template <class Made, class... More>

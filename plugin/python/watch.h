@@ -4,10 +4,14 @@
 #include <pybind11/pybind11.h>
 
 #include <atomic>
+#include <chrono>
 #include <exception>
+#include <functional>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -91,6 +95,11 @@ class Watch {
 
     const std::atomic<bool>* flag() const { return stop_.get(); }
     void stop() { stop_->store(true); }
+    // With the interpreter held: stops, and calls nobody any more.
+    void leave() {
+        is_left_ = true;
+        stop();
+    }
 
     // Calls progress with these, then the callable `cancel`, whose answer counts as in an `if`. An exception of
     // either ends this work, not what else a Cancel is for, and is kept for rethrow().
@@ -98,7 +107,7 @@ class Watch {
     void tell(const Values&... values) {
         if (!asks_python_) return;
         const pybind11::gil_scoped_acquire python;
-        if (failed_) return;
+        if (failed_ || is_left_) return;
         try {
             if (!progress_.is_none()) progress_(values...);
             if (!asked_.is_none() && pybind11::bool_(asked_())) stop();
@@ -115,8 +124,65 @@ class Watch {
   private:
     pybind11::object progress_, asked_ = pybind11::none();
     std::shared_ptr<std::atomic<bool>> stop_ = std::make_shared<std::atomic<bool>>(false);
-    bool asks_python_ = false;
+    bool asks_python_ = false, is_left_ = false;
     std::exception_ptr failed_;
 };
+
+// Whether this is Python's main thread, which alone runs the handlers of signals.
+bool answers_signals();
+
+// Begins work in a thread beside this one, which keeps it for later work: a new one each time would leave its scratch memory in the frames
+// that it works on. The program's end waits for it.
+std::future<void> begin_beside(std::function<void()> work);
+
+// Waits for it while other threads run. What a signal's handler raises meanwhile, such as Ctrl-C's KeyboardInterrupt: null, or to be
+// rethrown, with the interpreter held. on_signal: what then ends the work, which is waited for that long and otherwise left alone.
+template <class Future>
+std::exception_ptr wait_for(const Future& done, const std::function<void()>& on_signal,
+                            std::chrono::milliseconds then_for) {
+    constexpr auto kPatience = std::chrono::milliseconds(50);
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point raised_at;
+    std::exception_ptr raised;
+    const OthersMayRun others_may_run;
+    while (done.wait_for(kPatience) != std::future_status::ready) {
+        if (raised && Clock::now() - raised_at >= then_for) break;
+        const pybind11::gil_scoped_acquire python;
+        if (PyErr_CheckSignals() == 0) continue;
+        if (!raised) raised_at = Clock::now();
+        raised = std::make_exception_ptr(pybind11::error_already_set());
+        if (on_signal) on_signal();
+        if (then_for == std::chrono::milliseconds(0)) break;
+    }
+    return raised;
+}
+
+// Long work without the interpreter, while other threads run and Ctrl-C ends it. work() tells the watch, and ends soon when its flag
+// is set. What it throws is thrown.
+void beside_others(Watch& watch, const std::function<void()>& work);
+
+// The same for work some of whose steps take long: after Ctrl-C it may go on to the end of its step by itself. So work() refers to
+// nothing but the watch that it doesn't own, and to nothing of Python's.
+void beside_others(const std::shared_ptr<Watch>& watch, const std::function<void()>& work);
+// Made with the interpreter held, as a Watch; may be released without.
+std::shared_ptr<Watch> shared_watch(const pybind11::object& progress, const pybind11::object& cancel);
+
+// The same for work that nothing can end: Ctrl-C leaves it to itself, and what it makes is dropped. So it refers to nothing that it
+// doesn't own, and to nothing of Python's.
+template <class Make>
+auto beside_others(Make make) -> std::invoke_result_t<Make&> {
+    if (!answers_signals()) {
+        const OthersMayRun others_may_run;
+        return make();
+    }
+    using Made = std::invoke_result_t<Make&>;
+    const auto made = std::make_shared<std::optional<Made>>();
+    std::future<void> done =
+        begin_beside([made, make = std::move(make)]() mutable { made->emplace(make()); });
+    if (const std::exception_ptr raised = wait_for(done, {}, std::chrono::milliseconds(0)))
+        std::rethrow_exception(raised);
+    done.get();
+    return std::move(**made);
+}
 
 }  // namespace pelagic::python

@@ -80,11 +80,22 @@ std::array<float, 3> packed(glm::vec3 v) {
     return {v.x, v.y, v.z};
 }
 
+// The light's layers as they stand in a sentence.
+std::string light_names() {
+    std::string names, last;
+    for (const PictureLayerRow& row : kPictureLayers) {
+        if (!row.light) continue;
+        if (!last.empty()) names += (names.empty() ? "" : ", ") + last;
+        last = row.name;
+    }
+    return names + " and " + last;
+}
+
 std::vector<exr::Attribute> attributes_of(const PictureContext& context, int frame) {
     const Scene scene = portable(context.scene);
     const View view = view_at(scene.camera, frame);
     std::vector<exr::Attribute> attributes{
-        {"content", std::string("radiance; the layers sun, sky, sea and foam add up to R, G, B")},
+        {"content", "radiance; the layers " + light_names() + " add up to R, G, B"},
         {"time", scene.shot.time_s(frame)},
         {"fps", scene.shot.fps},
         {"frame", frame},

@@ -70,7 +70,7 @@ class RendererOf final : public Impl {
         int ended = 0;       // passes
         const auto go_on = [&](double done) {
             if (watch.progress) watch.progress((ended + begun + (1.0 - begun) * done) / passes);
-            return !(watch.cancel && watch.cancel->load(std::memory_order_relaxed));
+            return !is_cancelled(watch);
         };
         for (const int pass : order) {
             // With a shutter the first pass is for what isn't blurred, and each of the others takes one sample.
@@ -81,7 +81,7 @@ class RendererOf final : public Impl {
                                     : Sampling{n, {sample % n, sample / n}};
             const bool is_answered = is_lit || has_data();
             begun = 0.0;
-            begin(moments[pass]);
+            if (!begin(moments[pass], watch)) return false;
             const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
             if (is_answered && sea_.foam_lives()) {
                 const BuildWatch past{.progress =
@@ -114,16 +114,19 @@ class RendererOf final : public Impl {
         for (std::size_t i = 0; i < frames.size(); ++i)
             for (const double moment : moments_of(frames[i], options_)) {
                 if (!is_among_waves(view_at(scene_.camera, moment), grid_options_)) continue;
-                sea_.set(scene_.shot.time_s(moment));
+                if (!set(moment, watch)) return false;
                 refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
                 if (watch.progress)
                     watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
-                if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
+                if (is_cancelled(watch)) return false;
             }
         return true;
     }
 
   private:
+    static bool is_cancelled(const RenderWatch& watch) {
+        return watch.cancel && watch.cancel->load(std::memory_order_relaxed);
+    }
     bool has_data() const { return data_components(options_.layers) > 0; }
     glm::ivec2 raster_size() const { return view_.resolution / sampling_.stride; }
 
@@ -161,18 +164,30 @@ class RendererOf final : public Impl {
         return true;
     }
 
-    void begin(double moment) {
-        sea_.set(scene_.shot.time_s(moment));
+    bool set(double moment, const RenderWatch& watch) {
+        try {
+            sea_.set(scene_.shot.time_s(moment), watch.cancel);
+            return true;
+        } catch (const BuildCancelled&) {
+            return false;
+        }
+    }
+
+    // False when it was cancelled, here and below: of large pictures each step takes tenths of a second.
+    bool begin(double moment, const RenderWatch& watch) {
+        if (!set(moment, watch)) return false;
         refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
         const double height_m = view_.position_m.z;
         view_ = view_at(scene_.camera, moment);
         if (air_.empty() || view_.position_m.z != height_m) air_ = sea_.air_before(view_.position_m.z);
-        lay_out_grid();
+        if (is_cancelled(watch) || !lay_out_grid(watch)) return false;
         spray_ = sea_.spray_before(view_, grid_options_);
+        return !is_cancelled(watch);
     }
 
-    void lay_out_grid() {
+    bool lay_out_grid(const RenderWatch& watch) {
         grid_ = projected_grid(view_, grid_options_);
+        if (is_cancelled(watch)) return false;
         first_pixel_m_ = T(0);
         if (plan().queries[kQuery].query.pixel_m.size() > 1) {
             const ProjectedGridNeeds own = projected_grid_needs(view_, grid_options_);
@@ -197,7 +212,9 @@ class RendererOf final : public Impl {
                            .cell_m = {cell_m_.data()},
                            .cell_axis_m = {cell_axis_m_.data()}},
                  results);
+        if (is_cancelled(watch)) return false;
         find_mesh_variance();
+        if (is_cancelled(watch)) return false;
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         for (glm::vec<3, T>& position : position_)
             position = glm::vec<3, T>(on_earth(glm::dvec3(position), grid_.curvature_per_m));
@@ -215,9 +232,11 @@ class RendererOf final : public Impl {
             clip_[i].y -= shift.y * clip_[i].w;
         }
         const ProjectedGridSize size{grid_.columns, grid_.rows};
+        if (is_cancelled(watch)) return false;
         if (size != triangles_size_) triangles_ = projected_grid_triangles(size);
         triangles_size_ = size;
         raster_.set(clip_, triangles_, raster_size());
+        return !is_cancelled(watch);
     }
 
     // What the cells hide of the slopes, at rest.

@@ -106,8 +106,7 @@ with checking("the foam's mean is the coverage"):
         nodes.links.new(glow.outputs[0], nodes.nodes["Material Output"].inputs["Surface"])
         picture, _ = seen(0, 0)
         print("  ", age_s, structure, streaks, np.round(picture, 4))
-        assert 0.085 < picture[0] < 0.115, (age_s, structure, streaks, picture)
-        assert structure > 0.0 or abs(picture[0] - 0.1) < 1e-3, picture
+        assert abs(picture[0] - 0.1) < 1e-3, (age_s, structure, streaks, picture)  # 1 %, as the README says
 
 with checking("foam is dense where waves break and thin in what they left, by the core's numbers"):
     scene = pelagic.Scene()

@@ -2,12 +2,13 @@
 
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import *  # noqa: F403
 
 enable()
-from pelagic_ocean import compat, ocean, play
+from pelagic_ocean import compat, look, ocean, play
 
 
 def grid(side=8, size_m=40.0):
@@ -27,7 +28,33 @@ with checking("add_ocean: an object with a mesh that moves, selected and active"
     assert compat.can_denoise() or not bpy.context.scene.cycles.use_denoising, "Cycles couldn't render"
     assert all(polygon.use_smooth for polygon in sea.data.polygons[:100])
 
+with checking("a look that fails, whatever the reason, leaves the sea and a warning"):
+    said, give, try_to = [], look.give, look.try_to
+    hears = SimpleNamespace(report=lambda kind, text: said.append((kind, text)))
+    look.try_to = lambda _, its_give: try_to(hears, its_give)
+
+    def fails(*_):
+        raise error
+
+    for error in (TypeError('enum "SHARP" not found in (\'BECKMANN\', \'GGX\')'), KeyError("Specular"), ZeroDivisionError("zero"),
+                  OSError("sky.exr isn't there")):
+        fresh_file()
+        look.give = fails
+        assert bpy.ops.pelagic.add_ocean() == {"FINISHED"}
+        look.give = give
+        bare = bpy.context.object
+        assert ocean.is_ocean(bare) and bare.select_get() and np.std(numbers(bare.data)[:, 2]) > 0.1
+        (kind, text), = said
+        assert kind == {"WARNING"} and str(error.args[0]) in text, said
+        said.clear()
+        bpy.context.scene.frame_set(9)
+        bpy.ops.pelagic.add_material()
+        assert "Pelagic" in bare.data.materials[0].name
+    look.try_to = try_to
+
 with checking("the faces look up, and the UV map is the patch"):
+    sea = add_ocean(horizon=True)
+    bpy.context.view_layer.update()
     assert sea.data.polygons[1000].normal.z > 0.5
     corner = np.array([entry.uv for entry in sea.data.uv_layers["UVMap"].data[:1]])
     assert np.allclose(corner, 0.0, atol=1e-6)

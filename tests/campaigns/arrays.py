@@ -38,17 +38,25 @@ class Memory:
         return made
 
     def laid(self, values, writable=False):
-        """The same values, with points some way apart or backwards, in memory that is looked at afterwards."""
+        """The same values, with points and components some way apart, backwards or at odd addresses, in memory that is looked at
+        afterwards."""
         count, width = len(values), int(np.prod(values.shape[1:]))
-        step = width + self.draw.choice((0, 0, 1, 4))
-        memory = np.full(8 + max(count, 1) * step + 8, SENTINEL, np.float32)
-        inner = memory[8:8 + count * step].reshape(count, step)[:, :width]
+        apart = self.draw.choice((1, 1, 1, 2))
+        step = width * apart + self.draw.choice((0, 0, 1, 4))
+        room = 8 + max(count, 1) * step + 8
+        memory = np.zeros(4 * room + 4, np.uint8)
+        odd = self.draw.choice((0, 0, 0, 1))
+        memory = memory[odd:odd + 4 * room].view(np.float32)
+        memory[...] = SENTINEL
+        inner = memory[8:8 + count * step].reshape(count, step)[:, :width * apart:apart]
         view = inner[:, 0] if values.ndim == 1 else inner
         if self.draw.random() < 0.3:
             view = view[::-1]
+        if self.draw.random() < 0.1 and values.ndim == 2:
+            view = view[:, ::-1]
         view[...] = values
         inside = np.zeros(len(memory), bool)
-        inside[8:8 + count * step].reshape(count, step)[:, :width] = True
+        inside[8:8 + count * step].reshape(count, step)[:, :width * apart:apart] = True
         self.kept.append((memory, memory.copy(), inside if writable else np.zeros(len(memory), bool)))
         return view
 

@@ -167,7 +167,7 @@ class Calls {
             opened(std::string(kSmall) + kTiles +
                    "choppiness = 6.0\n[sea]\nwind_speed_mps = 40.0\ngust_strength = 1.0\ndepth_m = 5.0\n")};
         sea_ = seas[numbers_.below(seas.size())];
-        hold(pelagic_frame_create(sea_, 1.0, 1.0 + 1.0 / 48.0, &frame_, &error_) == PELAGIC_OK, "a frame",
+        hold(pelagic_frame_create(sea_, 1.0, 1.0 + open_for_s_, &frame_, &error_) == PELAGIC_OK, "a frame",
              error_.message);
         camera_ = PELAGIC_INIT(pelagic_camera);
         hold(pelagic_shot_camera(sea_, 1.0, &camera_, &error_) == PELAGIC_OK, "a camera", error_.message);
@@ -255,7 +255,8 @@ class Calls {
         frame_ = made;
     }
 
-    static void hold_shutter(double open_s, double close_s) {
+    void hold_shutter(double open_s, double close_s) {
+        open_for_s_ = close_s - open_s;
         hold(std::isfinite(open_s) && std::isfinite(close_s), "a shutter that is taken is finite");
         hold(close_s >= open_s && close_s - open_s <= 1.0,
              "a shutter that is taken is open for a second at most");
@@ -324,13 +325,20 @@ class Calls {
             }
     }
 
+    // Finite ones within the shutter: others are refused, as are those that aren't finite.
+    std::vector<float> while_open(std::vector<float> times_s) const {
+        for (float& time_s : times_s)
+            if (std::isfinite(time_s)) time_s = std::clamp(time_s, 0.0f, static_cast<float>(open_for_s_));
+        return times_s;
+    }
+
     void evaluate() {
         const std::size_t count = numbers_.below(kMostPoints + 1);
         const auto rest = numbers_of(numbers_, 2 * count);
         const auto some = [&] {
             return numbers_.one_in(2) ? numbers_of(numbers_, count) : std::vector<float>();
         };
-        const auto cell = some(), pixel = some(), time = some();
+        const auto cell = some(), pixel = some(), time = while_open(some());
         pelagic_points points = PELAGIC_INIT(pelagic_points);
         for (double& metres : points.origin_m) metres = numbers_.one_in(3) ? numbers_.number() : 0.0;
         points.count = count;
@@ -354,7 +362,8 @@ class Calls {
         const auto some = [&](std::size_t components) {
             return numbers_.one_in(3) ? numbers_of(numbers_, components * count) : std::vector<float>();
         };
-        const auto offset = some(3), near = some(1), time = some(1), footprint = some(1), spread = some(1);
+        const auto offset = some(3), near = some(1), time = while_open(some(1)), footprint = some(1),
+                   spread = some(1);
         // One small batch of an input goes on without end: 32 km among the waves, each metre of which is looked at.
         auto far = has_gone_far_ ? std::vector<float>(count, 1.0f) : some(1);
         for (std::size_t i = 0; i < count && has_gone_far_; ++i)
@@ -502,6 +511,7 @@ class Calls {
     pelagic_frame* frame_ = nullptr;
     pelagic_camera camera_{};
     pelagic_error error_{};
+    double open_for_s_ = 1.0 / 48.0;
     bool has_opened_ = false, has_gone_far_ = false;
 };
 

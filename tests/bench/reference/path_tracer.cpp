@@ -13,7 +13,7 @@
 namespace pelagic::bench {
 namespace {
 
-// Unpolarised reflectance of water at this cosine of incidence (Hu 2006, Eq. 2; n = 1.34). Independent of the
+// Unpolarised reflectance of water at this cosine of incidence (Hu 2006, Eq. 2) for n = 1.34. Independent of the
 // code that the reference judges.
 double fresnel(double cosine) {
     constexpr double n = 1.34;

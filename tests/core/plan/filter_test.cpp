@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Bruneton et al. 2010, §4.1: 3x̄² − 2x̄³ in samples per wavelength; nothing at Nyquist and beyond, everything
+// Bruneton et al. 2010, §3.2: 3x̄² − 2x̄³ in samples per wavelength; nothing at Nyquist and beyond, everything
 // at four.
 TEST(FootprintFilter, IsThePapersSmoothStepFromNyquistUp) {
     const FootprintFilter filter;

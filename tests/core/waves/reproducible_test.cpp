@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <cstring>
 
 #include "tests/core/waves/samples.h"
@@ -50,6 +51,20 @@ TEST(Threads, ChangeNoBit) {
     };
     const auto alone = run(1);
     for (std::size_t threads : {2, 7}) expect_same_bits(alone, run(threads), "threads");
+}
+
+TEST(Frames, HaveNoTimeOnceCancelled) {
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy(), {everything()}));
+    const auto points = random_points<float>(300.0, 2000);
+    Frame<float> alone(sea), stopped(sea);
+    std::atomic<bool> cancel = true;
+    stopped.set(0.5);
+    EXPECT_THROW(stopped.set(0.25, &cancel), BuildCancelled);
+    EXPECT_FALSE(stopped.is_set());
+    cancel = false;
+    stopped.set(0.25, &cancel);
+    alone.set(0.25);
+    expect_same_bits(sample(stopped, 0, points), sample(alone, 0, points), "after one that was cancelled");
 }
 
 TEST(Frames, DependOnTheirTimeAlone) {

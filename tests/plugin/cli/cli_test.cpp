@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <sstream>
 
 #include "core/scene/canonical.h"
 #include "core/scene/presets.h"
+#include "plugin/render/layers.h"
 #include "plugin/shot/shot.h"
 #include "tests/plugin/cli/program.h"
 #include "tests/plugin/cli/small_shot.h"
@@ -95,6 +98,28 @@ TEST_F(Cli, VersionSaysWhatItWasBuiltWith) {
           "sanitizer", "libraries: ", "FFTW 3.", "oneTBB 20", "OpenEXR 3.", "GLM ", "Highway ", "CLI11 ",
           "libpng ", "toml++ ", "xxHash ", "instruction set on this machine: "})
         EXPECT_TRUE(has(ended.out, part)) << part << "\n" << ended.out;
+}
+
+TEST_F(Cli, HelpOfRenderNamesEachLayer) {
+    const std::string help = cli({"render", "--help"}).out;
+    const std::size_t from = help.find("Layers of the EXR");
+    ASSERT_NE(from, std::string::npos);
+    std::istringstream lines(help.substr(from, help.find("Light is a mean") - from));
+    std::set<std::string> named;  // at the beginnings of lines, with commas between
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        for (std::string word; words >> word;) {
+            const bool goes_on = word.back() == ',';
+            named.insert(goes_on ? word.substr(0, word.size() - 1) : word);
+            if (!goes_on) break;
+        }
+    }
+    std::string by_default;
+    for (const PictureLayerRow& row : kPictureLayers) {
+        EXPECT_TRUE(named.contains(std::string(row.name))) << row.name << "\n" << help;
+        if (row.light) by_default += (by_default.empty() ? "" : ",") + std::string(row.name);
+    }
+    EXPECT_TRUE(has(help, "Default: " + by_default)) << help;
 }
 
 TEST_F(Cli, WrongUsageIsStatus2AndSaysWhatIsAccepted) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -463,18 +464,54 @@ TEST(Procedural, AShuttersTimesAreInOrder) {
     EXPECT_TRUE(ask(frame_of(sea, 0.25, 0.25), rests) == ask(frame_of(sea, 1.25, 1.25), rests));
 }
 
-// Times beyond the shutter are its ends, and one that is no number its middle.
-TEST(Procedural, NoTimeLeavesTheShutter) {
-    const FrameHandle frame = frame_of(open_text(kShot), 1.0, 1.5);
-    const std::vector<glm::vec2> rests = random_rests(10, 50.0f);
-    const auto at = [&](float time_s) {
-        return ask(frame, rests, glm::dvec2(0.0), {}, std::vector<float>(rests.size(), time_s));
-    };
+// Anything further is a mistake: a time of the shot, say, where one of the shutter is meant.
+TEST(Procedural, TimesOutsideTheShutterAreRefused) {
+    const SeaHandle sea = open_text(kShot);
     const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    EXPECT_TRUE(at(-3.0f) == at(0.0f));
-    EXPECT_TRUE(at(inf) == at(0.5f));
-    EXPECT_TRUE(at(nan) == ask(frame, rests));
-    EXPECT_FALSE(at(0.0f) == at(0.5f));
+    struct Shutter {
+        double open_s, close_s;
+    };
+    // The last so late that its ends are a tenth of a microsecond apart at least.
+    for (const Shutter shutter :
+         {Shutter{1.0, 1.5}, {3.0, 3.0 + 1.0 / 48.0}, {0.0, 1.0}, {-2.0, -1.7}, {1e9, 1e9 + 1.0 / 48.0}}) {
+        const FrameHandle frame = frame_of(sea, shutter.open_s, shutter.close_s);
+        const std::vector<glm::vec2> rests = random_rests(10, 50.0f);
+        const auto at = [&](float time_s) {
+            return ask(frame, rests, glm::dvec2(0.0), {}, std::vector<float>(rests.size(), time_s));
+        };
+        // As hosts may reckon the end: by the ends, by the length, or as a share of it from its middle on.
+        const auto open_for_s = static_cast<float>(shutter.close_s - shutter.open_s),
+                   half_s = 0.5f * open_for_s;
+        const Answers closed = at(open_for_s);
+        EXPECT_TRUE(at(0.0f) == at(-0.0f));
+        EXPECT_FALSE(at(0.0f) == closed);
+        for (const float end_s :
+             {std::nextafter(open_for_s, 1e9f), (0.1f + 0.9f) * open_for_s, half_s + 1.0000001f * half_s}) {
+            const Answers answers = at(end_s);
+            for (std::size_t i = 0; i < rests.size(); ++i)
+                EXPECT_LT(glm::length(answers.position[i] - closed.position[i]), 1e-5f);
+        }
+        for (const float outside_s :
+             {1.001f * open_for_s, -0.001f * open_for_s, -3.0f, 1e9f, inf, -inf, nan}) {
+            std::vector<float> times_s(rests.size(), half_s);
+            times_s[7] = outside_s;
+            pelagic_points points = PELAGIC_INIT(pelagic_points);
+            points.count = rests.size();
+            points.rest_m = &rests[0].x;
+            points.time_s = times_s.data();
+            Answers answers(rests.size());
+            const pelagic_values values = answers.values();
+            pelagic_error error;
+            EXPECT_EQ(pelagic_evaluate(frame.get(), &points, &values, &error), PELAGIC_INVALID_ARGUMENT)
+                << outside_s;
+            EXPECT_NE(std::string(error.message).find("points.time_s[7] is "), std::string::npos)
+                << error.message;
+            EXPECT_TRUE(answers == Answers(rests.size()));
+        }
+    }
+    const FrameHandle moment = frame_of(sea, 1.0, 1.0);
+    const std::vector<glm::vec2> rest = random_rests(1, 50.0f);
+    EXPECT_TRUE(ask(moment, rest, glm::dvec2(0.0), {}, {0.0f}) == ask(moment, rest));
 }
 
 // A program that will be compiled when structures are longer, and asks for nothing new; or does.
@@ -506,6 +543,111 @@ TEST(Procedural, LaterVersionsStructuresAreUnderstood) {
     in.later = 0.0;
     in.region.size = sizeof in.region - 4;
     EXPECT_EQ(pelagic_bounds(frame.get(), &in.region, &box, nullptr), PELAGIC_INVALID_ARGUMENT);
+}
+
+// Also one so large that the end of it lies before its beginning, which has nothing behind it to be looked at.
+TEST(Procedural, SizesOfNoVersionAreRefused) {
+    const SeaHandle sea = open_text(kShot);
+    const FrameHandle frame = frame_of(sea, 0.0, 0.0);
+    pelagic_sea* no_sea = nullptr;
+    pelagic_error error;
+    pelagic_source source = PELAGIC_INIT(pelagic_source);
+    source.text = "";
+    pelagic_open_options open = PELAGIC_INIT(pelagic_open_options);
+    pelagic_info info = PELAGIC_INIT(pelagic_info);
+    pelagic_camera camera = PELAGIC_INIT(pelagic_camera);
+    ASSERT_EQ(pelagic_shot_camera(sea.get(), 1.0, &camera, &error), PELAGIC_OK);
+    pelagic_region region = PELAGIC_INIT(pelagic_region);
+    pelagic_box box = PELAGIC_INIT(pelagic_box);
+    pelagic_points points = PELAGIC_INIT(pelagic_points);
+    pelagic_values values = PELAGIC_INIT(pelagic_values);
+    pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
+    pelagic_hits hits = PELAGIC_INIT(pelagic_hits);
+    pelagic_expand_options expand = PELAGIC_INIT(pelagic_expand_options);
+    expand.cell_px = 32.0;
+    pelagic_mesh_size mesh_size = PELAGIC_INIT(pelagic_mesh_size);
+    pelagic_mesh_buffers buffers = PELAGIC_INIT(pelagic_mesh_buffers);
+    hits.values = buffers.values = &values;
+    unsigned char occluded = 7;
+    const auto expand_size = [&] {
+        return pelagic_expand_size(frame.get(), &camera, &expand, &mesh_size, &error);
+    };
+    const auto expanded = [&] { return pelagic_expand(frame.get(), &camera, &expand, &buffers, &error); };
+    const auto evaluate = [&] { return pelagic_evaluate(frame.get(), &points, &values, &error); };
+    const auto intersect = [&] { return pelagic_intersect(frame.get(), &rays, &hits, &error); };
+    const auto shadows = [&] { return pelagic_occluded(frame.get(), &rays, &occluded, &error); };
+    const auto bounds = [&] { return pelagic_bounds(frame.get(), &region, &box, &error); };
+    const auto opened = [&] { return pelagic_open(&source, &open, &no_sea, &error); };
+    struct Case {
+        const char* structure;
+        std::size_t& size;
+        std::function<pelagic_status()> call;
+    };
+    // Every structure, wherever it goes in or out.
+    const std::vector<Case> cases{
+        {"source", source.size, opened},
+        {"options", open.size, opened},
+        {"info", info.size, [&] { return pelagic_get_info(sea.get(), &info, &error); }},
+        {"camera", camera.size, [&] { return pelagic_shot_camera(sea.get(), 1.0, &camera, &error); }},
+        {"camera", camera.size, expand_size},
+        {"camera", camera.size, expanded},
+        {"region", region.size, bounds},
+        {"box", box.size, bounds},
+        {"points", points.size, evaluate},
+        {"values", values.size, evaluate},
+        {"rays", rays.size, intersect},
+        {"rays", rays.size, shadows},
+        {"hits", hits.size, intersect},
+        {"hits.values", values.size, intersect},
+        {"options", expand.size, expand_size},
+        {"options", expand.size, expanded},
+        {"mesh_size", mesh_size.size, expand_size},
+        {"buffers", buffers.size, expanded},
+        {"buffers.values", values.size, expanded}};
+    for (const Case& one : cases) {
+        const std::size_t before = one.size;
+        for (const std::size_t size :
+             {SIZE_MAX, SIZE_MAX - 7, SIZE_MAX - 4096, std::size_t{PTRDIFF_MAX}, std::size_t{4097}}) {
+            one.size = size;
+            EXPECT_EQ(one.call(), PELAGIC_INVALID_ARGUMENT) << one.structure << ' ' << size;
+            EXPECT_EQ(std::string(error.message).find(std::string(one.structure) + " has a size of "), 0u)
+                << error.message;
+        }
+        one.size = before;
+    }
+    EXPECT_EQ(no_sea, nullptr);
+}
+
+// Counts whose places would wrap, and texts that no shot is as long as.
+TEST(Procedural, CountsThatNoMemoryHoldsAreRefused) {
+    const SeaHandle sea = open_text(kShot);
+    const FrameHandle frame = frame_of(sea, 0.0, 0.5);
+    const float numbers[3] = {0.0f, 0.0f, -1.0f};
+    pelagic_points points = PELAGIC_INIT(pelagic_points);
+    points.rest_m = points.time_s = numbers;
+    pelagic_values values = PELAGIC_INIT(pelagic_values);
+    pelagic_rays rays = PELAGIC_INIT(pelagic_rays);
+    rays.direction = rays.time_s = numbers;
+    pelagic_hits hits = PELAGIC_INIT(pelagic_hits);
+    unsigned char occluded = 7;
+    pelagic_error error;
+    for (const std::size_t count : {SIZE_MAX, SIZE_MAX / 4 + 1, SIZE_MAX / 12}) {
+        points.count = rays.count = count;
+        EXPECT_EQ(pelagic_evaluate(frame.get(), &points, &values, &error), PELAGIC_INVALID_ARGUMENT);
+        EXPECT_NE(std::string(error.message).find("points.count"), std::string::npos) << error.message;
+        EXPECT_EQ(pelagic_intersect(frame.get(), &rays, &hits, &error), PELAGIC_INVALID_ARGUMENT);
+        EXPECT_NE(std::string(error.message).find("rays.count"), std::string::npos) << error.message;
+        EXPECT_EQ(pelagic_occluded(frame.get(), &rays, &occluded, &error), PELAGIC_INVALID_ARGUMENT);
+    }
+    pelagic_source source = PELAGIC_INIT(pelagic_source);
+    source.text = "";
+    pelagic_sea* no_sea = nullptr;
+    for (const std::size_t length : {SIZE_MAX, (std::size_t{16} << 20) + 1}) {
+        source.text_length = length;
+        EXPECT_EQ(pelagic_open(&source, nullptr, &no_sea, &error), PELAGIC_INVALID_ARGUMENT);
+        EXPECT_NE(std::string(error.message).find("source.text"), std::string::npos) << error.message;
+    }
+    EXPECT_EQ(no_sea, nullptr);
 }
 
 }  // namespace

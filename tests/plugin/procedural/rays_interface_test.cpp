@@ -337,7 +337,7 @@ TEST(ProceduralRays, WhateverComesInIsFiniteOrNothing) {
                 far.push_back(at(6, 100.0f));
                 footprint_m.push_back(at(7, 0.0f));
                 fan.spread.push_back(at(8, 0.0f));
-                fan.time_s.push_back(at(9, 0.0f));
+                fan.time_s.push_back(0.001f * static_cast<float>(where));
             }
     for (const bool on_earth : {false, true}) {
         fan.on_earth = on_earth;
@@ -379,6 +379,10 @@ TEST(ProceduralRays, RefuseWhatTheyCantTake) {
     refuses([](pelagic_rays& rays) { rays.tolerance = std::nan(""); });
     refuses([](pelagic_rays& rays) { rays.origin_m[1] = INFINITY; });
     refuses([](pelagic_rays& rays) { rays.size = 0; });
+    for (const float outside_s : {1e-6f, -1e-6f, 3.0f, kForever, std::nanf("")}) {
+        const float times_s[4] = {0.0f, 0.0f, 0.0f, outside_s};  // the frame is a moment
+        refuses([&](pelagic_rays& rays) { rays.time_s = times_s; });
+    }
     pelagic_error error;
     const pelagic_rays rays = fan.rays();
     EXPECT_EQ(pelagic_intersect(frame.get(), &rays, nullptr, &error), PELAGIC_INVALID_ARGUMENT);

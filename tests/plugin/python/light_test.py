@@ -54,6 +54,8 @@ class Sky(unittest.TestCase):
         wide = np.full((1000, 5), 9.0, np.float32)
         self.assertIs(type(self.sky.radiance(directions, out=wide[:, 1:4])), np.ndarray)
         np.testing.assert_array_equal(wide[:, 1:4], self.sky.radiance(directions))
+        apart = np.zeros((3, len(directions)), np.float32).T
+        np.testing.assert_array_equal(self.sky.radiance(np.asfortranarray(directions), out=apart), wide[:, 1:4])
         np.testing.assert_array_equal(wide[:, [0, 4]], 9.0)
         with self.assertRaisesRegex(ValueError, "out: its shape"):
             self.sky.radiance(directions, out=np.zeros((3, 3), np.float32))
@@ -78,6 +80,13 @@ class Shade(unittest.TestCase):
     def lit(self, **changes):
         arguments = dict(to_eye=self.to_eye, normal=self.up, slope_variance=self.rough)
         return pelagic.shade(self.sky, self.water, **dict(arguments, **changes))
+
+    def test_layers_are_written_into_arrays_of_any_strides(self):
+        plain = self.lit()
+        apart = np.zeros((6, len(plain["sky"])), np.float32).T[:, ::2]
+        made = self.lit(normal=np.asfortranarray(self.up), sky_layer=apart)
+        self.assertIs(made["sky"], apart)
+        np.testing.assert_array_equal(apart, plain["sky"])
 
     def test_a_mirror_reflects_the_sky_by_fresnel(self):
         lit = self.lit(slope_variance=vectors(300, (1e-7, 1e-7, 0.0)))

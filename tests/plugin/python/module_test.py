@@ -216,6 +216,41 @@ class Query(unittest.TestCase):
         got = self.frame.evaluate(wide[:, 2:4], outputs=("position",))["position"]
         np.testing.assert_array_equal(got, self.plain["position"])
 
+    def layouts(self, width):
+        """(name, memory, view of (n, width) or, of width 0, of (n,)): layouts in which components lie apart or numbers at odd places."""
+        n, columns = len(self.rest), max(width, 1)
+        packed = np.dtype([("tag", np.uint8), ("co", np.float32, width or ())])
+        odd = np.zeros(4 * n * columns + 1, np.uint8)
+        for name, memory, view in (
+                ("by component", wide := np.zeros((columns + 2, n), np.float32), wide[1:-1].T),
+                ("backwards", wide := np.zeros((n, columns + 2), np.float32), wide[::-1, -2:0:-1]),
+                ("apart", wide := np.zeros((2 * n, 3 * columns), np.float32), wide[::2, ::3]),
+                ("odd", odd, odd[1:].view(np.float32).reshape(n, columns)),
+                ("packed", record := np.zeros(n, packed), record["co"].reshape(n, columns) if not width else record["co"])):
+            self.assertTrue(np.shares_memory(memory, view), name)
+            memory.view(np.uint8).reshape(-1)[:] = 0x7B
+            yield name, memory, view if width else view[:, 0]
+
+    def test_components_apart_and_odd_addresses_are_taken_through_a_copy(self):
+        asked = {"position": 3, "slope_variance": 3, "coverage": 0}
+        for layouts in zip(*(self.layouts(width) for width in (2, 0, 2, 3, 3, 0))):
+            (name, _, rest), (_, _, cell_m), (_, _, cell_axis_m), *outputs = layouts
+            with self.subTest(name):
+                rest[...], cell_m[...], cell_axis_m[...] = self.rest, 3.0, (4.0, 1.0)
+                plain = self.frame.evaluate(self.rest, cell_m=3.0, cell_axis_m=np.tile(np.float32([4.0, 1.0]), (len(rest), 1)))
+                for write in (lambda **into: self.frame.evaluate(rest, cell_m=cell_m, cell_axis_m=cell_axis_m, **into),
+                              lambda **into: self.frame.begin(2.5, rest, cell_m=cell_m, cell_axis_m=cell_axis_m, **into).result()):
+                    into = {}
+                    for wanted, (_, memory, view) in zip(asked, outputs):
+                        memory.view(np.uint8).reshape(-1)[:] = 0x7B
+                        into[wanted] = view
+                    written = write(**into)
+                    for wanted, (_, memory, view) in zip(asked, outputs):
+                        self.assertIs(written[wanted], view)
+                        np.testing.assert_array_equal(view, plain[wanted])
+                        view[...] = np.frombuffer(b"{{{{", np.float32)[0]
+                        self.assertTrue((memory.view(np.uint8) == 0x7B).all(), "something beside the numbers was written")
+
     def test_an_origin_stands_for_far_points(self):
         # 2^20 m on, single-precision positions are 1/8 m apart. As an origin in double, the distance may be split
         # anyhow: what differs is the rounding of the rest, 2e-6 m, times the displacement's gradient (below 1), and
@@ -239,7 +274,7 @@ class Query(unittest.TestCase):
         at_rest = "slope_variance_at_rest"
         self.assertTrue((one[at_rest][:, :2] > finest[at_rest][:, :2]).all())
 
-    def test_types_that_would_need_a_copy_are_refused(self):
+    def test_other_types_are_refused(self):
         points = len(self.rest)
         for wrong in (self.rest.astype(np.float64), self.rest.astype(">f4"), self.rest.tolist(), None):
             with self.assertRaisesRegex(TypeError, "rest: .*accepted: a float32 numpy array"):
@@ -254,11 +289,11 @@ class Query(unittest.TestCase):
         read_only = np.zeros((points, 3), np.float32)
         read_only.flags.writeable = False
         overlapping = np.lib.stride_tricks.as_strided(np.zeros(points + 3, np.float32), (points, 3), (4, 4))
-        unaligned = np.zeros(12 * points + 1, np.uint8)[1:].view(np.float32).reshape(points, 3)
+        past_each_other = np.lib.stride_tricks.as_strided(np.zeros(4 * points, np.float32), (points, 3), (4, 4 * (points - 1)))
         for said, wrong in (("its shape is", np.zeros((points, 4), np.float32)),
                             ("its shape is", np.zeros((points - 1, 3), np.float32)),
-                            ("read-only", read_only), ("overlap", overlapping), ("multiples of 4", unaligned),
-                            ("bytes apart", np.zeros((3, points), np.float32).T)):
+                            ("read-only", read_only), ("overlap", overlapping), ("overlap", past_each_other),
+                            ("overlap", np.lib.stride_tricks.as_strided(np.zeros(3, np.float32), (points, 3), (0, 4)))):
             with self.assertRaisesRegex(ValueError, "position: .*" + said):
                 self.frame.evaluate(self.rest, position=wrong)
         with self.assertRaisesRegex(ValueError, "coverage: its shape is"):

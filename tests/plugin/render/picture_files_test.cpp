@@ -137,6 +137,21 @@ TEST(PictureFiles, LayersAreInPlaceAndAddUp) {
     }
 }
 
+// The header names each layer that R, G, B are the sum of.
+TEST(PictureFiles, SayWhichLayersAddUp) {
+    const Picture picture = pattern({7, 5});
+    const Scene scene;
+    const RenderOptions options;
+    const Sky sky = some_sky(100.0f);
+    const std::string bytes = encode_exr({scene, options, sky, "", 1.0f}, picture, 1);
+    MemoryStream stream(bytes);
+    const std::string content =
+        Imf::InputFile(stream).header().typedAttribute<Imf::StringAttribute>("content").value();
+    for (const PictureLayerRow& row : kPictureLayers)
+        EXPECT_EQ(content.find(std::string(row.name)) != std::string::npos, row.light != nullptr)
+            << row.name << ": " << content;
+}
+
 // A low sun's upper limb is brighter than its mean, which may still fit into halves: such pictures were refused.
 TEST(PictureFiles, HoldTheDiscsUpperLimb) {
     const glm::ivec2 resolution(7, 5);

@@ -40,9 +40,12 @@
  * hold isn't known, and a frame that couldn't be set must be set again. No exception leaves a function. Nothing is kept between calls but
  * in the handles, and FFTW's own table of plans.
  *
+ * Unloading. Once loaded the library stays in its process: threads that it has started wait in it for more to do. dlclose() is
+ * allowed at any time, loads and unloads may follow each other, and handles that are open go on.
+ *
  * Structures begin with their own size: set it by PELAGIC_INIT, so that a program and a later version of the library understand
  * each other. New members come at the end, and 0 in them means what earlier versions did. A program that asks for what only a later
- * version has is refused.
+ * version has is refused, and so is a size above 4096, which no version has.
  */
 #ifndef PELAGIC_PROCEDURAL_H
 #define PELAGIC_PROCEDURAL_H
@@ -195,8 +198,9 @@ typedef struct pelagic_points {
     const float* rest_m;  /* x, y of each, relative to the origin */
     const float* cell_m;  /* of each; null: the finest there is */
     const float* pixel_m; /* of each; null: the finest there is */
-    /* Of each, from the shutter's opening on, and no further than its closing; null: its middle. Positions follow it; normals, variances and
-     * coverage are those of the middle. */
+    /* Of each, from the shutter's opening (0) to its closing (close_s - open_s); null: its middle. One that lies outside by more than
+     * arithmetic in single precision rounds (2 FLT_EPSILON of the shutter's length) or is no number is refused; of a moment all are 0.
+     * Positions follow it; normals, variances and coverage are those of the middle. */
     const float* time_s;
 } pelagic_points;
 

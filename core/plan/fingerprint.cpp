@@ -31,6 +31,9 @@ std::string plan_text(const Plan& plan, int query_index) {
     // The history has grids of its own, which aren't in this plan.
     if (query.products[index(Product::Coverage)] && plan.foam && !query.only_cascade && !query.breaking_alone)
         text += "history, oversampling " + number_text(plan.knobs.oversampling) + '\n';
+    // Until the law did, the cube of the wind said how much each place has.
+    if (query.products[index(Product::Coverage)] && plan.gusts && !query.only_cascade)
+        text += "gusts by the law\n";
     const std::string spline = " spline of " + std::to_string(plan.knobs.spline_taps) + '\n';
     if (plan.trains && !query.only_cascade)
         text += "trains " + std::to_string(plan.trains->count) + ' ' + number_text(plan.trains->longest_m) +

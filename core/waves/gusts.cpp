@@ -86,7 +86,8 @@ double value_of(std::span<const double> terms, double x) {
 
 }  // namespace
 
-Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold) {
+Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold,
+                 const std::function<double(double f)>& law_at) {
     Gusts gusts{.plan = plan};
     gusts.of_level[0] = threshold;
     if (!std::isfinite(threshold)) return gusts;
@@ -94,17 +95,18 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
     const auto coverage_at = [&](double at) { return balance.coverage_at(at); };
     const double highest = balance.highest_threshold(), most = std::min(kMostCoverage, coverage_at(highest));
     // Scaled so that the mean over the whole pattern is the sea's; nowhere more than there may be.
-    const auto cubed = [&](double level) { return std::pow(1.0 + plan.strength * level, 3.0); };
+    const double law = law_at(1.0);
+    const auto share = [&](double level) { return law_at(1.0 + plan.strength * level) / law; };
     const auto whole = likely_values(shown_amplitudes(plan, 0.0));
     constexpr double kMostScale = 100.0;
     const double scale = solve(0.0, kMostScale, mean, [&](double by) {
-        return mean_of(whole, [&](double value) { return std::min(by * cubed(level_of(value)), most); });
+        return mean_of(whole, [&](double value) { return std::min(by * share(level_of(value)), most); });
     });
 
     std::array<double, Gusts::kLevelTerms> level{}, at_level{};
     for (std::size_t i = 0; i < level.size(); ++i) {
         level[i] = std::cos(kPi * (static_cast<double>(i) + 0.5) / Gusts::kLevelTerms);  // Chebyshev's nodes
-        at_level[i] = solve(0.0, highest, std::min(scale * cubed(level[i]), most), coverage_at);
+        at_level[i] = solve(0.0, highest, std::min(scale * share(level[i]), most), coverage_at);
     }
     gusts.of_level = polynomial(level, at_level);
 

@@ -1,12 +1,13 @@
 // What gusts do to the sea. Short waves follow the wind within seconds: the slope variance that a footprint hides is
-// multiplied by f = 1 + strength · level, since it is linear in the wind (Cox and Munk 1954). Whitecaps go with its cube: J is
-// compared with a threshold at which the whole sea would have a coverage in proportion to f³. Of both the mean over area is
-// what it is without gusts.
+// multiplied by f = 1 + strength · level, since it is linear in the wind (Cox and Munk 1954). Whitecaps go by the shot's law: J is
+// compared with a threshold at which the whole sea would have a coverage in proportion to the law's at f times the wind. Of both
+// the mean over area is what it is without gusts.
 //
 // Waves that are shown are those of the mean wind, and so are the moments of J.
 #pragma once
 
 #include <array>
+#include <functional>
 
 #include "core/plan/gusts.h"
 
@@ -23,7 +24,8 @@ struct Gusts {
 
 struct FoamBalance;
 
-// `threshold`: without gusts.
-Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold);
+// `threshold`: without gusts. law_at(f): the law's coverage at f times the wind, rising, and above 0 at 1.
+Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold,
+                 const std::function<double(double f)>& law_at);
 
 }  // namespace pelagic

@@ -140,7 +140,9 @@ void Sea<T>::calibrate_whitecaps() {
         gusts_ =
             make_gusts(*plan_.gusts,
                        {.j = j, .left = left, .third_moment = third, .choppiness = plan_.breaking.choppiness},
-                       whitecap_threshold_);
+                       whitecap_threshold_, [&](double f) {
+                           return law_coverage(plan_.from->scene, f * plan_.from->scene.sea.wind_speed_mps);
+                       });
 }
 
 template <class T>

@@ -5,9 +5,12 @@
 namespace pelagic {
 
 double law_coverage(const Scene& scene) {
+    return law_coverage(scene, std::max(scene.sea.wind_speed_mps, 0.0));
+}
+
+double law_coverage(const Scene& scene, double wind_mps) {
     constexpr double kFastestSeen_mps = 23.09;
     const Effects& effects = scene.effects;
-    const double wind_mps = std::max(scene.sea.wind_speed_mps, 0.0);
     const auto cube = [](double x) { return std::max(x * x * x, 0.0); };
     const double law = [&] {
         switch (effects.whitecap_law) {

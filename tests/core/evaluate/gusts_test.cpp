@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
+#include "core/waves/whitecaps.h"
 #include "tests/core/waves/samples.h"
 
 namespace pelagic {
@@ -90,6 +92,42 @@ TEST(Gusts, BreakMoreWavesAndNoLessFoamOnEach) {
 }
 
 // Along the wind, at the speed that the wind has a little above the water.
+// A gust of f times the wind has the law's coverage at that wind, whichever law: counted over the sea, in classes of f, which the
+// hidden slopes tell. Beside the mean's by the mean over the same places, so that the pattern's own distribution doesn't count.
+TEST(Gusts, WhitecapsFollowTheShotsLaw) {
+    constexpr double kWind_mps = 14.0,
+                     kFootprint_m = 40.0;  // hides the waves that break, and shows the gusts
+    const auto points = random_points<float>(200000.0, 200000);
+    for (const WhitecapLaw law :
+         {WhitecapLaw::Monahan1980, WhitecapLaw::Monahan1986, WhitecapLaw::Callaghan2008}) {
+        Scene scene = scene_of(0.6, kWind_mps);
+        scene.effects.whitecap_law = law;
+        Scene calm = scene;
+        calm.sea.gust_strength = 0.0;
+        const auto sampled = sample(frame_of<float>(scene, {filtered(kGusty, kFootprint_m)}, 3.0), 0, points);
+        const auto even = sample(frame_of<float>(calm, {filtered(kGusty, kFootprint_m)}, 3.0), 0, points);
+        struct Class {
+            double foam = 0.0, even = 0.0, law = 0.0;
+        };
+        std::array<Class, 8> classes{};  // f from 0.4 to 1.6
+        Class whole;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double f =
+                static_cast<double>(sampled.vectors(SlopeVariance)[i].x / even.vectors(SlopeVariance)[i].x);
+            auto& in = classes[static_cast<std::size_t>(std::clamp((f - 0.4) / 0.15, 0.0, 7.0))];
+            for (Class* to : {&in, &whole}) {
+                to->foam += static_cast<double>(sampled.numbers(Coverage)[i]);
+                to->even += static_cast<double>(even.numbers(Coverage)[i]);
+                to->law += law_coverage(scene, f * kWind_mps);
+            }
+        }
+        for (const Class& in : classes) {
+            const double expected = in.law / whole.law, found = in.foam / whole.foam;
+            EXPECT_NEAR(found / expected, 1.0, 0.1) << static_cast<int>(law) << " of " << expected;
+        }
+    }
+}
+
 TEST(Gusts, DriftWithTheWind) {
     Scene scene = scene_of(1.0, 10.0);
     scene.sea.wind_direction_deg = 60.0;

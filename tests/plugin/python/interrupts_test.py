@@ -27,8 +27,9 @@ SCENE = """
 
 
 class Interrupted(unittest.TestCase):
-    def ends(self, folder, lines, after_s=0.1, before=""):
-        """A program that does this is interrupted so long after it has begun to, and ends with KeyboardInterrupt, and well."""
+    def ends(self, folder, lines, after_s=0.0, before="", frames=0):
+        """A program that does this is interrupted so long after it has begun to, and after it has baked so many frames, and ends with
+        KeyboardInterrupt, and well."""
         program = textwrap.dedent(SCENE) + textwrap.dedent(before) + textwrap.dedent("""
             try:
                 print("ready", flush=True)
@@ -44,6 +45,8 @@ class Interrupted(unittest.TestCase):
                 if process.stdout.readline() != "ready\n":
                     self.fail(process.stderr.read())
                 time.sleep(after_s)
+                while process.poll() is None and self.baked(folder) < frames:
+                    time.sleep(0.01)
                 process.send_signal(signal.SIGINT)
                 out, err = process.communicate(timeout=PATIENCE_S)
             except subprocess.TimeoutExpired:
@@ -52,21 +55,23 @@ class Interrupted(unittest.TestCase):
                 process.kill()
         self.assertEqual((out, err, process.returncode), ("interrupted\n", "", 0), lines)
 
+    @staticmethod
+    def baked(folder):
+        return len(list((pathlib.Path(folder) / "out" / "mesh").glob("sea.[0-9]*")))
+
     def test_a_bake_keeps_its_frames_and_goes_on(self):
         """At several moments, into one folder: the first begins, those that follow go on."""
         made = {}
         exec(textwrap.dedent(SCENE), made)
         with tempfile.TemporaryDirectory() as folder:
             out, whole = pathlib.Path(folder) / "out", 0
-            for after_s in (0.02, 0.2, 0.6, 0.6):
-                self.ends(folder, "pelagic.bake(scene, 'out')", after_s)
+            for after_s, more in ((0.02, 0), (0.0, 1), (0.2, 5), (0.0, 40)):
+                self.ends(folder, "pelagic.bake(scene, 'out')", after_s, frames=whole + more)
                 if out.exists():
                     # That frames are still to come is all there is to find.
                     self.assertLessEqual({found.path for found in pelagic.verify(out)}, {"sea.json"})
-                    now = len(list((out / "mesh").glob("sea.[0-9]*")))
-                    self.assertGreaterEqual(now, whole)
-                    whole = now
-            self.assertGreater(whole, 2)
+                self.assertGreaterEqual(self.baked(folder), whole + more)
+                whole = self.baked(folder)
             report = pelagic.bake(made["scene"], out, frames=[1, whole, whole + 1])
             self.assertEqual((report.kept, report.done), (2, 1))
 

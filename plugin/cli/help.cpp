@@ -225,10 +225,11 @@ const char* const kAccuracyThreads =
 const char* const kVerify =
     "Check that everything in a folder is as it was written.\n"
     "Reads the files of all shots that were baked there, and the pictures, and names each that is\n"
-    "  missing   recorded and not there, or a frame of the shot that isn't baked\n"
-    "  damaged   not the bytes that were written, or a record with a changed number\n"
-    "  stale     a frame of another version of the shot than the record's\n"
-    "  foreign   named as a bake's files are, and in no record\n"
+    "  missing      recorded and not there, or a frame of the shot that isn't baked\n"
+    "  damaged      not the bytes that were written, or a record with a changed number\n"
+    "  stale        a frame of another version of the shot than the record's\n"
+    "  foreign      named as a bake's files are, and in no record\n"
+    "  interrupted  of a bake that was stopped before it wrote its record\n"
     "A frame that a bake is at, or was stopped at, is missing or stale: its files aren't named one by one.\n"
     "Changes nothing: the next bake or render makes again what is missing, damaged or stale.";
 const char* const kVerifyFooter =
@@ -238,7 +239,7 @@ const char* const kVerifyFooter =
     "\n"
     "A picture whose .exr and .png are both gone isn't missed: pictures have no record.\n"
     "\n"
-    "Exit status: 0 if every folder is whole; 1 if something is missing, damaged, stale or foreign,\n"
+    "Exit status: 0 if every folder is whole; 1 if something isn't as it was written,\n"
     "if a folder holds nothing to check, or can't be read; 2 for an error on the command line; 128\n"
     "plus the signal's number if it was stopped (130: Ctrl-C).";
 const char* const kFolders = "The folders that were baked or rendered into";

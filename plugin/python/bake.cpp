@@ -150,6 +150,10 @@ void add_bake_report(py::module_& module) {
             "altered, not asked for.")
         .def_readonly("foreign", &BakeReport::foreign,
                       "Files that lie there and aren't the shot's, a line each.")
+        .def_readonly(
+            "unlocked", &BakeReport::unlocked,
+            "Why the folder can't be locked against other bakes into it; empty where it can, as far as the "
+            "system says.")
         .def_readonly("damaged", &BakeReport::damaged,
                       "What wasn't as it was recorded, and was made again, a line each.")
         .def_property_readonly("times", &time_text,
@@ -178,8 +182,8 @@ void add_verify(py::module_& module) {
         .def_readonly("path", &Finding::path, "Below the folder, with /.")
         .def_property_readonly(
             "flaw", [](const Finding& self) { return word_of(self.flaw); },
-            "\"missing\", \"damaged\", \"stale\" (frames of another version of the shot) or \"foreign\" (in no "
-            "record).")
+            "\"missing\", \"damaged\", \"stale\" (frames of another version of the shot), \"foreign\" (in no "
+            "record) or \"interrupted\" (of a bake that was stopped before it wrote its record).")
         .def_readonly("what", &Finding::what, "In words: the end of a sentence that begins with the path.")
         .def("__repr__", [](const Finding& self) {
             return std::string("<") + word_of(self.flaw) + ": " + self.path + ' ' + self.what + '>';

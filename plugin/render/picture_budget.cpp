@@ -59,6 +59,7 @@ std::vector<int> frames_to_measure(const Scene& scene) {
 struct MeasuredErrors {
     std::array<double, kMeasuredSamples.size()> by_samples{};
     double of_nine = 0.0;
+    std::size_t bytes = 0;  // that measuring them held
 
     // Between the numbers that were measured, as a power of them.
     double at(int samples) const {
@@ -73,7 +74,7 @@ struct MeasuredErrors {
 };
 
 // Of first-shot, 160 pixels wide: by which settings are put in order where nothing is measured.
-constexpr MeasuredErrors kTypical{{0.33, 0.22, 0.13, 0.09}, 0.07};
+constexpr MeasuredErrors kTypical{{0.33, 0.22, 0.13, 0.09}, 0.07, 0};
 
 MeasuredErrors measured(const Scene& scene, std::size_t max_memory_bytes, const BuildWatch& watch) {
     Scene small = scene;
@@ -87,14 +88,17 @@ MeasuredErrors measured(const Scene& scene, std::size_t max_memory_bytes, const 
     const Sky sky = make_sky(scene);
     RenderOptions own = render_options(scene);
     own.knobs = Knobs{.double_precision = true};
+    MeasuredErrors errors;
     {
         RenderOptions dearest = own;
         dearest.samples = kReferenceSamples;
         Scene fine = small;
         fine.surface.cell_px = kReferenceCell_px;
-        require_memory(render_memory(fine, dearest, frames, std::nullopt,
-                                     oneapi::tbb::this_task_arena::max_concurrency()),
-                       machine::memory_limit_or(max_memory_bytes), "measuring this shot for its budget");
+        const MemoryNeed need = render_memory(fine, dearest, frames, std::nullopt,
+                                              oneapi::tbb::this_task_arena::max_concurrency());
+        errors.bytes = need.bytes();
+        require_memory(need, machine::memory_limit_or(max_memory_bytes),
+                       "measuring this shot for its budget");
     }
     double done = 0.0;
     const double all =
@@ -112,7 +116,6 @@ MeasuredErrors measured(const Scene& scene, std::size_t max_memory_bytes, const 
         if (watch.progress) watch.progress(std::min(done / all, 1.0));
         return made;
     };
-    MeasuredErrors errors;
     const auto measure = [&](int frame) {
         const Picture reference = picture(frame, kReferenceCell_px, kReferenceSamples, SkyQuality::Nine, 5.0);
         std::optional<Picture> one;
@@ -217,8 +220,9 @@ PictureBudget picture_budget(const Scene& scene, const FixedSettings& fixed, std
     budget.scene.quality.level = QualityLevel::Final;
     budget.scene.surface.cell_px = kCell_px;
     const auto [max_error, most_ms] = std::pair(scene.quality.max_error, scene.quality.frame_ms);
-    const std::vector<PricedSetting> settings = settings_of(
-        budget.scene, fixed, max_error ? measured(budget.scene, max_memory_bytes, watch) : kTypical);
+    const MeasuredErrors errors = max_error ? measured(budget.scene, max_memory_bytes, watch) : kTypical;
+    budget.measuring_bytes = errors.bytes;
+    const std::vector<PricedSetting> settings = settings_of(budget.scene, fixed, errors);
     std::optional<PricedSetting> best;
     for (const PricedSetting& setting : settings) {
         const bool holds = max_error ? setting.error <= *max_error : setting.ms <= *most_ms;
@@ -238,11 +242,14 @@ PictureBudget picture_budget(const Scene& scene, const FixedSettings& fixed, std
     budget.options = best->options;
     budget.error = max_error ? best->error : std::numeric_limits<double>::quiet_NaN();
     budget.ms = best->ms;
-    budget.text = text_of_budget(scene.quality, budget.holds) + " pictures have " +
-                  std::to_string(best->options.samples) + " × " + std::to_string(best->options.samples) +
-                  " samples a pixel and " + words_of_sky(best->options.lighting.sky_quality) + " of the sky" +
-                  (max_error ? ", an error of " + rough_text(best->error) : std::string()) + " and about " +
-                  rough_text(best->ms) + " ms a picture";
+    budget.text =
+        text_of_budget(scene.quality, budget.holds) + " pictures have " +
+        std::to_string(best->options.samples) + " × " + std::to_string(best->options.samples) +
+        " samples a pixel and " + words_of_sky(best->options.lighting.sky_quality) + " of the sky" +
+        (max_error ? ", an error of " + rough_text(best->error) : std::string()) + " and about " +
+        rough_text(best->ms) + " ms a picture" +
+        (errors.bytes > 0 ? "; measured on a small picture, which held about " + bytes_text(errors.bytes)
+                          : std::string());
     return budget;
 }
 

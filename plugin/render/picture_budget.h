@@ -28,6 +28,7 @@ struct PictureBudget {
     double error = 0.0;
     double ms = 0.0;  // of a picture, by the cost model
     bool holds = true;
+    std::size_t measuring_bytes = 0;        // that measuring the shot held; 0 where nothing was measured
     std::string text{};                     // for people: what was chosen, and why; empty without a budget
     std::vector<PricedSetting> settings{};  // all that it was chosen from
 };

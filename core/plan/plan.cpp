@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -159,9 +160,10 @@ void add_grids(Plan& plan, int cascade_index) {
         grid.radius = radius;
         grid.resolution =
             transform_size(static_cast<int>(std::ceil(plan.knobs.oversampling * (2.0 * radius - 1.0))));
-        if (const auto nodes =
-                at.lattice && !blends ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
-            nodes && *nodes >= 2 * radius - 1 &&
+        auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
+        // So fine that copies of the tile are displaced by whole nodes.
+        if (nodes && blends) *nodes = std::lcm(*nodes, static_cast<int>(kCopySteps));
+        if (nodes && *nodes >= 2 * radius - 1 &&
             (at.only_cascade || (*nodes <= 2 * grid.resolution && *nodes == transform_size(*nodes)))) {
             // Up to four times the samples of the spline's grid are cheaper than the spline, and without its
             // error.

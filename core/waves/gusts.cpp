@@ -86,8 +86,7 @@ double value_of(std::span<const double> terms, double x) {
 
 }  // namespace
 
-Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold,
-                 const std::function<double(double f)>& law_at) {
+Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold, double exponent) {
     Gusts gusts{.plan = plan};
     gusts.of_level[0] = threshold;
     if (!std::isfinite(threshold)) return gusts;
@@ -95,8 +94,7 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
     const auto coverage_at = [&](double at) { return balance.coverage_at(at); };
     const double highest = balance.highest_threshold(), most = std::min(kMostCoverage, coverage_at(highest));
     // Scaled so that the mean over the whole pattern is the sea's; nowhere more than there may be.
-    const double law = law_at(1.0);
-    const auto share = [&](double level) { return law_at(1.0 + plan.strength * level) / law; };
+    const auto share = [&](double level) { return std::pow(1.0 + plan.strength * level, exponent); };
     const auto whole = likely_values(shown_amplitudes(plan, 0.0));
     constexpr double kMostScale = 100.0;
     const double scale = solve(0.0, kMostScale, mean, [&](double by) {

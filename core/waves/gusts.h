@@ -1,13 +1,12 @@
 // What gusts do to the sea. Short waves follow the wind within seconds: the slope variance that a footprint hides is
 // multiplied by f = 1 + strength · level, since it is linear in the wind (Cox and Munk 1954). Whitecaps go by the shot's law: J is
-// compared with a threshold at which the whole sea would have a coverage in proportion to the law's at f times the wind. Of both
-// the mean over area is what it is without gusts.
+// compared with a threshold at which the whole sea would have a coverage in proportion to f^p, p being the law's exponent at the
+// mean wind. Of both the mean over area is what it is without gusts.
 //
 // Waves that are shown are those of the mean wind, and so are the moments of J.
 #pragma once
 
 #include <array>
-#include <functional>
 
 #include "core/plan/gusts.h"
 
@@ -17,15 +16,14 @@ struct Gusts {
     GustsPlan plan;
     // ε = Σ of_level[n] · level^n + Σ of_kept[n] · kept^n: the second sum is what a footprint adds that hides a part of the
     // pattern, 1 − kept of its variance.
-    static constexpr int kLevelTerms = 9, kKeptTerms = 6;
+    static constexpr int kLevelTerms = 9, kKeptTerms = 8;
     std::array<double, kLevelTerms> of_level{};
     std::array<double, kKeptTerms> of_kept{};
 };
 
 struct FoamBalance;
 
-// `threshold`: without gusts. law_at(f): the law's coverage at f times the wind, rising, and above 0 at 1.
-Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold,
-                 const std::function<double(double f)>& law_at);
+// `threshold`: without gusts. `exponent`: law_exponent().
+Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double threshold, double exponent);
 
 }  // namespace pelagic

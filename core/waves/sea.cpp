@@ -140,9 +140,7 @@ void Sea<T>::calibrate_whitecaps() {
         gusts_ =
             make_gusts(*plan_.gusts,
                        {.j = j, .left = left, .third_moment = third, .choppiness = plan_.breaking.choppiness},
-                       whitecap_threshold_, [&](double f) {
-                           return law_coverage(plan_.from->scene, f * plan_.from->scene.sea.wind_speed_mps);
-                       });
+                       whitecap_threshold_, law_exponent(plan_.from->scene));
 }
 
 template <class T>

@@ -4,11 +4,9 @@
 
 namespace pelagic {
 
-double law_coverage(const Scene& scene) {
-    return law_coverage(scene, std::max(scene.sea.wind_speed_mps, 0.0));
-}
+namespace {
 
-double law_coverage(const Scene& scene, double wind_mps) {
+double coverage_at(const Scene& scene, double wind_mps) {
     constexpr double kFastestSeen_mps = 23.09;
     const Effects& effects = scene.effects;
     const auto cube = [](double x) { return std::max(x * x * x, 0.0); };
@@ -27,6 +25,19 @@ double law_coverage(const Scene& scene, double wind_mps) {
         return 0.0;
     }();
     return std::min(effects.whitecap_amount * law, kMostCoverage);
+}
+
+}  // namespace
+
+double law_coverage(const Scene& scene) {
+    return coverage_at(scene, std::max(scene.sea.wind_speed_mps, 0.0));
+}
+
+double law_exponent(const Scene& scene) {
+    constexpr double kStep = 1.01, kMost = 4.0;
+    const double wind_mps = scene.sea.wind_speed_mps;
+    const double less = coverage_at(scene, wind_mps / kStep), more = coverage_at(scene, wind_mps * kStep);
+    return less > 0.0 ? std::min(std::log(more / less) / (2.0 * std::log(kStep)), kMost) : kMost;
 }
 
 double whole_coverage(const JacobianMoments<double>& j, double threshold, bool third_moment, double left) {

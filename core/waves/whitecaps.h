@@ -58,8 +58,9 @@ inline constexpr double kMostCoverage = 0.6;
 //   callaghan-2008  Callaghan et al. 2008: 3.18e-5 (U10 − 3.70)³, from 10.2 m/s on 4.82e-6 (U10 + 1.98)³, seen up to
 //                   23.09 m/s. From there on it stays: Holthuijsen et al. 2012 found no more foam on crests beyond 24 m/s.
 double law_coverage(const Scene& scene);
-// The same at another wind [m/s].
-double law_coverage(const Scene& scene, double wind_mps);
+// By which power of the wind the law's coverage goes at the scene's: 3.52, 2.55; 0 where it stays. Near the wind at which foam begins
+// callaghan-2008 is steeper than any power; 4 at most.
+double law_exponent(const Scene& scene);
 
 // How foam lives, for its statistics.
 struct FoamLife {

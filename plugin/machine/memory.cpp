@@ -134,8 +134,13 @@ void settle_threads() {
 }
 
 bool run_on_large_stack(const std::function<void()>& work) {
-    rlimit limit{};
-    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= kMainStack) {
+    const auto is_below = [](decltype(RLIMIT_AS) kind, rlim_t bytes) {
+        rlimit limit{};
+        return getrlimit(kind, &limit) == 0 && limit.rlim_cur < bytes;
+    };
+    // The main thread's stack is mapped as it grows: where a limit has no room for that, a signal ends the process.
+    if (!is_below(RLIMIT_STACK, kMainStack) && !is_below(RLIMIT_AS, RLIM_INFINITY) &&
+        !is_below(RLIMIT_DATA, RLIM_INFINITY)) {
         work();
         return true;
     }

@@ -29,8 +29,8 @@ MemoryLimit memory_limit_or(std::size_t max_memory_bytes);
 // 64 MiB of it.
 void settle_threads();
 
-// Runs `work` here, or on a thread with a stack of 8 MiB where the limit of stacks leaves less than that here. False where
-// there is no such thread to be had.
+// Runs `work` here, or on a thread with a stack of 8 MiB where the limit of stacks leaves less than that here, or a limit of
+// address space or data might not let this one grow. False where there is no such thread to be had.
 bool run_on_large_stack(const std::function<void()>& work);
 
 }  // namespace pelagic::machine

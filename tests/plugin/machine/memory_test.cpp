@@ -151,6 +151,23 @@ TEST(MachineMemory, WorkHasAStackWhereTheLimitLeavesNone) {
     EXPECT_NE(worker, std::this_thread::get_id());
 }
 
+// The main thread's own stack would have to be mapped as it grows, which a limit may refuse: with a signal.
+TEST(MachineMemory, WorkHasAStackThatIsThereAlreadyUnderLimitsOfAddressesAndData) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "sanitizers take terabytes of addresses themselves";
+#endif
+    const auto worker_of = [] {
+        std::thread::id worker;
+        EXPECT_TRUE(run_on_large_stack([&] { worker = std::this_thread::get_id(); }));
+        return worker;
+    };
+    for (const auto kind : {RLIMIT_AS, RLIMIT_DATA}) {
+        const Limited limited(kind, 2048 * kMebi);
+        ASSERT_TRUE(limited.is_set());
+        EXPECT_NE(worker_of(), std::this_thread::get_id());
+    }
+}
+
 TEST(MachineMemory, WhatIsAskedForComesFirst) {
     EXPECT_EQ(memory_limit_or(12345).bytes, 12345u);
     EXPECT_EQ(memory_limit_or(0).bytes, memory_limit().bytes);

@@ -349,12 +349,21 @@ void Record::set(const std::string& path, const files::FileState& file) {
 void Record::save(const std::filesystem::path& file, const files::LockWatch& waiting) {
     const files::FolderLock lock(file.parent_path(), waiting);
     unlocked_ = lock.problem();
+    std::vector<int> found;
     // With a lock that holds, once.
-    for (bool is_saved = false; !is_saved;) {
+    for (bool is_done = false; !is_done;) {
         const files::FileIdentity former = files::identity_of(file);
-        is_saved =
-            files::replace_if_same(file, former, [&](const files::ByteSink& sink) { write(file, sink); });
+        const bool is_ours = written_ && former == *written_;
+        const auto made = files::replace_if_same(
+            file, former, [&](const files::ByteSink& sink) { found = write(file, sink); });
+        is_done = made.has_value();
+        is_shared_ = is_shared_ || !is_done || (written_ && !is_ours);
+        if (is_done && is_ours) saved_.clear();  // all of them are in it
+        if (is_done) written_ = made;
     }
+    for (const int frame : found) saved_.erase(frame);
+    for (auto& [frame, record] : unsaved_) saved_[frame] = std::move(record);
+    unsaved_.clear();
 }
 
 void Record::finish(const std::filesystem::path& file, const files::LockWatch& waiting) {
@@ -362,9 +371,9 @@ void Record::finish(const std::filesystem::path& file, const files::LockWatch& w
     constexpr std::chrono::milliseconds kMoment{200};
     constexpr int kMostTimes = 10;  // two runs that make the same frames of different shots would never agree
     save(file, waiting);
-    for (int times = 0; has_others_ && times < kMostTimes; ++times) {
+    for (int times = 0; is_shared_ && times < kMostTimes; ++times) {
         std::this_thread::sleep_for(kMoment);
-        if (is_all_in(file)) return;
+        if (files::identity_of(file) == *written_ || is_all_in(file)) return;
         save(file, waiting);
     }
 }
@@ -372,14 +381,15 @@ void Record::finish(const std::filesystem::path& file, const files::LockWatch& w
 bool Record::is_all_in(const std::filesystem::path& file) const {
     std::size_t found = 0;
     read_record(file, [&](int number, const FrameRecord& frame) {
-        const auto ours = ours_.find(number);
-        found += ours != ours_.end() && to_json(ours->second) == to_json(frame);
+        const auto ours = saved_.find(number);
+        found += ours != saved_.end() && to_json(ours->second) == to_json(frame);
     });
-    return found == ours_.size();
+    return found == saved_.size();
 }
 
 // As one JSON object would be printed, frames by rising number, those of `former` merged with ours.
-void Record::write(const std::filesystem::path& former, const std::function<void(std::string_view)>& sink) {
+std::vector<int> Record::write(const std::filesystem::path& former,
+                               const std::function<void(std::string_view)>& sink) const {
     constexpr std::size_t kPiece = 1 << 16;  // bytes: a piece is a call of the system
     Json shot = shot_;
     shot["checksum"] = checksum_of("", shot);
@@ -398,19 +408,34 @@ void Record::write(const std::filesystem::path& former, const std::function<void
         sink(piece);
         piece.clear();
     };
-    auto ours = ours_.begin();
+    // By rising number; of the same frame the one that was set later comes first.
+    auto saved = saved_.begin(), unsaved = unsaved_.begin();
     const auto add_ours_up_to = [&](int number) {
-        for (; ours != ours_.end() && ours->first <= number; ++ours) add(ours->first, ours->second);
+        const auto is_next = [&](const auto& at, const auto& of) {
+            return at != of.end() && at->first <= number;
+        };
+        while (is_next(unsaved, unsaved_) || is_next(saved, saved_)) {
+            auto& next =
+                !is_next(saved, saved_) || (is_next(unsaved, unsaved_) && unsaved->first <= saved->first)
+                    ? unsaved
+                    : saved;
+            add(next->first, next->second);
+            ++next;
+        }
     };
+    std::vector<int> found;
     // Where the former one can't be read any further, ours goes on without it.
     read_record(former, [&](int number, FrameRecord frame) {
         add_ours_up_to(number);
-        has_others_ = has_others_ || !ours_.contains(number);
+        if (const auto ours = saved_.find(number);
+            ours != saved_.end() && to_json(ours->second) == to_json(frame))
+            found.push_back(number);
         if (is_stale_) frame.is_stale = is_stale_(number, frame);
         add(number, frame);
     });
     add_ours_up_to(std::numeric_limits<int>::max());
     sink(piece + (last ? "\n  }\n}\n" : "}\n}\n"));
+    return found;
 }
 
 }  // namespace pelagic

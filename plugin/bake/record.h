@@ -93,15 +93,16 @@ class Record {
 
     // A file that belongs to no frame.
     void set(const std::string& path, const files::FileState& file);
-    void set(int frame, FrameRecord record) { ours_[frame] = std::move(record); }
+    void set(int frame, FrameRecord record) { unsaved_[frame] = std::move(record); }
 
     // Writes the record to `file`, with the frames that are there already, of this run and of others, and again where
-    // another run has written it meanwhile. Holds one frame of others at a time. Throws files::FileError, and what `waiting`
-    // throws.
+    // another run has written it meanwhile. Holds one frame of others at a time, and of ours those that weren't found in the
+    // record since they were saved: memory doesn't grow with the shot. Throws files::FileError, and what `waiting` throws;
+    // then what was set is kept for the next time.
     void save(const std::filesystem::path& file, const files::LockWatch& waiting = {});
 
-    // The last save() of a run: looks whether what this run has set is still there some moments later, and saves it again
-    // where another run, whose lock was none, has written over it.
+    // The last save() of a run: where other runs write as well, looks whether what was set last is still there some moments
+    // later, and saves it again where another one, whose lock was none, has written over it.
     void finish(const std::filesystem::path& file, const files::LockWatch& waiting = {});
 
     // Why other runs aren't kept from writing the record at the same time, in words; empty where they are, as far as
@@ -109,15 +110,19 @@ class Record {
     const std::string& unlocked() const { return unlocked_; }
 
   private:
-    void write(const std::filesystem::path& former, const std::function<void(std::string_view)>& sink);
+    // Returns those of saved_ that `former` has.
+    std::vector<int> write(const std::filesystem::path& former,
+                           const std::function<void(std::string_view)>& sink) const;
     bool is_all_in(const std::filesystem::path& file) const;
 
     nlohmann::ordered_json shot_;
     int first_frame_ = 0, last_frame_ = 0;
     std::function<bool(int, const FrameRecord&)> is_stale_;
+    std::map<int, FrameRecord> unsaved_;
     std::map<int, FrameRecord>
-        ours_;  // of this run, for as long as it lasts: another one may write over what was saved
-    bool has_others_ = false;  // the record had frames that this run hasn't set
+        saved_;  // and not found in the record since: another run may have written over it
+    std::optional<files::FileIdentity> written_;  // the record as save() left it
+    bool is_shared_ = false;                      // another run has written it since
     std::string unlocked_;
 };
 

@@ -4,8 +4,7 @@
 //
 // Locks (flock()) tell which hidden files are still being written: a writer locks its own, and the kernel
 // releases the lock when the process ends, however it ends. Process numbers alone wouldn't do: they are
-// reused, and in containers every bake may have the same one. They count beside it: where locks don't lock, a process that
-// lives is still writing.
+// reused, and in containers every bake may have the same one. Where locks don't lock, whose process has it open is still being written.
 #include "plugin/files/files.h"
 
 #include <fcntl.h>
@@ -19,7 +18,6 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
-#include <csignal>
 #include <ctime>
 #include <thread>
 #include <utility>
@@ -175,6 +173,8 @@ class Temporary {
         }
     }
 
+    const fs::path& path() const { return path_; }
+
     void flush() {
         while (fsync(file_.number()) != 0) {
             if (errno != EINTR) fail_to_write(target_, errno);
@@ -230,12 +230,20 @@ void flush_folder(const fs::path& target) {
     }
 }
 
-// Whether the process that a hidden file's name begins with lives on this machine, and isn't this one.
-bool is_of_another_that_lives(const fs::path& path) {
+// Whether the process that a hidden file's name begins with has it open on this machine.
+bool is_being_written(const fs::path& path, const struct stat& file) {
     const std::string name = path.filename().string();
     int process = 0;
     std::from_chars(name.data() + kTemporaryPrefix.size(), name.data() + name.size(), process);
-    return process > 0 && process != getpid() && (kill(process, 0) == 0 || errno == EPERM);
+    std::error_code error;
+    for (fs::directory_iterator open("/proc/" + std::to_string(process) + "/fd", error), end;
+         !error && open != end; open.increment(error)) {
+        struct stat status {};
+        if (process != getpid() && stat(open->path().c_str(), &status) == 0 && status.st_dev == file.st_dev &&
+            status.st_ino == file.st_ino)
+            return true;
+    }
+    return false;
 }
 
 // Deletes the hidden file at `path` if the process that wrote it is gone. Returns whether it did.
@@ -284,14 +292,16 @@ FileIdentity identity_of(const fs::path& path) {
             .changed_ns = status.st_mtim.tv_nsec};
 }
 
-bool replace_if_same(const fs::path& target, const FileIdentity& same, const Content& content) {
+std::optional<FileIdentity> replace_if_same(const fs::path& target, const FileIdentity& same,
+                                            const Content& content) {
     Temporary temporary(target);
     content([&](std::string_view piece) { temporary.write(std::as_bytes(std::span(piece))); });
     temporary.flush();
-    if (identity_of(target) != same) return false;
+    const FileIdentity ours = identity_of(temporary.path());
+    if (identity_of(target) != same) return {};
     temporary.rename_to_target();
     flush_folder(target);
-    return true;
+    return ours;
 }
 
 FileState write_if_different(const std::filesystem::path& target, const Content& content) {

@@ -64,9 +64,10 @@ struct FileIdentity {
 };
 FileIdentity identity_of(const std::filesystem::path& path);
 
-// write_atomically(), unless another file has the name by then; false: nothing was changed. Between the last look and the
-// renaming lie microseconds: where locks don't lock this makes a lost write rare, not impossible.
-bool replace_if_same(const std::filesystem::path& target, const FileIdentity& same, const Content& content);
+// write_atomically(), unless another file has the name by then: nothing then, and nothing was changed. Between the last look and
+// the renaming lie microseconds: where locks don't lock this makes a lost write rare, not impossible.
+std::optional<FileIdentity> replace_if_same(const std::filesystem::path& target, const FileIdentity& same,
+                                            const Content& content);
 
 // The same, unless the file has exactly these bytes already; then it stays untouched.
 FileState write_if_different(const std::filesystem::path& target, const Content& content);

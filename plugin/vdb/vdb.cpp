@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <latch>
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 #include "plugin/vdb/openvdb_writer.h"
 
@@ -57,8 +60,8 @@ class MemoryFile {
     int descriptor_;
 };
 
-// That loading OpenVDB has room. Where it has too little, under a limit of addresses or data (ulimit -v, -d), the loader
-// doesn't fail but ends the process, or never returns: OpenVDB's log starts threads then, whose failure nobody handles.
+// That loading OpenVDB has room, and threads. Where it has too little, under a limit of addresses, data or processes (ulimit -v, -d,
+// -u), the loader doesn't fail but ends the process, or never returns: OpenVDB's log starts threads then, whose failure nobody handles.
 void require_room() {
     constexpr std::size_t kAddresses = std::size_t{112}
                                        << 20;             // found 69 MiB, and 92 with four stacks of 8 MiB
@@ -71,6 +74,16 @@ void require_room() {
     if (data != MAP_FAILED) ::munmap(data, kData);
     if (rest != MAP_FAILED) ::munmap(rest, kAddresses - kData);
     if (!has_room) throw std::bad_alloc();
+    constexpr std::size_t kThreads = 4;
+    std::latch are_there(1);
+    std::vector<std::jthread> threads;
+    try {
+        for (std::size_t i = 0; i < kThreads; ++i) threads.emplace_back([&] { are_there.wait(); });
+    } catch (...) {
+        are_there.count_down();
+        throw;
+    }
+    are_there.count_down();
 }
 
 // For as long as the process lives: OpenVDB's threads can't be taken away.

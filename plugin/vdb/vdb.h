@@ -67,7 +67,7 @@ constexpr std::size_t bytes_a_block() {
 inline constexpr std::size_t kTreeBytes = std::size_t{4} << 20;
 
 // Loads OpenVDB, as the first grid would: who asks what memory is left asks after it. Throws std::runtime_error where the
-// library isn't to be had, std::bad_alloc where there is no room for it.
+// library isn't to be had, std::bad_alloc where there is no room for it, std::system_error where there are no threads.
 void load();
 
 // A grid that is being filled.

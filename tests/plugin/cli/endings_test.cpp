@@ -90,9 +90,11 @@ TEST_F(Endings, ALogBeyondTheLimitOfFilesIsNoSignal) {
 
 // The system may refuse the first thread, or a later one, which a thread of oneTBB's own asks for.
 TEST_F(Endings, ThreadsThatTheSystemRefusesAreSaid) {
+    write_file(folder() / "volumes.toml",
+               text_of({.name = "volumes", .frames = 1, .volumes = "\"level-set\""}));
     for (const char* arguments :
-         {"bake small.toml --out out", "render small.toml --out out --size 16x8 --samples 1",
-          "explain --measure small.toml"})
+         {"bake small.toml --out out", "bake volumes.toml --out out",
+          "render small.toml --out out --size 16x8 --samples 1", "explain --measure small.toml"})
         for (const int threads : {0, 1, 2, 4, 6}) {
             fs::remove_all(folder() / "out");
             const Ended ended =

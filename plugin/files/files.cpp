@@ -253,7 +253,7 @@ bool remove_if_stale(const fs::path& path, const std::string& own_host) {
     if (!file || fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
     const std::int64_t age_s = std::time(nullptr) - status.st_mtime;
     const bool old = age_s > kForeignAge_s;
-    if (!old && (!path.filename().string().ends_with(own_host) || is_of_another_that_lives(path)))
+    if (!old && (!path.filename().string().ends_with(own_host) || is_being_written(path, status)))
         return false;
     // Deletes while holding the lock: a writer that has just made the file notices either the lock or the
     // deletion.

@@ -73,9 +73,7 @@ class SeaLight {
     const Frame<T>& frame() const { return frame_; }
 
     // As Frame's.
-    void set(double time_s, const std::atomic<bool>* cancel = nullptr) {
-        frame_.set(time_s, cancel);
-    }
+    void set(double time_s, const std::atomic<bool>* cancel = nullptr) { frame_.set(time_s, cancel); }
     // The air before an eye at this height above the sea at rest [m]; none where the light has none.
     Air air_before(double height_m) const;
     // The spray before a camera at the frame's time, with its light; none where the light or the scene has none.

@@ -136,9 +136,9 @@ std::string explain(const Plan& plan) {
         page += format(
             "  whitecaps: coverage from %d moments of the Jacobian, of waves above %g m%s\n",
             plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m,
-            plan.choppiness > 0.0
+            plan.choppiness.moves()
                 ? ""
-                : format(", as a choppiness of %g would press them", plan.breaking.choppiness).c_str());
+                : format(", as a choppiness of %g would press them", plan.breaking.choppiness.largest()).c_str());
     else if (!products_gone(scene)[index(Product::Coverage)])
         page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
     if (plan.foam)

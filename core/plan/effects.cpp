@@ -13,7 +13,7 @@ constexpr auto kNothing = [](const Scene&) { return EffectNeeds{}; };
 
 const std::array kEffectTable = std::to_array<EffectRow>({
     {"horizontal displacement", [](const Scene& scene) { return Choppiness::asked(scene).built().moves(); },
-     "waves.choppiness is 0, or too little to be seen", 
+     "waves.choppiness is 0, or too little to be seen",
      [](Scene& scene) {
          scene.waves.choppiness = 0.0;
          for (CascadeSize& cascade : scene.waves.cascades) cascade.choppiness.reset();

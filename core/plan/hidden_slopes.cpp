@@ -33,7 +33,8 @@ double hidden_mean_square_slope(const DirectionalSpectrum& spectrum, const Footp
 double hidden_slope_gain(const DirectionalSpectrum& spectrum, const FootprintFilter& filter,
                          double footprint_m, const Choppiness& choppiness) {
     return 1.0 + 0.5 * slope_integral(spectrum, choppiness, [&](double k, double share) {
-                     const double moved = share * choppiness.largest() * spectrum.dispersion().horizontal_ratio(k) *
+                     const double moved = share * choppiness.largest() *
+                                          spectrum.dispersion().horizontal_ratio(k) *
                                           filter.weight(k, footprint_m);
                      return moved * moved;
                  });

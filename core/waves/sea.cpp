@@ -139,8 +139,7 @@ void Sea<T>::calibrate_whitecaps() {
     }
     if (plan_.gusts)
         gusts_ =
-            make_gusts(*plan_.gusts,
-                       {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
+            make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
                        whitecap_threshold_, law_exponent(plan_.from->scene));
 }
 

@@ -162,7 +162,8 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         const auto horizontal = [&](double by) {
             return std::min(by * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
         };
-        const double horizontal_m = horizontal(choppiness), strained_m = horizontal(breaking.choppiness.largest());
+        const double horizontal_m = horizontal(choppiness),
+                     strained_m = horizontal(breaking.choppiness.largest());
         const double x = std::cos(theta), y = std::sin(theta);
         const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
 
@@ -208,8 +209,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         SpectralMoments beyond = beyond_train(
             moments_with_breaking(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1), unscaled),
             k, dispersion.horizontal_ratio(k), breaks);
-        trains.outside +=
-            beyond.scale_strain(breaking.choppiness.largest() * breaking.choppiness.largest());
+        trains.outside += beyond.scale_strain(breaking.choppiness.largest() * breaking.choppiness.largest());
     }
 
     trains.outside += moments_with_breaking(spectrum, 0.0, kTwoPi / plan.longest_m, breaking);

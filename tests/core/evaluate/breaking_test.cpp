@@ -31,6 +31,10 @@ constexpr Kind kSeas[] = {
          s.waves.model = WaveModel::Trochoid;
          s.waves.choppiness = 0.0;
      }},
+    {"cascades of different choppiness",
+     [](Scene& s) {
+         s.waves.cascades = {{600.0, 192, 0.6}, {60.0, 160, 1.6}, {8.0, 128, 0.0}};
+     }},
     {"a few metres", [](Scene& s) { s.effects.breaking_from_m = 3.3; }},
 };
 

@@ -61,6 +61,9 @@ struct ToJson {
 Json settings(const Scene& scene) {
     Json json = Json::object();
     for (const Key& key : keys()) json[key.path] = std::visit(ToJson{}, value_of(scene, key));
+    // A cascade that says nothing of its choppiness has the record that it had before it could.
+    for (Json& cascade : json["waves.cascades"])
+        if (cascade["choppiness"].is_null()) cascade.erase("choppiness");
     return json;
 }
 

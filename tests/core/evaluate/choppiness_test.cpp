@@ -15,6 +15,7 @@
 #include "core/plan/hidden_slopes.h"
 #include "core/plan/mesh_error_model.h"
 #include "core/scene/cascade_bands.h"
+#include "core/waves/breaking_rate.h"
 #include "core/waves/folding.h"
 #include "core/waves/whitecaps.h"
 #include "tests/core/waves/samples.h"
@@ -64,6 +65,8 @@ TEST(ChoppinessOfCascades, OfEqualOnesIsTheShotsToTheBit) {
                 where.pixel_m.assign(points.size(), 0.8f);
                 answers.push_back(sample(frame, 0, points, where));
                 prepared.push_back(prepare(*scene));
+                EXPECT_EQ(prepared.back()->extent.reach_m,
+                          expected_extent(prepared.back()->spectrum, choppiness).reach_m);
                 thresholds.push_back(frame.sea().whitecap_threshold());
                 errors.push_back(MeshErrorModel(*prepared.back()).error(2.0, 0.0, Drawn::Triangles));
             }
@@ -181,6 +184,51 @@ TEST(ChoppinessOfCascades, CostsNothingWhereItIsZero) {
     EXPECT_NE(page.find("0  200 m, resolution 96, waves of"), std::string::npos) << page;
 }
 
+// Nor is it read there, wherever points have no, round or long footprints: the answers are those of next to no choppiness.
+TEST(ChoppinessOfCascades, IsNotReadWhereItIsZero) {
+    const auto points = random_points<float>(400.0, 500);
+    for (const Tiling tiling : {Tiling::Periodic, Tiling::Random})
+        for (const bool is_large : {false, true}) {
+            SCOPED_TRACE(is_large);
+            std::vector<ProductArrays<float>> answers;
+            for (const double choppiness : {0.0, Choppiness::kLeastShown}) {
+                Scene scene = is_large ? scene_of(choppiness, 1.0) : scene_of(1.0, choppiness);
+                scene.waves.tiling = tiling;
+                Query query = filtered(kAll, 0.0);
+                query.cell_m = query.pixel_m = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
+                const auto frame = frame_of<float>(scene, {query}, 2.0);
+                std::vector<float> width_m;
+                std::vector<glm::vec2> axis_m;
+                for (std::size_t i = 0; i < points.size(); ++i) {
+                    const float turn = static_cast<float>(i), ratio = i % 2 == 0 ? 1.0f : 6.0f;
+                    width_m.push_back(0.3f * static_cast<float>(1 + i % 8));
+                    axis_m.push_back(ratio * width_m.back() * glm::vec2(std::cos(turn), std::sin(turn)));
+                }
+                answers.emplace_back().resize(kAll, points.size());
+                evaluate(frame, 0,
+                         Points<float>{.count = points.size(),
+                                       .rest_m = {points.data()},
+                                       .cell_m = {width_m.data()},
+                                       .pixel_m = {width_m.data()},
+                                       .cell_axis_m = {axis_m.data()},
+                                       .pixel_axis_m = {axis_m.data()}},
+                         answers.back().results());
+            }
+            const auto expect_near = [&](const auto& none, const auto& least, float tolerance) {
+                for (std::size_t i = 0; i < points.size(); ++i)
+                    ASSERT_LT(glm::length(none[i] - least[i]), tolerance) << i;
+            };
+            const auto &none = answers[0], &least = answers[1];
+            expect_near(none.vectors(Position), least.vectors(Position), 1e-3f);
+            expect_near(none.vectors(Normal), least.vectors(Normal), 1e-3f);
+            expect_near(none.vectors(Velocity), least.vectors(Velocity), 1e-3f);
+            expect_near(none.vectors(SlopeVariance), least.vectors(SlopeVariance), 1e-3f);
+            expect_near(none.vectors(Product::JacobianMoments), least.vectors(Product::JacobianMoments),
+                        1e-3f);
+            expect_near(none.numbers(Product::Coverage), least.numbers(Product::Coverage), 1e-2f);
+        }
+}
+
 // J of points of our own, against what a footprint that hides all waves says of it.
 TEST(ChoppinessOfCascades, JacobianAndFoamAreThoseOfPoints) {
     const auto points = random_points<double>(4000.0, 10000);
@@ -224,6 +272,16 @@ TEST(ChoppinessOfCascades, JacobianAndFoamAreThoseOfPoints) {
     }
 }
 
+// Where short waves are the more choppy, J changes faster.
+TEST(ChoppinessOfCascades, WeighsHowFastTheJacobianChanges) {
+    const auto rate_of = [](double large, double small) {
+        const auto prepared = prepare(scene_of(large, small));
+        return breaking_rate(prepared->spectrum, breaking_of(prepared->scene, {}));
+    };
+    EXPECT_GT(rate_of(0.6, 1.7), 1.02 * rate_of(1.0, 1.0));
+    EXPECT_LT(1.02 * rate_of(1.7, 0.6), rate_of(1.0, 1.0));
+}
+
 // Squares of what grows with λ add up band by band: (a, b) and (b, a) hold together what (a, a) and (b, b) hold.
 TEST(ChoppinessOfCascades, AddsUpBandByBand) {
     const auto expect_sum = [](const char* what, const auto& square_of) {
@@ -246,6 +304,17 @@ TEST(ChoppinessOfCascades, AddsUpBandByBand) {
     expect_sum("carried slopes", [](double large, double small) {
         const auto prepared = prepare(scene_of(large, small));
         return hidden_slope_gain(prepared->spectrum, {}, 0.5, Choppiness::asked(prepared->scene)) - 1.0;
+    });
+    // Of the waves that break.
+    expect_sum("mean choppiness", [](double large, double small) {
+        const auto prepared = prepare(scene_of(large, small));
+        return std::pow(mean_choppiness(prepared->spectrum, breaking_of(prepared->scene, {})), 2.0);
+    });
+    expect_sum("variance of dJ/dt", [](double large, double small) {
+        const auto prepared = prepare(scene_of(large, small));
+        const Breaking breaking = breaking_of(prepared->scene, {});
+        return std::pow(
+            breaking_rate(prepared->spectrum, breaking) * mean_choppiness(prepared->spectrum, breaking), 2.0);
     });
 }
 
@@ -283,6 +352,17 @@ TEST(ChoppinessOfCascades, FoldingIsToldOfWithWhatHelps) {
     };
     EXPECT_LE(share(factor), 0.05);
     EXPECT_GT(share(factor + 0.02), 0.05);
+    // And the share is that of points.
+    Scene counted = scene_of(10.0, 5.0);
+    counted.waves.band_gains = {{1e-3, 1.5, 0.0}};  // what no tile shows
+    const auto frame = frame_of<double>(counted, {unfiltered(products(Displacement))});
+    const Sum sum(frame.sea(), counted, 0.0);
+    const auto points = random_points<double>(4000.0, 3000);
+    const double folded =
+        mean_of(points, [&](glm::dvec2 x) { return sum.at(x).jacobian() < 0.0 ? 1.0 : 0.0; });
+    const double told_share = folded_share(prepare(counted)->spectrum, Choppiness::asked(counted));
+    EXPECT_GT(folded, 0.03);
+    EXPECT_NEAR(told_share / folded, 1.0, 0.15);
 }
 
 }  // namespace

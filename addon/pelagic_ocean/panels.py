@@ -9,7 +9,7 @@ from .look import PELAGIC_OT_add_light, PELAGIC_OT_add_material
 from .module import pelagic, problem
 from .operators import PELAGIC_OT_list_add, PELAGIC_OT_list_remove, PELAGIC_OT_release_mesh, PELAGIC_OT_use_mesh
 from .presets import PELAGIC_MT_presets
-from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts
+from .properties import BUDGETS, BY_PATH, CUSTOM, FIELDS, VERSION, counts, entry_fields
 
 # Title → tables of keys.
 PANELS = {"Sea": ("sea", "shot"), "Waves": ("waves",), "Surface": ("surface",), "Effects": ("effects",),
@@ -33,8 +33,8 @@ def _draw_list(layout, group, field):
     for index, row in enumerate(getattr(group, field.name)):
         box = layout.row()
         column = box.column(align=True)
-        for inner in field.key["keys"]:
-            column.prop(row, inner["name"])
+        for inner in entry_fields(field):
+            _draw_field(column, row, inner)
         remove = box.operator(PELAGIC_OT_list_remove.bl_idname, text="", icon="X")
         remove.path, remove.index = field.path, index
 

@@ -319,7 +319,7 @@ template <class T>
 bool PreparedQuery<T>::breaks_apart(const Call& call, const Work& work) const {
     const Plan& plan = frame_->sea().plan();
     if (!call.breaks) return false;
-    if (!(plan.choppiness > 0.0) || (has_trains_ && plan.breaking.footprint_m > 0.0)) return true;
+    if (!plan.choppiness.moves() || (has_trains_ && plan.breaking.footprint_m > 0.0)) return true;
     const std::vector<int>&pixel = planned_->pixel_levels, &breaking = planned_->breaking_levels;
     if (!call.on_ladder) return pixel.front() != breaking.front();
     for (std::size_t i = 0; i < work.chunk.count; ++i) {

@@ -34,6 +34,7 @@ class TapChunk {
 
     // Point i of `to`, which has this share in the grid. whole_m: of its cascade.
     void add(std::size_t i, const Footprint<T>& footprint, T share, T whole_m, Chunk<T>& to) {
+        if (fields_.none()) return;  // a tile without choppiness holds no strains
         const Taps<T> taps = taps_of(std::max(footprint.width_m, whole_m), footprint.length_m);
         const int last = last_tap(static_cast<double>(taps.reach));
         for (int j = -last; j <= last; ++j) {
@@ -50,7 +51,7 @@ class TapChunk {
     // Reads what was gathered, into the sums of `to`.
     void flush(Chunk<T>& to) {
         const std::size_t count = taps_.count, padded = taps_.padded();
-        if (count == 0 || fields_.none()) return;
+        if (count == 0) return;
         std::fill(taps_.rest_x.begin() + count, taps_.rest_x.begin() + padded, T(0));
         std::fill(taps_.rest_y.begin() + count, taps_.rest_y.begin() + padded, T(0));
         for (std::size_t f = 0; f < kFieldCount; ++f)

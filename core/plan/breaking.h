@@ -6,24 +6,19 @@
 // the foam is the same at every resolution, and its edges are soft.
 #pragma once
 
+#include "core/plan/choppiness.h"
 #include "core/plan/filter.h"
 #include "core/scene/scene.h"
 #include "core/spectrum/spectral_moments.h"
 
 namespace pelagic {
 
-// The choppiness that a sea is built with: the scene's, or none where it is less than this. Such a sea is displaced by less
-// than a ten-thousandth of its waves' height, and in single precision J, next to 1, keeps too few digits of its strain to
-// tell where it breaks: half a step is 0.2 % of J's deviation here, and more of less.
-inline constexpr double kLeastShownChoppiness = 1e-4;
-double built_choppiness(const Scene& scene);
-
 struct Breaking {
     double from_m = 0.0;       // the shortest waves that break; 0: all do
     double footprint_m = 0.0;  // the finest footprint of their strain
     // Of their strain. A sea without horizontal displacement breaks where the slightest would press it together: this
     // small, its foam is that of a sea whose surface isn't compressed.
-    double choppiness = 1.0;
+    Choppiness choppiness{};
 
     static constexpr double kLeastChoppiness = 0.01;
 
@@ -35,8 +30,15 @@ struct Breaking {
 
 Breaking breaking_of(const Scene& scene, const FootprintFilter& filter);
 
-// moments() of k_lo ≤ k < k_hi, the strains of those that break alone, with their choppiness.
+// moments() of k_lo ≤ k < k_hi with the strains of this choppiness.
+SpectralMoments moments_pressed(const DirectionalSpectrum& spectrum, double k_lo, double k_hi,
+                                const Choppiness& choppiness);
+
+// The same, the strains of those that break alone.
 SpectralMoments moments_with_breaking(const DirectionalSpectrum& spectrum, double k_lo, double k_hi,
                                       const Breaking& breaking);
+
+// The one choppiness that would press the waves that break as much, by Var(J) to first order, ∫ λ² k² coth²(kd) S dk.
+double mean_choppiness(const DirectionalSpectrum& spectrum, const Breaking& breaking);
 
 }  // namespace pelagic

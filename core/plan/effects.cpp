@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/plan/breaking.h"
+#include "core/plan/choppiness.h"
 #include "core/plan/plan.h"
 
 namespace pelagic {
@@ -12,8 +12,12 @@ namespace {
 constexpr auto kNothing = [](const Scene&) { return EffectNeeds{}; };
 
 const std::array kEffectTable = std::to_array<EffectRow>({
-    {"horizontal displacement", [](const Scene& scene) { return built_choppiness(scene) > 0.0; },
-     "waves.choppiness is 0, or too little to be seen", [](Scene& scene) { scene.waves.choppiness = 0.0; },
+    {"horizontal displacement", [](const Scene& scene) { return Choppiness::asked(scene).built().moves(); },
+     "waves.choppiness is 0, or too little to be seen",
+     [](Scene& scene) {
+         scene.waves.choppiness = 0.0;
+         for (CascadeSize& cascade : scene.waves.cascades) cascade.choppiness.reset();
+     },
      horizontal_fields, [] { return ProductSet(); }, kNothing},
     {"whitecaps", [](const Scene& scene) { return scene.effects.whitecaps; }, "effects.whitecaps is false",
      [](Scene& scene) {

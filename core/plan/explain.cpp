@@ -133,12 +133,12 @@ std::string explain(const Plan& plan) {
     for (const PlannedQuery& planned : plan.queries)
         has_coverage |= planned.query.products[index(Product::Coverage)];
     if (has_coverage)
-        page += format(
-            "  whitecaps: coverage from %d moments of the Jacobian, of waves above %g m%s\n",
-            plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m,
-            plan.choppiness > 0.0
-                ? ""
-                : format(", as a choppiness of %g would press them", plan.breaking.choppiness).c_str());
+        page += format("  whitecaps: coverage from %d moments of the Jacobian, of waves above %g m%s\n",
+                       plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m,
+                       plan.choppiness.moves() ? ""
+                                               : format(", as a choppiness of %g would press them",
+                                                        plan.breaking.choppiness.largest())
+                                                     .c_str());
     else if (!products_gone(scene)[index(Product::Coverage)])
         page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
     if (plan.foam)
@@ -169,8 +169,11 @@ std::string explain(const Plan& plan) {
         page += format("  periodic tiles: the largest repeats after %.4g m\n", plan.cascades.front().size_m);
     std::size_t cascade_number = 0;
     for (const CascadePlan& cascade : plan.cascades) {
-        page +=
-            format("  %zu  %.6g m, resolution %d, ", cascade_number++, cascade.size_m, cascade.resolution);
+        page += format("  %zu  %.6g m, resolution %d, ", cascade_number, cascade.size_m, cascade.resolution);
+        if (!scene.waves.cascades.empty())
+            if (const auto own = scene.waves.cascades[cascade_number].choppiness)
+                page += format("choppiness %g, ", *own);
+        ++cascade_number;
         const double longest_m = cascade.k_lower > 0.0 ? kTwoPi / cascade.k_lower : cascade.size_m;
         const double shortest_m = std::isfinite(cascade.k_upper)
                                       ? kTwoPi / cascade.k_upper

@@ -3,25 +3,25 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "core/plan/filter.h"
 #include "core/spectrum/gauss.h"
 
 namespace pelagic {
 
-Extent expected_extent(const DirectionalSpectrum& spectrum, double choppiness) {
+Extent expected_extent(const DirectionalSpectrum& spectrum, const Choppiness& choppiness) {
     const auto& rule = GaussLegendre<8>::rule();
     const FootprintFilter filter;
     double reach_m2 = 0.0;
     std::array<double, HiddenHeight::kCells> hidden_m2{};
-    const auto panels = spectrum.panels();
-    for (std::size_t i = 0; i + 1 < panels.size(); ++i)
+    const auto add = [&](double from, double to, double share) {
         for (std::size_t node = 0; node < rule.node.size(); ++node) {
-            const double half = 0.5 * (panels[i + 1] - panels[i]);
-            const double k = panels[i] + half * (1.0 + rule.node[node]);
+            const double half = 0.5 * (to - from);
+            const double k = from + half * (1.0 + rule.node[node]);
             const double energy_m2 = half * rule.weight[node] * spectrum.omnidirectional(k);
-            // Var|D| = λ² ∫ S coth²(kd) dk (Tessendorf 2001, Eq. 29, in water of depth d).
-            const double ratio = spectrum.dispersion().horizontal_ratio(k);
+            // Var|D| = ∫ S λ² coth²(kd) dk (Tessendorf 2001, Eq. 29, in water of depth d), here over the largest λ².
+            const double ratio = share * spectrum.dispersion().horizontal_ratio(k);
             reach_m2 += energy_m2 * ratio * ratio;
             // ∫ S (1 − w)² dk: what a footprint w takes from each wave.
             for (std::size_t cell = HiddenHeight::kCells; cell-- > 0;) {
@@ -30,8 +30,10 @@ Extent expected_extent(const DirectionalSpectrum& spectrum, double choppiness) {
                 hidden_m2[cell] += energy_m2 * lost * lost;
             }
         }
+    };
+    choppiness.for_panels(spectrum, 0.0, std::numeric_limits<double>::infinity(), add);
     Extent extent{.height_m = kExtentDeviations * std::sqrt(spectrum.m0()),
-                  .reach_m = kExtentDeviations * choppiness * std::sqrt(reach_m2),
+                  .reach_m = kExtentDeviations * choppiness.largest() * std::sqrt(reach_m2),
                   .significant_height_m = 4.0 * std::sqrt(spectrum.m0())};
     for (std::size_t cell = 0; cell < HiddenHeight::kCells; ++cell)
         extent.hidden.deviation_m[cell] = std::sqrt(hidden_m2[cell]);

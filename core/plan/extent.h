@@ -1,6 +1,7 @@
 // How far the surface of a spectrum goes from its rest.
 #pragma once
 
+#include "core/plan/choppiness.h"
 #include "core/spectrum/directional_spectrum.h"
 #include "core/surface/extent.h"
 
@@ -14,6 +15,6 @@ namespace pelagic {
 inline constexpr double kExtentDeviations = 5.0;
 
 // Of everything that the spectrum holds, with this choppiness; 0 for a calm.
-Extent expected_extent(const DirectionalSpectrum& spectrum, double choppiness);
+Extent expected_extent(const DirectionalSpectrum& spectrum, const Choppiness& choppiness);
 
 }  // namespace pelagic

@@ -1,6 +1,7 @@
 // The slopes that a footprint hides, in expectation.
 #pragma once
 
+#include "core/plan/choppiness.h"
 #include "core/plan/filter.h"
 #include "core/spectrum/directional_spectrum.h"
 
@@ -13,8 +14,8 @@ double hidden_mean_square_slope(const DirectionalSpectrum& spectrum, const Footp
                                 double footprint_m);
 
 // How much larger the hidden slope variance is by area of sea than at rest, where the waves that are shown carry it: E[J Σ′]/Σ
-// of an isotropic Σ = E[|M|²/(2 J)] (core/evaluate/surface.inl), to second order 1 + ½ λ² ∫ k² S coth²(kd) w² dk.
+// of an isotropic Σ = E[|M|²/(2 J)] (core/evaluate/surface.inl), to second order 1 + ½ ∫ k² S λ² coth²(kd) w² dk.
 double hidden_slope_gain(const DirectionalSpectrum& spectrum, const FootprintFilter& filter,
-                         double footprint_m, double choppiness);
+                         double footprint_m, const Choppiness& choppiness);
 
 }  // namespace pelagic

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "core/base/constants.h"
-#include "core/plan/breaking.h"
+#include "core/plan/choppiness.h"
 #include "core/plan/filter.h"
 #include "core/spectrum/gauss.h"
 #include "core/surface/view.h"
@@ -46,14 +47,14 @@ Response of_limit_surface(double a, double b) {
 MeshErrorModel::MeshErrorModel(const PreparedScene& prepared) {
     const DirectionalSpectrum& spectrum = prepared.spectrum;
     if (!(spectrum.m0() > 0.0)) return;
-    const double height_m2 = 16.0 * spectrum.m0(), choppiness = built_choppiness(prepared.scene);
+    const double height_m2 = 16.0 * spectrum.m0();
+    const Choppiness choppiness = Choppiness::asked(prepared.scene).built();
     const auto& rule = GaussLegendre<3>::rule();
-    const auto panels = spectrum.panels();
-    for (std::size_t i = 0; i + 1 < panels.size(); ++i)
+    const auto add = [&](double from, double to, double by) {
         for (std::size_t node = 0; node < rule.node.size(); ++node) {
-            const double half = 0.5 * (panels[i + 1] - panels[i]);
-            const double k = panels[i] + half * (1.0 + rule.node[node]);
-            const double moved = choppiness * spectrum.dispersion().horizontal_ratio(k);
+            const double half = 0.5 * (to - from);
+            const double k = from + half * (1.0 + rule.node[node]);
+            const double moved = by * choppiness.largest() * spectrum.dispersion().horizontal_ratio(k);
             const double share = half * rule.weight[node] * (1.0 + moved * moved) / height_m2;
             for (int d = 0; d < kDirections; ++d) {
                 const double theta0 = kTwoPi * d / kDirections, theta1 = kTwoPi * (d + 1) / kDirections;
@@ -62,6 +63,8 @@ MeshErrorModel::MeshErrorModel(const PreparedScene& prepared) {
                 if (energy > 0.0) waves_.push_back({k * std::cos(theta), k * std::sin(theta), k, energy});
             }
         }
+    };
+    choppiness.for_panels(spectrum, 0.0, std::numeric_limits<double>::infinity(), add);
 }
 
 double MeshErrorModel::error(double cell_m, double pixel_m, Drawn drawn) const {

@@ -77,8 +77,9 @@ bool shows_one_copy(const Lattice& lattice, double size_m) {
 }
 
 // Fields that this cascade's grids of this level must hold for all queries together.
-FieldSet fields_at(const Plan& plan, int level, bool blends) {
+FieldSet fields_at(const Plan& plan, const CascadePlan& cascade, int level, bool blends) {
     FieldSet wanted;
+    const FieldSet zero = cascade.choppiness > 0.0 ? FieldSet() : horizontal_fields();
     const auto derivatives = [&](const FieldSet& fields) {
         return blends ? fields | (gradient_fields(fields) & ~plan.dropped) : fields;
     };
@@ -91,7 +92,7 @@ FieldSet fields_at(const Plan& plan, int level, bool blends) {
         if (uses(planned.pixel_levels)) wanted |= derivatives(needed & ~cell_fields());
         if (uses(planned.breaking_levels)) wanted |= derivatives(strain_fields());
     }
-    return wanted;
+    return wanted & ~zero;
 }
 
 // Whether some query wants to know what this level's pixels hide.
@@ -126,7 +127,7 @@ void add_grids(Plan& plan, int cascade_index) {
         if (at.only_cascade && *at.only_cascade != cascade_index) continue;
         const bool is_copied = cascade.has_copies && !at.only_cascade;
         const bool blends = is_copied && !(at.lattice && shows_one_copy(*at.lattice, cascade.size_m));
-        const FieldSet wanted = fields_at(plan, level, blends);
+        const FieldSet wanted = fields_at(plan, cascade, level, blends);
         // A tile shows the modes that its own nodes can hold; the cascade may have more, for a nearby camera.
         const double resolution =
             at.only_cascade && at.lattice
@@ -316,7 +317,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     plan.knobs = options.knobs.value_or(knobs_of(scene.quality.level));
     plan.filter = options.filter;
     plan.knobs.double_precision = options.double_precision.value_or(plan.knobs.double_precision);
-    plan.choppiness = built_choppiness(scene);
+    plan.choppiness = Choppiness::asked(scene).built();
     plan.breaking = breaking_of(scene, plan.filter);
     for (const Query& query : queries) add_query(plan, query);
     add_effects(plan, options.effects);
@@ -346,6 +347,7 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
         CascadePlan cascade;
         cascade.size_m = sizes[i].size_m;
         cascade.resolution = sizes[i].resolution;
+        cascade.choppiness = plan.breaking.choppiness.at(edges[i]);
         cascade.has_copies = scene.waves.tiling == Tiling::Random;
         cascade.k_lower = plan.trains ? std::max(edges[i], kTwoPi / plan.trains->shortest_m) : edges[i];
         cascade.k_upper = i + 1 < sizes.size() ? edges[i + 1] : std::numeric_limits<double>::infinity();
@@ -441,7 +443,7 @@ int CascadePlan::grid_radius() const {
 }
 
 bool Plan::has_strain() const {
-    return choppiness > 0.0 || std::any_of(queries.begin(), queries.end(), [](const PlannedQuery& planned) {
+    return choppiness.moves() || std::any_of(queries.begin(), queries.end(), [](const PlannedQuery& planned) {
                return !planned.breaking_levels.empty();
            });
 }

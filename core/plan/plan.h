@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/plan/breaking.h"
+#include "core/plan/choppiness.h"
 #include "core/plan/effects.h"
 #include "core/plan/filter.h"
 #include "core/plan/foam.h"
@@ -62,6 +63,8 @@ struct CascadePlan {
     std::vector<int> radius_of_level;
     std::string why_empty;  // set when there are no grids
 
+    // λ of its modes, as Breaking has it. 0: none of horizontal_fields().
+    double choppiness = 1.0;
     // Of copies at random offsets (core/plan/copies.h), but for queries of a cascade's own tile.
     bool has_copies = false;
 
@@ -113,7 +116,7 @@ struct Plan {
     std::shared_ptr<const PreparedScene> from;  // what was planned
     Knobs knobs;
     FootprintFilter filter;
-    double choppiness = 1.0;
+    Choppiness choppiness;
     Breaking breaking;
     std::vector<PlannedQuery> queries;
     std::vector<Level> levels;

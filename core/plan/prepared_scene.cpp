@@ -8,7 +8,7 @@ namespace pelagic {
 
 std::shared_ptr<const PreparedScene> prepare(Scene scene) {
     DirectionalSpectrum spectrum(scene.sea, scene.waves.band_gains);
-    const Extent extent = expected_extent(spectrum, scene.waves.choppiness);
+    const Extent extent = expected_extent(spectrum, Choppiness::asked(scene));
     PreparedScene prepared{std::move(scene), std::move(spectrum), extent};
     if (has_budget(prepared.scene.quality)) {
         MeshBudget budget = mesh_budget(prepared);

@@ -217,7 +217,14 @@ void add_waves(Built& out) {
             required<&CascadeSize::resolution>({.name = "resolution",
                                                 .help = "samples a side, even",
                                                 .range = limits::kCascadeResolution,
-                                                .soft = SoftRange{16.0, 2048.0, true}})),
+                                                .soft = SoftRange{16.0, 2048.0, true}}),
+            row<&CascadeSize::choppiness>(
+                {.name = "choppiness",
+                 .help =
+                     "of its waves, instead of waves.choppiness; with model = \"fft\". Waves of 0 don't break, unless "
+                     "all have 0",
+                 .range = limits::kChoppiness,
+                 .soft = SoftRange{0.0, 2.0}})),
         row<&Waves::tiling>(
             {.name = "tiling",
              .help =

@@ -113,8 +113,9 @@ struct BandGain {
 };
 
 struct CascadeSize {
-    double size_m = 400.0;  // period, > 0
-    int resolution = 512;   // even, 16 … 8192
+    double size_m = 400.0;               // period, > 0
+    int resolution = 512;                // even, 16 … 8192
+    std::optional<double> choppiness{};  // λ ≥ 0 of its waves; without: the shot's
 };
 
 // [waves]

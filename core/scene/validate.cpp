@@ -319,6 +319,10 @@ void check_waves(Checker& check, const Waves& waves) {
             check.refuse({key + ".resolution", std::to_string(cascade.resolution),
                           "is no grid for a transform",
                           "an even number, " + text_of(limits::kCascadeResolution)});
+        if (cascade.choppiness && waves.model != WaveModel::Fft && check.is_good(key + ".choppiness"))
+            check.refuse({key + ".choppiness", number_text(*cascade.choppiness),
+                          "is of one cascade's waves, and with wave trains all waves have waves.choppiness",
+                          "model = \"fft\", or an entry without this key"});
         all_good = check.is_good(key + ".size_m") && check.is_good(key + ".resolution") && all_good;
         if (i > 0 && !(cascade.size_m < waves.cascades[i - 1].size_m)) {
             const bool same = cascade.size_m == waves.cascades[i - 1].size_m;

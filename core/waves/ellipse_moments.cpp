@@ -26,13 +26,13 @@ struct Band {
 
 std::vector<Band> bands_of(const Plan& plan, const Query& query) {
     const DirectionalSpectrum& spectrum = plan.from->spectrum;
-    const double choppiness2 = plan.breaking.choppiness * plan.breaking.choppiness;
     const auto panels = spectrum.panels();
     const auto& rule = GaussLegendre<4>::rule();
     std::vector<Band> bands;
     for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
         if (query.only_cascade && *query.only_cascade != c) continue;
         const CascadePlan& cascade = plan.cascades[c];
+        const double choppiness2 = cascade.choppiness * cascade.choppiness;
         // Resolutions that were chosen for the finest footprint end where nothing passes, and must not decide about
         // coarser ones' bits.
         const double end = plan.from->scene.waves.cascades.empty()

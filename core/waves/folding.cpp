@@ -26,8 +26,14 @@ double share_of(const SpectralMoments& all, double choppiness) {
     return 0.5 * std::erfc(-y / std::sqrt(2.0));
 }
 
-SpectralMoments all_of(const DirectionalSpectrum& spectrum) {
-    return moments(spectrum, 0.0, std::numeric_limits<double>::infinity());
+// With each wave's strain as choppy as its share of the largest choppiness.
+SpectralMoments all_of(const DirectionalSpectrum& spectrum, const Choppiness& choppiness) {
+    SpectralMoments all;
+    choppiness.for_bands(0.0, std::numeric_limits<double>::infinity(),
+                         [&](double from, double to, double share) {
+                             all += moments(spectrum, from, to).scale_strain(share * share);
+                         });
+    return all;
 }
 
 // Two digits: "8.2".
@@ -52,8 +58,9 @@ std::vector<std::string> trough_warning(const PreparedScene& prepared) {
 
 std::vector<std::string> folding_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.05;
-    const double choppiness = prepared.scene.waves.choppiness;
-    const SpectralMoments all = all_of(prepared.spectrum);
+    const Choppiness asked = Choppiness::asked(prepared.scene);
+    const double choppiness = asked.largest();
+    const SpectralMoments all = all_of(prepared.spectrum, asked);
     const double share = share_of(all, choppiness);
     if (!(share > kMuch)) return {};
     double less = 0.0, more = choppiness;
@@ -61,9 +68,12 @@ std::vector<std::string> folding_warning(const PreparedScene& prepared) {
         const double middle = 0.5 * (less + more);
         (share_of(all, middle) > kMuch ? more : less) = middle;
     }
-    return {"the surface folds over itself on " + percent_text(share) +
-            " % of its area; waves.choppiness = " + number_text(std::floor(100.0 * less) / 100.0) +
-            " leaves 5 %"};
+    const std::string folds = "the surface folds over itself on " + percent_text(share) + " % of its area; ";
+    const auto& cascades = prepared.scene.waves.cascades;
+    if (std::any_of(cascades.begin(), cascades.end(), [](const CascadeSize& c) { return c.choppiness; }))
+        return {folds + "each cascade's choppiness times " +
+                number_text(std::floor(100.0 * less / choppiness) / 100.0) + " leaves 5 %"};
+    return {folds + "waves.choppiness = " + number_text(std::floor(100.0 * less) / 100.0) + " leaves 5 %"};
 }
 
 // Explicit tiles that repeat: where a patch shows that or, on surfaces as large as the view, a tile has few waves of the peak.
@@ -99,7 +109,8 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.05;
     const Waves& waves = prepared.scene.waves;
     if (waves.tiling != Tiling::Random || waves.model != WaveModel::Fft || waves.cascades.empty()) return {};
-    const auto [given_m, given_resolution] = waves.cascades.front();
+    const double given_m = waves.cascades.front().size_m;
+    const int given_resolution = waves.cascades.front().resolution;
     // A larger tile must have all waves down to the next cascade's, or down to those that it has now.
     const double k_last = kPi * given_resolution / given_m;
     const auto resolution_of = [&](double size_m) {
@@ -135,8 +146,8 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
 
 }  // namespace
 
-double folded_share(const DirectionalSpectrum& spectrum, double choppiness) {
-    return share_of(all_of(spectrum), choppiness);
+double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& choppiness) {
+    return share_of(all_of(spectrum, choppiness), choppiness.largest());
 }
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {

@@ -10,7 +10,7 @@ namespace pelagic {
 
 // The share of the surface, by area at rest, whose Jacobian is below 0 with all waves of the spectrum; 0 … 1. From J's first
 // three cumulants (core/waves/whitecaps.h).
-double folded_share(const DirectionalSpectrum& spectrum, double choppiness);
+double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& choppiness);
 
 // What an artist should know of a sea before it is built, a sentence each: a surface that folds over itself on more than 5 %
 // of its area, and the choppiness that leaves that much; troughs deeper than the water; explicit tiles that repeat in

@@ -122,10 +122,11 @@ void Sea<T>::calibrate_whitecaps() {
     const bool third = plan_.knobs.third_moment;
     FoamLife life;
     if (plan_.foam)
-        life = {.rate_per_s = breaking_rate(plan_.from->spectrum, plan_.breaking.k_end()),
+        life = {.rate_per_s = breaking_rate(plan_.from->spectrum, plan_.breaking),
                 .lasting_s = plan_.foam->weight(0.0, plan_.foam->window_s).foam_s};
-    const double law = law_coverage(plan_.from->scene);
-    whitecap_threshold_ = calibrated_threshold(total_, law, plan_.breaking.choppiness, third, life);
+    const double law = law_coverage(plan_.from->scene),
+                 choppiness = mean_choppiness(plan_.from->spectrum, plan_.breaking);
+    whitecap_threshold_ = calibrated_threshold(total_, law, choppiness, third, life);
     const auto j = jacobian_moments<double>(
         0.0, 0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
     double left = 0.0;
@@ -138,8 +139,7 @@ void Sea<T>::calibrate_whitecaps() {
     }
     if (plan_.gusts)
         gusts_ =
-            make_gusts(*plan_.gusts,
-                       {.j = j, .left = left, .third_moment = third, .choppiness = plan_.breaking.choppiness},
+            make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
                        whitecap_threshold_, law_exponent(plan_.from->scene));
 }
 
@@ -148,7 +148,6 @@ Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, std::vector<QuerySta
                          Progress& progress) {
     const Scene& scene = plan_.from->scene;
     const Dispersion& dispersion = plan_.from->spectrum.dispersion();
-    const double choppiness = plan_.breaking.choppiness;
     const CascadePlan& planned = plan_.cascades[c];
     Cascade<T> cascade;
     cascade.size_m = planned.size_m;
@@ -214,7 +213,7 @@ Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, std::vector<QuerySta
                                     .count = static_cast<std::size_t>(counted) + 1,
                                     .step = step,
                                     .dispersion = dispersion,
-                                    .choppiness = choppiness,
+                                    .choppiness = planned.choppiness,
                                     .out = scratch.sums()});
                     levels.add(kernels.moments, scratch.sums(), mx, counted, part);
                     modes += column_length(planned.mode_radius, mx);
@@ -245,7 +244,7 @@ Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, std::vector<QuerySta
                                          .step = step,
                                          .dispersion = dispersion,
                                          .loop_s = loop_s_,
-                                         .choppiness = choppiness,
+                                         .choppiness = planned.choppiness,
                                          .cycles_per_s = cascade.cycles_per_s.data() + at,
                                          .chop = cascade.chop.empty() ? nullptr : cascade.chop.data() + at});
                 }

@@ -145,7 +145,7 @@ template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, const FootprintFilter& filter) {
     const Scene& scene = prepared.scene;
     const DirectionalSpectrum& spectrum = prepared.spectrum;
-    const double choppiness = built_choppiness(scene), loop_s = scene.shot.sea_loop_s();
+    const double choppiness = Choppiness::asked(scene).built().largest(), loop_s = scene.shot.sea_loop_s();
     const Breaking breaking = breaking_of(scene, filter);
     Breaking unscaled = breaking;
     unscaled.choppiness = 1.0;
@@ -162,7 +162,8 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         const auto horizontal = [&](double by) {
             return std::min(by * dispersion.horizontal_ratio(k) * height_m, 1.0 / k);
         };
-        const double horizontal_m = horizontal(choppiness), strained_m = horizontal(breaking.choppiness);
+        const double horizontal_m = horizontal(choppiness),
+                     strained_m = horizontal(breaking.choppiness.largest());
         const double x = std::cos(theta), y = std::sin(theta);
         const double cycles_per_s = looped_cycles_per_s(dispersion.omega(k), loop_s);
 
@@ -208,7 +209,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
         SpectralMoments beyond = beyond_train(
             moments_with_breaking(spectrum, kTwoPi / plan.edge_m(i), kTwoPi / plan.edge_m(i + 1), unscaled),
             k, dispersion.horizontal_ratio(k), breaks);
-        trains.outside += beyond.scale_strain(breaking.choppiness * breaking.choppiness);
+        trains.outside += beyond.scale_strain(breaking.choppiness.largest() * breaking.choppiness.largest());
     }
 
     trains.outside += moments_with_breaking(spectrum, 0.0, kTwoPi / plan.longest_m, breaking);

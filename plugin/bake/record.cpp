@@ -61,6 +61,9 @@ struct ToJson {
 Json settings(const Scene& scene) {
     Json json = Json::object();
     for (const Key& key : keys()) json[key.path] = std::visit(ToJson{}, value_of(scene, key));
+    // A cascade that says nothing of its choppiness has the record that it had before it could.
+    for (Json& cascade : json["waves.cascades"])
+        if (cascade["choppiness"].is_null()) cascade.erase("choppiness");
     return json;
 }
 
@@ -336,6 +339,9 @@ void Record::describe(const Plan& plan, const SpectralMoments& total, double whi
                                                           {"k_lower_rad_per_m", cascade.k_lower},
                                                           {"k_upper_rad_per_m", number(cascade.k_upper)},
                                                           {"modes", lattice_modes(cascade.grid_radius())}});
+        const auto& asked = plan.from->scene.waves.cascades;
+        if (!asked.empty() && asked[static_cast<std::size_t>(number_of)].choppiness)
+            row["choppiness"] = *asked[static_cast<std::size_t>(number_of)].choppiness;
         // By these and the rule of core/plan/copies.h the tiles add up to the sea.
         if (cascade.has_copies)
             row["copies"] = {{"key", copies_key(plan.from->scene.shot.seed, number_of)}, {"ramp", kCopyRamp}};

@@ -53,6 +53,8 @@ time_scale = 0.7
 [sea]
 wind_speed_mps = 12.3
 swell = [ { height_m = 1.1, period_s = 9.7, direction_deg = 33.3 } ]
+[waves]
+cascades = [ { size_m = 133.3, resolution = 96, choppiness = 0.7 }, { size_m = 37.1, resolution = 64 } ]
 [surface]
 size_m = 133.7
 [camera]

@@ -64,6 +64,9 @@ def _cascades(draw):
         entries[-1]["resolution"] = draw.choice([48, 64, 64])
         size /= draw.choice([1.3, 1.618, 2.0])
         entries.append({"size_m": size, "resolution": draw.choice([16, 32, 64])})
+    for entry in entries:
+        if draw.random() < 0.2:
+            entry["choppiness"] = draw.choice([0.0, draw.uniform(0.0, 2.0), 10.0])
     return entries
 
 
@@ -192,6 +195,8 @@ def _make_fit(draw, keys):
     if keys.get("waves.model") == "trochoid":
         if draw.random() < 0.5:
             keys.pop("waves.cascades", None)
+        for entry in keys.get("waves.cascades") or []:
+            entry.pop("choppiness", None)
         shortest, longest = keys.get("waves.shortest_m"), keys.get("waves.longest_m")
         if shortest and longest and longest < 10 * shortest:
             keys["waves.longest_m"] = min(10 * shortest, 1e6)

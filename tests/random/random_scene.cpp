@@ -418,6 +418,7 @@ class Drawing {
         for (std::size_t i = 0; i < cascades->size(); ++i) {
             double& size_m = std::get<double>((*cascades)[i].values[0].second);
             auto& resolution = std::get<std::int64_t>((*cascades)[i].values[1].second);
+            if (has_trains) (*cascades)[i].values[2].second = KeyValue();  // a choppiness of its own
             const bool is_last = i + 1 == cascades->size();
             resolution = std::max<std::int64_t>(resolution, is_last ? 16 : 32) / 2 * 2;
             if (i > 0) {

@@ -55,7 +55,7 @@ TEST(Plan, HasNoJacobianWithoutWhitecapsNormalsAndSlopeVariance) {
 // But the strain that waves would have, where somebody asks for foam. So little choppiness that nobody sees it is none.
 TEST(Plan, HasNoHorizontalFieldsWithoutChoppiness) {
     const FieldSet level = fields(Field::Height, Field::VelocityZ) | kSlopes;
-    for (const double choppiness : {0.0, 1e-12, 1e-6, 0.99 * kLeastShownChoppiness}) {
+    for (const double choppiness : {0.0, 1e-12, 1e-6, 0.99 * Choppiness::kLeastShown}) {
         Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity});
         scene.waves.choppiness = choppiness;
         EXPECT_EQ(fields_of_plan(plan_bake(scene)), level);
@@ -67,7 +67,7 @@ TEST(Plan, HasNoHorizontalFieldsWithoutChoppiness) {
         EXPECT_NE(page.find("as a choppiness of 0.01 would press them"), std::string::npos) << page;
     }
     Scene scene = scene_with({MeshAttribute::Normal, MeshAttribute::Velocity, MeshAttribute::Whitecaps});
-    scene.waves.choppiness = kLeastShownChoppiness;
+    scene.waves.choppiness = Choppiness::kLeastShown;
     EXPECT_TRUE(fields_of_plan(plan_bake(scene))[index(Field::Dx)]);
     EXPECT_EQ(explain(plan_bake(scene)).find("would press them"), std::string::npos);
 }

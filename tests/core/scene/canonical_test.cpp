@@ -66,6 +66,8 @@ const std::vector<std::function<void(Scene&)>>& changes() {
         [](Scene& s) { s.waves.cascades.clear(); },
         [](Scene& s) { s.waves.cascades[0].size_m = 401.0; },
         [](Scene& s) { s.waves.cascades[0].resolution = 256; },
+        [](Scene& s) { s.waves.cascades[0].choppiness = 1.0; },
+        [](Scene& s) { s.waves.cascades[0].choppiness = 0.5; },
         [](Scene& s) { s.waves.trains = 61; },
         [](Scene& s) { s.waves.shortest_m = 0.02; },
         [](Scene& s) { s.waves.longest_m = 0.02; },

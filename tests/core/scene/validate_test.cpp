@@ -79,6 +79,10 @@ TEST(Validate, ANumberIsInItsRangeEndsIncluded) {
          [](Scene& s, double v) {
              s.waves.cascades = {{v, 64}};
          }},
+        {"waves.cascades[0].choppiness", limits::kChoppiness,
+         [](Scene& s, double v) {
+             s.waves.cascades = {{400.0, 64, v}};
+         }},
         {"waves.shortest_m", limits::kTrain_m,
          [](Scene& s, double v) {
              s.waves.model = WaveModel::Trochoid;
@@ -307,6 +311,15 @@ TEST(Validate, CascadesReachEachOther) {
             s.waves.cascades = {{50.0, 512}, {400.0, 512}};
         },
         {"waves.cascades[1].size_m", "400", "largest first"});
+    // Trains have the shot's choppiness, and so have the cascades beside them.
+    const auto with_trains = [](std::optional<double> choppiness) {
+        return [choppiness](Scene& s) {
+            s.waves.model = WaveModel::Trochoid;
+            s.waves.cascades = {{400.0, 132}, {50.0, 16, choppiness}};
+        };
+    };
+    expect_good(with_trains({}));
+    expect_refused(with_trains(0.5), {"waves.cascades[1].choppiness", "0.5", "model = \"fft\""});
 }
 
 TEST(Validate, Resolutions) {

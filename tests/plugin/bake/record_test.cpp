@@ -55,6 +55,25 @@ TEST(Record, HasEveryKeyAsAValue) {
     EXPECT_EQ(settings.at("camera.look_at_m"), (nlohmann::json{0.0, 0.0, 0.0}));
 }
 
+TEST(Record, SaysOfACascadesChoppinessWhatTheShotSays) {
+    Scene scene;
+    scene.surface.resolution = 16;
+    scene.waves.cascades = {{200.0, 96, 0.4}, {60.0, 64}};
+    const std::filesystem::path file =
+        std::filesystem::temp_directory_path() / ("pelagic-cascades-" + std::to_string(getpid()) + ".json");
+    Record record;
+    record.describe(plan_bake(scene), SpectralMoments{}, 0.0, 0.0);
+    record.save(file);
+    std::ifstream stream(file);
+    const auto shot = nlohmann::json::parse(stream);
+    std::filesystem::remove(file);
+    for (const auto& cascades : {shot.at("settings").at("waves.cascades"), shot.at("plan").at("cascades")}) {
+        ASSERT_EQ(cascades.size(), 2u);
+        EXPECT_EQ(cascades[0].at("choppiness"), 0.4);
+        EXPECT_FALSE(cascades[1].contains("choppiness"));
+    }
+}
+
 // One number can't be every place's.
 TEST(Record, SaysThatTheThresholdIsWithoutGusts) {
     for (const double strength : {0.0, 0.5}) {

@@ -244,6 +244,16 @@ TEST(QueryOnTheGpu, WithoutChoppinessIsEvaluates) {
     scene.effects.whitecaps = false;
     compare(scene, query, {});
 }
+// A tile of its own choppiness, and one without any, whose displacements have no planes.
+TEST(QueryOnTheGpu, OfCascadesOfDifferentChoppinessIsEvaluates) {
+    for (const Scene& sea : {scene_of(WaveModel::Fft), copied(WaveModel::Fft)})
+        for (const std::size_t zero : {0, 1}) {
+            Scene scene = sea;
+            scene.waves.cascades[zero].choppiness = 0.0;
+            scene.waves.cascades[1 - zero].choppiness = 1.3;
+            compare(scene, picture_query(), {}, 5000);
+        }
+}
 // Waves that break are longer or shorter than the pixels, on a rung of the ladder or between two.
 TEST(QueryOnTheGpu, OfOtherWavesThatBreakIsEvaluates) {
     for (const double breaking_from_m : {0.3, 7.0})

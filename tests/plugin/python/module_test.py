@@ -114,6 +114,15 @@ class Scene(unittest.TestCase):
         with self.assertRaisesRegex(pelagic.ShotError, 'sea.spectrum = "jonsvap".*nearest is "jonswap"'):
             pelagic.Scene().sea.spectrum = "jonsvap"
 
+    def test_a_cascade_may_have_a_choppiness_of_its_own(self):
+        scene = small_scene()
+        scene.waves.cascades = [pelagic.CascadeSize(60.0, 64), pelagic.CascadeSize(25.0, 32, choppiness=0.5)]
+        self.assertEqual([cascade.choppiness for cascade in scene.waves.cascades], [None, 0.5])
+        self.assertIn("{ size_m = 60, resolution = 64 }, { size_m = 25, resolution = 32, choppiness = 0.5 }", str(scene))
+        scene.waves.model = "trochoid"
+        with self.assertRaisesRegex(pelagic.ShotError, r"waves.cascades\[1\].choppiness"):
+            pelagic.Sea(scene)
+
     def test_warnings_say_what_a_sea_does_that_can_be_planned(self):
         scene = small_scene()
         self.assertEqual(scene.warnings(), [])

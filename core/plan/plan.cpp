@@ -185,10 +185,9 @@ void add_grids(Plan& plan, int cascade_index) {
         grid.fields = wanted;
         grid.radius = radius;
         const double oversampling =
-            at.is_of_light
-                ? faded_oversampling(plan.filter, at.footprint_m, cascade.size_m / radius,
-                                     plan.knobs.spline_taps, plan.knobs.light_oversampling)
-                : plan.knobs.oversampling;
+            at.is_of_light ? faded_oversampling(plan.filter, at.footprint_m, cascade.size_m / radius,
+                                                plan.knobs.spline_taps, plan.knobs.light_oversampling)
+                           : plan.knobs.oversampling;
         grid.resolution = transform_size(static_cast<int>(std::ceil(oversampling * (2.0 * radius - 1.0))));
         auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
         // So fine that copies of the tile are displaced by whole nodes.
@@ -320,8 +319,7 @@ int add_query(Plan& plan, const Query& query) {
         planned.pixel_levels.push_back(level_of(footprint_m, is_of_light));
     if ((query.products & breaking_products()).any())
         for (double footprint_m : query.pixel_m)
-            planned.breaking_levels.push_back(
-                level_of(plan.breaking.footprint_of(footprint_m), is_of_light));
+            planned.breaking_levels.push_back(level_of(plan.breaking.footprint_of(footprint_m), is_of_light));
     plan.queries.push_back(std::move(planned));
     return static_cast<int>(plan.queries.size()) - 1;
 }

@@ -43,7 +43,8 @@ std::string plan_text(const Plan& plan, int query_index) {
                 number_text(query.lattice->spacing_m) + " points " + std::to_string(query.points) + '\n';
     if (query.only_cascade) text += "cascade " + std::to_string(*query.only_cascade) + '\n';
     if (query.is_view) {
-        text += "view, oversampling " + number_text(plan.knobs.oversampling) + spline;
+        text += "view, oversampling " + number_text(plan.knobs.oversampling) +
+                (query.is_picture ? ", of light " + number_text(plan.knobs.light_oversampling) : "") + spline;
     } else {
         text += "footprints";
         for (const auto* footprints_m : {&query.cell_m, &query.pixel_m})

@@ -27,6 +27,7 @@ Knobs knobs_of(QualityLevel level) {
     const QualityRow& row = quality_of(level);
     return {.spline_taps = row.spline_taps,
             .oversampling = row.oversampling,
+            .light_oversampling = row.light_oversampling,
             .third_moment = true,
             .double_precision = row.double_precision};
 }
@@ -39,6 +40,30 @@ int transform_size(int n) {
             while (rest % prime == 0) rest /= prime;
         if (rest == 1) return size;
     }
+}
+
+// Nodes per Nyquist sample of a grid whose shortest wave this footprint fades. A spline of n taps adds to a wave with ν waves a
+// node its image with (ν/(1 − ν))^n of its amplitude: the fewest nodes with which no wave that is left has a larger one than
+// the shortest, unfaded, has with `oversampling`.
+double faded_oversampling(const FootprintFilter& filter, double footprint_m, double shortest_m, int taps,
+                          double oversampling) {
+    if (!(footprint_m > 0.0)) return oversampling;
+    const auto image = [&](double nodes_a_wave) { return std::pow(1.0 / (nodes_a_wave - 1.0), taps); };
+    const double most = image(2.0 * oversampling);
+    constexpr int kWaves = 64;
+    const double longest_m = std::max(filter.n_max * footprint_m, shortest_m);
+    const auto is_enough = [&](double nodes) {
+        for (int i = 0; i <= kWaves; ++i) {
+            const double wave_m = std::lerp(shortest_m, longest_m, i / double{kWaves});
+            if (filter.weight(kTwoPi / wave_m, footprint_m) * image(2.0 * nodes * wave_m / shortest_m) > most)
+                return false;
+        }
+        return true;
+    };
+    constexpr double kStep = 0.02;
+    double nodes = oversampling;
+    while (nodes - kStep > 1.0 && is_enough(nodes - kStep)) nodes -= kStep;
+    return nodes;
 }
 
 // The nodes of an L-periodic grid that the lattice's points fall on: its resolution, or nothing.
@@ -63,7 +88,7 @@ bool has_energy(const DirectionalSpectrum& spectrum, double k_lower, double k_up
 int level_index(Plan& plan, const Level& level) {
     const auto same = [&](const Level& other) {
         return level.footprint_m == other.footprint_m && level.lattice == other.lattice &&
-               level.only_cascade == other.only_cascade;
+               level.only_cascade == other.only_cascade && level.is_of_light == other.is_of_light;
     };
     const auto found = std::find_if(plan.levels.begin(), plan.levels.end(), same);
     if (found != plan.levels.end()) return static_cast<int>(found - plan.levels.begin());
@@ -113,7 +138,8 @@ std::optional<int> same_grid(const Plan& plan, const CascadePlan& cascade, const
     if (!whole(at.footprint_m)) return {};
     for (std::size_t g = 0; g < cascade.grids.size(); ++g) {
         const Level& other = plan.levels[cascade.grids[g].level];
-        if (other.lattice == at.lattice && whole(other.footprint_m) && other.only_cascade == at.only_cascade)
+        if (other.lattice == at.lattice && whole(other.footprint_m) &&
+            other.only_cascade == at.only_cascade && other.is_of_light == at.is_of_light)
             return static_cast<int>(g);
     }
     return {};
@@ -159,8 +185,11 @@ void add_grids(Plan& plan, int cascade_index) {
         grid.level = level;
         grid.fields = wanted;
         grid.radius = radius;
-        grid.resolution =
-            transform_size(static_cast<int>(std::ceil(plan.knobs.oversampling * (2.0 * radius - 1.0))));
+        const double oversampling =
+            at.is_of_light ? faded_oversampling(plan.filter, at.footprint_m, cascade.size_m / radius,
+                                                plan.knobs.spline_taps, plan.knobs.light_oversampling)
+                           : plan.knobs.oversampling;
+        grid.resolution = transform_size(static_cast<int>(std::ceil(oversampling * (2.0 * radius - 1.0))));
         auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
         // So fine that copies of the tile are displaced by whole nodes.
         if (nodes && blends) *nodes = std::lcm(*nodes, static_cast<int>(kCopySteps));
@@ -221,6 +250,7 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
     Query query;
     query.name = "view";
     query.is_view = true;
+    query.is_picture = options.products.none();
     query.products = options.products;
     if (query.products.none())
         query.products =
@@ -279,14 +309,18 @@ void check_footprints(const Query& query) {
 int add_query(Plan& plan, const Query& query) {
     check_footprints(query);
     PlannedQuery planned{query, {}, {}, {}};
-    for (double footprint_m : query.cell_m)
-        planned.cell_levels.push_back(level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
+    // Levels of their own even where a cell's has the same footprint: which do depends on the camera's place, and a picture's
+    // bits must not depend on what other pictures are planned with it.
+    const bool is_of_light = query.is_picture && plan.knobs.light_oversampling < plan.knobs.oversampling;
+    const auto level_of = [&](double footprint_m, bool of_light) {
+        return level_index(plan, {footprint_m, query.lattice, query.only_cascade, of_light});
+    };
+    for (double footprint_m : query.cell_m) planned.cell_levels.push_back(level_of(footprint_m, false));
     for (double footprint_m : query.pixel_m)
-        planned.pixel_levels.push_back(level_index(plan, {footprint_m, query.lattice, query.only_cascade}));
+        planned.pixel_levels.push_back(level_of(footprint_m, is_of_light));
     if ((query.products & breaking_products()).any())
         for (double footprint_m : query.pixel_m)
-            planned.breaking_levels.push_back(level_index(
-                plan, {plan.breaking.footprint_of(footprint_m), query.lattice, query.only_cascade}));
+            planned.breaking_levels.push_back(level_of(plan.breaking.footprint_of(footprint_m), is_of_light));
     plan.queries.push_back(std::move(planned));
     return static_cast<int>(plan.queries.size()) - 1;
 }

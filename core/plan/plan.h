@@ -77,12 +77,13 @@ struct Level {
     double footprint_m = 0.0;
     std::optional<Lattice> lattice;
     std::optional<int> only_cascade;
+    bool is_of_light = false;  // of a picture's pixels: Knobs::light_oversampling
 };
 
 // Quality, resolved into knobs (core/plan/quality.h).
 struct Knobs {
     int spline_taps = 6;
-    double oversampling = 2.0;
+    double oversampling = 2.0, light_oversampling = 2.0;
     bool third_moment = true;  // coverage from three moments of J, or from two (Dupuy and Bruneton)
     bool double_precision = false;
     double longest_ellipse = 8.0;  // of footprints: over its width, 1 … kLongestEllipse (core/plan/taps.h)

@@ -16,6 +16,7 @@ struct QualityRow {
     QualityLevel level;
     int spline_taps;        // 4: cubic B-spline, 6: quintic
     double oversampling;    // grid nodes per Nyquist sample of the shortest wave, where a spline reads it
+    double light_oversampling;  // the same for what only a picture's light reads
     bool double_precision;  // of the waves
     SkyLookups sky;
     bool fitted_fresnel;  // our fit to the exact Fresnel term, or the paper's to Schlick's
@@ -29,10 +30,10 @@ struct QualityRow {
 inline std::span<const QualityRow> quality_table() {
     using enum SkyLookups;
     static constexpr QualityRow kQualityTable[]{
-        {QualityLevel::Draft, 4, 1.25, false, One, false, 1, 6.7e-3},
-        {QualityLevel::Preview, 4, 2.0, false, Nine, true, 1, 5.3e-4},
-        {QualityLevel::Final, 6, 2.0, false, Nine, true, 2, 3.7e-5},
-        {QualityLevel::Reference, 6, 4.0, true, Integral, true, 4, 1e-6},
+        {QualityLevel::Draft, 4, 1.25, 1.25, false, One, false, 1, 6.7e-3},
+        {QualityLevel::Preview, 4, 2.0, 1.5, false, Nine, true, 1, 5.3e-4},
+        {QualityLevel::Final, 6, 2.0, 1.4, false, Nine, true, 2, 3.7e-5},
+        {QualityLevel::Reference, 6, 4.0, 4.0, true, Integral, true, 4, 1e-6},
     };
     return kQualityTable;
 }

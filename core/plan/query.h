@@ -26,6 +26,9 @@ struct Query {
     // Of a camera, whose place must not decide which wave trains there are: pictures from near and far, and
     // bakes, are of one sea.
     bool is_view = false;
+    // What comes from derivatives is for light alone, which a spline's error changes less than other things do
+    // (`pelagic accuracy --rows picture-interpolation`): Knobs::light_oversampling.
+    bool is_picture = false;
     // Where foam lives, its coverage is what breaks now alone: nobody adds what earlier breaking has left.
     bool breaking_alone = false;
 };

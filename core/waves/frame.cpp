@@ -102,6 +102,7 @@ template <class T>
 void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     if (!(std::abs(t_s) <= kLatest_s))
         throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
+    if (!is_whole_) throw std::logic_error("a frame whose samples were given back takes no time");
     const auto go_on = [cancel] {
         if (cancel && cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
     };
@@ -115,6 +116,12 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     executed_transforms_ +=
         std::count_if(rows_.begin(), rows_.end(), [](const Rows& rows) { return rows.first == 0; });
     is_set_ = true;
+}
+
+template <class T>
+void Frame<T>::release(int cascade, int grid, Field field) {
+    is_set_ = is_whole_ = false;
+    grids_[cascade][grid].planes[index(field)] = {};
 }
 
 template <class T>

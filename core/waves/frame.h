@@ -34,6 +34,7 @@ class Frame {
     long times_set() const { return times_set_; }
 
     const Sea<T>& sea() const { return *sea_; }
+    const std::shared_ptr<const Sea<T>>& shared_sea() const { return sea_; }
     double time_s() const { return time_s_; }
     double time_within_loop_s() const { return time_within_loop_s_; }  // core/waves/loop.h
 
@@ -44,6 +45,9 @@ class Frame {
         const Buffer<T>& plane = grids_[cascade][grid].planes[index(field)];
         return plane.empty() ? nullptr : plane.data();
     }
+    // Gives a field's samples back, for who has read them for the last time: the frame has no time from then on, and set() throws
+    // std::logic_error.
+    void release(int cascade, int grid, Field field);
     // Counts since construction: 2-D transforms, and the 1-D transforms that they consist of. After n calls
     // of set(): n × plan().transforms_per_frame() and n × plan().lines_per_frame().
     long executed_transforms() const { return executed_transforms_; }
@@ -92,7 +96,7 @@ class Frame {
     mutable tbb::enumerable_thread_specific<Scratch> scratches_;
     double time_s_ = 0.0, time_within_loop_s_ = 0.0;
     long executed_transforms_ = 0, executed_lines_ = 0, times_set_ = 0;
-    bool is_set_ = false;
+    bool is_set_ = false, is_whole_ = true;
 };
 
 }  // namespace pelagic

@@ -112,12 +112,14 @@ Trials picture_interpolation(const Scene& shot) {
     const Knobs own = knobs_of_shot(scene);
     RenderOptions exact = render_options(scene);
     exact.samples = 1;
-    exact.knobs = Knobs{.spline_taps = 6, .oversampling = 4.0, .double_precision = true};
+    exact.knobs =
+        Knobs{.spline_taps = 6, .oversampling = 4.0, .light_oversampling = 4.0, .double_precision = true};
     std::vector<PictureSetting> settings;
     for (const auto& [taps, name] : {std::pair{4, "cubic"}, std::pair{6, "quintic"}})
-        for (const double oversampling : {1.0, 1.25, 1.5, 2.0}) {
+        for (const double oversampling : {1.0, 1.25, 1.4, 1.5, 2.0}) {
             RenderOptions options = exact;
-            options.knobs = Knobs{.spline_taps = taps, .oversampling = oversampling};
+            options.knobs =
+                Knobs{.spline_taps = taps, .oversampling = 2.0, .light_oversampling = oversampling};
             settings.push_back({std::string(name) + ", " + number_text(oversampling) + " nodes a sample",
                                 *options.knobs == own, scene, options});
         }

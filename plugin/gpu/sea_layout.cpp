@@ -159,37 +159,49 @@ glm::ivec2 SeaLayout::place(const Plan& plan, std::initializer_list<Ladder*> lad
     });
 }
 
+std::vector<SeaLayout::Tile> SeaLayout::tiles_of(const Plane& plane) const {
+    std::vector<Tile> tiles;
+    const auto add = [&](const Ladder& ladder) {
+        for (const Tile& tile : ladder.tiles) {
+            const auto is_same = [&](const Tile& other) {
+                return other.cascade == tile.cascade && other.grid == tile.grid;
+            };
+            if (tile.n > 0 && std::none_of(tiles.begin(), tiles.end(), is_same)) tiles.push_back(tile);
+        }
+    };
+    add(plane.of_cells ? cells_ : pixels_);
+    if (!plane.of_cells) add(breaking_);
+    return tiles;
+}
+
+void SeaLayout::fill_row(const Frame<float>& frame, const Plane& plane, const Tile& tile, int row,
+                         float* to) const {
+    const auto channels = static_cast<std::size_t>(plane.channels);
+    const int skirt = side_of(tile) - tile.n;
+    for (std::size_t f = 0; f < plane.fields.size(); ++f) {
+        const float* from = frame.samples(tile.cascade, tile.grid, plane.fields[f]);
+        if (!from) continue;
+        from += static_cast<std::size_t>(row % tile.n) * line_stride<float>(tile.n);
+        for (int i = 0; i < tile.n; ++i) to[static_cast<std::size_t>(i) * channels + f] = from[i];
+        for (int i = 0; i < skirt; ++i)
+            to[static_cast<std::size_t>(tile.n + i) * channels + f] = from[i % tile.n];
+    }
+}
+
 void SeaLayout::fill(const Frame<float>& frame, std::vector<std::vector<float>>& planes) const {
-    const int skirt = sea_->plan().knobs.spline_taps - 1;
     planes.resize(planes_.size());
     for (std::size_t p = 0; p < planes_.size(); ++p) {
         const Plane& plane = planes_[p];
         const auto channels = static_cast<std::size_t>(plane.channels);
         const auto width = static_cast<std::size_t>(plane.size.x);
         planes[p].resize(width * static_cast<std::size_t>(plane.size.y) * channels);
-        std::vector<std::pair<int, int>> done;
-        std::vector<Tile> tiles = (plane.of_cells ? cells_ : pixels_).tiles;
-        if (!plane.of_cells) tiles.insert(tiles.end(), breaking_.tiles.begin(), breaking_.tiles.end());
-        for (const Tile& tile : tiles) {
-            if (tile.n == 0) continue;
-            if (std::find(done.begin(), done.end(), std::pair(tile.cascade, tile.grid)) != done.end())
-                continue;
-            done.emplace_back(tile.cascade, tile.grid);
-            const std::size_t stride = line_stride<float>(tile.n);
-            tbb::parallel_for(0, tile.n + skirt, [&](int row) {
-                float* const to = planes[p].data() + ((static_cast<std::size_t>(tile.first.y + row)) * width +
-                                                      static_cast<std::size_t>(tile.first.x)) *
-                                                         channels;
-                for (std::size_t f = 0; f < plane.fields.size(); ++f) {
-                    const float* from = frame.samples(tile.cascade, tile.grid, plane.fields[f]);
-                    if (!from) continue;
-                    from += static_cast<std::size_t>(row % tile.n) * stride;
-                    for (int i = 0; i < tile.n; ++i) to[static_cast<std::size_t>(i) * channels + f] = from[i];
-                    for (int i = 0; i < skirt; ++i)
-                        to[static_cast<std::size_t>(tile.n + i) * channels + f] = from[i % tile.n];
-                }
+        for (const Tile& tile : tiles_of(plane))
+            tbb::parallel_for(0, side_of(tile), [&](int row) {
+                fill_row(frame, plane, tile, row,
+                         planes[p].data() + (static_cast<std::size_t>(tile.first.y + row) * width +
+                                             static_cast<std::size_t>(tile.first.x)) *
+                                                channels);
             });
-        }
     }
 }
 

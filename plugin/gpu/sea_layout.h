@@ -60,6 +60,11 @@ class SeaLayout {
         std::vector<double> footprints_m;
         std::vector<Tile> tiles;
     };
+    // A plane's tiles, each grid's once, without those through which nothing passes; and rows of one's texels, of which each is
+    // so many texels from the one before.
+    std::vector<Tile> tiles_of(const Plane& plane) const;
+    int side_of(const Tile& tile) const { return tile.n + sea_->plan().knobs.spline_taps - 1; }
+    void fill_row(const Frame<float>& frame, const Plane& plane, const Tile& tile, int row, float* to) const;
     const Ladder& cells() const { return cells_; }
     const Ladder& pixels() const { return pixels_; }
     // The strain of the waves that break, rung by rung of the pixels; without rungs where that is the pixels' own.

@@ -19,7 +19,6 @@
 #include "core/surface/view.h"
 #include "core/waves/whitecaps.h"
 #include "plugin/gpu/packed_foam.h"
-#include "plugin/gpu/packed_frame.h"
 #include "plugin/gpu/sea_layout.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
@@ -115,13 +114,17 @@ std::string smaller() {
 MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     MemoryNeed need;
     add_sea(need, planned.plan, threads);
-    // The frame goes when it is packed, and what is packed when the driver has it.
-    std::size_t packed = 0;
-    for (const SeaLayout::Plane& plane : SeaLayout::planes_of(planned.plan, 0))
-        packed += static_cast<std::size_t>(plane.size.x) * static_cast<std::size_t>(plane.size.y) *
-                  static_cast<std::size_t>(plane.channels) * sizeof(float);
+    // The frame's fields go when the driver has them, a texture after another.
     const std::size_t frame = planned.plan.frame_bytes();
-    need.add("the frame's grids as textures", packed + std::max(packed, frame) - frame,
+    std::size_t textures = 0, largest = 0;
+    for (const SeaLayout::Plane& plane : SeaLayout::planes_of(planned.plan, 0)) {
+        const std::size_t bytes = static_cast<std::size_t>(plane.size.x) *
+                                  static_cast<std::size_t>(plane.size.y) *
+                                  static_cast<std::size_t>(plane.channels) * sizeof(float);
+        textures += bytes;
+        largest = std::max(largest, bytes);
+    }
+    need.add("the frame's grids as textures", std::max(textures, frame + largest) - frame,
              "lower quality.level (--quality draft), or the resolutions in waves.cascades");
     if (planned.plan.foam)
         need.add("the foam as textures",
@@ -210,23 +213,16 @@ OffscreenPicture render_offscreen(const OffscreenPlan& planned, const Sky& sky, 
     renderer.set_sky(sky, make_water(planned.scene));
     const View view = view_at(planned.scene.camera, planned.frame);
     const LightingChoice lighting = render_options(planned.scene).lighting;
-    {
-        PackedFrame packed(sea, 0);
-        {
-            Frame<float> state(sea);
-            state.set(planned.scene.shot.time_s(planned.frame));
-            refuse_under_water(state, planned.scene, planned.frame,
-                               projected_grid_options(*planned.plan.from));
-            packed.pack(state);
-            if (lighting.spray) {
-                Spray spray = make_spray_map(state, view, projected_grid_options(*planned.plan.from),
-                                             spray_map_size(view.resolution.x));
-                light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
-                renderer.set_spray(spray);
-            }
-        }
-        renderer.upload_once(packed);
+    Frame<float> state(sea);
+    state.set(planned.scene.shot.time_s(planned.frame));
+    const ProjectedGridOptions grid = projected_grid_options(*planned.plan.from);
+    refuse_under_water(state, planned.scene, planned.frame, grid);
+    if (lighting.spray) {
+        Spray spray = make_spray_map(state, view, grid, spray_map_size(view.resolution.x));
+        light_spray(spray, lighting, sky, make_water(planned.scene), law_coverage(planned.scene));
+        renderer.set_spray(spray);
     }
+    renderer.upload_once(std::move(state), 0);
     const bool lives = planned.plan.foam && lighting.whitecaps;
     if (lives)
         upload_foam(renderer, sea, planned.scene.shot.time_s(planned.frame), view, planned.grid,

@@ -413,8 +413,8 @@ void SeaRenderer::upload(const PackedFrame& frame) {
     const GlStageTimer::Measured measured(of.timer, GlStageTimer::Upload);
     of.sea.upload(frame);
 }
-void SeaRenderer::upload_once(const PackedFrame& frame) {
-    implementation_->sea.upload_once(frame);
+void SeaRenderer::upload_once(Frame<float>&& frame, int query) {
+    implementation_->sea.upload_once(std::move(frame), query);
 }
 bool SeaRenderer::has_frame() const {
     return !implementation_->sea.empty();

@@ -62,8 +62,9 @@ class SeaRenderer {
     // shaders only if the number of cascades or footprints changed. Returns before the copy is done. Throws
     // PreviewError if the driver's textures are too small for the sea.
     void upload(const PackedFrame& frame);
-    // The same for a picture that is the only one: returns when the copy is done, and holds no second one.
-    void upload_once(const PackedFrame& frame);
+    // The same for a picture that is the only one: takes the frame apart as it is copied, and holds nothing twice. `query`: as
+    // PackedFrame's.
+    void upload_once(Frame<float>&& frame, int query);
     bool has_frame() const;
     // What earlier breaking has left in the uploaded sea, whose foam must live; nothing is left before the first call for it.
     void upload_foam(std::shared_ptr<const PackedFoam> foam);

@@ -46,13 +46,7 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     std::vector<GlTexture> planes;
     std::optional<GlTexture> train_table, train_cycles;
     GlTexture ellipse_table;
-    for (const SeaLayout::Plane& plane : layout->planes()) {
-        edit_texture(planes.emplace_back());
-        texels_as_they_are();
-        const TexelFormat texels = float_texels(plane.channels);
-        glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(texels.internal), plane.size.x, plane.size.y, 0,
-                     texels.format, GL_FLOAT, nullptr);
-    }
+    planes.resize(layout->planes().size());
     edit_texture(ellipse_table);
     texels_as_they_are();
     const std::vector<glm::vec4> ellipses = layout->ellipse_texels();
@@ -83,6 +77,16 @@ void SeaTextures::take_sea(const std::shared_ptr<const SeaLayout>& layout) {
     if (layout->has_living_foam()) upload_foam(std::make_shared<const PackedFoam>());
 }
 
+// Of a plane's texture, which is bound from here on.
+void SeaTextures::make_room(std::size_t p) {
+    const SeaLayout::Plane& plane = layout_->planes()[p];
+    edit_texture(planes_[p]);
+    texels_as_they_are();
+    const TexelFormat texels = float_texels(plane.channels);
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(texels.internal), plane.size.x, plane.size.y, 0,
+                 texels.format, GL_FLOAT, nullptr);
+}
+
 void SeaTextures::upload_foam(std::shared_ptr<const PackedFoam> foam) {
     if (!layout_ || !layout_->has_living_foam())
         throw std::invalid_argument("the sea that is shown has no living foam");
@@ -108,27 +112,50 @@ void SeaTextures::upload_foam(std::shared_ptr<const PackedFoam> foam) {
     upload(foam_textures_->pages, foam_->pages_size(), 1, foam_->pages().data());
 }
 
-void SeaTextures::begin_upload(const PackedFrame& frame) {
-    if (frame.planes().empty())
-        throw std::invalid_argument("the packed frame holds nothing yet: call pack() first");
-    if (layout_ != frame.layout()) take_sea(frame.layout());
+void SeaTextures::upload_once(Frame<float>&& frame, int query) {
+    const std::shared_ptr<const Sea<float>> sea = frame.shared_sea();
+    take_sea(std::make_shared<const SeaLayout>(sea, query));
     time_within_loop_s_ = frame.time_within_loop_s();
-}
-
-void SeaTextures::upload_once(const PackedFrame& frame) {
-    begin_upload(frame);
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    for (std::size_t p = 0; p < frame.planes().size(); ++p) {
-        const SeaLayout::Plane& plane = layout_->planes()[p];
-        edit_texture(planes_[p]);
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, plane.size.x, plane.size.y,
-                        float_texels(plane.channels).format, GL_FLOAT, frame.planes()[p].data());
+    constexpr int kRows = 64;
+    std::vector<float> rows;
+    const auto upload = [&](const SeaLayout::Plane& plane, const SeaLayout::Tile& tile) {
+        const int side = layout_->side_of(tile);
+        const std::size_t row_values = static_cast<std::size_t>(side) * plane.channels;
+        for (int first = 0; first < side; first += kRows) {
+            const int count = std::min(kRows, side - first);
+            rows.assign(row_values * count, 0.0f);
+            for (int row = 0; row < count; ++row)
+                layout_->fill_row(frame, plane, tile, first + row, rows.data() + row_values * row);
+            glTexSubImage2D(GL_TEXTURE_2D, 0, tile.first.x, tile.first.y + first, side, count,
+                            float_texels(plane.channels).format, GL_FLOAT, rows.data());
+        }
+    };
+    const std::vector<SeaLayout::Plane>& planes = layout_->planes();
+    for (std::size_t p = 0; p < planes.size(); ++p) {
+        make_room(p);
+        for (const SeaLayout::Tile& tile : layout_->tiles_of(planes[p])) {
+            upload(planes[p], tile);
+            for (const Field field : planes[p].fields) {
+                const auto reads = [&](const SeaLayout::Plane& later) {
+                    return std::count(later.fields.begin(), later.fields.end(), field) > 0;
+                };
+                if (std::none_of(planes.begin() + p + 1, planes.end(), reads))
+                    frame.release(tile.cascade, tile.grid, field);
+            }
+        }
     }
 }
 
 void SeaTextures::upload(const PackedFrame& frame) {
-    begin_upload(frame);
+    if (frame.planes().empty())
+        throw std::invalid_argument("the packed frame holds nothing yet: call pack() first");
+    if (layout_ != frame.layout()) {
+        take_sea(frame.layout());
+        for (std::size_t p = 0; p < planes_.size(); ++p) make_room(p);
+    }
+    time_within_loop_s_ = frame.time_within_loop_s();
     Staging& buffers = staging_[next_staging_];
     next_staging_ = (next_staging_ + 1) % staging_.size();
     for (std::size_t p = 0; p < frame.planes().size(); ++p) {

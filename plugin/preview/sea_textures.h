@@ -21,7 +21,7 @@ class SeaTextures {
 
     // As SeaRenderer::upload() and upload_once().
     void upload(const PackedFrame& frame);
-    void upload_once(const PackedFrame& frame);
+    void upload_once(Frame<float>&& frame, int query);
     // What earlier breaking has left in that sea, for living foam; nothing before the first.
     void upload_foam(std::shared_ptr<const PackedFoam> foam);
     bool empty() const { return layout_ == nullptr; }
@@ -32,8 +32,8 @@ class SeaTextures {
     void bind(const ShaderProgram& program, glm::dvec2 origin_m);
 
   private:
-    void begin_upload(const PackedFrame& frame);
     void take_sea(const std::shared_ptr<const SeaLayout>& layout);
+    void make_room(std::size_t plane);
     void upload_tables(glm::dvec2 origin_m);
 
     std::shared_ptr<const SeaLayout> layout_;

@@ -320,7 +320,7 @@ TEST(SeaTables, ThatTheDriverCannotHoldAreRefused) {
             packed.layout()->tables(glm::dvec2(0.0), 0.0).size() > static_cast<std::size_t>(largest);
         SeaTextures textures;
         try {
-            textures.upload_once(packed);
+            textures.upload(packed);
             EXPECT_FALSE(is_too_large) << rungs;
         } catch (const PreviewError& error) {
             refused = true;

@@ -17,8 +17,8 @@ from skimage.metrics import structural_similarity
 COLUMNS = 2
 GAP = 6  # pixels between pictures
 LESSON = ("Breaking makes the storm: the horizontal displacement, the foam with its past and its structure, and the spray are seen at a "
-          "glance, and nine lookups of the sky side by side. Air changes the horizon; multiple reflections and the integral over "
-          "the sky are seen by switching between two pictures at most.")
+          "glance. Air changes the horizon; multiple reflections, nine lookups of the sky for one, and the integral over it are "
+          "seen by switching between two pictures at most.")
 
 
 def prices_of(steps):

@@ -15,7 +15,7 @@ namespace pelagic {
 
 // How the sky's reflection is computed. Accuracy and time: tests/bench/README.md.
 enum class SkyQuality {
-    One,       // one filtered lookup (Eq. 27)
+    One,       // one lookup, filtered over an ellipse (Eq. 22, 27)
     Nine,      // nine lookups, at the nodes of a quadrature over the visible slopes
     Integral,  // the integral of Eq. 20 over the slopes, with visibility: the reference
 };

@@ -1,5 +1,5 @@
 // The reflected sky: Bruneton et al. 2010, §5.2. The includer defines:
-//   const int kSkyLookups          1, 9, or 0 for the integral
+//   const int kSkyLookups          1 (over an ellipse), 9, or 0 for the integral
 //   const bool kExactFresnel
 //   const bool kSecondReflection
 //   const float kSkyMapSize        texels per side of the map
@@ -45,13 +45,67 @@ float facet_fresnel(float cosine) {
     return fresnel_schlick(cosine);
 }
 
-// Eq. 27: one lookup at the average normal's reflection. Trilinear filters are isotropic, so the filter has
-// the ellipse's area.
+// The slopes' Gaussian in the map, to first order: an ellipse. `along` is the variance along its long axis, a unit
+// vector; `across` that across it.
+struct SkyEllipse {
+    vec2 axis;
+    float along;
+    float across;
+};
+
+// The principal axes of the covariance J S Jᵀ, J = ∂u/∂ζ.
+SkyEllipse sky_ellipse(PlaceChange change, vec3 variance) {
+    vec2 x = change.by_x * variance.x + change.by_y * variance.z;
+    vec2 y = change.by_x * variance.z + change.by_y * variance.y;
+    float xx = change.by_x.x * x.x + change.by_y.x * y.x;
+    float yy = change.by_x.y * x.y + change.by_y.y * y.y;
+    float xy = change.by_x.x * x.y + change.by_y.x * y.y;
+    float mean = 0.5f * (xx + yy);
+    float half_difference = 0.5f * (xx - yy);
+    float away = sqrt(square(half_difference) + square(xy));  // of both variances from their mean
+    // The axis is turned by half the angle of (half_difference, xy).
+    float longer = sqrt(max(away + abs(half_difference), 1.0e-20f));
+    float shorter = xy / longer;
+    vec2 axis = half_difference > 0.0f ? vec2(longer, shorter) : vec2(shorter, longer);
+    return SkyEllipse(normalize(axis), mean + away, mean - away);
+}
+
+// Eq. 22 over the ellipse of Eq. 27: one anisotropic lookup around the average normal's reflection. A uniform ellipse with
+// semi-axes 2σ ∂u/∂ζ has the variance of the slopes' Gaussian, and the Gaussian is what is filtered with here: five
+// trilinear probes along the long axis, each as wide as the short one. Texture units do it so as well, but each driver in its
+// own way, and the finest level is no texture's (sky_map.glsl). These are the same in C++, from a texture and from an atlas.
+//
+// The step function H(r_z) of Eq. 22 is kept: the probes divide the part of the axis that is above the horizon, so that none
+// of them jumps across it. The paper drops H, since texture units don't have it; at grazing angles half of the ellipse is then
+// below the horizon, where no visible facet mirrors anything.
+//
+// Without a horizon the probes are a standard deviation apart. A probe has at least 1/32 of the variance along the axis, so
+// the ellipse is 1 : 5.7 at most. More blurs the horizon; with less, the sun's aureole falls between two probes. Errors against
+// the integral, also of an isotropic filter and without H: tests/bench, "optics".
 vec3 sky_at_mean_normal(vec3 to_eye, SlopeFrame frame) {
     vec3 r = 2.0f * dot(to_eye, frame.normal) * frame.normal - to_eye;
-    PlaceChange change = place_changes(to_eye, frame);
-    float area = abs(change.by_x.x * change.by_y.y - change.by_x.y * change.by_y.x);
-    return sky_lookup(sky_place(r), sky_level(area * sqrt(determinant_of(frame.variance))));
+    vec2 u = sky_place(r);
+    SkyEllipse ellipse = sky_ellipse(place_changes(to_eye, frame), frame.variance);
+    float blur = max(ellipse.across, 0.03125f * ellipse.along);
+    float level = sky_level(blur);
+    float spread = sqrt(max(ellipse.along - blur, 1.0e-20f));
+
+    // The axis meets the horizon, |u| = 1, at ±chord from the middle between. The part begins at u even where u is below
+    // the horizon, as seen by an eye in the water.
+    float past_middle = dot(u, ellipse.axis);
+    float chord = sqrt(max(square(past_middle) + 1.0f - dot(u, u), 0.0f));
+    float first = clamp((-chord - past_middle) / spread, -2.5f, 0.0f);
+    float last = clamp((chord - past_middle) / spread, 0.0f, 2.5f);
+    float apart = (last - first) / 5.0f;
+    vec3 sum = vec3(0.0f);
+    float total = 0.0f;
+    for (int i = 0; i < 5; ++i) {
+        float x = first + apart * (float(i) + 0.5f);
+        float part = exp(-0.5f * x * x);
+        sum += part * sky_lookup(u + (spread * x) * ellipse.axis, level);
+        total += part;
+    }
+    return sum / total;
 }
 
 // What a ray that a facet mirrors onto the sea meets there: the sea seen along its mean plane, in the same

@@ -169,7 +169,7 @@ std::span<const ApproximationRow> approximation_table() {
          {kRadiance, kMeanRadiance},
          kPictureTime,
          nullptr,
-         "Nine lookups are the integral to a few per cent, for little more than the time of one.",
+         "One lookup over the ellipse of the slopes is the integral to some ten per cent, nine to a few, for little more time.",
          rows::sky_lookups},
         {"fresnel",
          "Effective Fresnel term",

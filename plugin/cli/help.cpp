@@ -108,7 +108,8 @@ const char* const kSamples =
     "Default: what the shot's budget asks for (quality.max_error, quality.frame_ms), or from its\n"
     "quality.level: 1 for draft and preview, 2 for final, 4 for reference";
 const char* const kSkyQuality =
-    "How the sky's reflection is computed: one (lookup), nine, integral.\n"
+    "How the sky's reflection is computed: one (lookup, over the ellipse of the slopes), nine, integral.\n"
+    "Against the integral one errs by some 10 % of the reflected sky, nine by 3 %.\n"
     "Default: what the shot's budget asks for, or from its quality.level: one for draft, integral for\n"
     "reference, otherwise nine";
 const char* const kTerms =

@@ -229,8 +229,8 @@ void add_light(py::module_& module) {
         "to_eye: float32 (n, 3), unit, from the sea to the eye. normal: float32 (n, 3), unit, of the resolved "
         "waves. slope_variance: float32 (n, 3), xx, yy, xy of the waves that the normals leave out. coverage: "
         "float32 (n,), of whitecaps; None: there are none. The last three are as evaluate() gives them.\n"
-        "sky_quality: \"one\" filtered lookup, \"nine\", or the \"integral\". fresnel: \"exact\", or as the "
-        "\"paper\" has it.\n"
+        "sky_quality: \"one\" lookup over the ellipse of the slopes, \"nine\", or the \"integral\". fresnel: "
+        "\"exact\", or as the \"paper\" has it.\n"
         "sun_layer, sky_layer, sea_layer, foam_layer: arrays to write into instead of new ones.");
 }
 

@@ -1,5 +1,5 @@
-// The optics' tables: Eq. 11, the white furnace, effective Fresnel terms, and what a point of each variant
-// costs.
+// The optics' tables: Eq. 11, the white furnace, effective Fresnel terms, what each filter of the sky errs, and what a
+// point of each variant costs.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -92,6 +92,131 @@ void fresnel_errors(const char* name, Fit&& fit, Term&& term) {
                 most_angle, most_along, most_across, std::sqrt(squares / count));
 }
 
+// The mean sky of Eq. 22, filtered in other ways than sky_at_mean_normal(). The axes of an ellipse are each scaled by
+// its standard deviation.
+struct Filters : Optics {
+    explicit Filters(const Sky& sky) {
+        kSkyMapSize = static_cast<float>(sky.map.size());
+        lookup = [&map = sky.map](vec2 u, float level) { return map.radiance(u, level); };
+    }
+    vec2 place(vec3 v, SlopeFrame frame) { return sky_place(2.0f * dot(v, frame.normal) * frame.normal - v); }
+    // One trilinear lookup of the ellipse's area.
+    vec3 isotropic(vec3 v, SlopeFrame frame) {
+        const SkyEllipse ellipse = sky_ellipse(place_changes(v, frame), frame.variance);
+        return sky_lookup(place(v, frame),
+                          sky_level(std::sqrt(ellipse.along * std::max(ellipse.across, 0.0f))));
+    }
+    // The Gaussian itself by 32 × 32 sharp lookups over ±4 σ: of all of the ellipse, as Eq. 27 has it, or above the horizon.
+    vec3 gaussian(vec3 v, SlopeFrame frame, bool is_cut) {
+        const SkyEllipse ellipse = sky_ellipse(place_changes(v, frame), frame.variance);
+        const vec2 along = std::sqrt(ellipse.along) * ellipse.axis,
+                   across = std::sqrt(std::max(ellipse.across, 0.0f)) * vec2(-ellipse.axis.y, ellipse.axis.x);
+        constexpr int kSteps = 32;
+        vec3 sum(0.0f);
+        float total = 0.0f;
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
+                const vec2 x = (vec2(i, j) + 0.5f) * (8.0f / kSteps) - 4.0f;
+                const vec2 u = place(v, frame) + along * x.x + across * x.y;
+                if (is_cut && dot(u, u) > 1.0f) continue;
+                const float part = std::exp(-0.5f * dot(x, x));
+                sum += part * sky_lookup(u, 0.0f);
+                total += part;
+            }
+        return sum / total;
+    }
+    vec3 times_fresnel(vec3 v, SlopeFrame frame, vec3 mean) {
+        return shown_of_uniform_sky(into_frame(frame, v), frame.variance) * mean;
+    }
+};
+
+// Green of the reflected sky against the integral, rms of the relative error.
+void sky_errors() {
+    constexpr std::array kHeights_deg{1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 80.0};
+    constexpr std::array kWinds_mps{2.0, 5.0, 10.0, 20.0};
+    struct Row {
+        const char* name;
+        vec3 (*shown)(Filters& filters, vec3 v, Optics::SlopeFrame frame);
+        std::array<double, kHeights_deg.size()> by_height{};
+        std::array<double, kWinds_mps.size()> by_wind{};
+        double all = 0.0, mean = 0.0, worst = 0.0;
+    };
+    using Frame = Optics::SlopeFrame;
+    std::array rows{
+        Row{"isotropic, of the ellipse's area",
+            [](Filters& f, vec3 v, Frame frame) { return f.times_fresnel(v, frame, f.isotropic(v, frame)); }},
+        Row{"ellipse, Eq. 27 (without a horizon)",
+            [](Filters& f, vec3 v, Frame frame) {
+                return f.times_fresnel(v, frame, f.gaussian(v, frame, false));
+            }},
+        Row{"ellipse above the horizon, Eq. 22",
+            [](Filters& f, vec3 v, Frame frame) {
+                return f.times_fresnel(v, frame, f.gaussian(v, frame, true));
+            }},
+        Row{"one lookup: the same by five probes",
+            [](Filters& f, vec3 v, Frame frame) {
+                f.kSkyLookups = 1;
+                return f.sky_reflection(v, frame);
+            }},
+        Row{"nine lookups (the default)", [](Filters& f, vec3 v, Frame frame) {
+                f.kSkyLookups = 9;
+                return f.sky_reflection(v, frame);
+            }}};
+    int views = 0;
+    for (double sun_deg : {5.0, 10.0, 20.0, 40.0, 60.0})
+        for (double turbidity : {2.0, 4.0, 6.0}) {
+            const Sky sky =
+                daylight_sky({.sun_elevation_deg = sun_deg, .sun_azimuth_deg = 0.0, .turbidity = turbidity});
+            Filters filters(sky);
+            for (std::size_t w = 0; w < kWinds_mps.size(); ++w)
+                for (double to_deg : {0.0, 40.0, 90.0}) {
+                    // Cox & Munk 1954, clean surface: slope variances along the wind and across.
+                    const double along = 0.00316 * kWinds_mps[w], across = 0.003 + 0.00192 * kWinds_mps[w];
+                    const double a = to_deg * oracle::kPi / 180.0, c = std::cos(a), n = std::sin(a);
+                    const auto frame = filters.slope_frame(
+                        vec3(0.0f, 0.0f, 1.0f),
+                        vec3(dvec3(along * c * c + across * n * n, along * n * n + across * c * c,
+                                   (along - across) * c * n)));
+                    for (std::size_t h = 0; h < kHeights_deg.size(); ++h)
+                        for (double aside_deg : {0.0, 20.0, 60.0, 120.0, 180.0}) {  // 0: towards the sun
+                            const double up = kHeights_deg[h] * oracle::kPi / 180.0,
+                                         side = (180.0 + aside_deg) * oracle::kPi / 180.0;
+                            const vec3 v(dvec3(std::cos(up) * std::cos(side), std::cos(up) * std::sin(side),
+                                               std::sin(up)));
+                            filters.kSkyLookups = 0;
+                            const double expected = static_cast<double>(filters.sky_reflection(v, frame).y);
+                            for (Row& row : rows) {
+                                const double error =
+                                    static_cast<double>(row.shown(filters, v, frame).y) / expected - 1.0;
+                                row.all += error * error;
+                                row.mean += error;
+                                row.worst = std::max(row.worst, std::abs(error));
+                                row.by_height[h] += error * error;
+                                row.by_wind[w] += error * error;
+                            }
+                            ++views;
+                        }
+                }
+        }
+    std::printf(
+        "\nreflected sky against the integral, per cent: rms, mean and worst of %d views of 15 skies\n%-36s",
+        views, "");
+    std::printf("%6s %6s %6s  rms from", "rms", "mean", "worst");
+    for (double height : kHeights_deg) std::printf(" %4.0f\u00b0", height);
+    std::printf("; wind");
+    for (double wind : kWinds_mps) std::printf(" %3.0f m/s", wind);
+    std::printf("\n");
+    const auto rms = [](double sum, double count) { return 100.0 * std::sqrt(sum / count); };
+    for (const Row& row : rows) {
+        std::printf("%-36s%6.1f %+6.1f %6.1f          ", row.name, rms(row.all, views),
+                    100.0 * row.mean / views, 100.0 * row.worst);
+        for (double sum : row.by_height) std::printf(" %5.1f", rms(sum, views / double(kHeights_deg.size())));
+        std::printf("      ");
+        for (double sum : row.by_wind) std::printf(" %7.1f", rms(sum, views / double(kWinds_mps.size())));
+        std::printf("\n");
+    }
+}
+
 // Medians of interleaved runs over the same points, as multiples of the paper's variant.
 void costs() {
     Inputs inputs(1);
@@ -174,6 +299,7 @@ void print() {
             std::printf("%-10s %6.2f mg/m3 %9.4f %9.4f %9.4f\n", name, chlorophyll, static_cast<double>(c.x),
                         static_cast<double>(c.y), static_cast<double>(c.z));
         }
+    sky_errors();
     costs();
 }
 

@@ -37,6 +37,7 @@ constexpr std::string_view kTemporaryPrefix = ".pelagic-";
 constexpr std::int64_t kForeignAge_s = 24 * 3600;
 // The largest single write() [bytes]: Linux limits it to just below 2^31.
 constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
+constexpr std::size_t kSummedAtOnce = std::size_t{1} << 18;  // [bytes]
 // A name is in use only where two processes have one number (containers), and they soon differ.
 constexpr int kNameAttempts = 1000;
 
@@ -270,9 +271,13 @@ FileState write_atomically(const std::filesystem::path& target, const Content& c
     std::uintmax_t written = 0;
     Checksum sum;
     content([&](std::string_view piece) {
-        sum.add(piece);
-        temporary.write(std::as_bytes(std::span(piece)));
         written += piece.size();
+        // In parts that are still in the cache when they are written.
+        for (; !piece.empty(); piece.remove_prefix(std::min(piece.size(), kSummedAtOnce))) {
+            const std::string_view part = piece.substr(0, kSummedAtOnce);
+            sum.add(part);
+            temporary.write(std::as_bytes(std::span(part)));
+        }
     });
     temporary.flush();
     temporary.rename_to_target();

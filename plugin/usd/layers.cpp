@@ -2,7 +2,9 @@
 #include "plugin/usd/layers.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
@@ -35,6 +37,12 @@ std::span<const float> floats(std::span<const glm::vec2> vectors) {
 }
 
 void check_finite(std::string_view name, std::span<const float> values, int components) {
+    // All of them at once, in vectors: which one it is is asked only where there is one.
+    constexpr std::uint32_t kSign = 0x80000000u, kInfinity = 0x7f800000u;
+    std::uint32_t largest = 0;
+    for (const float value : values)
+        largest = std::max(largest, std::bit_cast<std::uint32_t>(value) & ~kSign);
+    if (largest < kInfinity) return;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (!std::isfinite(values[i])) {
             throw std::invalid_argument(

@@ -24,9 +24,9 @@ namespace {
 
 constexpr std::size_t kNodes = FoamPlan::kTileNodes, kStride = FoamPlan::kTileStride;
 constexpr int kSide = FoamPlan::kTileCells + 1;
-constexpr std::size_t kPart = 256;  // points
-constexpr std::int64_t kLong = 6;   // samples: a run's frame takes fewer, and is soon done
-constexpr int kSamples = 6;         // that an interval is known by: from two before it to two after it
+constexpr std::size_t kPart = FoamAxis::kPoints;
+constexpr std::int64_t kLong = 6;  // samples: a run's frame takes fewer, and is soon done
+constexpr int kSamples = 6;        // that an interval is known by: from two before it to two after it
 
 // Of a division whose divisor is positive.
 std::size_t modulo(std::int64_t n, std::size_t by) {
@@ -107,19 +107,16 @@ struct FoamHistory<T>::Tile {
 template <class T>
 class FoamHistory<T>::Locator {
   public:
-    struct Node {
-        Place place{};
-        int corner = 0;  // the node at or below, in its tile
-        float to_x = 0.0f, to_y = 0.0f;
-    };
-    struct Point {
-        std::array<Node, 2> nodes{};  // the first `count`; without cells, foam is the sea's mean
-        std::size_t count = 0;
-        float t = 0.0f;  // of the second
+    // Of at most kPart points.
+    struct Part {
+        std::array<int, kPart> level;
+        alignas(64) std::array<float, kPart> t;  // of the level after it
+        alignas(64) std::array<double, FoamAxis::kRoom> x_m, y_m;
+        FoamAxis x, y;
     };
 
     Locator(const FoamHistory& history, const Points<T>& points, int query)
-        : points_(points), foam_(history.foam_) {
+        : points_(points), foam_(history.foam_), kernels_(history.kernels_) {
         const auto& asked = history.sea_->plan().queries.at(static_cast<std::size_t>(query)).query;
         whole_ = foam_rung(foam_, static_cast<float>(asked.pixel_m.front()));
         for (int level = 0; level < FoamPlan::kLevels; ++level)
@@ -128,23 +125,44 @@ class FoamHistory<T>::Locator {
                 .origin_m = points.origin_m - foam_.drift_of(level) * history.time_s_};
     }
 
-    Point operator()(std::size_t i) const {
-        const FoamRung rung = rung_of(i);
-        const glm::dvec2 rest_m(points_.rest_m[i]);
-        Point point{.nodes = {}, .count = 0, .t = rung.t};
-        const int last = std::min(rung.level + (rung.t > 0.0f ? 1 : 0), FoamPlan::kLevels - 1);
-        for (int level = rung.level; level <= last; ++level) {
-            const Cells& cells = cells_[static_cast<std::size_t>(level)];
-            Node& node = point.nodes[point.count++];
-            node.place.level = level;
-            const int x = inside((cells.origin_m.x + rest_m.x) * cells.per_m, node.place.x, node.to_x);
-            node.corner =
-                inside((cells.origin_m.y + rest_m.y) * cells.per_m, node.place.y, node.to_y) * kSide + x;
+    // Calls use(which, place, begin, end) for points of the part, one after another, that lie in one tile: in their level,
+    // `which` = 0, and in the one after it, 1, where they read that as well. Where there are no cells, foam is the sea's mean.
+    template <class Use>
+    void operator()(std::size_t first, std::size_t count, Part& part, const Use& use) const {
+        for (std::size_t i = 0; i < count; ++i) {
+            const FoamRung rung = rung_of(first + i);
+            part.level[i] = rung.level;
+            part.t[i] = rung.t;
+            const glm::dvec2 rest_m(points_.rest_m[first + i]);
+            part.x_m[i] = rest_m.x;
+            part.y_m[i] = rest_m.y;
         }
-        return point;
+        for (const int which : {0, 1}) {
+            const auto level_of = [&](std::size_t i) {
+                return which == 0 || part.t[i] > 0.0f ? part.level[i] + which : FoamPlan::kLevels;
+            };
+            for (std::size_t begin = 0, end; begin < count; begin = end) {
+                const int level = level_of(begin);
+                for (end = begin + 1; end < count && level_of(end) == level;) ++end;
+                if (level < FoamPlan::kLevels)
+                    for_tiles(level, begin, end, part, [&](const auto&... at) { use(which, at...); });
+            }
+        }
     }
 
   private:
+    template <class Use>
+    void for_tiles(int level, std::size_t first, std::size_t last, Part& part, const Use& use) const {
+        const Cells& cells = cells_[static_cast<std::size_t>(level)];
+        kernels_.place({cells.origin_m.x, cells.per_m, part.x_m.data()}, first, last, part.x);
+        kernels_.place({cells.origin_m.y, cells.per_m, part.y_m.data()}, first, last, part.y);
+        for (std::size_t begin = first, end; begin < last; begin = end) {
+            const double x = part.x.tile[begin], y = part.y.tile[begin];
+            for (end = begin + 1; end < last && part.x.tile[end] == x && part.y.tile[end] == y;) ++end;
+            use(Place{level, static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)}, begin, end);
+        }
+    }
+
     FoamRung rung_of(std::size_t i) const {
         if (!points_.pixel_m) return whole_;
         const auto width_m = static_cast<float>(points_.pixel_m[i]);
@@ -154,19 +172,9 @@ class FoamHistory<T>::Locator {
         return foam_rung(foam_, foam_footprint_m(width_m, length_m));
     }
 
-    // Of a place that is counted in cells: its node in the tile, the tile, and the way to the next node.
-    static int inside(double cells, std::int64_t& tile, float& rest) {
-        if (!(std::abs(cells) < 1e15)) cells = 0.0;  // no number, or no place
-        const double node = std::floor(cells);
-        const auto whole = static_cast<std::int64_t>(node);
-        rest = static_cast<float>(cells - node);
-        static_assert((FoamPlan::kTileCells & (FoamPlan::kTileCells - 1)) == 0);
-        tile = (whole - (whole & (FoamPlan::kTileCells - 1))) / FoamPlan::kTileCells;
-        return static_cast<int>(whole & (FoamPlan::kTileCells - 1));
-    }
-
     const Points<T>& points_;
     const FoamPlan& foam_;
+    const FoamKernels& kernels_;
     FoamRung whole_;
     struct Cells {
         double per_m = 0.0;
@@ -232,38 +240,26 @@ typename FoamHistory<T>::Level& FoamHistory<T>::level(int index, const std::atom
 template <class T>
 bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<float> foam,
                           std::span<float> foam_age, std::vector<Place>& missing) const {
-    std::array<Place, 2> before{Place{-1, 0, 0}, Place{-1, 0, 0}};
-    std::array<const Tile*, 2> tile{};
-    bool is_there = true;
+    const std::size_t missed = missing.size();
+    typename Locator::Part part;
+    alignas(64) std::array<float, kPart> next, next_age;
+    for (const std::span<float> of : {foam, std::span<float>(next)}) std::fill(of.begin(), of.end(), mean_);
+    for (const std::span<float> of : {foam_age, std::span<float>(next_age)})
+        std::fill(of.begin(), of.end(), mean_ * mean_age_s_);
+    locate(first, foam.size(), part, [&](int which, const Place& place, std::size_t begin, std::size_t end) {
+        const auto found = tiles_.find(place);
+        if (found != tiles_.end()) found->second->was_read(round_, time_s_);
+        if (found == tiles_.end() || !found->second->is_of(time_s_)) return missing.push_back(place);
+        const float* values = found->second->foam.data();
+        kernels_.between({values, values + kStride}, part.x, part.y, begin, end,
+                         which == 0 ? foam.data() : next.data(),
+                         which == 0 ? foam_age.data() : next_age.data());
+    });
     for (std::size_t i = 0; i < foam.size(); ++i) {
-        const typename Locator::Point point = locate(first + i);
-        std::array<float, 2> left{mean_, mean_}, age{mean_ * mean_age_s_, mean_ * mean_age_s_};
-        for (std::size_t k = 0; k < point.count; ++k) {
-            const typename Locator::Node& node = point.nodes[k];
-            if (!(node.place == before[k])) {
-                before[k] = node.place;
-                const auto found = tiles_.find(node.place);
-                tile[k] = found == tiles_.end() ? nullptr : found->second.get();
-                if (tile[k]) tile[k]->was_read(round_, time_s_);
-                if (tile[k] && !tile[k]->is_of(time_s_)) tile[k] = nullptr;
-                if (!tile[k]) missing.push_back(node.place);
-            }
-            if (!tile[k]) {
-                is_there = false;
-                continue;
-            }
-            const auto between = [&](const float* v) {
-                const float low = v[0] + node.to_x * (v[1] - v[0]);
-                const float high = v[kSide] + node.to_x * (v[kSide + 1] - v[kSide]);
-                return low + node.to_y * (high - low);
-            };
-            left[k] = between(tile[k]->foam.data() + node.corner);
-            age[k] = between(tile[k]->foam.data() + kStride + node.corner);
-        }
-        foam[i] = left[0] + point.t * (left[1] - left[0]);
-        foam_age[i] = age[0] + point.t * (age[1] - age[0]);
+        foam[i] += part.t[i] * (next[i] - foam[i]);
+        foam_age[i] += part.t[i] * (next_age[i] - foam_age[i]);
     }
-    return is_there;
+    return missing.size() == missed;
 }
 
 // Calls use(first, foam, foam_age) for parts of the points. Most tiles are there from the time before; parts that lack
@@ -310,14 +306,13 @@ std::vector<FoamPlace> FoamHistory<T>::places(const Points<T>& points, int query
         std::vector<Place>& own = found.local();
         std::array<Place, FoamPlan::kLevels> before;
         before.fill({-1, 0, 0});
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const typename Locator::Point point = locate(i);
-            for (std::size_t k = 0; k < point.count; ++k) {
-                const Place& place = point.nodes[k].place;
-                Place& last = before[static_cast<std::size_t>(place.level)];
-                if (!(place == last)) own.push_back(last = place);
-            }
-        }
+        typename Locator::Part part;
+        for (std::size_t first = range.begin(); first < range.end(); first += kPart)
+            locate(first, std::min(kPart, range.end() - first), part,
+                   [&](int, const Place& place, std::size_t, std::size_t) {
+                       Place& last = before[static_cast<std::size_t>(place.level)];
+                       if (!(place == last)) own.push_back(last = place);
+                   });
         keep_each_once(own);
     });
     std::vector<Place> all;

@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include "core/base/pack-inl.h"
+#include "core/plan/foam.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pelagic {
@@ -20,6 +21,48 @@ using D = hn::ScalableTag<float>;
 using N = Pack<D>;
 using Half = hn::Rebind<std::uint16_t, D>;
 using Whole = hn::RebindToUnsigned<D>;
+
+void Place(const FoamAxisArgs& args, std::size_t first, std::size_t end, FoamAxis& axis) {
+    const hn::ScalableTag<double> dd;
+    const hn::Rebind<std::int32_t, decltype(dd)> index;
+    const hn::Rebind<float, decltype(dd)> narrow;
+    constexpr double kCells = FoamPlan::kTileCells;
+    const auto origin = hn::Set(dd, args.origin_m), per_m = hn::Set(dd, args.cells_per_m);
+    for (std::size_t i = first; i < end; i += hn::Lanes(dd)) {
+        auto cells = hn::Mul(hn::Add(origin, hn::LoadU(dd, args.rest_m + i)), per_m);
+        cells =
+            hn::IfThenElseZero(hn::Lt(hn::Abs(cells), hn::Set(dd, 1e15)), cells);  // no number, or no place
+        const auto node = hn::Floor(cells), tile = hn::Floor(hn::Mul(node, hn::Set(dd, 1.0 / kCells)));
+        hn::StoreU(tile, dd, axis.tile.data() + i);
+        hn::StoreU(hn::DemoteTo(index, hn::Sub(node, hn::Mul(tile, hn::Set(dd, kCells)))), index,
+                   axis.node.data() + i);
+        hn::StoreU(hn::DemoteTo(narrow, hn::Sub(cells, node)), narrow, axis.rest.data() + i);
+    }
+}
+
+void Between(const FoamTile& tile, const FoamAxis& x, const FoamAxis& y, std::size_t first, std::size_t end,
+             float* foam, float* foam_age) {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    constexpr int kSide = FoamPlan::kTileCells + 1;
+    for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
+        const auto there = hn::FirstN(d, end - i);
+        const auto corner = hn::IfThenElseZero(
+            hn::RebindMask(di, there), hn::Add(hn::Mul(hn::LoadU(di, y.node.data() + i), hn::Set(di, kSide)),
+                                               hn::LoadU(di, x.node.data() + i)));
+        const N to_x(hn::LoadU(d, x.rest.data() + i)), to_y(hn::LoadU(d, y.rest.data() + i));
+        const auto between = [&](const float* v) HWY_ATTR {
+            const auto along_x = [&](const float* row) HWY_ATTR {
+                const N from(hn::GatherIndex(d, row, corner)), to(hn::GatherIndex(d, row + 1, corner));
+                return from + to_x * (to - from);
+            };
+            const N low = along_x(v), high = along_x(v + kSide);
+            return low + to_y * (high - low);
+        };
+        hn::BlendedStore(between(tile.foam).v, there, d, foam + i);
+        hn::BlendedStore(between(tile.foam_age).v, there, d, foam_age + i);
+    }
+}
 
 void Deviates(const float* mean, const float* variance, const float* third, const float* threshold,
               bool third_moment, std::span<float> y) {
@@ -102,7 +145,7 @@ void Sum(std::span<const FoamShares> shares, std::span<float> foam, std::span<fl
 }
 
 FoamKernels Table() {
-    return {&Deviates, &Share, &Sum};
+    return {&Place, &Between, &Deviates, &Share, &Sum};
 }
 
 }  // namespace

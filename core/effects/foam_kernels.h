@@ -2,6 +2,7 @@
 // run time).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,7 +15,31 @@ struct FoamShares {
     float foam = 0.0f, age = 0.0f;         // weights in the two sums
 };
 
+// Where points lie among the nodes of a level, along an axis. By point, with room for a vector that begins at the last one.
+struct FoamAxis {
+    static constexpr std::size_t kPoints = 256, kRoom = kPoints + 64 / sizeof(float);
+    alignas(64) std::array<double, kRoom> tile;        // the tile's number, whole
+    alignas(64) std::array<std::int32_t, kRoom> node;  // at or below the point, in the tile
+    alignas(64) std::array<float, kRoom> rest;         // the way to the next node, 0 … 1
+};
+
+// Of the points' origin and places [m] in a level's cells.
+struct FoamAxisArgs {
+    double origin_m = 0.0, cells_per_m = 1.0;
+    const double* rest_m = nullptr;  // by point
+};
+
+// What a tile has at its nodes, rows of kTileCells + 1.
+struct FoamTile {
+    const float *foam, *foam_age;
+};
+
 struct FoamKernels {
+    // Of points first … end − 1. What lies beyond is overwritten.
+    void (*place)(const FoamAxisArgs&, std::size_t first, std::size_t end, FoamAxis&);
+    // Between the nodes of the tile that points first … end − 1 lie in, and of these alone.
+    void (*between)(const FoamTile&, const FoamAxis& x, const FoamAxis& y, std::size_t first, std::size_t end,
+                    float* foam, float* foam_age);
     // y of Φ(y) = P(J < threshold), by node, limited to ± kFarthestFoamDeviate. Arrays as long as y's, or Buffers.
     void (*deviates)(const float* mean, const float* variance, const float* third, const float* threshold,
                      bool third_moment, std::span<float> y);

@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 
 #include "core/base/pack-inl.h"
 #include "core/evaluate/kernels.h"
@@ -123,34 +124,6 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, const Places<T>& x, co
     }
 }
 
-// The sums over the lanes of as many vectors as one has lanes (1, 2, 4 or 8), side by side. Each is formed as hn::SumOfLanes
-// forms it: halves first.
-template <class D>
-HWY_INLINE hn::Vec<D> SumsOfLanes(D d, const Pack<D>* of) {
-    constexpr std::size_t kLanes = hn::MaxLanes(D());
-    if constexpr (kLanes == 1) return of[0].v;
-#if HWY_TARGET != HWY_SCALAR
-    const auto halves = [&](const Pack<D>& a, const Pack<D>& b) HWY_ATTR {
-        return hn::Add(hn::ConcatLowerLower(d, b.v, a.v), hn::ConcatUpperUpper(d, b.v, a.v));
-    };
-    const auto pairs = [&](hn::Vec<D> a, hn::Vec<D> b)
-                           HWY_ATTR { return hn::Add(hn::ConcatEven(d, b, a), hn::ConcatOdd(d, b, a)); };
-    if constexpr (kLanes == 2) return pairs(of[0].v, of[1].v);
-    if constexpr (kLanes == 4) return pairs(halves(of[0], of[1]), halves(of[2], of[3]));
-    if constexpr (kLanes == 8) {
-        // Of each half of 8 lanes 4 are left; of those in a block, its own halves.
-        const hn::Repartition<std::uint64_t, D> twos;
-        const auto quarters = [&](hn::Vec<D> a, hn::Vec<D> b) HWY_ATTR {
-            const auto a2 = hn::BitCast(twos, a), b2 = hn::BitCast(twos, b);
-            return hn::Add(hn::BitCast(d, hn::InterleaveLower(twos, a2, b2)),
-                           hn::BitCast(d, hn::InterleaveUpper(twos, a2, b2)));
-        };
-        return pairs(quarters(halves(of[0], of[2]), halves(of[1], of[3])),
-                     quarters(halves(of[4], of[6]), halves(of[5], of[7])));
-    }
-#endif
-}
-
 // A cascade's grid at points, by B-splines of P taps along each axis.
 template <int P, class T>
 class SplineReader {
@@ -174,14 +147,16 @@ class SplineReader {
     }
 
   private:
+    using D = hn::ScalableTag<T>;
+    using N = Pack<D>;
     static constexpr std::size_t kTaps = P <= 4 ? 4 : 8;  // with zeros behind the last
-    // Of at most 256 bits. As many points' sums are formed at once.
+    // Of at most 256 bits: what a point alone is summed in, and the order of every point's sum.
     using Taps = hn::CappedTag<T, std::min(kTaps, 32 / sizeof(T))>;
-    static constexpr std::size_t kGroup = hn::MaxLanes(Taps());
+    static constexpr int kGroup = static_cast<int>(hn::MaxLanes(Taps()));
     // A run pays for the columns that it spans, and saves P − 1 rows of its points: beyond a few columns a
     // point, or across the seam of the period, the next one begins.
     static constexpr int kColumnsPerPoint = 4;
-    static constexpr std::size_t kColumns = kColumnsPerPoint * Chunk<T>::kPoints + 2 * kTaps + 64 / sizeof(T);
+    static constexpr std::size_t kColumns = kColumnsPerPoint * Chunk<T>::kPoints + P + 4 * (64 / sizeof(T));
 
     using Index = typename Places<T>::Index;
 
@@ -194,45 +169,32 @@ class SplineReader {
         T weight[P];
     };
 
-    // Each point's weights along x, side by side, and the first of its columns.
+    // The points' weights along x, and the first of each one's columns.
     void WeighColumns(PointRange range) {
-        const hn::ScalableTag<T> d;
-        const hn::RebindToSigned<decltype(d)> di;
-        const hn::CappedTag<T, 4> four;
+        const D d;
+        const hn::RebindToSigned<D> di;
         const std::size_t lanes = hn::Lanes(d);
         const auto n = hn::Set(di, args_.n), before = hn::Set(di, P / 2 - 1), none = hn::Zero(di);
         for (std::size_t i = range.first; i < range.end; i += lanes) {
-            Pack<decltype(d)> some[P], w[kTaps];  // of those beyond P, zeros
-            bspline_weights<P>(Pack<decltype(d)>(hn::LoadU(d, x_.rest.data() + i)), some);
-            std::copy_n(some, P, w);
-            alignas(64) T beside[kTaps / 4][4 * 64 / sizeof(T)];
-            for (std::size_t h = 0; h < kTaps / 4; ++h)
-                hn::StoreInterleaved4(w[4 * h].v, w[4 * h + 1].v, w[4 * h + 2].v, w[4 * h + 3].v, d,
-                                      beside[h]);
-            for (std::size_t j = 0; j < lanes; ++j)
-                for (std::size_t h = 0; h < kTaps / 4; ++h)
-                    for (std::size_t k = 0; k < 4; k += hn::Lanes(four))
-                        hn::Store(hn::Load(four, beside[h] + 4 * j + k), four, weights_[i + j] + 4 * h + k);
+            N w[P];
+            bspline_weights<P>(N(hn::LoadU(d, x_.rest.data() + i)), w);
+            for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, column_weights_[p].data() + i);
             const auto column = hn::Sub(hn::LoadU(di, x_.node.data() + i), before);
             hn::StoreU(hn::Add(column, hn::IfThenElseZero(hn::Lt(column, none), n)), di, column_.data() + i);
         }
     }
 
-    // The points' weights along y: those of one where all have the same place between two rows, as in a row of a patch.
+    // The points' weights along y.
     void WeighRows(PointRange range) {
-        const hn::ScalableTag<T> d;
-        const std::size_t lanes = hn::Lanes(d);
-        const auto first = hn::Set(d, y_.rest[range.first]);
-        bool alike = true;
-        for (std::size_t i = range.first; alike && i < range.end; i += lanes) {
-            const auto same = hn::Eq(hn::LoadU(d, y_.rest.data() + i), first);
-            alike = hn::CountTrue(d, hn::And(same, hn::FirstN(d, range.end - i))) ==
-                    std::min(lanes, range.end - i);
-        }
-        row_of_all_ = alike ? static_cast<std::ptrdiff_t>(range.first) : -1;
-        for (std::size_t i = range.first; i < (alike ? range.first + 1 : range.end); i += lanes) {
-            Pack<decltype(d)> w[P];
-            bspline_weights<P>(Pack<decltype(d)>(hn::LoadU(d, y_.rest.data() + i)), w);
+        const D d;
+        N before, w[P];
+        bool is_first = true;
+        for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
+            const auto rest = hn::LoadU(d, y_.rest.data() + i);
+            // In a row of a patch all points have one place between two rows.
+            if (is_first || !hn::AllTrue(d, hn::Eq(rest, before.v))) bspline_weights<P>(N(rest), w);
+            before = rest;
+            is_first = false;
             for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, row_weights_[p].data() + i);
         }
     }
@@ -274,10 +236,9 @@ class SplineReader {
     }
 
     Rows RowsOf(std::size_t point, Index column) const {
-        const std::size_t of = row_of_all_ >= 0 ? static_cast<std::size_t>(row_of_all_) : point;
         Rows rows;
         for (int p = 0; p < P; ++p) {
-            rows.weight[p] = row_weights_[p][of];
+            rows.weight[p] = row_weights_[p][point];
             int at = static_cast<int>(y_.node[point]) - P / 2 + 1 + p;
             // n may be smaller than the number of taps; a division for each row would cost more than the sums.
             while (at < 0) at += args_.n;
@@ -297,33 +258,90 @@ class SplineReader {
         return sum;
     }
 
+    // A run's rows added up, for all fields, from whole vectors on; then a vector of points at a time.
     void ReadRun(const Run& run) {
-        const hn::ScalableTag<T> d;
-        const Taps taps;
-        const Rows rows = RowsOf(run.points.first, run.low);
-        const std::size_t span = static_cast<std::size_t>(run.high - run.low) + kTaps;
-        for (std::size_t f = 0; f < kFieldCount; ++f) {
-            const T* samples = args_.samples[f];
+        const D d;
+        const std::size_t lanes = hn::Lanes(d);
+        const Index low = run.low - run.low % static_cast<Index>(lanes);
+        const Rows rows = RowsOf(run.points.first, low);
+        const std::size_t span = (static_cast<std::size_t>(run.high - low) + P + lanes - 1) / lanes * lanes;
+        T* columns = columns_;
+        for (const T* samples : args_.samples) {
             if (!samples) continue;
-            for (std::size_t k = 0; k < span; k += hn::Lanes(d))
-                hn::StoreU(SumRows(d, samples, rows, k), d, columns_ + k);
-            const auto product = [&](std::size_t point) HWY_ATTR {
-                const T* from = columns_ + (column_[point] - run.low);
-                auto sum = hn::Zero(taps);
-                for (std::size_t k = 0; k < kTaps; k += kGroup)
-                    sum = hn::MulAdd(hn::LoadU(taps, from + k), hn::Load(taps, weights_[point] + k), sum);
-                return sum;
-            };
-            T* to = values_[f].data();
-            std::size_t i = run.points.first;
-            Pack<Taps> products[kGroup];
-            for (; i + kGroup <= run.points.end; i += kGroup) {
-                for (std::size_t j = 0; j < kGroup; ++j) products[j] = product(i + j);
-                hn::StoreU(SumsOfLanes(taps, products), taps, to + i);
-            }
-            if (i == run.points.end) continue;
-            for (std::size_t j = 0; i + j < run.points.end; ++j) products[j] = product(i + j);
-            hn::StoreU(SumsOfLanes(taps, products), taps, to + i);
+            for (std::size_t k = 0; k < span; k += lanes)
+                hn::Store(SumRows(d, samples, rows, k), d, columns + k);
+            columns += span;
+        }
+        for (std::size_t i = run.points.first; i < run.points.end; i += lanes)
+            ReadPoints({i, std::min(i + lanes, run.points.end)}, low, span);
+    }
+
+    // Of at most a vector of points. Where their columns lie close together each tap is looked up in one vector of columns, or in two.
+    void ReadPoints(PointRange points, Index low, std::size_t span) {
+        const D d;
+        const hn::RebindToSigned<D> di;
+        const auto there = hn::FirstN(di, points.end - points.first);
+        auto column = hn::LoadU(di, column_.data() + points.first);
+        column = hn::IfThenElse(there, column, hn::Set(di, column_[points.first]));
+        const Index first = hn::GetLane(hn::MinOfLanes(di, column));
+        const Index vectors =
+            (hn::GetLane(hn::MaxOfLanes(di, column)) - first) / static_cast<Index>(hn::Lanes(d)) + 1;
+        if (vectors > 2) {
+            const std::size_t middle = Apart(points);
+            ReadPoints({points.first, middle}, low, span);
+            return ReadPoints({middle, points.end}, low, span);
+        }
+        const auto from = hn::Sub(column, hn::Set(di, first));
+        const T* columns = columns_ + (first - low);
+        if (vectors == 1) return SumTaps(points, Lookup<1>(from), columns, span);
+        SumTaps(points, Lookup<2>(from), columns, span);
+    }
+
+    // Where points that lie far apart part: at the seam of the period, or in their middle.
+    std::size_t Apart(PointRange points) const {
+        const auto lanes = static_cast<Index>(hn::Lanes(D()));
+        std::size_t next = points.first + 1;
+        while (next < points.end && std::abs(column_[next] - column_[next - 1]) < lanes) ++next;
+        return next < points.end ? next : points.first + (points.end - points.first) / 2;
+    }
+
+    // The points' columns in V vectors of them; `from`: where each one's lies.
+    template <int V>
+    struct Lookup {
+        using DI = hn::RebindToSigned<D>;
+        HWY_INLINE explicit Lookup(hn::Vec<DI> from)
+            : lane(hn::IndicesFromVec(D(), hn::And(from, hn::Set(DI(), kLast)))),
+              is_beyond(hn::RebindMask(D(), hn::Gt(from, hn::Set(DI(), kLast)))) {}
+        HWY_INLINE N operator()(const T* columns) const {
+            const D d;
+            const auto near = hn::TableLookupLanes(hn::LoadU(d, columns), lane);
+            if constexpr (V == 1) return near;
+            return hn::IfThenElse(is_beyond, hn::TableLookupLanes(hn::LoadU(d, columns + hn::Lanes(d)), lane),
+                                  near);
+        }
+        static constexpr Index kLast = static_cast<Index>(hn::MaxLanes(D())) - 1;
+        decltype(hn::IndicesFromVec(D(), hn::Zero(DI()))) lane;
+        hn::Mask<D> is_beyond;
+    };
+
+    template <int V>
+    HWY_INLINE void SumTaps(PointRange points, const Lookup<V>& tap_at, const T* columns, std::size_t span) {
+        const D d;
+        const auto there = hn::FirstN(d, points.end - points.first);
+        N w[P], taps[P];
+        for (int p = 0; p < P; ++p) w[p] = hn::LoadU(d, column_weights_[p].data() + points.first);
+        for (std::size_t f = 0; f < kFieldCount; ++f) {
+            if (!args_.samples[f]) continue;
+            for (int p = 0; p < P; ++p) taps[p] = tap_at(columns + p);
+            columns += span;
+            // As ReadAlone() adds them, so that a point's value is the same in any company.
+            N sum[P];
+            for (int p = 0; p < P; ++p)
+                sum[p % kGroup] =
+                    p < kGroup ? w[p] * taps[p] : N(hn::MulAdd(taps[p].v, w[p].v, sum[p % kGroup].v));
+            for (int half = kGroup / 2; half > 0; half /= 2)
+                for (int p = 0; p < half && p + half < P; ++p) sum[p] += sum[p + half];
+            hn::StoreU(hn::IfThenElseZero(there, sum[0].v), d, values_[f].data() + points.first);
         }
     }
 
@@ -331,12 +349,14 @@ class SplineReader {
     void ReadAlone(std::size_t point) {
         const Taps taps;
         const Rows rows = RowsOf(point, column_[point]);
+        alignas(64) T weights[kTaps] = {};
+        for (int p = 0; p < P; ++p) weights[p] = column_weights_[p][point];
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             const T* samples = args_.samples[f];
             if (!samples) continue;
             auto sum = hn::Zero(taps);
-            for (std::size_t k = 0; k < kTaps; k += kGroup)
-                sum = hn::MulAdd(SumRows(taps, samples, rows, k), hn::Load(taps, weights_[point] + k), sum);
+            for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps))
+                sum = hn::MulAdd(SumRows(taps, samples, rows, k), hn::Load(taps, weights + k), sum);
             values_[f][point] = hn::GetLane(hn::SumOfLanes(taps, sum));
         }
     }
@@ -344,11 +364,9 @@ class SplineReader {
     const GridArgs<T>& args_;
     const Places<T>&x_, &y_;
     FieldValues<T>& values_;
-    alignas(64) T weights_[kRoom<T>][kTaps];
     std::array<Index, kRoom<T>> column_;
-    std::array<std::array<T, kRoom<T>>, P> row_weights_;
-    std::ptrdiff_t row_of_all_ = -1;  // the point whose weights all have
-    alignas(64) T columns_[kColumns];
+    std::array<std::array<T, kRoom<T>>, P> column_weights_, row_weights_;
+    alignas(64) T columns_[kFieldCount * kColumns];  // of the wanted fields, one after another
 };
 
 // Adds what was read.

@@ -117,6 +117,37 @@ TEST(PreparedQuery, GivesTheSameBitsInBatchesOfAnySize) {
     }
 }
 
+// Points of a row share the sums of the grid's rows, and lie in one vector of columns, in a few or in many; in any order.
+template <class T>
+void expect_the_same_bits_alone_and_in_a_row() {
+    constexpr std::size_t kCount = 300;
+    const Frame<T> frame = frame_of<T>(kCases[0]);
+    const Grid& grid = frame.sea().plan().cascades[0].grids[0];
+    ASSERT_EQ(grid.sampling, Sampling::Spline);
+    const double node_m = 60.0 / grid.resolution;
+    const PreparedQuery<T> prepared(frame, 0, all_products());
+    for (const double columns : {0.03, 0.6, 1.3, 2.3, 3.2, 3.9, 5.0})
+        for (const bool in_order : {true, false}) {
+            Asked<T> asked(false, kCount);
+            for (std::size_t i = 0; i < kCount; ++i)
+                asked.rest[i] =
+                    glm::vec<2, T>(static_cast<T>(columns * node_m * static_cast<double>(i)), T(7.3));
+            if (!in_order) std::shuffle(asked.rest.begin(), asked.rest.end(), std::mt19937(9));
+            ProductArrays<T> row, alone;
+            row.resize(all_products(), kCount);
+            alone.resize(all_products(), kCount);
+            prepared.evaluate(asked.points(0, kCount), row.results());
+            for (std::size_t i = 0; i < kCount; ++i)
+                prepared.evaluate(asked.points(i, 1), alone.results().from_point(i));
+            EXPECT_TRUE(same_bits(row, alone)) << columns << " columns a point, in order: " << in_order;
+        }
+}
+
+TEST(PreparedQuery, GivesAPointOfARowTheSameBitsAlone) {
+    expect_the_same_bits_alone_and_in_a_row<float>();
+    expect_the_same_bits_alone_and_in_a_row<double>();
+}
+
 // Which products are asked for together changes none of them.
 TEST(PreparedQuery, GivesEachProductAloneAsAmongAll) {
     for (const Case& c : kCases) {

@@ -1,6 +1,8 @@
 // The ladder of footprints for points at all distances, and the query at the projected grid's points.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -68,7 +70,7 @@ TEST(ViewQuery, DoublesFromTheFinestUpToWhereNothingPasses) {
     }
 }
 
-// A footprint that passes every mode of a cascade needs no grid of its own.
+// Footprints that pass every mode of a cascade share a grid: one for the cells, and one of fewer nodes for the light.
 TEST(ViewQuery, RunsNoTransformTwice) {
     const Scene scene = scene_of_two_tiles();
     const Plan plan = make_plan(scene, {view_query(*prepare(scene))});
@@ -78,16 +80,20 @@ TEST(ViewQuery, RunsNoTransformTwice) {
         const double shortest_m =
             cascade.size_m / std::min(64.0, cascade.k_upper * cascade.size_m / 6.283185307);
         std::size_t unfiltered = 0;
-        int shared = -1;
+        std::array<int, 2> shared{-1, -1};  // of cells, of light
         for (std::size_t l = 0; l < plan.levels.size(); ++l) {
             if (plan.levels[l].footprint_m > 0.95 * shortest_m / 4.0) continue;
             ++unfiltered;
-            if (shared < 0) shared = cascade.grid_of_level[l];
-            EXPECT_EQ(cascade.grid_of_level[l], shared);
+            int& grid = shared[plan.levels[l].is_of_light ? 1 : 0];
+            if (grid < 0) grid = cascade.grid_of_level[l];
+            EXPECT_EQ(cascade.grid_of_level[l], grid);
         }
-        EXPECT_GE(unfiltered, 1u);
-        EXPECT_LT(cascade.grids.size(), plan.levels.size() - unfiltered + 1);
-        EXPECT_EQ(cascade.grids[shared].fields, fields_of(plan.queries[0].query.products));
+        EXPECT_GE(unfiltered, 2u);
+        EXPECT_LT(cascade.grids.size(), plan.levels.size() - unfiltered + 2);
+        ASSERT_TRUE(shared[0] >= 0 && shared[1] >= 0);
+        const Grid &cells = cascade.grids[shared[0]], &light = cascade.grids[shared[1]];
+        EXPECT_LT(light.resolution, cells.resolution);
+        EXPECT_EQ(cells.fields | light.fields, fields_of(plan.queries[0].query.products));
     }
     // The first tile's band ends at 20 modes: several rungs are below its waves.
     EXPECT_EQ(plan.cascades[0].grid_of_level[0], plan.cascades[0].grid_of_level[3]);

@@ -201,7 +201,8 @@ Trials against_double(const Scene& shot, const std::vector<std::pair<std::string
     at->exact = exact.vectors(Product::Position);
     at->height_m = std::max(exact.significant_height_m(), 1e-12);
     const auto normals = std::make_shared<std::vector<glm::dvec3>>(exact.vectors(Product::Normal));
-    const Knobs shots = make_plan(scene, {}).knobs;
+    Knobs shots = make_plan(scene, {}).knobs;
+    shots.light_oversampling = Knobs().light_oversampling;  // these points are no picture's
     Trials trials;
     for (const auto& [name, knobs] : settings) {
         const auto sea =

@@ -148,10 +148,7 @@ PictureFingerprint::PictureFingerprint(const PictureSource& source)
         .add(source.sky_content)
         .add("samples " + std::to_string(options_.samples) + " terms " + digit(lighting.sun) +
              digit(lighting.sky) + digit(lighting.water) + digit(lighting.whitecaps) + digit(lighting.air) +
-             " sky " + digit(lighting.sky_quality) +
-             // One lookup was isotropic once; pictures of the other qualities have kept their bits.
-             (lighting.sky_quality == SkyQuality::One ? " ellipse" : "") + " fresnel " +
-             digit(lighting.fresnel))
+             " sky " + digit(lighting.sky_quality) + " fresnel " + digit(lighting.fresnel))
         .add("exposure " + number_text(source.exposure_stops))
         .add("shutter " + number_text(options_.shutter_frames) + (options_.alpha ? " alpha" : "") +
              " layers " + options_.layers.to_string() + (lighting.spray ? " spray" : ""));

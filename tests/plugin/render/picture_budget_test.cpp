@@ -33,7 +33,7 @@ const std::array kShots = std::to_array<BudgetShot>({
          s.sea.wind_speed_mps = 4.5, s.light.sun_elevation_deg = 25.0, s.light.sun_azimuth_deg = 85.0;
      },
      0.25},
-    {"gale", [](Scene& s) { s.sea.wind_speed_mps = 20.0; }, 0.3},
+    {"gale", [](Scene& s) { s.sea.wind_speed_mps = 20.0; }, 0.25},
     {"gale, better", [](Scene& s) { s.sea.wind_speed_mps = 16.0; }, 0.18},
     {"no foam", [](Scene& s) { s.sea.wind_speed_mps = 13.0, s.effects.whitecaps = false; }, 0.15},
     {"from a mast",

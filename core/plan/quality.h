@@ -14,10 +14,10 @@ enum class SkyLookups { One, Nine, Integral };
 
 struct QualityRow {
     QualityLevel level;
-    int spline_taps;        // 4: cubic B-spline, 6: quintic
-    double oversampling;    // grid nodes per Nyquist sample of the shortest wave, where a spline reads it
+    int spline_taps;            // 4: cubic B-spline, 6: quintic
+    double oversampling;        // grid nodes per Nyquist sample of the shortest wave, where a spline reads it
     double light_oversampling;  // the same for what only a picture's light reads
-    bool double_precision;  // of the waves
+    bool double_precision;      // of the waves
     SkyLookups sky;
     bool fitted_fresnel;  // our fit to the exact Fresnel term, or the paper's to Schlick's
     int samples;          // N × N a pixel

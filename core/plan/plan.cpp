@@ -43,14 +43,14 @@ int transform_size(int n) {
 }
 
 // Nodes per Nyquist sample of a grid whose shortest wave this footprint fades. A spline of n taps adds to a wave with ν waves a
-// node its image with (ν/(1 − ν))^n of its amplitude: the fewest nodes with which no wave that is left has a larger one than
-// the shortest, unfaded, has with `oversampling`.
+// node its image with (ν/(1 − ν))^n of its amplitude, since its transform is sinc^n: the fewest nodes with which no wave that is
+// left has a larger one than the shortest, unfaded, has with `oversampling`.
 double faded_oversampling(const FootprintFilter& filter, double footprint_m, double shortest_m, int taps,
                           double oversampling) {
     if (!(footprint_m > 0.0)) return oversampling;
     const auto image = [&](double nodes_a_wave) { return std::pow(1.0 / (nodes_a_wave - 1.0), taps); };
     const double most = image(2.0 * oversampling);
-    constexpr int kWaves = 64;
+    constexpr int kWaves = 64;  // of a smooth curve, up to the first that isn't faded
     const double longest_m = std::max(filter.n_max * footprint_m, shortest_m);
     const auto is_enough = [&](double nodes) {
         for (int i = 0; i <= kWaves; ++i) {
@@ -60,7 +60,7 @@ double faded_oversampling(const FootprintFilter& filter, double footprint_m, dou
         }
         return true;
     };
-    constexpr double kStep = 0.02;
+    constexpr double kStep = 0.02;  // nodes a sample: finer than the sizes that transforms come in
     double nodes = oversampling;
     while (nodes - kStep > 1.0 && is_enough(nodes - kStep)) nodes -= kStep;
     return nodes;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/plan/breaking.h"
 #include "core/plan/copies.h"
 #include "core/scene/cascade_bands.h"
 #include "core/scene/text.h"
@@ -16,8 +17,9 @@
 namespace pelagic {
 namespace {
 
-double share_of(const SpectralMoments& all, double choppiness) {
-    const double c = choppiness * choppiness;
+// Of a sea with these moments, whose strain is multiplied by `gain`.
+double share_of(const SpectralMoments& all, double gain) {
+    const double c = gain * gain;
     const auto j = jacobian_moments<double>(
         0.0, 0.0, 0.0, 0.0, {c * all.xxxx, c * all.xxxy, c * all.xxyy, c * all.xyyy, c * all.yyyy});
     if (!(j.variance > 0.0)) return 0.0;
@@ -26,14 +28,8 @@ double share_of(const SpectralMoments& all, double choppiness) {
     return 0.5 * std::erfc(-y / std::sqrt(2.0));
 }
 
-// With each wave's strain as choppy as its share of the largest choppiness.
 SpectralMoments all_of(const DirectionalSpectrum& spectrum, const Choppiness& choppiness) {
-    SpectralMoments all;
-    choppiness.for_bands(0.0, std::numeric_limits<double>::infinity(),
-                         [&](double from, double to, double share) {
-                             all += moments(spectrum, from, to).scale_strain(share * share);
-                         });
-    return all;
+    return moments_pressed(spectrum, 0.0, std::numeric_limits<double>::infinity(), choppiness);
 }
 
 // Two digits: "8.2".
@@ -59,11 +55,10 @@ std::vector<std::string> trough_warning(const PreparedScene& prepared) {
 std::vector<std::string> folding_warning(const PreparedScene& prepared) {
     constexpr double kMuch = 0.05;
     const Choppiness asked = Choppiness::asked(prepared.scene);
-    const double choppiness = asked.largest();
     const SpectralMoments all = all_of(prepared.spectrum, asked);
-    const double share = share_of(all, choppiness);
+    const double share = share_of(all, 1.0);
     if (!(share > kMuch)) return {};
-    double less = 0.0, more = choppiness;
+    double less = 0.0, more = 1.0;
     for (int i = 0; i < 40; ++i) {
         const double middle = 0.5 * (less + more);
         (share_of(all, middle) > kMuch ? more : less) = middle;
@@ -71,9 +66,10 @@ std::vector<std::string> folding_warning(const PreparedScene& prepared) {
     const std::string folds = "the surface folds over itself on " + percent_text(share) + " % of its area; ";
     const auto& cascades = prepared.scene.waves.cascades;
     if (std::any_of(cascades.begin(), cascades.end(), [](const CascadeSize& c) { return c.choppiness; }))
-        return {folds + "each cascade's choppiness times " +
-                number_text(std::floor(100.0 * less / choppiness) / 100.0) + " leaves 5 %"};
-    return {folds + "waves.choppiness = " + number_text(std::floor(100.0 * less) / 100.0) + " leaves 5 %"};
+        return {folds + "each cascade's choppiness times " + number_text(std::floor(100.0 * less) / 100.0) +
+                " leaves 5 %"};
+    return {folds + "waves.choppiness = " + number_text(std::floor(100.0 * less * asked.largest()) / 100.0) +
+            " leaves 5 %"};
 }
 
 // Explicit tiles that repeat: where a patch shows that or, on surfaces as large as the view, a tile has few waves of the peak.
@@ -147,7 +143,7 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
 }  // namespace
 
 double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& choppiness) {
-    return share_of(all_of(spectrum, choppiness), choppiness.largest());
+    return share_of(all_of(spectrum, choppiness), 1.0);
 }
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {

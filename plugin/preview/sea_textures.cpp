@@ -133,16 +133,15 @@ void SeaTextures::upload_once(Frame<float>&& frame, int query) {
         }
     };
     const std::vector<SeaLayout::Plane>& planes = layout_->planes();
-    // The large ones, of pixels, are the last: their fields go before the others come.
-    for (std::size_t p = planes.size(); p-- > 0;) {
+    for (std::size_t p = 0; p < planes.size(); ++p) {
         make_room(p);
         for (const SeaLayout::Tile& tile : layout_->tiles_of(planes[p])) {
             upload(planes[p], tile);
             for (const Field field : planes[p].fields) {
-                const auto reads = [&](const SeaLayout::Plane& other) {
-                    return std::count(other.fields.begin(), other.fields.end(), field) > 0;
+                const auto reads = [&](const SeaLayout::Plane& later) {
+                    return std::count(later.fields.begin(), later.fields.end(), field) > 0;
                 };
-                if (std::none_of(planes.begin(), planes.begin() + p, reads))
+                if (std::none_of(planes.begin() + p + 1, planes.end(), reads))
                     frame.release(tile.cascade, tile.grid, field);
             }
         }

@@ -24,4 +24,10 @@ double breaking_rate(const DirectionalSpectrum& spectrum, const Breaking& breaki
     return variance > 0.0 ? std::sqrt(of_rate / variance) : 0.0;
 }
 
+FoamLife foam_life(const Plan& plan) {
+    if (!plan.foam) return {};
+    return {.rate_per_s = breaking_rate(plan.from->spectrum, plan.breaking),
+            .lasting_s = plan.foam->weight(0.0, plan.foam->window_s).foam_s};
+}
+
 }  // namespace pelagic

@@ -120,10 +120,7 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
 template <class T>
 void Sea<T>::calibrate_whitecaps() {
     const bool third = plan_.knobs.third_moment;
-    FoamLife life;
-    if (plan_.foam)
-        life = {.rate_per_s = breaking_rate(plan_.from->spectrum, plan_.breaking),
-                .lasting_s = plan_.foam->weight(0.0, plan_.foam->window_s).foam_s};
+    const FoamLife life = foam_life(plan_);
     const double law = law_coverage(plan_.from->scene),
                  choppiness = mean_choppiness(plan_.from->spectrum, plan_.breaking);
     whitecap_threshold_ = calibrated_threshold(total_, law, choppiness, third, life);

@@ -3,6 +3,7 @@
 
 #include <mutex>
 
+#include "plugin/bake/volume_blocks.h"
 #include "plugin/bake/volume_part.h"
 
 namespace pelagic {
@@ -30,18 +31,10 @@ class LevelSetPart final : public VolumePart {
     }
 
     OutputMemory memory() const override {
-        // Blocks round the surface, as steep as it can stand over a block and the band beside it; round the floor; and along
-        // the sides.
-        const double block_m = vdb::kBlock * voxel_m(), highest_m = 2.0 * plan_.from->extent.height_m;
-        const auto round_surface = static_cast<std::size_t>(std::min(2.0 * block_m, highest_m) / block_m) + 3;
-        const auto high =
-            static_cast<std::size_t>((highest_m + 2.0 * kBelow_voxels * voxel_m()) / block_m) + 3;
-        const std::size_t a_side = static_cast<std::size_t>(cells_) / vdb::kBlock + 3;
-        const std::size_t blocks = a_side * a_side * (round_surface + 2) + 8 * a_side * high;
-        constexpr std::size_t kBlock = vdb::bytes_a_block<float>();
-        return {.slot = query().points * sizeof(float) + blocks * kBlock,
-                .encoding = blocks * 2 * kBlock + vdb::kTreeBytes,
-                .remedy = "raise output.voxel_m, or lower surface.size_m"};
+        constexpr double kFileBytes = 640.0;  // of a block
+        const double blocks = expected_level_set_blocks(plan_);
+        return memory_of(query().points * sizeof(float), 1, blocks * vdb::bytes_a_block<float>(),
+                         blocks * kFileBytes);
     }
 
     void encode(int frame, OutputSlot& any_slot) const override {

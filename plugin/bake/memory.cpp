@@ -6,6 +6,7 @@
 #include "core/plan/products.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/output_part.h"
+#include "plugin/vdb/vdb.h"
 
 namespace pelagic {
 namespace {
@@ -44,6 +45,9 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
             during.add("points of the " + query.name, memory.once, memory.remedy);
         during.add("files of the " + query.name, in_flight * memory.slot + memory.encoding, memory.remedy);
     }
+    if (std::ranges::any_of(plan.outputs,
+                            [](const PlannedOutput& output) { return output.volume.has_value(); }))
+        during.add("OpenVDB itself", vdb::kLibraryBytes, "set output.volumes to []");
     before.add("the faces of the mesh", fixed, fixed_remedy);
     return before.bytes() > during.bytes() ? before : during;
 }

@@ -8,6 +8,7 @@
 #include "core/effects/spray.h"
 #include "core/effects/wind_profile.h"
 #include "core/plan/spray.h"
+#include "plugin/bake/volume_blocks.h"
 #include "plugin/bake/volume_part.h"
 
 namespace pelagic {
@@ -51,16 +52,11 @@ class SprayPart final : public VolumePart {
     }
 
     OutputMemory memory() const override {
-        // Blocks above eight by eight columns, if spray is everywhere and the sea as steep as it can stand.
-        const double block_m = vdb::kBlock * voxel_m();
-        const double relief_m = std::min(block_m, 2.0 * plan_.from->extent.height_m);
-        const auto high = static_cast<std::size_t>((top_m_ + relief_m) / block_m) + 2;
-        const std::size_t a_side = (columns() + vdb::kBlock - 1) / vdb::kBlock;
-        const std::size_t blocks = a_side * a_side * high;
-        const std::size_t block = vdb::bytes_a_block<float>() + vdb::bytes_a_block<glm::vec3>();
-        return {.slot = columns() * columns() * 2 * sizeof(float) + blocks * block,
-                .encoding = blocks * 2 * block + 2 * vdb::kTreeBytes,
-                .remedy = "raise output.voxel_m, or lower surface.size_m"};
+        constexpr double kBlockBytes = 500.0, kVoxelBytes = 6.0;  // of a file
+        const ExpectedSpray spray = expected_spray(plan_);
+        return memory_of(columns() * columns() * 2 * sizeof(float), 2,
+                         spray.blocks * (vdb::bytes_a_block<float>() + vdb::bytes_a_block<glm::vec3>()),
+                         spray.blocks * kBlockBytes + spray.voxels * kVoxelBytes);
     }
 
     void encode(int frame, OutputSlot& any_slot) const override {

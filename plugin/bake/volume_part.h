@@ -28,6 +28,16 @@ class VolumePart : public OutputPart {
     double size_m() const { return scene().surface.size_m; }
     VoxelLattice voxels() const { return voxels_over(size_m(), voxel_m()); }
 
+    // Of `grids` grids that take so much, in a file of so many bytes [bytes]. While a frame is encoded they are there with what
+    // the heap loses between them, and the file grows by doubling.
+    OutputMemory memory_of(std::size_t values, int grids, double in_grids, double in_file) const {
+        constexpr double kHeap = 1.5;
+        const auto file = static_cast<std::size_t>(in_file);
+        return {.slot = values + file,
+                .encoding = static_cast<std::size_t>(kHeap * in_grids) + 2 * file + grids * vdb::kTreeBytes,
+                .remedy = "raise output.voxel_m, or lower surface.size_m"};
+    }
+
     // The sea at places of the world, row after row of rising y, some rows at a time: take(first place, its row's
     // neighbours, …) sees the values of the query's products there.
     template <class T>

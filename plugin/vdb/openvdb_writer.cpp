@@ -188,6 +188,7 @@ class Library final : public OpenVdbWriter {
         Writer().write_to(stream, all, about);
         // OpenVDB has drawn one by the clock.
         bytes.replace(kIdentifierAt, kIdentifierLength, identifier);
+        bytes.shrink_to_fit();  // grown by doubling, and kept while other frames are encoded
         return bytes;
     }
 };

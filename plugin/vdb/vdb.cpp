@@ -1,6 +1,7 @@
 #include "plugin/vdb/vdb.h"
 
 #include <dlfcn.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -121,7 +122,12 @@ void load() {
 }
 
 Grid::Grid(const GridOptions& options) : impl_(std::make_unique<Impl>(writer().make_grid(options))) {}
-Grid::~Grid() = default;
+// A grid is made of many small pieces, on all threads: their heaps would keep them, each as many as its busiest frame had.
+Grid::~Grid() {
+    if (!impl_) return;
+    impl_.reset();
+    ::malloc_trim(0);
+}
 Grid::Grid(Grid&&) noexcept = default;
 Grid& Grid::operator=(Grid&&) noexcept = default;
 

@@ -65,6 +65,8 @@ constexpr std::size_t bytes_a_block() {
 }
 // Of the tree above, however few blocks there are.
 inline constexpr std::size_t kTreeBytes = std::size_t{4} << 20;
+// Of the library itself, once it is loaded.
+inline constexpr std::size_t kLibraryBytes = std::size_t{24} << 20;
 
 // Loads OpenVDB, as the first grid would: who asks what memory is left asks after it. Throws std::runtime_error where the
 // library isn't to be had, std::bad_alloc where there is no room for it, std::system_error where there are no threads.

@@ -1,0 +1,141 @@
+#include "plugin/bake/volume_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/constants.h"
+#include "core/plan/breaking.h"
+#include "core/spectrum/gauss.h"
+#include "core/spectrum/spectral_moments.h"
+#include "core/waves/breaking_rate.h"
+#include "core/waves/whitecaps.h"
+#include "plugin/bake/level_set.h"
+#include "plugin/bake/volumes.h"
+#include "plugin/vdb/vdb.h"
+
+namespace pelagic {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kBlock = vdb::kBlock;
+
+// The share of a standard normal variable below x.
+double normal_share(double x) {
+    return 0.5 * std::erfc(-x / std::sqrt(2.0));
+}
+
+// Blocks along z that so many voxels in a row meet, wherever they begin.
+double blocks_of_row(double voxels) {
+    return (voxels + kBlock - 1.0) / kBlock;
+}
+
+// First-order variances of J, which the strains' trace is.
+struct StrainVariance {
+    double whole = 0.0,
+           shown = 0.0;            // of all waves that break, and of what the voxels' footprint shows of them
+    double gradient_per_m2 = 0.0;  // of the shown J's gradient, both components together
+};
+
+StrainVariance strain_variance(const Plan& plan, double footprint_m) {
+    const DirectionalSpectrum& spectrum = plan.from->spectrum;
+    const Breaking& breaking = plan.breaking;
+    StrainVariance of;
+    const auto add = [&](double from, double to, double share) {
+        const auto moment = [&](const auto& factor) {
+            return GaussLegendre<8>::rule().integrate(from, to, [&](double k) {
+                const double strain =
+                    share * breaking.choppiness.largest() * k * spectrum.dispersion().horizontal_ratio(k);
+                return factor(k) * strain * strain * spectrum.omnidirectional(k);
+            });
+        };
+        const auto shown = [&](double k) {
+            const double weight = plan.filter.weight(k, footprint_m);
+            return weight * weight;
+        };
+        of.whole += moment([](double) { return 1.0; });
+        of.shown += moment(shown);
+        of.gradient_per_m2 += moment([&](double k) { return k * k * shown(k); });
+    };
+    breaking.choppiness.for_panels(spectrum, 0.0, breaking.k_end(), add);
+    return of;
+}
+
+JacobianMoments<double> jacobian_of(const SpectralMoments& strain, double pressed, double direction) {
+    const double c = std::cos(direction), s = std::sin(direction);
+    return jacobian_moments<double>(-pressed * c * c, -pressed * s * s, -pressed * c * s, -pressed * c * s,
+                                    {strain.xxxx, strain.xxxy, strain.xxyy, strain.xyyy, strain.yyyy});
+}
+
+}  // namespace
+
+ExpectedSpray expected_spray(const Plan& plan) {
+    const Scene& scene = plan.from->scene;
+    const DirectionalSpectrum& spectrum = plan.from->spectrum;
+    const double voxel_m = scene.output.voxel_m;
+    const bool third = plan.knobs.third_moment;
+    const SpectralMoments total = moments_with_breaking(spectrum, 0.0, kInfinity, plan.breaking);
+    const double threshold = calibrated_threshold(
+        total, law_coverage(scene), mean_choppiness(spectrum, plan.breaking), third, foam_life(plan));
+    const StrainVariance variance = strain_variance(plan, plan.breaking.footprint_of(voxel_m));
+    if (!std::isfinite(threshold) || !(variance.shown > 0.0)) return {};
+
+    // How far a voxel's sea must be pressed together for spray: there what its footprint hides breaks now and then.
+    const double direction = total.mean_direction();
+    SpectralMoments hidden = total;
+    hidden.scale_strain(std::max(1.0 - variance.shown / variance.whole, 0.0));
+    const auto whole = jacobian_of(total, 0.0, direction);
+    const double least = kNegligibleSpray * coverage(whole, threshold, third);
+    double pressed = 0.0;
+    for (double low = -1.0, high = 1.0; high - low > 1e-6;) {
+        pressed = 0.5 * (low + high);
+        (coverage(jacobian_of(hidden, pressed, direction), threshold, third) > least ? high : low) = pressed;
+    }
+    const double deviate =
+        breaking_deviate({.mean = 0.0,
+                          .variance = variance.shown,
+                          .third = whole.third * std::pow(variance.shown / whole.variance, 1.5)},
+                         -pressed, third);
+
+    const double share = normal_share(deviate);  // of voxels' columns
+    const double side = (kBlock - 1.0) * voxel_m * std::sqrt(0.5 * variance.gradient_per_m2 / variance.shown);
+    const double edge = std::exp(-0.5 * deviate * deviate);
+    const double nearby =
+        side * edge / kPi -
+        side * side * deviate * edge / std::pow(kTwoPi, 1.5);  // begins beside a voxel, and reaches it
+    const double hit =
+        share + (1.0 - share) * -std::expm1(-std::max(nearby, 0.0) / std::max(1.0 - share, 1e-9));
+    const double columns = voxels_a_side(scene), blocks = std::ceil(columns / kBlock);
+    const double high = spray_top_m() / voxel_m + 1.0;
+    return {.blocks = blocks * blocks * hit * blocks_of_row(high),
+            .voxels = columns * columns * share * high};
+}
+
+double expected_level_set_blocks(const Plan& plan) {
+    const Scene& scene = plan.from->scene;
+    const double voxel_m = scene.output.voxel_m, columns = voxels_a_side(scene);
+    // In voxels from here on. Waves that are shorter than a block are no slope of its surface.
+    const SpectralMoments waves = moments(plan.from->spectrum, 0.0, kTwoPi / (kBlock * voxel_m));
+    const double deviation = std::max(std::sqrt(plan.from->spectrum.m0()) / voxel_m, 1e-6);
+    const double band = 2.0 * kHalfWidth_voxels;
+    const double rise = std::sqrt(2.0 / kPi) * (kBlock - 1.0) * (std::sqrt(waves.xx) + std::sqrt(waves.yy));
+    const double reach = 0.5 * (band * std::sqrt(1.0 + waves.mss()) + rise);
+    const double floor = std::floor(-plan.from->extent.height_m / voxel_m) - kBelow_voxels;
+
+    double along_surface = 0.0;
+    const double farthest = std::ceil((8.0 * deviation + reach) / kBlock);
+    for (double block = -farthest; block <= farthest; ++block)
+        along_surface += normal_share((kBlock * (block + 1.0) - 0.5 + reach) / deviation) -
+                         normal_share((kBlock * block + 0.5 - reach) / deviation);
+    const auto block_of = [](double voxel) { return std::floor(voxel / kBlock); };
+    const double along_floor =
+        block_of(floor + kHalfWidth_voxels - 1.0) - block_of(floor - kHalfWidth_voxels) + 1.0;
+    const double along_side = blocks_of_row(band - floor);
+    // Near a side lie the first two columns of blocks, and those beside the last voxel.
+    const double all = block_of(columns - 1.0 + kHalfWidth_voxels) + 2.0;
+    const double inner = std::max(block_of(columns - kHalfWidth_voxels) - 1.0, 0.0);
+    return inner * inner * std::min(along_surface + along_floor, along_side) +
+           (all * all - inner * inner) * along_side;
+}
+
+}  // namespace pelagic

@@ -73,8 +73,9 @@ class MapPart final : public OutputPart {
                     if (output_.cascade) return {0, 12 * 4 / 3};
                     return {12 * 4 / 3, 0, 12 / 3};
                 case MapKind::Whitecaps:
-                    return has_foam_history() ? Encoded{22 * 4 / 3, 12 + 48 * 4 / 3}
-                                              : Encoded{16 * 4 / 3, 12 + 24 * 4 / 3};
+                    // Moments, and by level what is written; of foam that lives, its past and what that becomes.
+                    return has_foam_history() ? Encoded{22 * 4 / 3, 12 * 4 / 3 + 36 * 4 / 3}
+                                              : Encoded{16 * 4 / 3, 12 * 4 / 3 + 12 * 4 / 3};
             }
             throw std::logic_error("a map of no kind");
         }();
@@ -130,8 +131,7 @@ class MapPart final : public OutputPart {
                                               .first_m = query().lattice->first_m});
         const Points<T> points{.count = state.rest->size(), .rest_m = {state.rest->data()}};
         state.runner.run(sea, output_.query, points, slot.values);
-        // A cascade's own tile is a part of the sea, and has no history of all of it.
-        if (!output_.cascade) add_foam(foam, points, slot, watch);
+        add_foam(foam, points, slot, watch);
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
         if (kind_ == MapKind::SlopeVariance) find_hidden(state, sea, slot);
         if (has_gusts()) find_thresholds(state, sea, slot);

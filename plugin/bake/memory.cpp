@@ -1,7 +1,9 @@
 // What a bake holds in memory, from its plan.
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "core/plan/products.h"
 #include "plugin/bake/bake.h"
@@ -30,6 +32,7 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
     std::size_t fixed = 0;
     std::string fixed_remedy;
     std::set<std::pair<std::size_t, double>> squares;  // whose points at rest are counted
+    std::vector<MemoryPart> encodings;
     for (const auto& part : make_parts(plan)) {
         const Query& query = part->query();
         const OutputMemory memory = part->memory();
@@ -43,8 +46,13 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
             during.add("values of the " + query.name, values * sizeof(double), memory.remedy);
         if (!query.lattice || squares.insert({query.points, query.lattice->spacing_m}).second)
             during.add("points of the " + query.name, memory.once, memory.remedy);
-        during.add("files of the " + query.name, in_flight * memory.slot + memory.encoding, memory.remedy);
+        during.add("files of the " + query.name, in_flight * memory.slot, memory.remedy);
+        encodings.push_back({"files of the " + query.name, memory.encoding, memory.remedy});
     }
+    // A thread encodes one file at a time.
+    std::ranges::sort(encodings, std::ranges::greater(), &MemoryPart::bytes);
+    encodings.resize(std::min(encodings.size(), static_cast<std::size_t>(threads)));
+    for (const MemoryPart& of : encodings) during.add(of.what, of.bytes, of.remedy);
     if (std::ranges::any_of(plan.outputs,
                             [](const PlannedOutput& output) { return output.volume.has_value(); }))
         during.add("OpenVDB itself", vdb::kLibraryBytes, "set output.volumes to []");

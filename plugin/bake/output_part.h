@@ -74,9 +74,10 @@ class OutputPart {
     std::string fingerprint(int frame) const { return frame_fingerprint(plan_, output_, base_, frame); }
     const std::string& fingerprint() const { return base_; }
 
-    // Whether its coverage has a past.
+    // Whether its coverage has a past. A cascade's own tile is a part of the sea, and has none of all of it.
     bool has_foam_history() const {
-        return plan_.foam && query().products[index(Product::Coverage)] && !query().breaking_alone;
+        return plan_.foam && !output_.cascade && query().products[index(Product::Coverage)] &&
+               !query().breaking_alone;
     }
 
     virtual std::unique_ptr<OutputSlot> make_slot() const { return std::make_unique<OutputSlot>(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "core/base/constants.h"
 #include "core/spectrum/dispersion.h"
@@ -86,16 +87,42 @@ double tiles_over(const FoamPlan& foam, int level, double side_m) {
     return (std::ceil(sides.x) + 1.0) * (std::ceil(sides.y) + 1.0);
 }
 
-// Those whose cells a camera's pixels need, whichever way it turns. A pixel is α s wide and α s²/h long at the slant distance
-// s from an eye at the height h: its area is that of the square of a cell at s = (cell/α)^⅔ h^⅓, and further away coarser levels
-// have it.
-double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, bool are_pictures) {
+// What of the sea round it a camera at rest shows: distances from below it, and half the angle that it sees.
+struct Sector {
+    double nearest_m = 0.0, farthest_m = std::numeric_limits<double>::infinity(), half_angle = kPi;
+};
+
+Sector sector_of(const Camera& camera, double height_m) {
+    const glm::dvec3 ahead = glm::normalize(camera.look_at_m - camera.position_m);
+    const double level = std::hypot(ahead.x, ahead.y);
+    const double across = std::tan(0.5 * camera.fov_deg * kPi / 180.0);
+    const double upright = across * camera.resolution.y / camera.resolution.x;
+    // Of the frame's lowest and highest lines: how far ahead and how far down a ray of length 1 along the axis goes.
+    const glm::dvec2 low(level + upright * ahead.z, upright * level - ahead.z),
+        high(level - upright * ahead.z, -upright * level - ahead.z);
+    const auto distance_m = [&](glm::dvec2 line, double aside) {
+        return line.y > 0.0 ? height_m * std::hypot(line.x, aside) / line.y
+                            : std::numeric_limits<double>::infinity();
+    };
+    Sector sector{.farthest_m = std::max(distance_m(low, across), distance_m(high, across))};
+    const double least_ahead = std::min(low.x, high.x);
+    if (!(least_ahead > 0.0)) return sector;  // what is below it is in the frame
+    sector.half_angle = std::atan(across / least_ahead);
+    sector.nearest_m = distance_m(low, 0.0);
+    return sector;
+}
+
+// Those whose cells a camera's pixels need, whichever way it turns, or in its frame alone. A pixel is α s wide and α s²/h long at
+// the slant distance s from an eye at the height h: its area is that of the square of a cell at s = (cell/α)^⅔ h^⅓, and further
+// away coarser levels have it.
+double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, bool is_of_frame,
+                     bool are_pictures) {
     const double cell_m = foam.cell_of(level);
     const auto pixel_of = [&](double fov_deg) {
         return 2.0 * std::tan(0.5 * fov_deg * kPi / 180.0) / camera.resolution.x;
     };
-    const auto reach_m = [&](double height_m, double fov_deg) {
-        const double slant_m = std::pow(cell_m / pixel_of(fov_deg), 2.0 / 3.0) * std::cbrt(height_m);
+    const auto reach_m = [&](double height_m, double fov_deg, double footprint_m) {
+        const double slant_m = std::pow(footprint_m / pixel_of(fov_deg), 2.0 / 3.0) * std::cbrt(height_m);
         return std::sqrt(std::max(slant_m * slant_m - height_m * height_m, 0.0));
     };
     double lowest_m = std::max(camera.position_m.z, 1.0), highest_m = lowest_m,
@@ -108,10 +135,23 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, bool
     }
     // Between the keys a camera passes all heights. The reach grows with the height up to this one.
     const double farthest_height_m = cell_m / pixel_of(narrowest_deg) * std::pow(3.0, -0.75);
-    const double farthest_m = reach_m(std::clamp(farthest_height_m, lowest_m, highest_m), narrowest_deg);
+    const double farthest_m =
+        reach_m(std::clamp(farthest_height_m, lowest_m, highest_m), narrowest_deg, cell_m);
     if (!(farthest_m > 0.0)) return 0.0;
+    const double tile_m = FoamPlan::kTileCells * cell_m;
+    if (is_of_frame) {
+        // Footprints of less than a quarter of a cell read finer levels.
+        const Sector sector = sector_of(camera, lowest_m);
+        const double finer_m = level > 0 ? reach_m(lowest_m, camera.fov_deg, 0.25 * cell_m) : 0.0;
+        const double from = std::max(sector.nearest_m, finer_m) / tile_m;
+        const double to = std::min(sector.farthest_m, farthest_m) / tile_m;
+        if (!(from < to)) return 0.0;
+        // A region meets so many tiles of a lattice whose place is chance: its area, and 2/π of its outline (Santaló 1976).
+        const double outline = 2.0 * (to - from) + 2.0 * sector.half_angle * (to + from);
+        return sector.half_angle * (to * to - from * from) + 2.0 / kPi * outline + 1.0;
+    }
     // A tile that touches a disc lies within a diagonal of it. A camera that moves looks from two places at the two times.
-    const double radius = farthest_m / (FoamPlan::kTileCells * cell_m) + std::sqrt(2.0);
+    const double radius = farthest_m / tile_m + std::sqrt(2.0);
     if (are_pictures) return kPi * radius * radius;
     if (!camera.keys.empty()) return 2.0 * kPi * radius * radius;
     return kPi * radius * radius + 2.0 * radius * glm::length(drift_between(foam, level));
@@ -126,13 +166,16 @@ std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Sce
         if (!query.products[index(Product::Coverage)] || query.only_cascade || query.breaking_alone)
             continue;  // a cascade's tile has no history
         const bool is_view = query.is_view && !query.lattice;
+        // A picture knows its points; who looks round, as a preview's window does, doesn't.
+        const bool is_of_frame =
+            are_pictures && query.is_picture && query.points > 0 && scene.camera.keys.empty();
         const double points = static_cast<double>(query.points);
         const double spacing_m = query.lattice ? query.lattice->spacing_m : query.pixel_m.front();
         const FoamRung rung = foam_rung(foam, static_cast<float>(query.pixel_m.front()));
         for (int level = 0; level < FoamPlan::kLevels; ++level) {
             double& here = tiles[static_cast<std::size_t>(level)];
             if (is_view)
-                here += tiles_in_view(foam, level, scene.camera, are_pictures);
+                here += tiles_in_view(foam, level, scene.camera, is_of_frame, are_pictures);
             else if (level == rung.level || (level == rung.level + 1 && rung.t > 0.0f))
                 here += tiles_over(foam, level, std::sqrt(points) * spacing_m);
         }

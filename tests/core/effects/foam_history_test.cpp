@@ -600,6 +600,51 @@ TEST(LivingFoam, OfACameraHoldsNoMoreThanItsPlanSays) {
     }
 }
 
+// Of pictures by a camera at rest: what its frame shows, level, steep and from high up, wide and narrow.
+TEST(LivingFoam, OfAPictureHoldsWhatItsPlanSays) {
+    struct Shot {
+        double height_m, ahead_m, fov_deg;
+        glm::ivec2 resolution;
+    };
+    for (const Shot& shot : {Shot{4.0, 80.0, 50.0, {320, 180}}, Shot{4.0, 80.0, 50.0, {640, 80}},
+                             Shot{40.0, 60.0, 50.0, {320, 180}}, Shot{30.0, 3.0, 60.0, {200, 200}},
+                             Shot{400.0, 1e4, 20.0, {320, 180}}}) {
+        SCOPED_TRACE(testing::Message() << shot.height_m << " m, " << shot.fov_deg << "°");
+        Scene scene = scene_of(1.0);
+        scene.camera.position_m = {5.0, -3.0, shot.height_m};
+        scene.camera.look_at_m = {0.6 * shot.ahead_m, 0.8 * shot.ahead_m, 0.0};
+        scene.camera.fov_deg = shot.fov_deg;
+        scene.camera.resolution = shot.resolution;
+        const View view = view_at(scene.camera, 1);
+        std::vector<glm::vec2> rest_m, axis_m;
+        std::vector<float> pixel_m;
+        for (int y = 0; y < shot.resolution.y; ++y)
+            for (int x = 0; x < shot.resolution.x; ++x) {
+                const glm::dvec3 ray = view.direction(glm::dvec2(x, y) + 0.5);
+                if (!(ray.z < 0.0)) continue;
+                const double slant_m = -shot.height_m / ray.z, width_m = slant_m * view.pixel_tangent();
+                rest_m.emplace_back(slant_m * glm::dvec2(ray));
+                pixel_m.push_back(static_cast<float>(width_m));
+                axis_m.emplace_back(glm::normalize(glm::dvec2(ray)) * width_m * slant_m / shot.height_m);
+            }
+        const auto prepared = prepare(scene);
+        const auto sea = std::make_shared<const Sea<float>>(
+            make_plan(prepared, {view_query(*prepared, {.points = rest_m.size()})}, {.living_foam = true}));
+        FoamHistory<float> history(sea);
+        history.set(3.0);
+        history.prepare({.origin_m = glm::dvec2(scene.camera.position_m),
+                         .count = rest_m.size(),
+                         .rest_m = {rest_m.data()},
+                         .pixel_m = {pixel_m.data()},
+                         .pixel_axis_m = {axis_m.data()}},
+                        0);
+        const auto held = static_cast<double>(history.held_bytes()),
+                   said = static_cast<double>(sea->plan().foam_history_bytes());
+        EXPECT_LT(held, 1.1 * said);
+        EXPECT_GT(held, 0.7 * said);
+    }
+}
+
 // Where no wave breaks nothing is kept, and no earlier time is looked at.
 TEST(LivingFoam, OfASeaWithoutFoamCostsNothing) {
     Scene scene = scene_of(4.0);

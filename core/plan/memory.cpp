@@ -71,10 +71,11 @@ std::string memory_text(const MemoryNeed& need) {
     return text;
 }
 
-void require_memory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& run) {
+void require_memory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& run,
+                    const char* how) {
     if (need.bytes() <= limit.bytes) return;
     const MemoryPart most = need.parts().front();
-    throw NotEnoughMemory(run + " needs about " + bytes_text(need.bytes()) + " of memory, and " +
+    throw NotEnoughMemory(run + " needs " + how + " " + bytes_text(need.bytes()) + " of memory, and " +
                           limit.whose + " " + bytes_text(limit.bytes) + "; most of it, " +
                           bytes_text(most.bytes) + ", is for " + most.what + ": " + most.remedy);
 }

@@ -50,7 +50,8 @@ class NotEnoughMemory : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// Throws NotEnoughMemory. `run`: "baking this shot".
-void require_memory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& run);
+// Throws NotEnoughMemory. `run`: "this bake". `how`: "at least" where a part of the need isn't known yet.
+void require_memory(const MemoryNeed& need, const MemoryLimit& limit, const std::string& run,
+                    const char* how = "about");
 
 }  // namespace pelagic

@@ -97,14 +97,15 @@ ExpectedSpray expected_spray(const Plan& plan) {
                           .third = whole.third * std::pow(variance.shown / whole.variance, 1.5)},
                          -pressed, third);
 
-    const double share = normal_share(deviate);  // of voxels' columns
+    // Of the world's columns: water that is pressed together covers less of it.
+    const double share = std::clamp(1.0 - pressed, 0.0, 1.0) * normal_share(deviate);
     const double side = (kBlock - 1.0) * voxel_m * std::sqrt(0.5 * variance.gradient_per_m2 / variance.shown);
     const double edge = std::exp(-0.5 * deviate * deviate);
+    // Of excursions that begin beside a voxel and reach it. They come in groups, along crests: a fifth fewer were found alone.
+    constexpr double kAlone = 0.8;
     const double nearby =
-        side * edge / kPi -
-        side * side * deviate * edge / std::pow(kTwoPi, 1.5);  // begins beside a voxel, and reaches it
-    const double hit =
-        share + (1.0 - share) * -std::expm1(-std::max(nearby, 0.0) / std::max(1.0 - share, 1e-9));
+        std::max(kAlone * edge * (side / kPi - side * side * deviate / std::pow(kTwoPi, 1.5)), 0.0);
+    const double hit = share + (1.0 - share) * -std::expm1(-nearby / std::max(1.0 - share, 1e-9));
     const double columns = voxels_a_side(scene), blocks = std::ceil(columns / kBlock);
     const double high = spray_top_m() / voxel_m + 1.0;
     return {.blocks = blocks * blocks * hit * blocks_of_row(high),

@@ -170,7 +170,7 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
     const Plan of_points = plan_for(products(Product::Position), needs.finest_cell_m);
     add_sea(first, of_points, threads);
     first.add("the camera's grid of points", points_of(needs.size) * kPointBytes, smaller());
-    require_memory(first, limit, run);
+    require_memory(first, limit, run, "at least");
     planned.grid = projected_grid(view, options);
     const bool has_ladder = of_points.queries.front().query.cell_m.size() > 1;
     if (has_ladder) keep_to_rungs(planned.grid, needs);

@@ -8,6 +8,7 @@
 
 #include "core/base/constants.h"
 #include "core/spectrum/dispersion.h"
+#include "core/surface/rungs.h"
 
 namespace pelagic {
 
@@ -112,14 +113,14 @@ Sector sector_of(const Camera& camera, double height_m) {
     return sector;
 }
 
-// Those whose cells a camera's pixels need, whichever way it turns, or in its frame alone. A pixel is α s wide and α s²/h long at
+// Those whose cells footprints of so many of a camera's pixels need, whichever way it turns, or in its frame alone. A pixel is α s wide and α s²/h long at
 // the slant distance s from an eye at the height h: its area is that of the square of a cell at s = (cell/α)^⅔ h^⅓, and further
 // away coarser levels have it.
-double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, bool is_of_frame,
-                     bool are_pictures) {
+double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, double pixels, bool is_of_frame,
+                     bool is_run, bool are_pictures) {
     const double cell_m = foam.cell_of(level);
     const auto pixel_of = [&](double fov_deg) {
-        return 2.0 * std::tan(0.5 * fov_deg * kPi / 180.0) / camera.resolution.x;
+        return pixels * 2.0 * std::tan(0.5 * fov_deg * kPi / 180.0) / camera.resolution.x;
     };
     const auto reach_m = [&](double height_m, double fov_deg, double footprint_m) {
         const double slant_m = std::pow(footprint_m / pixel_of(fov_deg), 2.0 / 3.0) * std::cbrt(height_m);
@@ -139,22 +140,44 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, bool
         reach_m(std::clamp(farthest_height_m, lowest_m, highest_m), narrowest_deg, cell_m);
     if (!(farthest_m > 0.0)) return 0.0;
     const double tile_m = FoamPlan::kTileCells * cell_m;
-    if (is_of_frame) {
-        // Footprints of less than a quarter of a cell read finer levels.
-        const Sector sector = sector_of(camera, lowest_m);
-        const double finer_m = level > 0 ? reach_m(lowest_m, camera.fov_deg, 0.25 * cell_m) : 0.0;
-        const double from = std::max(sector.nearest_m, finer_m) / tile_m;
-        const double to = std::min(sector.farthest_m, farthest_m) / tile_m;
-        if (!(from < to)) return 0.0;
-        // A region meets so many tiles of a lattice whose place is chance: its area, and 2/π of its outline (Santaló 1976).
-        const double outline = 2.0 * (to - from) + 2.0 * sector.half_angle * (to + from);
-        return sector.half_angle * (to * to - from * from) + 2.0 / kPi * outline + 1.0;
-    }
     // A tile that touches a disc lies within a diagonal of it. A camera that moves looks from two places at the two times.
     const double radius = farthest_m / tile_m + std::sqrt(2.0);
-    if (are_pictures) return kPi * radius * radius;
-    if (!camera.keys.empty()) return 2.0 * kPi * radius * radius;
-    return kPi * radius * radius + 2.0 * radius * glm::length(drift_between(foam, level));
+    const double round_it = [&] {
+        if (are_pictures) return kPi * radius * radius;
+        if (!camera.keys.empty()) return 2.0 * kPi * radius * radius;
+        return kPi * radius * radius + 2.0 * radius * glm::length(drift_between(foam, level));
+    }();
+    if (!is_of_frame) return round_it;
+    // Footprints of less than a quarter of a cell read finer levels.
+    const Sector sector = sector_of(camera, lowest_m);
+    const double finer_m = level > 0 ? reach_m(lowest_m, camera.fov_deg, 0.25 * cell_m) : 0.0;
+    const double from = std::max(sector.nearest_m, finer_m) / tile_m;
+    const double to = std::min(sector.farthest_m, farthest_m) / tile_m;
+    if (!(from < to)) return 0.0;
+    // A region meets so many tiles of a lattice whose place is chance: its area, 2/π of its outline and one (Santaló 1976).
+    const double outline = 2.0 * (to - from) + 2.0 * sector.half_angle * (to + from);
+    const double in_frame = sector.half_angle * (to * to - from * from) + 2.0 / kPi * outline + 1.0;
+    if (!is_run) return in_frame;
+    // A run keeps what waves hide for a while, and makes the surroundings as well: with less room than this a picture takes a
+    // tenth longer.
+    constexpr double kRoom = 5.0;
+    return std::min(kRoom * (in_frame + outline), round_it);
+}
+
+// Those of a mesh from near to far, whose footprints double from square to square (core/surface/near_far.h): a level is read by
+// two squares, round the one within them.
+double tiles_near_to_far(const FoamPlan& foam, int level, const Surface& surface, double finest_m) {
+    const double tile_m = FoamPlan::kTileCells * foam.cell_of(level);
+    const double side =
+        surface.size_m / first_rung_m(surface.size_m / surface.resolution);  // of the first, in footprints
+    double tiles = 0.0;
+    for (double footprint_m = finest_m; footprint_m < foam.cell_of(level); footprint_m *= 2.0) {
+        const FoamRung rung = foam_rung(foam, static_cast<float>(footprint_m));
+        if (rung.level != level && rung.level + 1 != level) continue;
+        const double within = footprint_m > finest_m ? 0.25 * side * footprint_m / tile_m : 0.0;
+        tiles = tiles_over(foam, level, side * footprint_m) - within * within;
+    }
+    return tiles;
 }
 
 }  // namespace
@@ -162,20 +185,26 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, bool
 std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Scene& scene,
                                                  const std::vector<Query>& queries, bool are_pictures) {
     std::array<double, FoamPlan::kLevels> tiles{};
+    const bool is_run = scene.shot.first_frame != scene.shot.last_frame;
     for (const Query& query : queries) {
         if (!query.products[index(Product::Coverage)] || query.only_cascade || query.breaking_alone)
             continue;  // a cascade's tile has no history
         const bool is_view = query.is_view && !query.lattice;
-        // A picture knows its points; who looks round, as a preview's window does, doesn't.
+        // Pictures and meshes know their points; who looks round, as a preview's window does, doesn't.
         const bool is_of_frame =
-            are_pictures && query.is_picture && query.points > 0 && scene.camera.keys.empty();
+            (!are_pictures || query.is_picture) && query.points > 0 && scene.camera.keys.empty();
+        const bool is_near_to_far = !are_pictures && scene.surface.kind == SurfaceKind::NearFar;
         const double points = static_cast<double>(query.points);
         const double spacing_m = query.lattice ? query.lattice->spacing_m : query.pixel_m.front();
         const FoamRung rung = foam_rung(foam, static_cast<float>(query.pixel_m.front()));
         for (int level = 0; level < FoamPlan::kLevels; ++level) {
             double& here = tiles[static_cast<std::size_t>(level)];
-            if (is_view)
-                here += tiles_in_view(foam, level, scene.camera, is_of_frame, are_pictures);
+            if (is_view && is_near_to_far)
+                here += tiles_near_to_far(foam, level, scene.surface, query.pixel_m.front()) *
+                        (scene.camera.keys.empty() ? 1.0 : 2.0);
+            else if (is_view)
+                here += tiles_in_view(foam, level, scene.camera, are_pictures ? 1.0 : scene.surface.cell_px,
+                                      is_of_frame, is_run, are_pictures);
             else if (level == rung.level || (level == rung.level + 1 && rung.t > 0.0f))
                 here += tiles_over(foam, level, std::sqrt(points) * spacing_m);
         }

@@ -611,6 +611,7 @@ TEST(LivingFoam, OfAPictureHoldsWhatItsPlanSays) {
                              Shot{400.0, 1e4, 20.0, {320, 180}}}) {
         SCOPED_TRACE(testing::Message() << shot.height_m << " m, " << shot.fov_deg << "°");
         Scene scene = scene_of(1.0);
+        scene.shot.last_frame = scene.shot.first_frame;  // a run has room for more
         scene.camera.position_m = {5.0, -3.0, shot.height_m};
         scene.camera.look_at_m = {0.6 * shot.ahead_m, 0.8 * shot.ahead_m, 0.0};
         scene.camera.fov_deg = shot.fov_deg;

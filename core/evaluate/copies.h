@@ -110,8 +110,6 @@ class CopyReader {
         of_cells_ = (wanted & cell_fields()).any() ? grid.cell_weight : nullptr;
         of_pixels_ = (wanted & ~cell_fields()).any() ? grid.pixel_weight : nullptr;
         CopyArgs<T> copies;
-        copies.nodes_x = nodes_x_.data();
-        copies.nodes_y = nodes_y_.data();
         copies.ranges = ranges_.data();
         copies.wanted = wanted;
         grid.copies = &copies;
@@ -143,22 +141,22 @@ class CopyReader {
             const CopyOffset<double> offset =
                 origin.offset(CopyAxis<T>::cell_of(code_x) + (next_x ? side_x : 0),
                               CopyAxis<T>::cell_of(code_y) + (next_y ? side_y : 0));
-            std::fill(nodes_x_.begin() + first, nodes_x_.begin() + end,
-                      grid.origin_nodes_x + offset.x * grid.n);
-            std::fill(nodes_y_.begin() + first, nodes_y_.begin() + end,
-                      grid.origin_nodes_y + offset.y * grid.n);
+            const double nodes_x = grid.origin_nodes_x + offset.x * grid.n,
+                         nodes_y = grid.origin_nodes_y + offset.y * grid.n;
             if (!of_cells_ && !of_pixels_) {
-                take({first, end});
+                take({{first, end}, nodes_x, nodes_y});
                 continue;
             }
             for (std::size_t i = first; i < end; ++i)
-                if (counts(i)) take({i, i + 1});
+                if (counts(i)) take({{i, i + 1}, nodes_x, nodes_y});
         }
     }
 
-    void take(PointRange range) {
-        if (range_count_ > 0 && ranges_[range_count_ - 1].end == range.first)
-            ranges_[range_count_ - 1].end = range.end;
+    void take(const CopyRange& range) {
+        CopyRange* last = range_count_ > 0 ? &ranges_[range_count_ - 1] : nullptr;
+        if (last && last->points.end == range.points.first && last->nodes_x == range.nodes_x &&
+            last->nodes_y == range.nodes_y)
+            last->points.end = range.points.end;
         else
             ranges_[range_count_++] = range;
     }
@@ -169,8 +167,7 @@ class CopyReader {
     }
 
     const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
-    alignas(64) std::array<double, Chunk<T>::kPoints + Chunk<T>::kLongestVector> nodes_x_, nodes_y_;
-    std::array<PointRange, Chunk<T>::kPoints> ranges_;
+    std::array<CopyRange, Chunk<T>::kPoints> ranges_;
     std::size_t range_count_ = 0;
 };
 

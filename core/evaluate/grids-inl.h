@@ -73,8 +73,8 @@ HWY_INLINE auto Widen(DD dd, const double* from) {
 // Along one axis, in double: exact wherever in the world the origin is. A place that is no number, or so far
 // that nothing of it is left, becomes 0.
 template <class T>
-void Locate(const GridArgs<T>& args, double origin_nodes, const double* nodes_of, const T* rest_m,
-            PointRange range, Places<T>& places) {
+void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, PointRange range,
+            Places<T>& places) {
     const hn::ScalableTag<double> dd;
     using Wide = decltype(dd);
     const hn::Rebind<T, Wide> narrow;
@@ -82,8 +82,7 @@ void Locate(const GridArgs<T>& args, double origin_nodes, const double* nodes_of
     const auto n = hn::Set(dd, args.n), per_n = hn::Set(dd, 1.0 / args.n);
     const auto scale = hn::Set(dd, args.nodes_per_m), origin = hn::Set(dd, origin_nodes);
     for (std::size_t i = range.first; i < range.end; i += hn::Lanes(dd)) {
-        const auto nodes =
-            hn::MulAdd(Widen(dd, rest_m + i), scale, nodes_of ? hn::LoadU(dd, nodes_of + i) : origin);
+        const auto nodes = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
         auto inside = hn::NegMulAdd(hn::Floor(hn::Mul(nodes, per_n)), n, nodes);
         // −1e-20 is rounded up to n itself, and the quotient may be off by a unit in its last place.
         inside = hn::IfThenElse(hn::Lt(inside, hn::Zero(dd)), hn::Add(inside, n), inside);
@@ -97,9 +96,22 @@ void Locate(const GridArgs<T>& args, double origin_nodes, const double* nodes_of
     }
 }
 
+// Where the points from `begin` on have another y than that one: a row of a patch ends there.
 template <class T>
-void ReadNodes(const GridArgs<T>& args, PointRange range, const Places<T>& x, const Places<T>& y,
-               FieldValues<T>& values) {
+std::size_t EndOfLevel(const T* rest_y, std::size_t begin, std::size_t last) {
+    const hn::ScalableTag<T> d;
+    const auto y = hn::Set(d, rest_y[begin]);
+    std::size_t end = begin + 1;
+    while (end + hn::Lanes(d) <= last && hn::AllTrue(d, hn::Eq(hn::LoadU(d, rest_y + end), y)))
+        end += hn::Lanes(d);
+    while (end < last && rest_y[end] == rest_y[begin]) ++end;
+    return end;
+}
+
+// `is_level`: all of the range have the first one's y, and y has no other place.
+template <class T>
+void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const Places<T>& x,
+               const Places<T>& y, FieldValues<T>& values) {
     const hn::ScalableTag<T> d;
     const hn::RebindToSigned<decltype(d)> di;
     const auto stride = hn::Set(di, static_cast<hwy::MakeSigned<T>>(line_stride<T>(args.n)));
@@ -109,7 +121,8 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, const Places<T>& x, co
         // Lanes beyond the last point read the first node.
         const auto within = hn::FirstN(di, count);
         const auto first = hn::IfThenElseZero(within, hn::LoadU(di, x.node.data() + i));
-        const auto row = hn::IfThenElseZero(within, hn::LoadU(di, y.node.data() + i));
+        const auto row = is_level ? hn::Set(di, y.node[range.first])
+                                  : hn::IfThenElseZero(within, hn::LoadU(di, y.node.data() + i));
         // Points that cross the tile's seam are read one by one: that is rare, although the row's extra
         // columns would allow a run.
         const auto at = hn::Add(hn::Mul(row, stride), first);
@@ -132,12 +145,15 @@ class SplineReader {
         : args_(args), x_(x), y_(y), values_(values) {}
 
     // Points of one run have the same y and lie close together in x, as those of a patch do: the rows that they
-    // need are added up once, and what is left is a sum along x.
-    void Read(PointRange range) {
+    // need are added up once, and what is left is a sum along x. `is_level`: all of the range have the first one's y, and the
+    // places along y have no other.
+    void Read(PointRange range, bool is_level) {
+        range_ = range;
+        is_level_ = is_level;
         WeighColumns(range);
-        WeighRows(range);
+        WeighRows(is_level ? PointRange{range.first, range.first + 1} : range);
         for (std::size_t begin = range.first; begin < range.end;) {
-            const Run run = RunFrom(begin, range.end);
+            const Run run = RunFrom(begin);
             if (run.points.end == begin + 1)
                 ReadAlone(begin);
             else
@@ -160,9 +176,13 @@ class SplineReader {
 
     using Index = typename Places<T>::Index;
 
+    // The first and the last one that begins a point's columns.
+    struct Columns {
+        Index low, high;
+    };
     struct Run {
         PointRange points;
-        Index low, high;  // its first columns
+        Columns columns;
     };
     struct Rows {
         std::size_t at[P];  // where they begin
@@ -199,44 +219,62 @@ class SplineReader {
         }
     }
 
-    Run RunFrom(std::size_t begin, std::size_t last) const {
-        const hn::ScalableTag<T> d;
-        const hn::RebindToSigned<decltype(d)> di;
-        const std::size_t lanes = hn::Lanes(d);
-        Run run{{begin, begin + 1}, column_[begin], column_[begin]};
-        if (begin + 1 == last || y_.node[begin + 1] != y_.node[begin]) return run;
-        const auto node = hn::Set(di, y_.node[begin]);
-        const auto rest = hn::Set(d, y_.rest[begin]);
-        const auto grow = [&](Index low, Index high, std::size_t count) {
-            low = std::min(run.low, low);
-            high = std::max(run.high, high);
-            if (high - low > kColumnsPerPoint * static_cast<Index>(run.points.end - begin + count))
+    // Of at most a vector of points.
+    Columns ColumnsOf(PointRange points) const {
+        const hn::RebindToSigned<D> di;
+        const auto there = hn::FirstN(di, points.end - points.first);
+        const auto column = hn::IfThenElse(there, hn::LoadU(di, column_.data() + points.first),
+                                           hn::Set(di, column_[points.first]));
+        return {hn::GetLane(hn::MinOfLanes(di, column)), hn::GetLane(hn::MaxOfLanes(di, column))};
+    }
+
+    bool HaveOneY(PointRange points, std::size_t as) const {
+        if (is_level_) return true;
+        const D d;
+        const hn::RebindToSigned<D> di;
+        const std::size_t count = points.end - points.first;
+        const auto node = hn::LoadU(di, y_.node.data() + points.first);
+        const auto rest = hn::LoadU(d, y_.rest.data() + points.first);
+        return hn::AllFalse(di, hn::AndNot(hn::Eq(node, hn::Set(di, y_.node[as])), hn::FirstN(di, count))) &&
+               hn::AllFalse(d, hn::AndNot(hn::Eq(rest, hn::Set(d, y_.rest[as])), hn::FirstN(d, count)));
+    }
+
+    // Notes the columns of each vector of its points.
+    Run RunFrom(std::size_t begin) {
+        const std::size_t lanes = hn::Lanes(D());
+        Run run{{begin, begin}, {column_[begin], column_[begin]}};
+        const auto grow = [&](Columns by, std::size_t count) {
+            const Columns both{std::min(run.columns.low, by.low), std::max(run.columns.high, by.high)};
+            if (both.high - both.low >
+                kColumnsPerPoint * static_cast<Index>(run.points.end - begin + count))
                 return false;
-            run.low = low;
-            run.high = high;
+            run.columns = both;
             run.points.end += count;
             return true;
         };
         // A vector of points at a time, as long as all of them belong to it.
-        for (std::size_t& end = run.points.end; end + lanes <= last;) {
-            if (!hn::AllTrue(di, hn::Eq(hn::LoadU(di, y_.node.data() + end), node)) ||
-                !hn::AllTrue(d, hn::Eq(hn::LoadU(d, y_.rest.data() + end), rest)))
-                break;
-            const auto columns = hn::LoadU(di, column_.data() + end);
-            if (!grow(hn::GetLane(hn::MinOfLanes(di, columns)), hn::GetLane(hn::MaxOfLanes(di, columns)),
-                      lanes))
-                break;
+        std::size_t vector = 0;
+        for (; run.points.end < range_.end; ++vector) {
+            const PointRange next{run.points.end, std::min(run.points.end + lanes, range_.end)};
+            if (!HaveOneY(next, begin)) break;
+            columns_of_[vector] = ColumnsOf(next);
+            if (!grow(columns_of_[vector], next.end - next.first)) break;
         }
-        while (run.points.end < last) {
-            const std::size_t end = run.points.end;
-            if (y_.node[end] != y_.node[begin] || y_.rest[end] != y_.rest[begin]) break;
-            if (!grow(column_[end], column_[end], 1)) break;
+        if (run.points.end == range_.end) return run;
+        Columns& last = columns_of_[vector];
+        last = {column_[run.points.end], column_[run.points.end]};
+        while (run.points.end < range_.end) {
+            const std::size_t next = run.points.end;
+            const Index column = column_[next];
+            if (!HaveOneY({next, next + 1}, begin) || !grow({column, column}, 1)) break;
+            last = {std::min(last.low, column), std::max(last.high, column)};
         }
         return run;
     }
 
     Rows RowsOf(std::size_t point, Index column) const {
         Rows rows;
+        if (is_level_) point = range_.first;
         for (int p = 0; p < P; ++p) {
             rows.weight[p] = row_weights_[p][point];
             int at = static_cast<int>(y_.node[point]) - P / 2 + 1 + p;
@@ -262,9 +300,10 @@ class SplineReader {
     void ReadRun(const Run& run) {
         const D d;
         const std::size_t lanes = hn::Lanes(d);
-        const Index low = run.low - run.low % static_cast<Index>(lanes);
+        const Index low = run.columns.low - run.columns.low % static_cast<Index>(lanes);
         const Rows rows = RowsOf(run.points.first, low);
-        const std::size_t span = (static_cast<std::size_t>(run.high - low) + P + lanes - 1) / lanes * lanes;
+        const std::size_t span =
+            (static_cast<std::size_t>(run.columns.high - low) + P + lanes - 1) / lanes * lanes;
         T* columns = columns_;
         for (const T* samples : args_.samples) {
             if (!samples) continue;
@@ -272,29 +311,30 @@ class SplineReader {
                 hn::Store(SumRows(d, samples, rows, k), d, columns + k);
             columns += span;
         }
+        const Columns* of = columns_of_;
         for (std::size_t i = run.points.first; i < run.points.end; i += lanes)
-            ReadPoints({i, std::min(i + lanes, run.points.end)}, low, span);
+            ReadPoints({i, std::min(i + lanes, run.points.end)}, *of++, low, span);
     }
 
-    // Of at most a vector of points. Where their columns lie close together each tap is looked up in one vector of columns, or in two.
-    void ReadPoints(PointRange points, Index low, std::size_t span) {
+    // Of at most a vector of points. Their taps are looked up in one or two vectors of columns where these hold all of them,
+    // otherwise each in a vector that begins at the first point's.
+    void ReadPoints(PointRange points, Columns of, Index low, std::size_t span) {
         const D d;
         const hn::RebindToSigned<D> di;
-        const auto there = hn::FirstN(di, points.end - points.first);
-        auto column = hn::LoadU(di, column_.data() + points.first);
-        column = hn::IfThenElse(there, column, hn::Set(di, column_[points.first]));
-        const Index first = hn::GetLane(hn::MinOfLanes(di, column));
-        const Index vectors =
-            (hn::GetLane(hn::MaxOfLanes(di, column)) - first) / static_cast<Index>(hn::Lanes(d)) + 1;
-        if (vectors > 2) {
+        const auto lanes = static_cast<Index>(hn::Lanes(d));
+        const Index way = of.high - of.low;
+        if (way + P > 2 * lanes) {
             const std::size_t middle = Apart(points);
-            ReadPoints({points.first, middle}, low, span);
-            return ReadPoints({middle, points.end}, low, span);
+            const PointRange before{points.first, middle}, after{middle, points.end};
+            ReadPoints(before, ColumnsOf(before), low, span);
+            return ReadPoints(after, ColumnsOf(after), low, span);
         }
-        const auto from = hn::Sub(column, hn::Set(di, first));
-        const T* columns = columns_ + (first - low);
-        if (vectors == 1) return SumTaps(points, Lookup<1>(from), columns, span);
-        SumTaps(points, Lookup<2>(from), columns, span);
+        const auto there = hn::FirstN(di, points.end - points.first);
+        const auto from = hn::IfThenElseZero(
+            there, hn::Sub(hn::LoadU(di, column_.data() + points.first), hn::Set(di, of.low)));
+        const T* columns = columns_ + (of.low - low);
+        if (way + P <= lanes) return SumTaps<1>(points, from, columns, span);
+        SumTaps<2>(points, from, columns, span);
     }
 
     // Where points that lie far apart part: at the seam of the period, or in their middle.
@@ -305,34 +345,32 @@ class SplineReader {
         return next < points.end ? next : points.first + (points.end - points.first) / 2;
     }
 
-    // The points' columns in V vectors of them; `from`: where each one's lies.
+    // All taps lie in V vectors of columns; `from`: where each point's first one does.
     template <int V>
-    struct Lookup {
-        using DI = hn::RebindToSigned<D>;
-        HWY_INLINE explicit Lookup(hn::Vec<DI> from)
-            : lane(hn::IndicesFromVec(D(), hn::And(from, hn::Set(DI(), kLast)))),
-              is_beyond(hn::RebindMask(D(), hn::Gt(from, hn::Set(DI(), kLast)))) {}
-        HWY_INLINE N operator()(const T* columns) const {
-            const D d;
-            const auto near = hn::TableLookupLanes(hn::LoadU(d, columns), lane);
-            if constexpr (V == 1) return near;
-            return hn::IfThenElse(is_beyond, hn::TableLookupLanes(hn::LoadU(d, columns + hn::Lanes(d)), lane),
-                                  near);
-        }
-        static constexpr Index kLast = static_cast<Index>(hn::MaxLanes(D())) - 1;
-        decltype(hn::IndicesFromVec(D(), hn::Zero(DI()))) lane;
-        hn::Mask<D> is_beyond;
-    };
-
-    template <int V>
-    HWY_INLINE void SumTaps(PointRange points, const Lookup<V>& tap_at, const T* columns, std::size_t span) {
+    HWY_INLINE void SumTaps(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns,
+                            std::size_t span) {
         const D d;
+        const hn::RebindToSigned<D> di;
         const auto there = hn::FirstN(d, points.end - points.first);
+        const auto last = hn::Set(di, static_cast<Index>(hn::Lanes(d)) - 1);
+        decltype(hn::IndicesFromVec(d, from)) lane[P];
+        hn::Mask<D> is_beyond[P];
         N w[P], taps[P];
-        for (int p = 0; p < P; ++p) w[p] = hn::LoadU(d, column_weights_[p].data() + points.first);
+        for (int p = 0; p < P; ++p) {
+            const auto tap = hn::Add(from, hn::Set(di, p));
+            lane[p] = hn::IndicesFromVec(d, hn::And(tap, last));
+            is_beyond[p] = hn::RebindMask(d, hn::Gt(tap, last));
+            w[p] = hn::LoadU(d, column_weights_[p].data() + points.first);
+        }
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args_.samples[f]) continue;
-            for (int p = 0; p < P; ++p) taps[p] = tap_at(columns + p);
+            const auto near = hn::LoadU(d, columns);
+            for (int p = 0; p < P; ++p) taps[p] = hn::TableLookupLanes(near, lane[p]);
+            if constexpr (V == 2) {
+                const auto far = hn::LoadU(d, columns + hn::Lanes(d));
+                for (int p = 0; p < P; ++p)
+                    taps[p] = hn::IfThenElse(is_beyond[p], hn::TableLookupLanes(far, lane[p]), taps[p].v);
+            }
             columns += span;
             // As ReadAlone() adds them, so that a point's value is the same in any company.
             N sum[P];
@@ -364,7 +402,10 @@ class SplineReader {
     const GridArgs<T>& args_;
     const Places<T>&x_, &y_;
     FieldValues<T>& values_;
+    PointRange range_{};
+    bool is_level_ = false;
     std::array<Index, kRoom<T>> column_;
+    Columns columns_of_[Chunk<T>::kPoints];  // by vector of a run's points
     std::array<std::array<T, kRoom<T>>, P> column_weights_, row_weights_;
     alignas(64) T columns_[kFieldCount * kColumns];  // of the wanted fields, one after another
 };
@@ -399,7 +440,7 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const FieldVa
     };
     const auto wanted = [&](Field f) { return copies.wanted[index(f)] && args.samples[index(f)]; };
     for (std::size_t r = 0, next = 0; r < copies.range_count; ++r) {
-        const PointRange range = copies.ranges[r];
+        const PointRange range = copies.ranges[r].points;
         for (std::size_t i = std::max(next, range.first / lanes * lanes); i < range.end; i += lanes) {
             next = i + lanes;
             const auto of = [&](const T* values_of) HWY_ATTR { return N(hn::LoadU(d, values_of + i)); };
@@ -423,36 +464,42 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const FieldVa
 
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
-    const PointRange all{0, chunk.count};
+    const CopyRange all{{0, chunk.count}, args.origin_nodes_x, args.origin_nodes_y};
     const CopyArgs<T>* copies = args.copies;
-    const PointRange* ranges = copies ? copies->ranges : &all;
+    const CopyRange* ranges = copies ? copies->ranges : &all;
     const std::size_t range_count = copies ? copies->range_count : 1;
-    Places<T> x, y;
-    // In order: beyond a range's last point a vector writes into the next one's places.
-    for (std::size_t r = 0; r < range_count; ++r) {
-        Locate(args, args.origin_nodes_x, copies ? copies->nodes_x : nullptr, chunk.rest_x.data(), ranges[r],
-               x);
-        Locate(args, args.origin_nodes_y, copies ? copies->nodes_y : nullptr, chunk.rest_y.data(), ranges[r],
-               y);
-    }
     FieldValues<T> values;
     // What vectors meet between the ranges, and beyond the last point, has to be a number.
-    const bool is_whole = range_count == 1 && ranges[0].first == 0 && ranges[0].end == chunk.count;
+    const PointRange first = ranges[0].points;
+    const bool is_whole = range_count == 1 && first.first == 0 && first.end == chunk.count;
     for (std::size_t f = 0; f < kFieldCount; ++f)
         if (args.samples[f])
             std::fill(values[f].begin() + (is_whole ? chunk.count : 0), values[f].begin() + chunk.padded(),
                       T(0));
+    Places<T> x, y;
     const auto read = [&](auto&& reader) {
-        for (std::size_t r = 0; r < range_count; ++r) reader(ranges[r]);
+        for (std::size_t r = 0; r < range_count; ++r) {
+            const CopyRange& range = ranges[r];
+            for (PointRange part = range.points; part.first < part.end; part = {part.end, range.points.end}) {
+                const std::size_t end = EndOfLevel(chunk.rest_y.data(), part.first, part.end);
+                // Where y isn't the same for a while it soon isn't again.
+                const bool is_level = end == part.end || end - part.first >= hn::Lanes(hn::ScalableTag<T>());
+                if (is_level) part.end = end;
+                Locate(args, range.nodes_x, chunk.rest_x.data(), part, x);
+                Locate(args, range.nodes_y, chunk.rest_y.data(),
+                       is_level ? PointRange{part.first, part.first + 1} : part, y);
+                reader(part, is_level);
+            }
+        }
     };
     if (args.sampling == Sampling::Nodes) {
-        read([&](PointRange range) { ReadNodes(args, range, x, y, values); });
+        read([&](PointRange part, bool is_level) { ReadNodes(args, part, is_level, x, y, values); });
     } else if (args.taps == 6) {
         SplineReader<6, T> reader(args, x, y, values);
-        read([&](PointRange range) { reader.Read(range); });
+        read([&](PointRange part, bool is_level) { reader.Read(part, is_level); });
     } else {
         SplineReader<4, T> reader(args, x, y, values);
-        read([&](PointRange range) { reader.Read(range); });
+        read([&](PointRange part, bool is_level) { reader.Read(part, is_level); });
     }
     if (copies)
         AddCopies(args, *copies, values, chunk);

@@ -19,6 +19,12 @@ struct PointRange {
     std::size_t first, end;  // `end` isn't one of them
 };
 
+// Points that show one copy, and where the chunk's origin lies in it [nodes].
+struct CopyRange {
+    PointRange points;
+    double nodes_x, nodes_y;
+};
+
 // One copy of a grid's tile for each of a chunk's points, which sees it with a weight (core/plan/copies.h). All arrays are by
 // point, and those of T as long as a chunk's padded().
 template <class T>
@@ -30,9 +36,7 @@ struct CopyArgs {
         T sign;
     };
     Axis x, y;
-    // Where the chunk's origin lies in the copy [nodes]; with room for a vector that begins at the last point.
-    const double *nodes_x, *nodes_y;
-    const PointRange* ranges;  // in order: the points that have this copy
+    const CopyRange* ranges;  // in order
     std::size_t range_count;
     FieldSet wanted;  // fields that are added; samples hold what their gradients need as well
 };

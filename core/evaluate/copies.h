@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <span>
+#include <utility>
 
 #include "core/evaluate/chunk.h"
 #include "core/evaluate/kernels.h"
@@ -113,15 +114,16 @@ class CopyReader {
         copies.ranges = ranges_.data();
         copies.wanted = wanted;
         grid.copies = &copies;
-        for (const bool next_y : {false, true})
-            for (const bool next_x : {false, true}) {
-                find(grid, origin, places, next_x, next_y);
-                if (range_count_ == 0) continue;
-                copies.range_count = range_count_;
-                copies.x = axis(places.x(), next_x);
-                copies.y = axis(places.y(), next_y);
-                kernels.add_grid(grid, to);
-            }
+        for (const bool next_y : {false, true}) {
+            find(grid, origin, places, next_y);
+            if (range_count_ == 0) continue;
+            copies.range_count = range_count_;
+            copies.y = axis(places.y(), next_y);
+            for (const bool next_x : {false, true})
+                copies.sides[next_x] = {axis(places.x(), next_x), points_[next_x].data(),
+                                        point_count_[next_x]};
+            kernels.add_grid(grid, to);
+        }
     }
 
   private:
@@ -130,35 +132,53 @@ class CopyReader {
                     : typename CopyArgs<T>::Axis{of.own.data(), of.next.data(), of.rate.data(), T(-1)};
     }
 
-    // The points that see the copy in their own cell or in the next one, along each axis, and where it lies.
-    void find(const GridArgs<T>& grid, const CopyOrigin& origin, const CopyPlaces<T>& places, bool next_x,
-              bool next_y) {
+    // The points that see copies in their own cell or in the next one along y, and where these lie.
+    void find(const GridArgs<T>& grid, const CopyOrigin& origin, const CopyPlaces<T>& places, bool next_y) {
         range_count_ = 0;
+        point_count_ = {};
         for (const auto [first, end] : places.stretches()) {
             const auto code_x = places.x().code[first], code_y = places.y().code[first];
             const int side_x = CopyAxis<T>::side_of(code_x), side_y = CopyAxis<T>::side_of(code_y);
-            if ((next_x && side_x == 0) || (next_y && side_y == 0)) continue;
-            const CopyOffset<double> offset =
-                origin.offset(CopyAxis<T>::cell_of(code_x) + (next_x ? side_x : 0),
-                              CopyAxis<T>::cell_of(code_y) + (next_y ? side_y : 0));
-            const double nodes_x = grid.origin_nodes_x + offset.x * grid.n,
-                         nodes_y = grid.origin_nodes_y + offset.y * grid.n;
-            if (!of_cells_ && !of_pixels_) {
-                take({{first, end}, nodes_x, nodes_y});
-                continue;
+            if (next_y && side_y == 0) continue;
+            const std::int64_t y = CopyAxis<T>::cell_of(code_y) + (next_y ? side_y : 0);
+            for (const bool next_x : {false, true}) {
+                if (next_x && side_x == 0) continue;
+                const std::int64_t x = CopyAxis<T>::cell_of(code_x) + (next_x ? side_x : 0);
+                if (!of_cells_ && !of_pixels_) {
+                    take({first, end}, next_x, x, y, grid, origin);
+                    continue;
+                }
+                for (std::size_t i = first; i < end; ++i)
+                    if (counts(i)) take({i, i + 1}, next_x, x, y, grid, origin);
             }
-            for (std::size_t i = first; i < end; ++i)
-                if (counts(i)) take({{i, i + 1}, nodes_x, nodes_y});
         }
     }
 
-    void take(const CopyRange& range) {
-        CopyRange* last = range_count_ > 0 ? &ranges_[range_count_ - 1] : nullptr;
-        if (last && last->points.end == range.points.first && last->nodes_x == range.nodes_x &&
-            last->nodes_y == range.nodes_y)
-            last->points.end = range.points.end;
+    // A copy's points beside its cell are read together with those in it, as one row.
+    void take(PointRange points, bool next_x, std::int64_t x, std::int64_t y, const GridArgs<T>& grid,
+              const CopyOrigin& origin) {
+        PointRange* seen = points_[next_x].data() + point_count_[next_x];
+        if (point_count_[next_x] > 0 && seen[-1].end == points.first)
+            seen[-1].end = points.end;
         else
-            ranges_[range_count_++] = range;
+            *seen = points, ++point_count_[next_x];
+        // Two copies are under way at a time.
+        for (std::size_t r = range_count_; r > 0 && r + 2 > range_count_; --r) {
+            CopyRange& range = ranges_[r - 1];
+            const bool is_own_over = range.own.end > range.own.first && range.own.end < range.points.end;
+            if (cells_[r - 1] != std::pair(x, y) || range.points.end != points.first ||
+                (!next_x && is_own_over))
+                continue;
+            range.points.end = points.end;
+            if (!next_x)
+                range.own = {range.own.end > range.own.first ? range.own.first : points.first, points.end};
+            return;
+        }
+        const CopyOffset<double> offset = origin.offset(x, y);
+        cells_[range_count_] = {x, y};
+        ranges_[range_count_++] = {points, next_x ? PointRange{points.first, points.first} : points,
+                                   grid.origin_nodes_x + offset.x * grid.n,
+                                   grid.origin_nodes_y + offset.y * grid.n};
     }
 
     // Whether a point has a share in the grid: where it has a weight, that of what is read.
@@ -167,8 +187,12 @@ class CopyReader {
     }
 
     const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
-    std::array<CopyRange, Chunk<T>::kPoints> ranges_;
+    // A point lies in one or two ranges.
+    std::array<CopyRange, 2 * Chunk<T>::kPoints> ranges_;
+    std::array<std::pair<std::int64_t, std::int64_t>, 2 * Chunk<T>::kPoints> cells_;  // of their copies
     std::size_t range_count_ = 0;
+    std::array<std::array<PointRange, Chunk<T>::kPoints>, 2> points_;  // that show copies: own, next
+    std::array<std::size_t, 2> point_count_{};
 };
 
 // Adds the wanted fields of a grid at the chunk's points. `args`: the grid with those fields' samples alone, and where the origin

@@ -44,6 +44,50 @@ struct Places {
 template <class T>
 using FieldValues = std::array<std::array<T, kRoom<T>>, kFieldCount>;
 
+// Values go to `own` at the points `in_own`, to `next` at others (CopyRange).
+template <class T>
+struct Targets {
+    FieldValues<T>&own, &next;
+    PointRange in_own{};
+
+    FieldValues<T>& of(std::size_t point) const {
+        return point >= in_own.first && point < in_own.end ? own : next;
+    }
+};
+
+// The same of at most a vector of points.
+template <class T>
+class VectorTarget {
+  public:
+    using D = hn::ScalableTag<T>;
+    HWY_INLINE VectorTarget(const Targets<T>& targets, PointRange points)
+        : targets_(targets), first_(points.first) {
+        const D d;
+        const auto lanes_to = [&](std::size_t end) HWY_ATTR {
+            return hn::FirstN(d, end > first_ ? std::min(end - first_, hn::Lanes(d)) : 0);
+        };
+        const auto there = lanes_to(points.end);
+        in_own_ = hn::And(there, hn::AndNot(lanes_to(targets.in_own.first), lanes_to(targets.in_own.end)));
+        in_next_ = hn::AndNot(in_own_, there);
+        is_all_own_ = hn::AllTrue(d, in_own_);
+        has_own_ = !hn::AllFalse(d, in_own_);
+        has_next_ = !hn::AllFalse(d, in_next_);
+    }
+    HWY_INLINE void put(std::size_t field, hn::Vec<D> value) const {
+        const D d;
+        T* own = targets_.own[field].data() + first_;
+        if (is_all_own_) return hn::StoreU(value, d, own);
+        if (has_own_) hn::BlendedStore(value, in_own_, d, own);
+        if (has_next_) hn::BlendedStore(value, in_next_, d, targets_.next[field].data() + first_);
+    }
+
+  private:
+    const Targets<T>& targets_;
+    std::size_t first_;
+    hn::Mask<D> in_own_, in_next_;
+    bool is_all_own_, has_own_, has_next_;
+};
+
 // A few doubles as numbers of T's own width.
 template <class DD, class V>
 HWY_INLINE auto Index(DD, V v, float /*width*/) {
@@ -111,7 +155,7 @@ std::size_t EndOfLevel(const T* rest_y, std::size_t begin, std::size_t last) {
 // `is_level`: all of the range have the first one's y, and y has no other place.
 template <class T>
 void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const Places<T>& x,
-               const Places<T>& y, FieldValues<T>& values) {
+               const Places<T>& y, const Targets<T>& targets) {
     const hn::ScalableTag<T> d;
     const hn::RebindToSigned<decltype(d)> di;
     const auto stride = hn::Set(di, static_cast<hwy::MakeSigned<T>>(line_stride<T>(args.n)));
@@ -128,11 +172,12 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const P
         const auto at = hn::Add(hn::Mul(row, stride), first);
         const auto begin = hn::GetLane(at);
         const bool run = hn::AllTrue(di, hn::Eq(at, hn::Add(hn::Set(di, begin), hn::Iota(di, 0))));
+        const VectorTarget<T> target(targets, {i, i + count});
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args.samples[f]) continue;
             const auto value =
                 run ? hn::LoadU(d, args.samples[f] + begin) : hn::GatherIndex(d, args.samples[f], at);
-            hn::StoreU(value, d, values[f].data() + i);
+            target.put(f, value);
         }
     }
 }
@@ -141,8 +186,8 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const P
 template <int P, class T>
 class SplineReader {
   public:
-    SplineReader(const GridArgs<T>& args, const Places<T>& x, const Places<T>& y, FieldValues<T>& values)
-        : args_(args), x_(x), y_(y), values_(values) {}
+    SplineReader(const GridArgs<T>& args, const Places<T>& x, const Places<T>& y, const Targets<T>& targets)
+        : args_(args), x_(x), y_(y), targets_(targets) {}
 
     // Points of one run have the same y and lie close together in x, as those of a patch do: the rows that they
     // need are added up once, and what is left is a sum along x. `is_level`: all of the range have the first one's y, and the
@@ -287,13 +332,25 @@ class SplineReader {
         return rows;
     }
 
-    // The rows' sum at columns k and on.
-    template <class D>
-    static HWY_INLINE hn::Vec<D> SumRows(D d, const T* samples, const Rows& rows, std::size_t k) {
-        auto sum = hn::Mul(hn::Set(d, rows.weight[0]), hn::LoadU(d, samples + rows.at[0] + k));
-        for (int p = 1; p < P; ++p)
-            sum = hn::MulAdd(hn::Set(d, rows.weight[p]), hn::LoadU(d, samples + rows.at[p] + k), sum);
-        return sum;
+    // The rows' sums in V vectors from column k on.
+    template <int V, class D>
+    static HWY_INLINE void SumRows(D d, const T* samples, const Rows& rows, std::size_t k,
+                                   hn::Vec<D> (&sums)[V]) {
+        for (int p = 0; p < P; ++p) {
+            const auto weight = hn::Set(d, rows.weight[p]);
+            const T* row = samples + rows.at[p] + k;
+            for (int v = 0; v < V; ++v) {
+                const auto columns = hn::LoadU(d, row + static_cast<std::size_t>(v) * hn::Lanes(d));
+                sums[v] = p == 0 ? hn::Mul(weight, columns) : hn::MulAdd(weight, columns, sums[v]);
+            }
+        }
+    }
+    template <int V>
+    static HWY_INLINE void StoreRows(const T* samples, const Rows& rows, std::size_t k, T* columns) {
+        const D d;
+        hn::Vec<D> sums[V];
+        SumRows(d, samples, rows, k, sums);
+        for (int v = 0; v < V; ++v) hn::Store(sums[v], d, columns + k + static_cast<std::size_t>(v) * hn::Lanes(d));
     }
 
     // A run's rows added up, for all fields, from whole vectors on; then a vector of points at a time.
@@ -307,8 +364,10 @@ class SplineReader {
         T* columns = columns_;
         for (const T* samples : args_.samples) {
             if (!samples) continue;
-            for (std::size_t k = 0; k < span; k += lanes)
-                hn::Store(SumRows(d, samples, rows, k), d, columns + k);
+            std::size_t k = 0;  // several vectors at a time, as one sum is a chain of operations
+            for (; k + 4 * lanes <= span; k += 4 * lanes) StoreRows<4>(samples, rows, k, columns);
+            if (k + 2 * lanes <= span) StoreRows<2>(samples, rows, k, columns), k += 2 * lanes;
+            if (k < span) StoreRows<1>(samples, rows, k, columns);
             columns += span;
         }
         const Columns* of = columns_of_;
@@ -351,7 +410,7 @@ class SplineReader {
                             std::size_t span) {
         const D d;
         const hn::RebindToSigned<D> di;
-        const auto there = hn::FirstN(d, points.end - points.first);
+        const VectorTarget<T> target(targets_, points);
         const auto last = hn::Set(di, static_cast<Index>(hn::Lanes(d)) - 1);
         decltype(hn::IndicesFromVec(d, from)) lane[P];
         hn::Mask<D> is_beyond[P];
@@ -379,7 +438,7 @@ class SplineReader {
                     p < kGroup ? w[p] * taps[p] : N(hn::MulAdd(taps[p].v, w[p].v, sum[p % kGroup].v));
             for (int half = kGroup / 2; half > 0; half /= 2)
                 for (int p = 0; p < half && p + half < P; ++p) sum[p] += sum[p + half];
-            hn::StoreU(hn::IfThenElseZero(there, sum[0].v), d, values_[f].data() + points.first);
+            target.put(f, sum[0].v);
         }
     }
 
@@ -389,19 +448,23 @@ class SplineReader {
         const Rows rows = RowsOf(point, column_[point]);
         alignas(64) T weights[kTaps] = {};
         for (int p = 0; p < P; ++p) weights[p] = column_weights_[p][point];
+        FieldValues<T>& values = targets_.of(point);
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             const T* samples = args_.samples[f];
             if (!samples) continue;
             auto sum = hn::Zero(taps);
-            for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps))
-                sum = hn::MulAdd(SumRows(taps, samples, rows, k), hn::Load(taps, weights + k), sum);
-            values_[f][point] = hn::GetLane(hn::SumOfLanes(taps, sum));
+            for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps)) {
+                hn::Vec<Taps> of_rows[1];
+                SumRows(taps, samples, rows, k, of_rows);
+                sum = hn::MulAdd(of_rows[0], hn::Load(taps, weights + k), sum);
+            }
+            values[f][point] = hn::GetLane(hn::SumOfLanes(taps, sum));
         }
     }
 
     const GridArgs<T>& args_;
     const Places<T>&x_, &y_;
-    FieldValues<T>& values_;
+    const Targets<T>& targets_;
     PointRange range_{};
     bool is_level_ = false;
     std::array<Index, kRoom<T>> column_;
@@ -426,10 +489,10 @@ void AddValues(const GridArgs<T>& args, const FieldValues<T>& values, Chunk<T>& 
     }
 }
 
-// The same of copies, with their weights w and these weights' gradient (core/plan/copies.h).
+// The same of copies on one side along x, with their weights w and these weights' gradient (core/plan/copies.h).
 template <class T>
-void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const FieldValues<T>& values,
-               Chunk<T>& chunk) {
+void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typename CopyArgs<T>::Side& side,
+               const FieldValues<T>& values, Chunk<T>& chunk) {
     const hn::ScalableTag<T> d;
     using N = Pack<decltype(d)>;
     const std::size_t lanes = hn::Lanes(d);
@@ -439,13 +502,13 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const FieldVa
         hn::Store(hn::Add(hn::Load(d, sums + i), what.v), d, sums + i);
     };
     const auto wanted = [&](Field f) { return copies.wanted[index(f)] && args.samples[index(f)]; };
-    for (std::size_t r = 0, next = 0; r < copies.range_count; ++r) {
-        const PointRange range = copies.ranges[r].points;
+    for (std::size_t r = 0, next = 0; r < side.count; ++r) {
+        const PointRange range = side.points[r];
         for (std::size_t i = std::max(next, range.first / lanes * lanes); i < range.end; i += lanes) {
             next = i + lanes;
             const auto of = [&](const T* values_of) HWY_ATTR { return N(hn::LoadU(d, values_of + i)); };
-            const N x = of(copies.x.weight), y = of(copies.y.weight), w = x * y;
-            const N wx = N(copies.x.sign) * of(copies.x.other) * of(copies.x.rate) * y;
+            const N x = of(side.x.weight), y = of(copies.y.weight), w = x * y;
+            const N wx = N(side.x.sign) * of(side.x.other) * of(side.x.rate) * y;
             const N wy = N(copies.y.sign) * of(copies.y.other) * of(copies.y.rate) * x;
             for (std::size_t f = 0; f < kFieldCount; ++f) {
                 if (!wanted(static_cast<Field>(f))) continue;
@@ -464,22 +527,31 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const FieldVa
 
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
-    const CopyRange all{{0, chunk.count}, args.origin_nodes_x, args.origin_nodes_y};
+    const PointRange whole{0, chunk.count};
+    const CopyRange all{whole, whole, args.origin_nodes_x, args.origin_nodes_y};
     const CopyArgs<T>* copies = args.copies;
     const CopyRange* ranges = copies ? copies->ranges : &all;
     const std::size_t range_count = copies ? copies->range_count : 1;
-    FieldValues<T> values;
+    FieldValues<T> own, next;
     // What vectors meet between the ranges, and beyond the last point, has to be a number.
-    const PointRange first = ranges[0].points;
-    const bool is_whole = range_count == 1 && first.first == 0 && first.end == chunk.count;
-    for (std::size_t f = 0; f < kFieldCount; ++f)
-        if (args.samples[f])
-            std::fill(values[f].begin() + (is_whole ? chunk.count : 0), values[f].begin() + chunk.padded(),
-                      T(0));
+    const auto clear = [&](FieldValues<T>& values, PointRange but) {
+        const bool is_whole = but.first == 0 && but.end == chunk.count;
+        for (std::size_t f = 0; f < kFieldCount; ++f)
+            if (args.samples[f])
+                std::fill(values[f].begin() + (is_whole ? chunk.count : 0),
+                          values[f].begin() + chunk.padded(), T(0));
+    };
+    const auto shown = [&](const typename CopyArgs<T>::Side& side) {
+        return side.count == 1 ? side.points[0] : PointRange{0, 0};
+    };
+    clear(own, copies ? shown(copies->sides[0]) : whole);
+    if (copies && copies->sides[1].count > 0) clear(next, shown(copies->sides[1]));
+    Targets<T> targets{own, next, whole};
     Places<T> x, y;
     const auto read = [&](auto&& reader) {
         for (std::size_t r = 0; r < range_count; ++r) {
             const CopyRange& range = ranges[r];
+            targets.in_own = range.own;
             for (PointRange part = range.points; part.first < part.end; part = {part.end, range.points.end}) {
                 const std::size_t end = EndOfLevel(chunk.rest_y.data(), part.first, part.end);
                 // Where y isn't the same for a while it soon isn't again.
@@ -493,18 +565,17 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
         }
     };
     if (args.sampling == Sampling::Nodes) {
-        read([&](PointRange part, bool is_level) { ReadNodes(args, part, is_level, x, y, values); });
+        read([&](PointRange part, bool is_level) { ReadNodes(args, part, is_level, x, y, targets); });
     } else if (args.taps == 6) {
-        SplineReader<6, T> reader(args, x, y, values);
+        SplineReader<6, T> reader(args, x, y, targets);
         read([&](PointRange part, bool is_level) { reader.Read(part, is_level); });
     } else {
-        SplineReader<4, T> reader(args, x, y, values);
+        SplineReader<4, T> reader(args, x, y, targets);
         read([&](PointRange part, bool is_level) { reader.Read(part, is_level); });
     }
-    if (copies)
-        AddCopies(args, *copies, values, chunk);
-    else
-        AddValues(args, values, chunk);
+    if (!copies) return AddValues(args, own, chunk);
+    AddCopies(args, *copies, copies->sides[0], own, chunk);
+    if (copies->sides[1].count > 0) AddCopies(args, *copies, copies->sides[1], next, chunk);
 }
 
 }  // namespace grids_detail

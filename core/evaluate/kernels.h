@@ -19,14 +19,15 @@ struct PointRange {
     std::size_t first, end;  // `end` isn't one of them
 };
 
-// Points that show one copy, and where the chunk's origin lies in it [nodes].
+// Points one after another that show one copy of a grid's tile, and where the chunk's origin lies in it [nodes]. Those of `own` lie
+// in the copy's own cell, those before and behind in cells beside it along x.
 struct CopyRange {
-    PointRange points;
+    PointRange points, own;
     double nodes_x, nodes_y;
 };
 
-// One copy of a grid's tile for each of a chunk's points, which sees it with a weight (core/plan/copies.h). All arrays are by
-// point, and those of T as long as a chunk's padded().
+// One copy of a grid's tile along y, and along x both that a chunk's points see, with their weights (core/plan/copies.h). All
+// arrays of T are by point, as long as a chunk's padded().
 template <class T>
 struct CopyArgs {
     // Along an axis: the copy's weight, and that of the other one beside it; how they change with the place [1/m]; and the
@@ -35,8 +36,15 @@ struct CopyArgs {
         const T *weight, *other, *rate;
         T sign;
     };
-    Axis x, y;
-    const CopyRange* ranges;  // in order
+    // The copy in a point's own cell along x, or the one beside it; the points that show it, in order.
+    struct Side {
+        Axis x;
+        const PointRange* points;
+        std::size_t count;
+    };
+    std::array<Side, 2> sides;  // own, next
+    Axis y;
+    const CopyRange* ranges;
     std::size_t range_count;
     FieldSet wanted;  // fields that are added; samples hold what their gradients need as well
 };

@@ -73,11 +73,10 @@ class VectorTarget {
         has_own_ = !hn::AllFalse(d, in_own_);
         has_next_ = !hn::AllFalse(d, in_next_);
     }
+    bool is_all_own() const { return is_all_own_; }
     HWY_INLINE void put(std::size_t field, hn::Vec<D> value) const {
         const D d;
-        T* own = targets_.own[field].data() + first_;
-        if (is_all_own_) return hn::StoreU(value, d, own);
-        if (has_own_) hn::BlendedStore(value, in_own_, d, own);
+        if (has_own_) hn::BlendedStore(value, in_own_, d, targets_.own[field].data() + first_);
         if (has_next_) hn::BlendedStore(value, in_next_, d, targets_.next[field].data() + first_);
     }
 
@@ -408,9 +407,20 @@ class SplineReader {
     template <int V>
     HWY_INLINE void SumTaps(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns,
                             std::size_t span) {
+        const VectorTarget<T> target(targets_, points);
+        if (!target.is_all_own())
+            return SumTapsTo<V>(points, from, columns, span,
+                                [&](std::size_t f, auto sum) HWY_ATTR { target.put(f, sum); });
+        T* own = targets_.own[0].data() + points.first;
+        SumTapsTo<V>(points, from, columns, span, [own](std::size_t f, auto sum) HWY_ATTR {
+            hn::StoreU(sum, D(), own + f * kRoom<T>);
+        });
+    }
+    template <int V, class Put>
+    HWY_INLINE void SumTapsTo(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns,
+                              std::size_t span, const Put& put) {
         const D d;
         const hn::RebindToSigned<D> di;
-        const VectorTarget<T> target(targets_, points);
         const auto last = hn::Set(di, static_cast<Index>(hn::Lanes(d)) - 1);
         decltype(hn::IndicesFromVec(d, from)) lane[P];
         hn::Mask<D> is_beyond[P];
@@ -438,7 +448,7 @@ class SplineReader {
                     p < kGroup ? w[p] * taps[p] : N(hn::MulAdd(taps[p].v, w[p].v, sum[p % kGroup].v));
             for (int half = kGroup / 2; half > 0; half /= 2)
                 for (int p = 0; p < half && p + half < P; ++p) sum[p] += sum[p + half];
-            target.put(f, sum[0].v);
+            put(f, sum[0].v);
         }
     }
 

@@ -53,27 +53,29 @@ struct Targets {
     FieldValues<T>& of(std::size_t point) const {
         return point >= in_own.first && point < in_own.end ? own : next;
     }
+    // Whether a vector from this point on may be written whole: what it writes too much is written again in its turn.
+    bool takes_whole(std::size_t first, std::size_t lanes) const {
+        return first >= in_own.first && first + lanes <= in_own.end;
+    }
 };
 
-// The same of at most a vector of points.
+// Where the values of at most a vector of points go.
 template <class T>
-class VectorTarget {
+class PartedTarget {
   public:
     using D = hn::ScalableTag<T>;
-    HWY_INLINE VectorTarget(const Targets<T>& targets, PointRange points)
+    HWY_INLINE PartedTarget(const Targets<T>& targets, PointRange points)
         : targets_(targets), first_(points.first) {
         const D d;
-        const auto lanes_to = [&](std::size_t end) HWY_ATTR {
+        const auto until = [&](std::size_t end) HWY_ATTR {
             return hn::FirstN(d, end > first_ ? std::min(end - first_, hn::Lanes(d)) : 0);
         };
-        const auto there = lanes_to(points.end);
-        in_own_ = hn::And(there, hn::AndNot(lanes_to(targets.in_own.first), lanes_to(targets.in_own.end)));
+        const auto there = until(points.end);
+        in_own_ = hn::And(there, hn::AndNot(until(targets.in_own.first), until(targets.in_own.end)));
         in_next_ = hn::AndNot(in_own_, there);
-        is_all_own_ = hn::AllTrue(d, in_own_);
         has_own_ = !hn::AllFalse(d, in_own_);
         has_next_ = !hn::AllFalse(d, in_next_);
     }
-    bool is_all_own() const { return is_all_own_; }
     HWY_INLINE void put(std::size_t field, hn::Vec<D> value) const {
         const D d;
         if (has_own_) hn::BlendedStore(value, in_own_, d, targets_.own[field].data() + first_);
@@ -84,7 +86,7 @@ class VectorTarget {
     const Targets<T>& targets_;
     std::size_t first_;
     hn::Mask<D> in_own_, in_next_;
-    bool is_all_own_, has_own_, has_next_;
+    bool has_own_, has_next_;
 };
 
 // A few doubles as numbers of T's own width.
@@ -171,7 +173,7 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const P
         const auto at = hn::Add(hn::Mul(row, stride), first);
         const auto begin = hn::GetLane(at);
         const bool run = hn::AllTrue(di, hn::Eq(at, hn::Add(hn::Set(di, begin), hn::Iota(di, 0))));
-        const VectorTarget<T> target(targets, {i, i + count});
+        const PartedTarget<T> target(targets, {i, i + count});
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args.samples[f]) continue;
             const auto value =
@@ -405,20 +407,21 @@ class SplineReader {
 
     // All taps lie in V vectors of columns; `from`: where each point's first one does.
     template <int V>
-    HWY_INLINE void SumTaps(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns,
-                            std::size_t span) {
-        const VectorTarget<T> target(targets_, points);
-        if (!target.is_all_own())
-            return SumTapsTo<V>(points, from, columns, span,
-                                [&](std::size_t f, auto sum) HWY_ATTR { target.put(f, sum); });
-        T* own = targets_.own[0].data() + points.first;
-        SumTapsTo<V>(points, from, columns, span, [own](std::size_t f, auto sum) HWY_ATTR {
-            hn::StoreU(sum, D(), own + f * kRoom<T>);
-        });
+    void SumTaps(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns, std::size_t span) {
+        const D d;
+        if (targets_.takes_whole(points.first, hn::Lanes(d)))
+            return SumTaps<V>(points.first, from, columns, span, targets_.own[0].data() + points.first,
+                              kRoom<T>);
+        alignas(64) T sums[kFieldCount][hn::MaxLanes(d)];
+        SumTaps<V>(points.first, from, columns, span, sums[0], hn::MaxLanes(d));
+        const PartedTarget<T> target(targets_, points);
+        for (std::size_t f = 0; f < kFieldCount; ++f)
+            if (args_.samples[f]) target.put(f, hn::Load(d, sums[f]));
     }
-    template <int V, class Put>
-    HWY_INLINE void SumTapsTo(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns,
-                              std::size_t span, const Put& put) {
+    // Into `sums`, which begin so far apart from field to field.
+    template <int V>
+    HWY_INLINE void SumTaps(std::size_t first, hn::Vec<hn::RebindToSigned<D>> from, const T* columns,
+                            std::size_t span, T* sums, std::size_t apart) {
         const D d;
         const hn::RebindToSigned<D> di;
         const auto last = hn::Set(di, static_cast<Index>(hn::Lanes(d)) - 1);
@@ -429,7 +432,7 @@ class SplineReader {
             const auto tap = hn::Add(from, hn::Set(di, p));
             lane[p] = hn::IndicesFromVec(d, hn::And(tap, last));
             is_beyond[p] = hn::RebindMask(d, hn::Gt(tap, last));
-            w[p] = hn::LoadU(d, column_weights_[p].data() + points.first);
+            w[p] = hn::LoadU(d, column_weights_[p].data() + first);
         }
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args_.samples[f]) continue;
@@ -448,7 +451,7 @@ class SplineReader {
                     p < kGroup ? w[p] * taps[p] : N(hn::MulAdd(taps[p].v, w[p].v, sum[p % kGroup].v));
             for (int half = kGroup / 2; half > 0; half /= 2)
                 for (int p = 0; p < half && p + half < P; ++p) sum[p] += sum[p + half];
-            put(f, sum[0].v);
+            hn::StoreU(sum[0].v, d, sums + f * apart);
         }
     }
 

@@ -38,7 +38,11 @@ struct CopyOrigin {
 template <class T>
 class CopyPlaces {
   public:
-    void forget() { is_known_ = false; }
+    // `row`: chunks that have the same have the same x. 0: this one's x are its own.
+    void forget(std::uint64_t row) {
+        is_known_ = false;
+        row_ = row;
+    }
     void find(const CopyOrigin& origin, const Chunk<T>& chunk, const EvaluateKernels<T>& kernels) {
         if (is_known_) return;
         is_known_ = true;
@@ -60,10 +64,11 @@ class CopyPlaces {
             offset_ = origin.offset(x0.cell, y0.cell);
             return;
         }
-        kernels.place_copies({origin.cells_per_m, origin.x.from_middle}, chunk.rest_x.data(), chunk.padded(),
-                             x_);
-        kernels.place_copies({origin.cells_per_m, origin.y.from_middle}, chunk.rest_y.data(), chunk.padded(),
-                             y_);
+        if (row_ == 0 || row_of_x_ != row_)
+            kernels.place_copies({origin.cells_per_m, origin.x.from_middle}, chunk.rest_x.data(),
+                                 chunk.padded(), x_);
+        row_of_x_ = row_;
+        place_y({origin.cells_per_m, origin.y.from_middle}, span, chunk, kernels);
         find_stretches(chunk.count);
     }
 
@@ -80,6 +85,17 @@ class CopyPlaces {
     std::span<const Stretch> stretches() const { return {stretches_.data(), stretch_count_}; }
 
   private:
+    void place_y(const CopyAxisArgs& args, const ChunkSpan<T>& span, const Chunk<T>& chunk,
+                 const EvaluateKernels<T>& kernels) {
+        const std::size_t padded = chunk.padded();
+        if (span.low_y != span.high_y) return kernels.place_copies(args, chunk.rest_y.data(), padded, y_);
+        // A row of a patch.
+        kernels.place_copies(args, chunk.rest_y.data(), Chunk<T>::kLongestVector, y_);
+        std::fill(y_.code.begin() + 1, y_.code.begin() + padded, y_.code[0]);
+        for (auto* values : {&y_.own, &y_.next, &y_.rate})
+            std::fill(values->begin() + 1, values->begin() + padded, values->front());
+    }
+
     void find_stretches(std::size_t count) {
         stretch_count_ = 0;
         for (std::size_t first = 0, end; first < count; first = end) {
@@ -92,6 +108,7 @@ class CopyPlaces {
     }
 
     bool is_known_ = false, is_one_ = false;
+    std::uint64_t row_ = 0, row_of_x_ = 0;
     CopyOffset<double> offset_{0.0, 0.0};
     CopyAxis<T> x_, y_;
     std::array<Stretch, Chunk<T>::kPoints> stretches_;
@@ -115,6 +132,7 @@ class CopyReader {
         copies.wanted = wanted;
         grid.copies = &copies;
         for (const bool next_y : {false, true}) {
+            if (next_y) grid.places = nullptr;  // copies there lie elsewhere: what is kept are those of the rows between
             find(grid, origin, places, next_y);
             if (range_count_ == 0) continue;
             copies.range_count = range_count_;

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <type_traits>
 
 #include "core/base/pack-inl.h"
 #include "core/evaluate/kernels.h"
@@ -187,25 +188,24 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const P
 template <int P, class T>
 class SplineReader {
   public:
-    SplineReader(const GridArgs<T>& args, const Places<T>& x, const Places<T>& y, const Targets<T>& targets)
-        : args_(args), x_(x), y_(y), targets_(targets) {}
+    SplineReader(const GridArgs<T>& args, const T* rest_x, const Places<T>& y, RowPlaces<T>& row,
+                 const Targets<T>& targets)
+        : args_(args), rest_x_(rest_x), y_(y), row_(row), targets_(targets) {
+        if (args.row == 0 || row.row != args.row) row.part_count = 0;
+        row.row = args.row;
+    }
 
     // Points of one run have the same y and lie close together in x, as those of a patch do: the rows that they
     // need are added up once, and what is left is a sum along x. `is_level`: all of the range have the first one's y, and the
-    // places along y have no other.
-    void Read(PointRange range, bool is_level) {
+    // places along y have no other. `nodes_x`: where the points' origin lies.
+    void Read(PointRange range, bool is_level, double nodes_x) {
         range_ = range;
         is_level_ = is_level;
-        WeighColumns(range);
         WeighRows(is_level ? PointRange{range.first, range.first + 1} : range);
-        for (std::size_t begin = range.first; begin < range.end;) {
-            const Run run = RunFrom(begin);
-            if (run.points.end == begin + 1)
-                ReadAlone(begin);
-            else
-                ReadRun(run);
-            begin = run.points.end;
-        }
+        const Part* part = is_level ? Known(nodes_x) : nullptr;
+        if (!part) return Find(nodes_x);
+        At(part->at);
+        for (std::size_t r = part->first_run; r < part->end_run; ++r) ReadOne(row_.runs[r]);
     }
 
   private:
@@ -221,32 +221,87 @@ class SplineReader {
     static constexpr std::size_t kColumns = kColumnsPerPoint * Chunk<T>::kPoints + P + 4 * (64 / sizeof(T));
 
     using Index = typename Places<T>::Index;
+    using Columns = typename RowPlaces<T>::Columns;
+    using Run = typename RowPlaces<T>::Run;
+    using Part = typename RowPlaces<T>::Part;
 
-    // The first and the last one that begins a point's columns.
-    struct Columns {
-        Index low, high;
-    };
-    struct Run {
-        PointRange points;
-        Columns columns;
-    };
     struct Rows {
         std::size_t at[P];  // where they begin
         T weight[P];
     };
 
+    // The part that comes next, where the row before has left it.
+    const Part* Known(double nodes_x) {
+        if (part_ >= row_.part_count) return nullptr;
+        const Part& part = row_.parts[part_];
+        if (part.points.first != range_.first || part.points.end != range_.end || part.nodes_x != nodes_x)
+            return nullptr;
+        ++part_;
+        return &part;
+    }
+
+    // Places the points along x, keeps that where there is room, and reads them.
+    void Find(double nodes_x) {
+        row_.part_count = std::min(row_.part_count, part_);
+        Part part{range_, nodes_x, 0, 0, 0};
+        if (part_ > 0) {
+            const Part& last = row_.parts[part_ - 1];
+            const std::size_t lanes = 64 / sizeof(T);
+            part.at = last.at + (last.points.end - last.points.first + lanes - 1) / lanes * lanes;
+            part.first_run = part.end_run = last.end_run;
+        }
+        bool is_kept = is_level_ && args_.row != 0 && part_ < row_.kParts && part_ == row_.part_count &&
+                       part.at + (range_.end - range_.first) + 64 / sizeof(T) <= row_.kRoom;
+        if (!is_kept) {
+            DropAll(part);
+            part.at = 0;
+        }
+        At(part.at);
+        WeighColumns(nodes_x);
+        for (std::size_t begin = range_.first; begin < range_.end;) {
+            if (part.end_run == row_.kRuns) {
+                is_kept = false;
+                DropAll(part);
+            }
+            Run& run = row_.runs[part.end_run++];
+            run = RunFrom(begin, part.at);
+            ReadOne(run);
+            begin = run.points.end;
+        }
+        if (!is_kept) return;
+        row_.parts[part_++] = part;
+        row_.part_count = part_;
+    }
+    void DropAll(Part& part) {
+        row_.part_count = part_ = 0;
+        part.first_run = part.end_run = 0;
+    }
+    // Where the values of the range's points stand.
+    void At(std::size_t at) {
+        column_ = row_.column.data() + at - range_.first;
+        for (int p = 0; p < P; ++p) column_weights_[p] = row_.weight[p].data() + at - range_.first;
+    }
+    void ReadOne(const Run& run) {
+        if (run.points.end == run.points.first + 1)
+            ReadAlone(run.points.first);
+        else
+            ReadRun(run);
+    }
+
     // The points' weights along x, and the first of each one's columns.
-    void WeighColumns(PointRange range) {
+    void WeighColumns(double nodes_x) {
         const D d;
         const hn::RebindToSigned<D> di;
         const std::size_t lanes = hn::Lanes(d);
         const auto n = hn::Set(di, args_.n), before = hn::Set(di, P / 2 - 1), none = hn::Zero(di);
-        for (std::size_t i = range.first; i < range.end; i += lanes) {
+        Places<T> x;
+        Locate(args_, nodes_x, rest_x_, range_, x);
+        for (std::size_t i = range_.first; i < range_.end; i += lanes) {
             N w[P];
-            bspline_weights<P>(N(hn::LoadU(d, x_.rest.data() + i)), w);
-            for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, column_weights_[p].data() + i);
-            const auto column = hn::Sub(hn::LoadU(di, x_.node.data() + i), before);
-            hn::StoreU(hn::Add(column, hn::IfThenElseZero(hn::Lt(column, none), n)), di, column_.data() + i);
+            bspline_weights<P>(N(hn::LoadU(d, x.rest.data() + i)), w);
+            for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, column_weights_[p] + i);
+            const auto column = hn::Sub(hn::LoadU(di, x.node.data() + i), before);
+            hn::StoreU(hn::Add(column, hn::IfThenElseZero(hn::Lt(column, none), n)), di, column_ + i);
         }
     }
 
@@ -269,7 +324,7 @@ class SplineReader {
     Columns ColumnsOf(PointRange points) const {
         const hn::RebindToSigned<D> di;
         const auto there = hn::FirstN(di, points.end - points.first);
-        const auto column = hn::IfThenElse(there, hn::LoadU(di, column_.data() + points.first),
+        const auto column = hn::IfThenElse(there, hn::LoadU(di, column_ + points.first),
                                            hn::Set(di, column_[points.first]));
         return {hn::GetLane(hn::MinOfLanes(di, column)), hn::GetLane(hn::MaxOfLanes(di, column))};
     }
@@ -286,9 +341,10 @@ class SplineReader {
     }
 
     // Notes the columns of each vector of its points.
-    Run RunFrom(std::size_t begin) {
+    Run RunFrom(std::size_t begin, std::size_t at) {
         const std::size_t lanes = hn::Lanes(D());
-        Run run{{begin, begin}, {column_[begin], column_[begin]}};
+        Run run{{begin, begin}, {column_[begin], column_[begin]}, at + (begin - range_.first)};
+        Columns* vector = row_.vectors.data() + run.vector;
         const auto grow = [&](Columns by, std::size_t count) {
             const Columns both{std::min(run.columns.low, by.low), std::max(run.columns.high, by.high)};
             if (both.high - both.low >
@@ -299,15 +355,14 @@ class SplineReader {
             return true;
         };
         // A vector of points at a time, as long as all of them belong to it.
-        std::size_t vector = 0;
         for (; run.points.end < range_.end; ++vector) {
             const PointRange next{run.points.end, std::min(run.points.end + lanes, range_.end)};
             if (!HaveOneY(next, begin)) break;
-            columns_of_[vector] = ColumnsOf(next);
-            if (!grow(columns_of_[vector], next.end - next.first)) break;
+            *vector = ColumnsOf(next);
+            if (!grow(*vector, next.end - next.first)) break;
         }
         if (run.points.end == range_.end) return run;
-        Columns& last = columns_of_[vector];
+        Columns& last = *vector;
         last = {column_[run.points.end], column_[run.points.end]};
         while (run.points.end < range_.end) {
             const std::size_t next = run.points.end;
@@ -371,7 +426,7 @@ class SplineReader {
             if (k < span) StoreRows<1>(samples, rows, k, columns);
             columns += span;
         }
-        const Columns* of = columns_of_;
+        const Columns* of = row_.vectors.data() + run.vector;
         for (std::size_t i = run.points.first; i < run.points.end; i += lanes)
             ReadPoints({i, std::min(i + lanes, run.points.end)}, *of++, low, span);
     }
@@ -391,7 +446,7 @@ class SplineReader {
         }
         const auto there = hn::FirstN(di, points.end - points.first);
         const auto from = hn::IfThenElseZero(
-            there, hn::Sub(hn::LoadU(di, column_.data() + points.first), hn::Set(di, of.low)));
+            there, hn::Sub(hn::LoadU(di, column_ + points.first), hn::Set(di, of.low)));
         const T* columns = columns_ + (of.low - low);
         if (way + P <= lanes) return SumTaps<1>(points, from, columns, span);
         SumTaps<2>(points, from, columns, span);
@@ -432,7 +487,7 @@ class SplineReader {
             const auto tap = hn::Add(from, hn::Set(di, p));
             lane[p] = hn::IndicesFromVec(d, hn::And(tap, last));
             is_beyond[p] = hn::RebindMask(d, hn::Gt(tap, last));
-            w[p] = hn::LoadU(d, column_weights_[p].data() + first);
+            w[p] = hn::LoadU(d, column_weights_[p] + first);
         }
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args_.samples[f]) continue;
@@ -476,13 +531,16 @@ class SplineReader {
     }
 
     const GridArgs<T>& args_;
-    const Places<T>&x_, &y_;
+    const T* rest_x_;
+    const Places<T>& y_;
+    RowPlaces<T>& row_;
+    std::size_t part_ = 0;  // of the row
     const Targets<T>& targets_;
     PointRange range_{};
     bool is_level_ = false;
-    std::array<Index, kRoom<T>> column_;
-    Columns columns_of_[Chunk<T>::kPoints];  // by vector of a run's points
-    std::array<std::array<T, kRoom<T>>, P> column_weights_, row_weights_;
+    Index* column_ = nullptr;          // by point of the range
+    std::array<T*, P> column_weights_{};  // the same
+    std::array<std::array<T, kRoom<T>>, P> row_weights_;
     alignas(64) T columns_[kFieldCount * kColumns];  // of the wanted fields, one after another
 };
 
@@ -560,7 +618,7 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     clear(own, copies ? shown(copies->sides[0]) : whole);
     if (copies && copies->sides[1].count > 0) clear(next, shown(copies->sides[1]));
     Targets<T> targets{own, next, whole};
-    Places<T> x, y;
+    Places<T> y;
     const auto read = [&](auto&& reader) {
         for (std::size_t r = 0; r < range_count; ++r) {
             const CopyRange& range = ranges[r];
@@ -570,21 +628,29 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
                 // Where y isn't the same for a while it soon isn't again.
                 const bool is_level = end == part.end || end - part.first >= hn::Lanes(hn::ScalableTag<T>());
                 if (is_level) part.end = end;
-                Locate(args, range.nodes_x, chunk.rest_x.data(), part, x);
                 Locate(args, range.nodes_y, chunk.rest_y.data(),
                        is_level ? PointRange{part.first, part.first + 1} : part, y);
-                reader(part, is_level);
+                reader(part, is_level, range.nodes_x);
             }
         }
     };
+    const auto by_splines = [&](auto taps, RowPlaces<T>& row) {
+        SplineReader<taps, T> reader(args, chunk.rest_x.data(), y, row, targets);
+        read([&](PointRange part, bool is_level, double nodes_x) { reader.Read(part, is_level, nodes_x); });
+    };
     if (args.sampling == Sampling::Nodes) {
-        read([&](PointRange part, bool is_level) { ReadNodes(args, part, is_level, x, y, targets); });
-    } else if (args.taps == 6) {
-        SplineReader<6, T> reader(args, x, y, targets);
-        read([&](PointRange part, bool is_level) { reader.Read(part, is_level); });
+        Places<T> x;
+        read([&](PointRange part, bool is_level, double nodes_x) {
+            Locate(args, nodes_x, chunk.rest_x.data(), part, x);
+            ReadNodes(args, part, is_level, x, y, targets);
+        });
     } else {
-        SplineReader<4, T> reader(args, x, y, targets);
-        read([&](PointRange part, bool is_level) { reader.Read(part, is_level); });
+        RowPlaces<T> alone;
+        RowPlaces<T>& row = args.places ? *args.places : alone;
+        if (args.taps == 6)
+            by_splines(std::integral_constant<int, 6>(), row);
+        else
+            by_splines(std::integral_constant<int, 4>(), row);
     }
     if (!copies) return AddValues(args, own, chunk);
     AddCopies(args, *copies, copies->sides[0], own, chunk);

@@ -49,6 +49,40 @@ struct CopyArgs {
     FieldSet wanted;  // fields that are added; samples hold what their gradients need as well
 };
 
+// Where a row of points lies along x in a grid, and its splines' weights there: kept for the next row of a patch, whose points have
+// the same x.
+template <class T>
+struct RowPlaces {
+    static constexpr std::size_t kRoom = 2 * Chunk<T>::kPoints + Chunk<T>::kLongestVector;
+    static constexpr std::size_t kParts = 32, kRuns = 64, kTaps = 6;
+    using Index = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+
+    // The first and the last one that begins a point's columns.
+    struct Columns {
+        Index low, high;
+    };
+    // Points that are read together, and from which of `vectors` on their columns stand.
+    struct Run {
+        PointRange points;
+        Columns columns;
+        std::size_t vector;
+    };
+    // Points one after another in one copy of the tile. Their values stand from `at` on.
+    struct Part {
+        PointRange points;
+        double nodes_x;
+        std::size_t at, first_run, end_run;
+    };
+
+    alignas(64) std::array<Index, kRoom> column;  // each point's first
+    alignas(64) std::array<std::array<T, kRoom>, kTaps> weight;
+    std::array<Columns, kRoom> vectors;  // of the points of runs
+    std::array<Run, kRuns> runs;
+    std::array<Part, kParts> parts;
+    std::size_t part_count = 0;
+    std::uint64_t row = 0;  // whose points' x these are; 0: nobody's
+};
+
 // A cascade's grid, to be read at a chunk's points.
 template <class T>
 struct GridArgs {
@@ -61,6 +95,8 @@ struct GridArgs {
     FieldSet cell_group;                          // fields that cell_weight weighs; pixel_weight the others
     const T *cell_weight = nullptr, *pixel_weight = nullptr;  // by point; null: 1
     const CopyArgs<T>* copies = nullptr;                      // null: all points see the tile itself
+    RowPlaces<T>* places = nullptr;  // where they are kept for chunks of the same x, which have the same `row`
+    std::uint64_t row = 0;
 };
 
 // The points' weight in a field; null: 1.

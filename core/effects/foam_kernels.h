@@ -29,7 +29,7 @@ struct FoamAxisArgs {
     const double* rest_m = nullptr;  // by point
 };
 
-// What a tile has at its nodes, rows of kTileCells + 1.
+// What a tile has at its nodes, rows of kTileCells + 1, in memory that a vector may be read of from any node on.
 struct FoamTile {
     const float *foam, *foam_age;
 };

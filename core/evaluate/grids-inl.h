@@ -581,6 +581,14 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typenam
             const N x = of(side.x.weight), y = of(copies.y.weight), w = x * y;
             const N wx = N(side.x.sign) * of(side.x.other) * of(side.x.rate) * y;
             const N wy = N(copies.y.sign) * of(copies.y.other) * of(copies.y.rate) * x;
+            const auto none = hn::Zero(d);
+            if (hn::AllTrue(d, hn::Eq(w.v, hn::Set(d, T(1)))) && hn::AllTrue(d, hn::Eq(wx.v, none)) &&
+                hn::AllTrue(d, hn::Eq(wy.v, none))) {  // nothing blends here
+                for (std::size_t f = 0; f < kFieldCount; ++f)
+                    if (wanted(static_cast<Field>(f)))
+                        add(chunk.sums[f].data(), f, value(static_cast<Field>(f), i), i);
+                continue;
+            }
             for (std::size_t f = 0; f < kFieldCount; ++f) {
                 if (!wanted(static_cast<Field>(f))) continue;
                 N sum = w * value(static_cast<Field>(f), i);

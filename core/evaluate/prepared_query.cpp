@@ -79,12 +79,15 @@ struct PreparedQuery<T>::Work {
 // How points are cut into chunks: in their order; or, of a patch, by columns of pieces of its rows, one above the other.
 template <class T>
 struct PreparedQuery<T>::Cut {
+    static constexpr std::size_t kBlock = 32;
     std::size_t rows, row_points, width;
 
     std::size_t pieces() const { return (row_points + width - 1) / width; }
     std::size_t chunks() const { return rows * pieces(); }
     PointRange chunk(std::size_t c) const {
-        const std::size_t begin = c % rows * row_points, piece = c / rows * width;
+        const std::size_t of_block = kBlock * pieces(), block = c / of_block, above = block * kBlock;
+        const std::size_t high = std::min(kBlock, rows - above), in_block = c - block * of_block;
+        const std::size_t begin = (above + in_block % high) * row_points, piece = in_block / high * width;
         return {begin + piece, begin + std::min(piece + width, row_points)};
     }
 };

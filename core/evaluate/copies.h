@@ -64,12 +64,16 @@ class CopyPlaces {
             offset_ = origin.offset(x0.cell, y0.cell);
             return;
         }
-        if (row_ == 0 || row_of_x_ != row_)
+        const bool has_same_x = row_ != 0 && row_of_x_ == row_;
+        if (!has_same_x)
             kernels.place_copies({origin.cells_per_m, origin.x.from_middle}, chunk.rest_x.data(),
                                  chunk.padded(), x_);
         row_of_x_ = row_;
-        place_y({origin.cells_per_m, origin.y.from_middle}, span, chunk, kernels);
-        find_stretches(chunk.count);
+        const bool was_level = is_level_;
+        const auto code_y = was_level ? y_.code[0] : 0;
+        is_level_ = span.low_y == span.high_y;  // a row of a patch
+        place_y({origin.cells_per_m, origin.y.from_middle}, chunk, kernels);
+        if (!(has_same_x && was_level && is_level_ && y_.code[0] == code_y)) find_stretches(chunk.count);
     }
 
     // Whether all of the chunk's points show one and the same copy, and its offset.
@@ -85,11 +89,9 @@ class CopyPlaces {
     std::span<const Stretch> stretches() const { return {stretches_.data(), stretch_count_}; }
 
   private:
-    void place_y(const CopyAxisArgs& args, const ChunkSpan<T>& span, const Chunk<T>& chunk,
-                 const EvaluateKernels<T>& kernels) {
+    void place_y(const CopyAxisArgs& args, const Chunk<T>& chunk, const EvaluateKernels<T>& kernels) {
         const std::size_t padded = chunk.padded();
-        if (span.low_y != span.high_y) return kernels.place_copies(args, chunk.rest_y.data(), padded, y_);
-        // A row of a patch.
+        if (!is_level_) return kernels.place_copies(args, chunk.rest_y.data(), padded, y_);
         kernels.place_copies(args, chunk.rest_y.data(), Chunk<T>::kLongestVector, y_);
         std::fill(y_.code.begin() + 1, y_.code.begin() + padded, y_.code[0]);
         for (auto* values : {&y_.own, &y_.next, &y_.rate})
@@ -107,7 +109,7 @@ class CopyPlaces {
         }
     }
 
-    bool is_known_ = false, is_one_ = false;
+    bool is_known_ = false, is_one_ = false, is_level_ = false;
     std::uint64_t row_ = 0, row_of_x_ = 0;
     CopyOffset<double> offset_{0.0, 0.0};
     CopyAxis<T> x_, y_;

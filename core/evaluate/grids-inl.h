@@ -174,12 +174,16 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const P
         const auto at = hn::Add(hn::Mul(row, stride), first);
         const auto begin = hn::GetLane(at);
         const bool run = hn::AllTrue(di, hn::Eq(at, hn::Add(hn::Set(di, begin), hn::Iota(di, 0))));
+        const bool is_whole = targets.takes_whole(i, lanes);
         const PartedTarget<T> target(targets, {i, i + count});
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args.samples[f]) continue;
             const auto value =
                 run ? hn::LoadU(d, args.samples[f] + begin) : hn::GatherIndex(d, args.samples[f], at);
-            target.put(f, value);
+            if (is_whole)
+                hn::StoreU(value, d, targets.own[f].data() + i);
+            else
+                target.put(f, value);
         }
     }
 }

@@ -77,6 +77,19 @@ void Between(const FoamTile& tile, const FoamAxis& x, const FoamAxis& y, std::si
     }
 }
 
+void Add(const FoamLeft& left, const float* breaking, std::size_t count, float* all, float* age_s) {
+    const D d;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const N active(hn::LoadU(d, breaking + i)), foam(hn::LoadU(d, left.foam + i));
+        const N residual = residual_foam(foam, active), total = active + residual;
+        const auto is_left = residual > N(0);
+        const N age = residual / select<D>(is_left, total, N(1)) *
+                      (N(hn::LoadU(d, left.foam_age + i)) / select<D>(is_left, foam, N(1)));
+        hn::StoreU(total.v, d, all + i);
+        hn::StoreU(hn::IfThenElseZero(is_left, age.v), d, age_s + i);
+    }
+}
+
 void Deviates(const float* mean, const float* variance, const float* third, const float* threshold,
               bool third_moment, std::span<float> y) {
     const D d;
@@ -158,7 +171,7 @@ void Sum(std::span<const FoamShares> shares, std::span<float> foam, std::span<fl
 }
 
 FoamKernels Table() {
-    return {&Place, &Between, &Deviates, &Share, &Sum};
+    return {&Place, &Between, &Add, &Deviates, &Share, &Sum};
 }
 
 }  // namespace

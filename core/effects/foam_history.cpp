@@ -576,20 +576,18 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& 
         }
         return;
     }
-    for_parts(points, query, watch,
-              [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
-                  const std::size_t count = foam.size();
-                  alignas(64) std::array<float, kPart> active, all, age_s;
-                  for (std::size_t i = 0; i < count; ++i) active[i] = results.coverage[first + i];
-                  std::fill(active.begin() + count, active.end(), 0.0f);
-                  kernels_.add({foam.data(), foam_age.data()}, active.data(), count, all.data(),
-                               age_s.data());
-                  for (std::size_t i = 0; i < count; ++i) results.coverage[first + i] = all[i];
-                  for (std::size_t i = 0; results.active && i < count; ++i)
-                      results.active[first + i] = active[i];
-                  for (std::size_t i = 0; results.age_s && i < count; ++i)
-                      results.age_s[first + i] = age_s[i];
-              });
+    for_parts(
+        points, query, watch,
+        [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
+            const std::size_t count = foam.size();
+            alignas(64) std::array<float, kPart> active, all, age_s;
+            for (std::size_t i = 0; i < count; ++i) active[i] = results.coverage[first + i];
+            std::fill(active.begin() + count, active.end(), 0.0f);
+            kernels_.add({foam.data(), foam_age.data()}, active.data(), count, all.data(), age_s.data());
+            for (std::size_t i = 0; i < count; ++i) results.coverage[first + i] = all[i];
+            for (std::size_t i = 0; results.active && i < count; ++i) results.active[first + i] = active[i];
+            for (std::size_t i = 0; results.age_s && i < count; ++i) results.age_s[first + i] = age_s[i];
+        });
 }
 
 template <class T>

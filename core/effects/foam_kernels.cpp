@@ -47,11 +47,11 @@ void Between(const FoamTile& tile, const FoamAxis& x, const FoamAxis& y, std::si
     constexpr int kSide = FoamPlan::kTileCells + 1;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         const auto there = hn::FirstN(d, end - i);
-        const auto corner = hn::IfThenElse(
-            hn::RebindMask(di, there),
-            hn::Add(hn::Mul(hn::LoadU(di, y.node.data() + i), hn::Set(di, kSide)),
-                    hn::LoadU(di, x.node.data() + i)),
-            hn::Set(di, y.node[i] * kSide + x.node[i]));
+        const auto corner =
+            hn::IfThenElse(hn::RebindMask(di, there),
+                           hn::Add(hn::Mul(hn::LoadU(di, y.node.data() + i), hn::Set(di, kSide)),
+                                   hn::LoadU(di, x.node.data() + i)),
+                           hn::Set(di, y.node[i] * kSide + x.node[i]));
         const N to_x(hn::LoadU(d, x.rest.data() + i)), to_y(hn::LoadU(d, y.rest.data() + i));
         const auto blend = [&](const auto& at) HWY_ATTR {
             const auto between = [&](const float* v) HWY_ATTR {

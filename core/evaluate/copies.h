@@ -134,7 +134,9 @@ class CopyReader {
         copies.wanted = wanted;
         grid.copies = &copies;
         for (const bool next_y : {false, true}) {
-            if (next_y) grid.places = nullptr;  // copies there lie elsewhere: what is kept are those of the rows between
+            if (next_y)
+                grid.places =
+                    nullptr;  // copies there lie elsewhere: what is kept are those of the rows between
             find(grid, origin, places, next_y);
             if (range_count_ == 0) continue;
             copies.range_count = range_count_;

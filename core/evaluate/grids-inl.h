@@ -328,8 +328,8 @@ class SplineReader {
     Columns ColumnsOf(PointRange points) const {
         const hn::RebindToSigned<D> di;
         const auto there = hn::FirstN(di, points.end - points.first);
-        const auto column = hn::IfThenElse(there, hn::LoadU(di, column_ + points.first),
-                                           hn::Set(di, column_[points.first]));
+        const auto column =
+            hn::IfThenElse(there, hn::LoadU(di, column_ + points.first), hn::Set(di, column_[points.first]));
         return {hn::GetLane(hn::MinOfLanes(di, column)), hn::GetLane(hn::MaxOfLanes(di, column))};
     }
 
@@ -351,8 +351,7 @@ class SplineReader {
         Columns* vector = row_.vectors.data() + run.vector;
         const auto grow = [&](Columns by, std::size_t count) {
             const Columns both{std::min(run.columns.low, by.low), std::max(run.columns.high, by.high)};
-            if (both.high - both.low >
-                kColumnsPerPoint * static_cast<Index>(run.points.end - begin + count))
+            if (both.high - both.low > kColumnsPerPoint * static_cast<Index>(run.points.end - begin + count))
                 return false;
             run.columns = both;
             run.points.end += count;
@@ -410,7 +409,8 @@ class SplineReader {
         const D d;
         hn::Vec<D> sums[V];
         SumRows(d, samples, rows, k, sums);
-        for (int v = 0; v < V; ++v) hn::Store(sums[v], d, columns + k + static_cast<std::size_t>(v) * hn::Lanes(d));
+        for (int v = 0; v < V; ++v)
+            hn::Store(sums[v], d, columns + k + static_cast<std::size_t>(v) * hn::Lanes(d));
     }
 
     // A run's rows added up, for all fields, from whole vectors on; then a vector of points at a time.
@@ -435,24 +435,25 @@ class SplineReader {
             ReadPoints({i, std::min(i + lanes, run.points.end)}, *of++, low, span);
     }
 
-    // Of at most a vector of points. Their taps are looked up in one or two vectors of columns where these hold all of them,
-    // otherwise each in a vector that begins at the first point's.
+    // Of at most a vector of points. All taps are looked up in one vector of columns where that holds them, otherwise each in one or
+    // two vectors of its own.
     void ReadPoints(PointRange points, Columns of, Index low, std::size_t span) {
         const D d;
         const hn::RebindToSigned<D> di;
         const auto lanes = static_cast<Index>(hn::Lanes(d));
         const Index way = of.high - of.low;
-        if (way + P > 2 * lanes) {
+        if (way >= 2 * lanes) {
             const std::size_t middle = Apart(points);
             const PointRange before{points.first, middle}, after{middle, points.end};
             ReadPoints(before, ColumnsOf(before), low, span);
             return ReadPoints(after, ColumnsOf(after), low, span);
         }
         const auto there = hn::FirstN(di, points.end - points.first);
-        const auto from = hn::IfThenElseZero(
-            there, hn::Sub(hn::LoadU(di, column_ + points.first), hn::Set(di, of.low)));
+        const auto from =
+            hn::IfThenElseZero(there, hn::Sub(hn::LoadU(di, column_ + points.first), hn::Set(di, of.low)));
         const T* columns = columns_ + (of.low - low);
-        if (way + P <= lanes) return SumTaps<1>(points, from, columns, span);
+        if (way + P <= lanes) return SumTaps<0>(points, from, columns, span);
+        if (way < lanes) return SumTaps<1>(points, from, columns, span);
         SumTaps<2>(points, from, columns, span);
     }
 
@@ -464,7 +465,7 @@ class SplineReader {
         return next < points.end ? next : points.first + (points.end - points.first) / 2;
     }
 
-    // All taps lie in V vectors of columns; `from`: where each point's first one does.
+    // Each tap lies in V vectors of columns, and all of them in one where V is 0; `from`: where each point's first one does.
     template <int V>
     void SumTaps(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns, std::size_t span) {
         const D d;
@@ -484,23 +485,22 @@ class SplineReader {
         const D d;
         const hn::RebindToSigned<D> di;
         const auto last = hn::Set(di, static_cast<Index>(hn::Lanes(d)) - 1);
+        const auto is_beyond = hn::RebindMask(d, hn::Gt(from, last));
         decltype(hn::IndicesFromVec(d, from)) lane[P];
-        hn::Mask<D> is_beyond[P];
         N w[P], taps[P];
         for (int p = 0; p < P; ++p) {
-            const auto tap = hn::Add(from, hn::Set(di, p));
-            lane[p] = hn::IndicesFromVec(d, hn::And(tap, last));
-            is_beyond[p] = hn::RebindMask(d, hn::Gt(tap, last));
+            lane[p] = hn::IndicesFromVec(d, hn::And(V == 0 ? hn::Add(from, hn::Set(di, p)) : from, last));
             w[p] = hn::LoadU(d, column_weights_[p] + first);
         }
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args_.samples[f]) continue;
-            const auto near = hn::LoadU(d, columns);
-            for (int p = 0; p < P; ++p) taps[p] = hn::TableLookupLanes(near, lane[p]);
-            if constexpr (V == 2) {
-                const auto far = hn::LoadU(d, columns + hn::Lanes(d));
-                for (int p = 0; p < P; ++p)
-                    taps[p] = hn::IfThenElse(is_beyond[p], hn::TableLookupLanes(far, lane[p]), taps[p].v);
+            for (int p = 0; p < P; ++p) {
+                const T* from_tap = V == 0 ? columns : columns + p;
+                auto tap = hn::TableLookupLanes(hn::LoadU(d, from_tap), lane[p]);
+                if constexpr (V == 2)
+                    tap = hn::IfThenElse(
+                        is_beyond, hn::TableLookupLanes(hn::LoadU(d, from_tap + hn::Lanes(d)), lane[p]), tap);
+                taps[p] = tap;
             }
             columns += span;
             // As ReadAlone() adds them, so that a point's value is the same in any company.
@@ -542,7 +542,7 @@ class SplineReader {
     const Targets<T>& targets_;
     PointRange range_{};
     bool is_level_ = false;
-    Index* column_ = nullptr;          // by point of the range
+    Index* column_ = nullptr;             // by point of the range
     std::array<T*, P> column_weights_{};  // the same
     std::array<std::array<T, kRoom<T>>, P> row_weights_;
     alignas(64) T columns_[kFieldCount * kColumns];  // of the wanted fields, one after another

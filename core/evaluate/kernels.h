@@ -95,7 +95,8 @@ struct GridArgs {
     FieldSet cell_group;                          // fields that cell_weight weighs; pixel_weight the others
     const T *cell_weight = nullptr, *pixel_weight = nullptr;  // by point; null: 1
     const CopyArgs<T>* copies = nullptr;                      // null: all points see the tile itself
-    RowPlaces<T>* places = nullptr;  // where they are kept for chunks of the same x, which have the same `row`
+    RowPlaces<T>* places =
+        nullptr;  // where they are kept for chunks of the same x, which have the same `row`
     std::uint64_t row = 0;
 };
 

@@ -97,11 +97,10 @@ typename PreparedQuery<T>::Cut PreparedQuery<T>::cut(const Call& call) const {
     constexpr std::size_t kPoints = Chunk<T>::kPoints, kVector = Chunk<T>::kLongestVector;
     const Points<T>& points = call.points;
     const Cut all{1, points.count, kPoints};
-    const bool has_splines =
-        std::any_of(levels_.begin(), levels_.end(), [](const LevelGrids& level) {
-            return std::any_of(level.grids.begin(), level.grids.end(),
-                               [](const GridArgs<T>& grid) { return grid.sampling == Sampling::Spline; });
-        });
+    const bool has_splines = std::any_of(levels_.begin(), levels_.end(), [](const LevelGrids& level) {
+        return std::any_of(level.grids.begin(), level.grids.end(),
+                           [](const GridArgs<T>& grid) { return grid.sampling == Sampling::Spline; });
+    });
     if (call.on_ladder || !has_splines) return all;
     std::size_t row = 1;
     while (row < points.count && points.rest_m[row].y == points.rest_m[0].y) ++row;

@@ -71,7 +71,7 @@ class CopyPlaces {
         row_of_x_ = row_;
         const bool was_level = is_level_;
         const auto code_y = was_level ? y_.code[0] : 0;
-        is_level_ = span.low_y == span.high_y;  // a row of a patch
+        is_level_ = span.is_finite && span.low_y == span.high_y;  // a row of a patch
         place_y({origin.cells_per_m, origin.y.from_middle}, chunk, kernels);
         if (!(has_same_x && was_level && is_level_ && y_.code[0] == code_y)) find_stretches(chunk.count);
     }

@@ -70,10 +70,9 @@ class CopyPlaces {
                                  chunk.padded(), x_);
         row_of_x_ = row_;
         const bool was_level = is_level_;
-        const auto code_y = was_level ? y_.code[0] : 0;
         is_level_ = span.is_finite && span.low_y == span.high_y;  // a row of a patch
         place_y({origin.cells_per_m, origin.y.from_middle}, chunk, kernels);
-        if (!(has_same_x && was_level && is_level_ && y_.code[0] == code_y)) find_stretches(chunk.count);
+        if (!(has_same_x && was_level && is_level_)) find_stretches(chunk.count);  // those of the row before
     }
 
     // Whether all of the chunk's points show one and the same copy, and its offset.

@@ -125,19 +125,39 @@ class FoamHistory<T>::Locator {
                 .origin_m = points.origin_m - foam_.drift_of(level) * history.time_s_};
     }
 
+    // Whether none of the part's points reads a level beside its own.
+    static bool is_on_level(const Part& part, std::size_t count) {
+        return std::all_of(part.t.begin(), part.t.begin() + count, [](float t) { return !(t > 0.0f); });
+    }
+
     // Calls use(which, place, begin, end) for points of the part, one after another, that lie in one tile: in their level,
     // `which` = 0, and in the one after it, 1, where they read that as well. Where there are no cells, foam is the sea's mean.
     template <class Use>
     void operator()(std::size_t first, std::size_t count, Part& part, const Use& use) const {
-        for (std::size_t i = 0; i < count; ++i) {
+        const auto take = [&](const auto* rest_m) {
+            for (std::size_t i = 0; i < count; ++i) {
+                part.x_m[i] = static_cast<double>(rest_m[i].x);
+                part.y_m[i] = static_cast<double>(rest_m[i].y);
+            }
+        };
+        if (points_.rest_m.stride_bytes == sizeof(glm::vec<2, T>)) {
+            take(&points_.rest_m[first]);  // side by side: in vectors
+        } else {
+            std::array<glm::vec<2, T>, kPart> rest_m;
+            for (std::size_t i = 0; i < count; ++i) rest_m[i] = points_.rest_m[first + i];
+            take(rest_m.data());
+        }
+        for (std::size_t i = 0; points_.pixel_m && i < count; ++i) {
             const FoamRung rung = rung_of(first + i);
             part.level[i] = rung.level;
             part.t[i] = rung.t;
-            const glm::dvec2 rest_m(points_.rest_m[first + i]);
-            part.x_m[i] = rest_m.x;
-            part.y_m[i] = rest_m.y;
+        }
+        if (!points_.pixel_m) {
+            std::fill_n(part.level.begin(), count, whole_.level);
+            std::fill_n(part.t.begin(), count, whole_.t);
         }
         for (const int which : {0, 1}) {
+            if (which == 1 && is_on_level(part, count)) continue;
             const auto level_of = [&](std::size_t i) {
                 return which == 0 || part.t[i] > 0.0f ? part.level[i] + which : FoamPlan::kLevels;
             };
@@ -151,6 +171,14 @@ class FoamHistory<T>::Locator {
     }
 
   private:
+    FoamRung rung_of(std::size_t i) const {
+        const auto width_m = static_cast<float>(points_.pixel_m[i]);
+        if (!points_.pixel_axis_m) return foam_rung(foam_, width_m);
+        const glm::vec<2, T> axis = points_.pixel_axis_m[i];
+        const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
+        return foam_rung(foam_, foam_footprint_m(width_m, length_m));
+    }
+
     template <class Use>
     void for_tiles(int level, std::size_t first, std::size_t last, Part& part, const Use& use) const {
         const Cells& cells = cells_[static_cast<std::size_t>(level)];
@@ -161,15 +189,6 @@ class FoamHistory<T>::Locator {
             for (end = begin + 1; end < last && part.x.tile[end] == x && part.y.tile[end] == y;) ++end;
             use(Place{level, static_cast<std::int64_t>(x), static_cast<std::int64_t>(y)}, begin, end);
         }
-    }
-
-    FoamRung rung_of(std::size_t i) const {
-        if (!points_.pixel_m) return whole_;
-        const auto width_m = static_cast<float>(points_.pixel_m[i]);
-        if (!points_.pixel_axis_m) return foam_rung(foam_, width_m);
-        const glm::vec<2, T> axis = points_.pixel_axis_m[i];
-        const auto length_m = static_cast<float>(std::sqrt(axis.x * axis.x + axis.y * axis.y));
-        return foam_rung(foam_, foam_footprint_m(width_m, length_m));
     }
 
     const Points<T>& points_;
@@ -255,7 +274,8 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
                          which == 0 ? foam.data() : next.data(),
                          which == 0 ? foam_age.data() : next_age.data());
     });
-    for (std::size_t i = 0; i < foam.size(); ++i) {
+    const bool blends = !Locator::is_on_level(part, foam.size());
+    for (std::size_t i = 0; blends && i < foam.size(); ++i) {
         foam[i] += part.t[i] * (next[i] - foam[i]);
         foam_age[i] += part.t[i] * (next_age[i] - foam_age[i]);
     }
@@ -556,19 +576,18 @@ void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& 
         }
         return;
     }
-    for_parts(points, query, watch,
-              [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
-                  for (std::size_t i = 0; i < foam.size(); ++i) {
-                      const float active = results.coverage[first + i];
-                      const float residual = residual_foam(foam[i], active);
-                      const float total = active + residual;
-                      results.coverage[first + i] = total;
-                      if (results.active) results.active[first + i] = active;
-                      if (results.age_s)
-                          results.age_s[first + i] =
-                              residual > 0.0f ? residual / total * (foam_age[i] / foam[i]) : 0.0f;
-                  }
-              });
+    for_parts(
+        points, query, watch,
+        [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
+            const std::size_t count = foam.size();
+            alignas(64) std::array<float, kPart> active, all, age_s;
+            for (std::size_t i = 0; i < count; ++i) active[i] = results.coverage[first + i];
+            std::fill(active.begin() + count, active.end(), 0.0f);
+            kernels_.add({foam.data(), foam_age.data()}, active.data(), count, all.data(), age_s.data());
+            for (std::size_t i = 0; i < count; ++i) results.coverage[first + i] = all[i];
+            for (std::size_t i = 0; results.active && i < count; ++i) results.active[first + i] = active[i];
+            for (std::size_t i = 0; results.age_s && i < count; ++i) results.age_s[first + i] = age_s[i];
+        });
 }
 
 template <class T>

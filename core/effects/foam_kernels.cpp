@@ -47,20 +47,46 @@ void Between(const FoamTile& tile, const FoamAxis& x, const FoamAxis& y, std::si
     constexpr int kSide = FoamPlan::kTileCells + 1;
     for (std::size_t i = first; i < end; i += hn::Lanes(d)) {
         const auto there = hn::FirstN(d, end - i);
-        const auto corner = hn::IfThenElseZero(
-            hn::RebindMask(di, there), hn::Add(hn::Mul(hn::LoadU(di, y.node.data() + i), hn::Set(di, kSide)),
-                                               hn::LoadU(di, x.node.data() + i)));
+        const auto corner =
+            hn::IfThenElse(hn::RebindMask(di, there),
+                           hn::Add(hn::Mul(hn::LoadU(di, y.node.data() + i), hn::Set(di, kSide)),
+                                   hn::LoadU(di, x.node.data() + i)),
+                           hn::Set(di, y.node[i] * kSide + x.node[i]));
         const N to_x(hn::LoadU(d, x.rest.data() + i)), to_y(hn::LoadU(d, y.rest.data() + i));
-        const auto between = [&](const float* v) HWY_ATTR {
-            const auto along_x = [&](const float* row) HWY_ATTR {
-                const N from(hn::GatherIndex(d, row, corner)), to(hn::GatherIndex(d, row + 1, corner));
-                return from + to_x * (to - from);
+        const auto blend = [&](const auto& at) HWY_ATTR {
+            const auto between = [&](const float* v) HWY_ATTR {
+                const auto along_x = [&](const float* row) HWY_ATTR {
+                    const N from(at(row)), to(at(row + 1));
+                    return from + to_x * (to - from);
+                };
+                const N low = along_x(v), high = along_x(v + kSide);
+                return low + to_y * (high - low);
             };
-            const N low = along_x(v), high = along_x(v + kSide);
-            return low + to_y * (high - low);
+            hn::BlendedStore(between(tile.foam).v, there, d, foam + i);
+            hn::BlendedStore(between(tile.foam_age).v, there, d, foam_age + i);
         };
-        hn::BlendedStore(between(tile.foam).v, there, d, foam + i);
-        hn::BlendedStore(between(tile.foam_age).v, there, d, foam_age + i);
+        // Corners that lie close together, as those of a patch's row do, are looked up in one vector of them.
+        const std::int32_t least = hn::GetLane(hn::MinOfLanes(di, corner));
+        if (hn::GetLane(hn::MaxOfLanes(di, corner)) - least < static_cast<std::int32_t>(hn::Lanes(d))) {
+            const auto lane = hn::IndicesFromVec(d, hn::Sub(corner, hn::Set(di, least)));
+            blend([&](const float* row)
+                      HWY_ATTR { return hn::TableLookupLanes(hn::LoadU(d, row + least), lane); });
+        } else {
+            blend([&](const float* row) HWY_ATTR { return hn::GatherIndex(d, row, corner); });
+        }
+    }
+}
+
+void Add(const FoamLeft& left, const float* breaking, std::size_t count, float* all, float* age_s) {
+    const D d;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const N active(hn::LoadU(d, breaking + i)), foam(hn::LoadU(d, left.foam + i));
+        const N residual = residual_foam(foam, active), total = active + residual;
+        const auto is_left = residual > N(0);
+        const N age = residual / select<D>(is_left, total, N(1)) *
+                      (N(hn::LoadU(d, left.foam_age + i)) / select<D>(is_left, foam, N(1)));
+        hn::StoreU(total.v, d, all + i);
+        hn::StoreU(hn::IfThenElseZero(is_left, age.v), d, age_s + i);
     }
 }
 
@@ -145,7 +171,7 @@ void Sum(std::span<const FoamShares> shares, std::span<float> foam, std::span<fl
 }
 
 FoamKernels Table() {
-    return {&Place, &Between, &Deviates, &Share, &Sum};
+    return {&Place, &Between, &Add, &Deviates, &Share, &Sum};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <span>
+#include <utility>
 
 #include "core/evaluate/chunk.h"
 #include "core/evaluate/kernels.h"
@@ -37,7 +38,11 @@ struct CopyOrigin {
 template <class T>
 class CopyPlaces {
   public:
-    void forget() { is_known_ = false; }
+    // `row`: chunks that have the same have the same x. 0: this one's x are its own.
+    void forget(std::uint64_t row) {
+        is_known_ = false;
+        row_ = row;
+    }
     void find(const CopyOrigin& origin, const Chunk<T>& chunk, const EvaluateKernels<T>& kernels) {
         if (is_known_) return;
         is_known_ = true;
@@ -59,11 +64,15 @@ class CopyPlaces {
             offset_ = origin.offset(x0.cell, y0.cell);
             return;
         }
-        kernels.place_copies({origin.cells_per_m, origin.x.from_middle}, chunk.rest_x.data(), chunk.padded(),
-                             x_);
-        kernels.place_copies({origin.cells_per_m, origin.y.from_middle}, chunk.rest_y.data(), chunk.padded(),
-                             y_);
-        find_stretches(chunk.count);
+        const bool has_same_x = row_ != 0 && row_of_x_ == row_;
+        if (!has_same_x)
+            kernels.place_copies({origin.cells_per_m, origin.x.from_middle}, chunk.rest_x.data(),
+                                 chunk.padded(), x_);
+        row_of_x_ = row_;
+        const bool was_level = is_level_;
+        is_level_ = span.is_finite && span.low_y == span.high_y;  // a row of a patch
+        place_y({origin.cells_per_m, origin.y.from_middle}, chunk, kernels);
+        if (!(has_same_x && was_level && is_level_)) find_stretches(chunk.count);  // those of the row before
     }
 
     // Whether all of the chunk's points show one and the same copy, and its offset.
@@ -79,6 +88,15 @@ class CopyPlaces {
     std::span<const Stretch> stretches() const { return {stretches_.data(), stretch_count_}; }
 
   private:
+    void place_y(const CopyAxisArgs& args, const Chunk<T>& chunk, const EvaluateKernels<T>& kernels) {
+        const std::size_t padded = chunk.padded();
+        if (!is_level_) return kernels.place_copies(args, chunk.rest_y.data(), padded, y_);
+        kernels.place_copies(args, chunk.rest_y.data(), Chunk<T>::kLongestVector, y_);
+        std::fill(y_.code.begin() + 1, y_.code.begin() + padded, y_.code[0]);
+        for (auto* values : {&y_.own, &y_.next, &y_.rate})
+            std::fill(values->begin() + 1, values->begin() + padded, values->front());
+    }
+
     void find_stretches(std::size_t count) {
         stretch_count_ = 0;
         for (std::size_t first = 0, end; first < count; first = end) {
@@ -90,7 +108,8 @@ class CopyPlaces {
         }
     }
 
-    bool is_known_ = false, is_one_ = false;
+    bool is_known_ = false, is_one_ = false, is_level_ = false;
+    std::uint64_t row_ = 0, row_of_x_ = 0;
     CopyOffset<double> offset_{0.0, 0.0};
     CopyAxis<T> x_, y_;
     std::array<Stretch, Chunk<T>::kPoints> stretches_;
@@ -110,20 +129,22 @@ class CopyReader {
         of_cells_ = (wanted & cell_fields()).any() ? grid.cell_weight : nullptr;
         of_pixels_ = (wanted & ~cell_fields()).any() ? grid.pixel_weight : nullptr;
         CopyArgs<T> copies;
-        copies.nodes_x = nodes_x_.data();
-        copies.nodes_y = nodes_y_.data();
         copies.ranges = ranges_.data();
         copies.wanted = wanted;
         grid.copies = &copies;
-        for (const bool next_y : {false, true})
-            for (const bool next_x : {false, true}) {
-                find(grid, origin, places, next_x, next_y);
-                if (range_count_ == 0) continue;
-                copies.range_count = range_count_;
-                copies.x = axis(places.x(), next_x);
-                copies.y = axis(places.y(), next_y);
-                kernels.add_grid(grid, to);
-            }
+        for (const bool next_y : {false, true}) {
+            if (next_y)
+                grid.places =
+                    nullptr;  // copies there lie elsewhere: what is kept are those of the rows between
+            find(grid, origin, places, next_y);
+            if (range_count_ == 0) continue;
+            copies.range_count = range_count_;
+            copies.y = axis(places.y(), next_y);
+            for (const bool next_x : {false, true})
+                copies.sides[next_x] = {axis(places.x(), next_x), points_[next_x].data(),
+                                        point_count_[next_x]};
+            kernels.add_grid(grid, to);
+        }
     }
 
   private:
@@ -132,35 +153,53 @@ class CopyReader {
                     : typename CopyArgs<T>::Axis{of.own.data(), of.next.data(), of.rate.data(), T(-1)};
     }
 
-    // The points that see the copy in their own cell or in the next one, along each axis, and where it lies.
-    void find(const GridArgs<T>& grid, const CopyOrigin& origin, const CopyPlaces<T>& places, bool next_x,
-              bool next_y) {
+    // The points that see copies in their own cell or in the next one along y, and where these lie.
+    void find(const GridArgs<T>& grid, const CopyOrigin& origin, const CopyPlaces<T>& places, bool next_y) {
         range_count_ = 0;
+        point_count_ = {};
         for (const auto [first, end] : places.stretches()) {
             const auto code_x = places.x().code[first], code_y = places.y().code[first];
             const int side_x = CopyAxis<T>::side_of(code_x), side_y = CopyAxis<T>::side_of(code_y);
-            if ((next_x && side_x == 0) || (next_y && side_y == 0)) continue;
-            const CopyOffset<double> offset =
-                origin.offset(CopyAxis<T>::cell_of(code_x) + (next_x ? side_x : 0),
-                              CopyAxis<T>::cell_of(code_y) + (next_y ? side_y : 0));
-            std::fill(nodes_x_.begin() + first, nodes_x_.begin() + end,
-                      grid.origin_nodes_x + offset.x * grid.n);
-            std::fill(nodes_y_.begin() + first, nodes_y_.begin() + end,
-                      grid.origin_nodes_y + offset.y * grid.n);
-            if (!of_cells_ && !of_pixels_) {
-                take({first, end});
-                continue;
+            if (next_y && side_y == 0) continue;
+            const std::int64_t y = CopyAxis<T>::cell_of(code_y) + (next_y ? side_y : 0);
+            for (const bool next_x : {false, true}) {
+                if (next_x && side_x == 0) continue;
+                const std::int64_t x = CopyAxis<T>::cell_of(code_x) + (next_x ? side_x : 0);
+                if (!of_cells_ && !of_pixels_) {
+                    take({first, end}, next_x, x, y, grid, origin);
+                    continue;
+                }
+                for (std::size_t i = first; i < end; ++i)
+                    if (counts(i)) take({i, i + 1}, next_x, x, y, grid, origin);
             }
-            for (std::size_t i = first; i < end; ++i)
-                if (counts(i)) take({i, i + 1});
         }
     }
 
-    void take(PointRange range) {
-        if (range_count_ > 0 && ranges_[range_count_ - 1].end == range.first)
-            ranges_[range_count_ - 1].end = range.end;
+    // A copy's points beside its cell are read together with those in it, as one row.
+    void take(PointRange points, bool next_x, std::int64_t x, std::int64_t y, const GridArgs<T>& grid,
+              const CopyOrigin& origin) {
+        PointRange* seen = points_[next_x].data() + point_count_[next_x];
+        if (point_count_[next_x] > 0 && seen[-1].end == points.first)
+            seen[-1].end = points.end;
         else
-            ranges_[range_count_++] = range;
+            *seen = points, ++point_count_[next_x];
+        // Two copies are under way at a time.
+        for (std::size_t r = range_count_; r > 0 && r + 2 > range_count_; --r) {
+            CopyRange& range = ranges_[r - 1];
+            const bool is_own_over = range.own.end > range.own.first && range.own.end < range.points.end;
+            if (cells_[r - 1] != std::pair(x, y) || range.points.end != points.first ||
+                (!next_x && is_own_over))
+                continue;
+            range.points.end = points.end;
+            if (!next_x)
+                range.own = {range.own.end > range.own.first ? range.own.first : points.first, points.end};
+            return;
+        }
+        const CopyOffset<double> offset = origin.offset(x, y);
+        cells_[range_count_] = {x, y};
+        ranges_[range_count_++] = {points, next_x ? PointRange{points.first, points.first} : points,
+                                   grid.origin_nodes_x + offset.x * grid.n,
+                                   grid.origin_nodes_y + offset.y * grid.n};
     }
 
     // Whether a point has a share in the grid: where it has a weight, that of what is read.
@@ -169,9 +208,12 @@ class CopyReader {
     }
 
     const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
-    alignas(64) std::array<double, Chunk<T>::kPoints + Chunk<T>::kLongestVector> nodes_x_, nodes_y_;
-    std::array<PointRange, Chunk<T>::kPoints> ranges_;
+    // A point lies in one or two ranges.
+    std::array<CopyRange, 2 * Chunk<T>::kPoints> ranges_;
+    std::array<std::pair<std::int64_t, std::int64_t>, 2 * Chunk<T>::kPoints> cells_;  // of their copies
     std::size_t range_count_ = 0;
+    std::array<std::array<PointRange, Chunk<T>::kPoints>, 2> points_;  // that show copies: own, next
+    std::array<std::size_t, 2> point_count_{};
 };
 
 // Adds the wanted fields of a grid at the chunk's points. `args`: the grid with those fields' samples alone, and where the origin

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <type_traits>
 
 #include "core/base/pack-inl.h"
 #include "core/evaluate/kernels.h"
@@ -43,6 +44,51 @@ struct Places {
 // What a grid has at the points, by field.
 template <class T>
 using FieldValues = std::array<std::array<T, kRoom<T>>, kFieldCount>;
+
+// Values go to `own` at the points `in_own`, to `next` at others (CopyRange).
+template <class T>
+struct Targets {
+    FieldValues<T>&own, &next;
+    PointRange in_own{};
+
+    FieldValues<T>& of(std::size_t point) const {
+        return point >= in_own.first && point < in_own.end ? own : next;
+    }
+    // Whether a vector from this point on may be written whole: what it writes too much is written again in its turn.
+    bool takes_whole(std::size_t first, std::size_t lanes) const {
+        return first >= in_own.first && first + lanes <= in_own.end;
+    }
+};
+
+// Where the values of at most a vector of points go.
+template <class T>
+class PartedTarget {
+  public:
+    using D = hn::ScalableTag<T>;
+    HWY_INLINE PartedTarget(const Targets<T>& targets, PointRange points)
+        : targets_(targets), first_(points.first) {
+        const D d;
+        const auto until = [&](std::size_t end) HWY_ATTR {
+            return hn::FirstN(d, end > first_ ? std::min(end - first_, hn::Lanes(d)) : 0);
+        };
+        const auto there = until(points.end);
+        in_own_ = hn::And(there, hn::AndNot(until(targets.in_own.first), until(targets.in_own.end)));
+        in_next_ = hn::AndNot(in_own_, there);
+        has_own_ = !hn::AllFalse(d, in_own_);
+        has_next_ = !hn::AllFalse(d, in_next_);
+    }
+    HWY_INLINE void put(std::size_t field, hn::Vec<D> value) const {
+        const D d;
+        if (has_own_) hn::BlendedStore(value, in_own_, d, targets_.own[field].data() + first_);
+        if (has_next_) hn::BlendedStore(value, in_next_, d, targets_.next[field].data() + first_);
+    }
+
+  private:
+    const Targets<T>& targets_;
+    std::size_t first_;
+    hn::Mask<D> in_own_, in_next_;
+    bool has_own_, has_next_;
+};
 
 // A few doubles as numbers of T's own width.
 template <class DD, class V>
@@ -73,8 +119,8 @@ HWY_INLINE auto Widen(DD dd, const double* from) {
 // Along one axis, in double: exact wherever in the world the origin is. A place that is no number, or so far
 // that nothing of it is left, becomes 0.
 template <class T>
-void Locate(const GridArgs<T>& args, double origin_nodes, const double* nodes_of, const T* rest_m,
-            PointRange range, Places<T>& places) {
+void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, PointRange range,
+            Places<T>& places) {
     const hn::ScalableTag<double> dd;
     using Wide = decltype(dd);
     const hn::Rebind<T, Wide> narrow;
@@ -82,8 +128,7 @@ void Locate(const GridArgs<T>& args, double origin_nodes, const double* nodes_of
     const auto n = hn::Set(dd, args.n), per_n = hn::Set(dd, 1.0 / args.n);
     const auto scale = hn::Set(dd, args.nodes_per_m), origin = hn::Set(dd, origin_nodes);
     for (std::size_t i = range.first; i < range.end; i += hn::Lanes(dd)) {
-        const auto nodes =
-            hn::MulAdd(Widen(dd, rest_m + i), scale, nodes_of ? hn::LoadU(dd, nodes_of + i) : origin);
+        const auto nodes = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
         auto inside = hn::NegMulAdd(hn::Floor(hn::Mul(nodes, per_n)), n, nodes);
         // −1e-20 is rounded up to n itself, and the quotient may be off by a unit in its last place.
         inside = hn::IfThenElse(hn::Lt(inside, hn::Zero(dd)), hn::Add(inside, n), inside);
@@ -97,9 +142,22 @@ void Locate(const GridArgs<T>& args, double origin_nodes, const double* nodes_of
     }
 }
 
+// Where the points from `begin` on have another y than that one: a row of a patch ends there.
 template <class T>
-void ReadNodes(const GridArgs<T>& args, PointRange range, const Places<T>& x, const Places<T>& y,
-               FieldValues<T>& values) {
+std::size_t EndOfLevel(const T* rest_y, std::size_t begin, std::size_t last) {
+    const hn::ScalableTag<T> d;
+    const auto y = hn::Set(d, rest_y[begin]);
+    std::size_t end = begin + 1;
+    while (end + hn::Lanes(d) <= last && hn::AllTrue(d, hn::Eq(hn::LoadU(d, rest_y + end), y)))
+        end += hn::Lanes(d);
+    while (end < last && rest_y[end] == rest_y[begin]) ++end;
+    return end;
+}
+
+// `is_level`: all of the range have the first one's y, and y has no other place.
+template <class T>
+void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const Places<T>& x,
+               const Places<T>& y, const Targets<T>& targets) {
     const hn::ScalableTag<T> d;
     const hn::RebindToSigned<decltype(d)> di;
     const auto stride = hn::Set(di, static_cast<hwy::MakeSigned<T>>(line_stride<T>(args.n)));
@@ -109,17 +167,23 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, const Places<T>& x, co
         // Lanes beyond the last point read the first node.
         const auto within = hn::FirstN(di, count);
         const auto first = hn::IfThenElseZero(within, hn::LoadU(di, x.node.data() + i));
-        const auto row = hn::IfThenElseZero(within, hn::LoadU(di, y.node.data() + i));
+        const auto row = is_level ? hn::Set(di, y.node[range.first])
+                                  : hn::IfThenElseZero(within, hn::LoadU(di, y.node.data() + i));
         // Points that cross the tile's seam are read one by one: that is rare, although the row's extra
         // columns would allow a run.
         const auto at = hn::Add(hn::Mul(row, stride), first);
         const auto begin = hn::GetLane(at);
         const bool run = hn::AllTrue(di, hn::Eq(at, hn::Add(hn::Set(di, begin), hn::Iota(di, 0))));
+        const bool is_whole = targets.takes_whole(i, lanes);
+        const PartedTarget<T> target(targets, {i, i + count});
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args.samples[f]) continue;
             const auto value =
                 run ? hn::LoadU(d, args.samples[f] + begin) : hn::GatherIndex(d, args.samples[f], at);
-            hn::StoreU(value, d, values[f].data() + i);
+            if (is_whole)
+                hn::StoreU(value, d, targets.own[f].data() + i);
+            else
+                target.put(f, value);
         }
     }
 }
@@ -128,22 +192,24 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, const Places<T>& x, co
 template <int P, class T>
 class SplineReader {
   public:
-    SplineReader(const GridArgs<T>& args, const Places<T>& x, const Places<T>& y, FieldValues<T>& values)
-        : args_(args), x_(x), y_(y), values_(values) {}
+    SplineReader(const GridArgs<T>& args, const T* rest_x, const Places<T>& y, RowPlaces<T>& row,
+                 const Targets<T>& targets)
+        : args_(args), rest_x_(rest_x), y_(y), row_(row), targets_(targets) {
+        if (args.row == 0 || row.row != args.row) row.part_count = 0;
+        row.row = args.row;
+    }
 
     // Points of one run have the same y and lie close together in x, as those of a patch do: the rows that they
-    // need are added up once, and what is left is a sum along x.
-    void Read(PointRange range) {
-        WeighColumns(range);
-        WeighRows(range);
-        for (std::size_t begin = range.first; begin < range.end;) {
-            const Run run = RunFrom(begin, range.end);
-            if (run.points.end == begin + 1)
-                ReadAlone(begin);
-            else
-                ReadRun(run);
-            begin = run.points.end;
-        }
+    // need are added up once, and what is left is a sum along x. `is_level`: all of the range have the first one's y, and the
+    // places along y have no other. `nodes_x`: where the points' origin lies.
+    void Read(PointRange range, bool is_level, double nodes_x) {
+        range_ = range;
+        is_level_ = is_level;
+        WeighRows(is_level ? PointRange{range.first, range.first + 1} : range);
+        const Part* part = is_level ? Known(nodes_x) : nullptr;
+        if (!part) return Find(nodes_x);
+        At(part->at);
+        for (std::size_t r = part->first_run; r < part->end_run; ++r) ReadOne(row_.runs[r]);
     }
 
   private:
@@ -159,28 +225,87 @@ class SplineReader {
     static constexpr std::size_t kColumns = kColumnsPerPoint * Chunk<T>::kPoints + P + 4 * (64 / sizeof(T));
 
     using Index = typename Places<T>::Index;
+    using Columns = typename RowPlaces<T>::Columns;
+    using Run = typename RowPlaces<T>::Run;
+    using Part = typename RowPlaces<T>::Part;
 
-    struct Run {
-        PointRange points;
-        Index low, high;  // its first columns
-    };
     struct Rows {
         std::size_t at[P];  // where they begin
         T weight[P];
     };
 
+    // The part that comes next, where the row before has left it.
+    const Part* Known(double nodes_x) {
+        if (part_ >= row_.part_count) return nullptr;
+        const Part& part = row_.parts[part_];
+        if (part.points.first != range_.first || part.points.end != range_.end || part.nodes_x != nodes_x)
+            return nullptr;
+        ++part_;
+        return &part;
+    }
+
+    // Places the points along x, keeps that where there is room, and reads them.
+    void Find(double nodes_x) {
+        row_.part_count = std::min(row_.part_count, part_);
+        Part part{range_, nodes_x, 0, 0, 0};
+        if (part_ > 0) {
+            const Part& last = row_.parts[part_ - 1];
+            const std::size_t lanes = 64 / sizeof(T);
+            part.at = last.at + (last.points.end - last.points.first + lanes - 1) / lanes * lanes;
+            part.first_run = part.end_run = last.end_run;
+        }
+        bool is_kept = is_level_ && args_.row != 0 && part_ < row_.kParts && part_ == row_.part_count &&
+                       part.at + (range_.end - range_.first) + 64 / sizeof(T) <= row_.kRoom;
+        if (!is_kept) {
+            DropAll(part);
+            part.at = 0;
+        }
+        At(part.at);
+        WeighColumns(nodes_x);
+        for (std::size_t begin = range_.first; begin < range_.end;) {
+            if (part.end_run == row_.kRuns) {
+                is_kept = false;
+                DropAll(part);
+            }
+            Run& run = row_.runs[part.end_run++];
+            run = RunFrom(begin, part.at);
+            ReadOne(run);
+            begin = run.points.end;
+        }
+        if (!is_kept) return;
+        row_.parts[part_++] = part;
+        row_.part_count = part_;
+    }
+    void DropAll(Part& part) {
+        row_.part_count = part_ = 0;
+        part.first_run = part.end_run = 0;
+    }
+    // Where the values of the range's points stand.
+    void At(std::size_t at) {
+        column_ = row_.column.data() + at - range_.first;
+        for (int p = 0; p < P; ++p) column_weights_[p] = row_.weight[p].data() + at - range_.first;
+    }
+    void ReadOne(const Run& run) {
+        if (run.points.end == run.points.first + 1)
+            ReadAlone(run.points.first);
+        else
+            ReadRun(run);
+    }
+
     // The points' weights along x, and the first of each one's columns.
-    void WeighColumns(PointRange range) {
+    void WeighColumns(double nodes_x) {
         const D d;
         const hn::RebindToSigned<D> di;
         const std::size_t lanes = hn::Lanes(d);
         const auto n = hn::Set(di, args_.n), before = hn::Set(di, P / 2 - 1), none = hn::Zero(di);
-        for (std::size_t i = range.first; i < range.end; i += lanes) {
+        Places<T> x;
+        Locate(args_, nodes_x, rest_x_, range_, x);
+        for (std::size_t i = range_.first; i < range_.end; i += lanes) {
             N w[P];
-            bspline_weights<P>(N(hn::LoadU(d, x_.rest.data() + i)), w);
-            for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, column_weights_[p].data() + i);
-            const auto column = hn::Sub(hn::LoadU(di, x_.node.data() + i), before);
-            hn::StoreU(hn::Add(column, hn::IfThenElseZero(hn::Lt(column, none), n)), di, column_.data() + i);
+            bspline_weights<P>(N(hn::LoadU(d, x.rest.data() + i)), w);
+            for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, column_weights_[p] + i);
+            const auto column = hn::Sub(hn::LoadU(di, x.node.data() + i), before);
+            hn::StoreU(hn::Add(column, hn::IfThenElseZero(hn::Lt(column, none), n)), di, column_ + i);
         }
     }
 
@@ -199,44 +324,61 @@ class SplineReader {
         }
     }
 
-    Run RunFrom(std::size_t begin, std::size_t last) const {
-        const hn::ScalableTag<T> d;
-        const hn::RebindToSigned<decltype(d)> di;
-        const std::size_t lanes = hn::Lanes(d);
-        Run run{{begin, begin + 1}, column_[begin], column_[begin]};
-        if (begin + 1 == last || y_.node[begin + 1] != y_.node[begin]) return run;
-        const auto node = hn::Set(di, y_.node[begin]);
-        const auto rest = hn::Set(d, y_.rest[begin]);
-        const auto grow = [&](Index low, Index high, std::size_t count) {
-            low = std::min(run.low, low);
-            high = std::max(run.high, high);
-            if (high - low > kColumnsPerPoint * static_cast<Index>(run.points.end - begin + count))
+    // Of at most a vector of points.
+    Columns ColumnsOf(PointRange points) const {
+        const hn::RebindToSigned<D> di;
+        const auto there = hn::FirstN(di, points.end - points.first);
+        const auto column =
+            hn::IfThenElse(there, hn::LoadU(di, column_ + points.first), hn::Set(di, column_[points.first]));
+        return {hn::GetLane(hn::MinOfLanes(di, column)), hn::GetLane(hn::MaxOfLanes(di, column))};
+    }
+
+    bool HaveOneY(PointRange points, std::size_t as) const {
+        if (is_level_) return true;
+        const D d;
+        const hn::RebindToSigned<D> di;
+        const std::size_t count = points.end - points.first;
+        const auto node = hn::LoadU(di, y_.node.data() + points.first);
+        const auto rest = hn::LoadU(d, y_.rest.data() + points.first);
+        return hn::AllFalse(di, hn::AndNot(hn::Eq(node, hn::Set(di, y_.node[as])), hn::FirstN(di, count))) &&
+               hn::AllFalse(d, hn::AndNot(hn::Eq(rest, hn::Set(d, y_.rest[as])), hn::FirstN(d, count)));
+    }
+
+    // Notes the columns of each vector of its points.
+    Run RunFrom(std::size_t begin, std::size_t at) {
+        const std::size_t lanes = hn::Lanes(D());
+        Run run{{begin, begin}, {column_[begin], column_[begin]}, at + (begin - range_.first)};
+        Columns* vector = row_.vectors.data() + run.vector;
+        const auto grow = [&](Columns by, std::size_t count) {
+            const Columns both{std::min(run.columns.low, by.low), std::max(run.columns.high, by.high)};
+            if (both.high - both.low > kColumnsPerPoint * static_cast<Index>(run.points.end - begin + count))
                 return false;
-            run.low = low;
-            run.high = high;
+            run.columns = both;
             run.points.end += count;
             return true;
         };
         // A vector of points at a time, as long as all of them belong to it.
-        for (std::size_t& end = run.points.end; end + lanes <= last;) {
-            if (!hn::AllTrue(di, hn::Eq(hn::LoadU(di, y_.node.data() + end), node)) ||
-                !hn::AllTrue(d, hn::Eq(hn::LoadU(d, y_.rest.data() + end), rest)))
-                break;
-            const auto columns = hn::LoadU(di, column_.data() + end);
-            if (!grow(hn::GetLane(hn::MinOfLanes(di, columns)), hn::GetLane(hn::MaxOfLanes(di, columns)),
-                      lanes))
-                break;
+        for (; run.points.end < range_.end; ++vector) {
+            const PointRange next{run.points.end, std::min(run.points.end + lanes, range_.end)};
+            if (!HaveOneY(next, begin)) break;
+            *vector = ColumnsOf(next);
+            if (!grow(*vector, next.end - next.first)) break;
         }
-        while (run.points.end < last) {
-            const std::size_t end = run.points.end;
-            if (y_.node[end] != y_.node[begin] || y_.rest[end] != y_.rest[begin]) break;
-            if (!grow(column_[end], column_[end], 1)) break;
+        if (run.points.end == range_.end) return run;
+        Columns& last = *vector;
+        last = {column_[run.points.end], column_[run.points.end]};
+        while (run.points.end < range_.end) {
+            const std::size_t next = run.points.end;
+            const Index column = column_[next];
+            if (!HaveOneY({next, next + 1}, begin) || !grow({column, column}, 1)) break;
+            last = {std::min(last.low, column), std::max(last.high, column)};
         }
         return run;
     }
 
     Rows RowsOf(std::size_t point, Index column) const {
         Rows rows;
+        if (is_level_) point = range_.first;
         for (int p = 0; p < P; ++p) {
             rows.weight[p] = row_weights_[p][point];
             int at = static_cast<int>(y_.node[point]) - P / 2 + 1 + p;
@@ -249,52 +391,70 @@ class SplineReader {
         return rows;
     }
 
-    // The rows' sum at columns k and on.
-    template <class D>
-    static HWY_INLINE hn::Vec<D> SumRows(D d, const T* samples, const Rows& rows, std::size_t k) {
-        auto sum = hn::Mul(hn::Set(d, rows.weight[0]), hn::LoadU(d, samples + rows.at[0] + k));
-        for (int p = 1; p < P; ++p)
-            sum = hn::MulAdd(hn::Set(d, rows.weight[p]), hn::LoadU(d, samples + rows.at[p] + k), sum);
-        return sum;
+    // The rows' sums in V vectors from column k on.
+    template <int V, class D>
+    static HWY_INLINE void SumRows(D d, const T* samples, const Rows& rows, std::size_t k,
+                                   hn::Vec<D> (&sums)[V]) {
+        for (int p = 0; p < P; ++p) {
+            const auto weight = hn::Set(d, rows.weight[p]);
+            const T* row = samples + rows.at[p] + k;
+            for (int v = 0; v < V; ++v) {
+                const auto columns = hn::LoadU(d, row + static_cast<std::size_t>(v) * hn::Lanes(d));
+                sums[v] = p == 0 ? hn::Mul(weight, columns) : hn::MulAdd(weight, columns, sums[v]);
+            }
+        }
+    }
+    template <int V>
+    static HWY_INLINE void StoreRows(const T* samples, const Rows& rows, std::size_t k, T* columns) {
+        const D d;
+        hn::Vec<D> sums[V];
+        SumRows(d, samples, rows, k, sums);
+        for (int v = 0; v < V; ++v)
+            hn::Store(sums[v], d, columns + k + static_cast<std::size_t>(v) * hn::Lanes(d));
     }
 
     // A run's rows added up, for all fields, from whole vectors on; then a vector of points at a time.
     void ReadRun(const Run& run) {
         const D d;
         const std::size_t lanes = hn::Lanes(d);
-        const Index low = run.low - run.low % static_cast<Index>(lanes);
+        const Index low = run.columns.low - run.columns.low % static_cast<Index>(lanes);
         const Rows rows = RowsOf(run.points.first, low);
-        const std::size_t span = (static_cast<std::size_t>(run.high - low) + P + lanes - 1) / lanes * lanes;
+        const std::size_t span =
+            (static_cast<std::size_t>(run.columns.high - low) + P + lanes - 1) / lanes * lanes;
         T* columns = columns_;
         for (const T* samples : args_.samples) {
             if (!samples) continue;
-            for (std::size_t k = 0; k < span; k += lanes)
-                hn::Store(SumRows(d, samples, rows, k), d, columns + k);
+            std::size_t k = 0;  // several vectors at a time, as one sum is a chain of operations
+            for (; k + 4 * lanes <= span; k += 4 * lanes) StoreRows<4>(samples, rows, k, columns);
+            if (k + 2 * lanes <= span) StoreRows<2>(samples, rows, k, columns), k += 2 * lanes;
+            if (k < span) StoreRows<1>(samples, rows, k, columns);
             columns += span;
         }
+        const Columns* of = row_.vectors.data() + run.vector;
         for (std::size_t i = run.points.first; i < run.points.end; i += lanes)
-            ReadPoints({i, std::min(i + lanes, run.points.end)}, low, span);
+            ReadPoints({i, std::min(i + lanes, run.points.end)}, *of++, low, span);
     }
 
-    // Of at most a vector of points. Where their columns lie close together each tap is looked up in one vector of columns, or in two.
-    void ReadPoints(PointRange points, Index low, std::size_t span) {
+    // Of at most a vector of points. All taps are looked up in one vector of columns where that holds them, otherwise each in one or
+    // two vectors of its own.
+    void ReadPoints(PointRange points, Columns of, Index low, std::size_t span) {
         const D d;
         const hn::RebindToSigned<D> di;
-        const auto there = hn::FirstN(di, points.end - points.first);
-        auto column = hn::LoadU(di, column_.data() + points.first);
-        column = hn::IfThenElse(there, column, hn::Set(di, column_[points.first]));
-        const Index first = hn::GetLane(hn::MinOfLanes(di, column));
-        const Index vectors =
-            (hn::GetLane(hn::MaxOfLanes(di, column)) - first) / static_cast<Index>(hn::Lanes(d)) + 1;
-        if (vectors > 2) {
+        const auto lanes = static_cast<Index>(hn::Lanes(d));
+        const Index way = of.high - of.low;
+        if (way >= 2 * lanes) {
             const std::size_t middle = Apart(points);
-            ReadPoints({points.first, middle}, low, span);
-            return ReadPoints({middle, points.end}, low, span);
+            const PointRange before{points.first, middle}, after{middle, points.end};
+            ReadPoints(before, ColumnsOf(before), low, span);
+            return ReadPoints(after, ColumnsOf(after), low, span);
         }
-        const auto from = hn::Sub(column, hn::Set(di, first));
-        const T* columns = columns_ + (first - low);
-        if (vectors == 1) return SumTaps(points, Lookup<1>(from), columns, span);
-        SumTaps(points, Lookup<2>(from), columns, span);
+        const auto there = hn::FirstN(di, points.end - points.first);
+        const auto from =
+            hn::IfThenElseZero(there, hn::Sub(hn::LoadU(di, column_ + points.first), hn::Set(di, of.low)));
+        const T* columns = columns_ + (of.low - low);
+        if (way + P <= lanes) return SumTaps<0>(points, from, columns, span);
+        if (way < lanes) return SumTaps<1>(points, from, columns, span);
+        SumTaps<2>(points, from, columns, span);
     }
 
     // Where points that lie far apart part: at the seam of the period, or in their middle.
@@ -305,34 +465,43 @@ class SplineReader {
         return next < points.end ? next : points.first + (points.end - points.first) / 2;
     }
 
-    // The points' columns in V vectors of them; `from`: where each one's lies.
+    // Each tap lies in V vectors of columns, and all of them in one where V is 0; `from`: where each point's first one does.
     template <int V>
-    struct Lookup {
-        using DI = hn::RebindToSigned<D>;
-        HWY_INLINE explicit Lookup(hn::Vec<DI> from)
-            : lane(hn::IndicesFromVec(D(), hn::And(from, hn::Set(DI(), kLast)))),
-              is_beyond(hn::RebindMask(D(), hn::Gt(from, hn::Set(DI(), kLast)))) {}
-        HWY_INLINE N operator()(const T* columns) const {
-            const D d;
-            const auto near = hn::TableLookupLanes(hn::LoadU(d, columns), lane);
-            if constexpr (V == 1) return near;
-            return hn::IfThenElse(is_beyond, hn::TableLookupLanes(hn::LoadU(d, columns + hn::Lanes(d)), lane),
-                                  near);
-        }
-        static constexpr Index kLast = static_cast<Index>(hn::MaxLanes(D())) - 1;
-        decltype(hn::IndicesFromVec(D(), hn::Zero(DI()))) lane;
-        hn::Mask<D> is_beyond;
-    };
-
-    template <int V>
-    HWY_INLINE void SumTaps(PointRange points, const Lookup<V>& tap_at, const T* columns, std::size_t span) {
+    void SumTaps(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns, std::size_t span) {
         const D d;
-        const auto there = hn::FirstN(d, points.end - points.first);
+        if (targets_.takes_whole(points.first, hn::Lanes(d)))
+            return SumTaps<V>(points.first, from, columns, span, targets_.own[0].data() + points.first,
+                              kRoom<T>);
+        alignas(64) T sums[kFieldCount][hn::MaxLanes(d)];
+        SumTaps<V>(points.first, from, columns, span, sums[0], hn::MaxLanes(d));
+        const PartedTarget<T> target(targets_, points);
+        for (std::size_t f = 0; f < kFieldCount; ++f)
+            if (args_.samples[f]) target.put(f, hn::Load(d, sums[f]));
+    }
+    // Into `sums`, which begin so far apart from field to field.
+    template <int V>
+    HWY_INLINE void SumTaps(std::size_t first, hn::Vec<hn::RebindToSigned<D>> from, const T* columns,
+                            std::size_t span, T* sums, std::size_t apart) {
+        const D d;
+        const hn::RebindToSigned<D> di;
+        const auto last = hn::Set(di, static_cast<Index>(hn::Lanes(d)) - 1);
+        const auto is_beyond = hn::RebindMask(d, hn::Gt(from, last));
+        decltype(hn::IndicesFromVec(d, from)) lane[P];
         N w[P], taps[P];
-        for (int p = 0; p < P; ++p) w[p] = hn::LoadU(d, column_weights_[p].data() + points.first);
+        for (int p = 0; p < P; ++p) {
+            lane[p] = hn::IndicesFromVec(d, hn::And(V == 0 ? hn::Add(from, hn::Set(di, p)) : from, last));
+            w[p] = hn::LoadU(d, column_weights_[p] + first);
+        }
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             if (!args_.samples[f]) continue;
-            for (int p = 0; p < P; ++p) taps[p] = tap_at(columns + p);
+            for (int p = 0; p < P; ++p) {
+                const T* from_tap = V == 0 ? columns : columns + p;
+                auto tap = hn::TableLookupLanes(hn::LoadU(d, from_tap), lane[p]);
+                if constexpr (V == 2)
+                    tap = hn::IfThenElse(
+                        is_beyond, hn::TableLookupLanes(hn::LoadU(d, from_tap + hn::Lanes(d)), lane[p]), tap);
+                taps[p] = tap;
+            }
             columns += span;
             // As ReadAlone() adds them, so that a point's value is the same in any company.
             N sum[P];
@@ -341,7 +510,7 @@ class SplineReader {
                     p < kGroup ? w[p] * taps[p] : N(hn::MulAdd(taps[p].v, w[p].v, sum[p % kGroup].v));
             for (int half = kGroup / 2; half > 0; half /= 2)
                 for (int p = 0; p < half && p + half < P; ++p) sum[p] += sum[p + half];
-            hn::StoreU(hn::IfThenElseZero(there, sum[0].v), d, values_[f].data() + points.first);
+            hn::StoreU(sum[0].v, d, sums + f * apart);
         }
     }
 
@@ -351,21 +520,31 @@ class SplineReader {
         const Rows rows = RowsOf(point, column_[point]);
         alignas(64) T weights[kTaps] = {};
         for (int p = 0; p < P; ++p) weights[p] = column_weights_[p][point];
+        FieldValues<T>& values = targets_.of(point);
         for (std::size_t f = 0; f < kFieldCount; ++f) {
             const T* samples = args_.samples[f];
             if (!samples) continue;
             auto sum = hn::Zero(taps);
-            for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps))
-                sum = hn::MulAdd(SumRows(taps, samples, rows, k), hn::Load(taps, weights + k), sum);
-            values_[f][point] = hn::GetLane(hn::SumOfLanes(taps, sum));
+            for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps)) {
+                hn::Vec<Taps> of_rows[1];
+                SumRows(taps, samples, rows, k, of_rows);
+                sum = hn::MulAdd(of_rows[0], hn::Load(taps, weights + k), sum);
+            }
+            values[f][point] = hn::GetLane(hn::SumOfLanes(taps, sum));
         }
     }
 
     const GridArgs<T>& args_;
-    const Places<T>&x_, &y_;
-    FieldValues<T>& values_;
-    std::array<Index, kRoom<T>> column_;
-    std::array<std::array<T, kRoom<T>>, P> column_weights_, row_weights_;
+    const T* rest_x_;
+    const Places<T>& y_;
+    RowPlaces<T>& row_;
+    std::size_t part_ = 0;  // of the row
+    const Targets<T>& targets_;
+    PointRange range_{};
+    bool is_level_ = false;
+    Index* column_ = nullptr;             // by point of the range
+    std::array<T*, P> column_weights_{};  // the same
+    std::array<std::array<T, kRoom<T>>, P> row_weights_;
     alignas(64) T columns_[kFieldCount * kColumns];  // of the wanted fields, one after another
 };
 
@@ -385,10 +564,10 @@ void AddValues(const GridArgs<T>& args, const FieldValues<T>& values, Chunk<T>& 
     }
 }
 
-// The same of copies, with their weights w and these weights' gradient (core/plan/copies.h).
+// The same of copies on one side along x, with their weights w and these weights' gradient (core/plan/copies.h).
 template <class T>
-void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const FieldValues<T>& values,
-               Chunk<T>& chunk) {
+void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typename CopyArgs<T>::Side& side,
+               const FieldValues<T>& values, Chunk<T>& chunk) {
     const hn::ScalableTag<T> d;
     using N = Pack<decltype(d)>;
     const std::size_t lanes = hn::Lanes(d);
@@ -398,14 +577,22 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const FieldVa
         hn::Store(hn::Add(hn::Load(d, sums + i), what.v), d, sums + i);
     };
     const auto wanted = [&](Field f) { return copies.wanted[index(f)] && args.samples[index(f)]; };
-    for (std::size_t r = 0, next = 0; r < copies.range_count; ++r) {
-        const PointRange range = copies.ranges[r];
+    for (std::size_t r = 0, next = 0; r < side.count; ++r) {
+        const PointRange range = side.points[r];
         for (std::size_t i = std::max(next, range.first / lanes * lanes); i < range.end; i += lanes) {
             next = i + lanes;
             const auto of = [&](const T* values_of) HWY_ATTR { return N(hn::LoadU(d, values_of + i)); };
-            const N x = of(copies.x.weight), y = of(copies.y.weight), w = x * y;
-            const N wx = N(copies.x.sign) * of(copies.x.other) * of(copies.x.rate) * y;
+            const N x = of(side.x.weight), y = of(copies.y.weight), w = x * y;
+            const N wx = N(side.x.sign) * of(side.x.other) * of(side.x.rate) * y;
             const N wy = N(copies.y.sign) * of(copies.y.other) * of(copies.y.rate) * x;
+            const auto none = hn::Zero(d);
+            if (hn::AllTrue(d, hn::Eq(w.v, hn::Set(d, T(1)))) && hn::AllTrue(d, hn::Eq(wx.v, none)) &&
+                hn::AllTrue(d, hn::Eq(wy.v, none))) {  // nothing blends here
+                for (std::size_t f = 0; f < kFieldCount; ++f)
+                    if (wanted(static_cast<Field>(f)))
+                        add(chunk.sums[f].data(), f, value(static_cast<Field>(f), i), i);
+                continue;
+            }
             for (std::size_t f = 0; f < kFieldCount; ++f) {
                 if (!wanted(static_cast<Field>(f))) continue;
                 N sum = w * value(static_cast<Field>(f), i);
@@ -423,41 +610,63 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const FieldVa
 
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
-    const PointRange all{0, chunk.count};
+    const PointRange whole{0, chunk.count};
+    const CopyRange all{whole, whole, args.origin_nodes_x, args.origin_nodes_y};
     const CopyArgs<T>* copies = args.copies;
-    const PointRange* ranges = copies ? copies->ranges : &all;
+    const CopyRange* ranges = copies ? copies->ranges : &all;
     const std::size_t range_count = copies ? copies->range_count : 1;
-    Places<T> x, y;
-    // In order: beyond a range's last point a vector writes into the next one's places.
-    for (std::size_t r = 0; r < range_count; ++r) {
-        Locate(args, args.origin_nodes_x, copies ? copies->nodes_x : nullptr, chunk.rest_x.data(), ranges[r],
-               x);
-        Locate(args, args.origin_nodes_y, copies ? copies->nodes_y : nullptr, chunk.rest_y.data(), ranges[r],
-               y);
-    }
-    FieldValues<T> values;
+    FieldValues<T> own, next;
     // What vectors meet between the ranges, and beyond the last point, has to be a number.
-    const bool is_whole = range_count == 1 && ranges[0].first == 0 && ranges[0].end == chunk.count;
-    for (std::size_t f = 0; f < kFieldCount; ++f)
-        if (args.samples[f])
-            std::fill(values[f].begin() + (is_whole ? chunk.count : 0), values[f].begin() + chunk.padded(),
-                      T(0));
+    const auto clear = [&](FieldValues<T>& values, PointRange but) {
+        const bool is_whole = but.first == 0 && but.end == chunk.count;
+        for (std::size_t f = 0; f < kFieldCount; ++f)
+            if (args.samples[f])
+                std::fill(values[f].begin() + (is_whole ? chunk.count : 0),
+                          values[f].begin() + chunk.padded(), T(0));
+    };
+    const auto shown = [&](const typename CopyArgs<T>::Side& side) {
+        return side.count == 1 ? side.points[0] : PointRange{0, 0};
+    };
+    clear(own, copies ? shown(copies->sides[0]) : whole);
+    if (copies && copies->sides[1].count > 0) clear(next, shown(copies->sides[1]));
+    Targets<T> targets{own, next, whole};
+    Places<T> y;
     const auto read = [&](auto&& reader) {
-        for (std::size_t r = 0; r < range_count; ++r) reader(ranges[r]);
+        for (std::size_t r = 0; r < range_count; ++r) {
+            const CopyRange& range = ranges[r];
+            targets.in_own = range.own;
+            for (PointRange part = range.points; part.first < part.end; part = {part.end, range.points.end}) {
+                const std::size_t end = EndOfLevel(chunk.rest_y.data(), part.first, part.end);
+                // Where y isn't the same for a while it soon isn't again.
+                const bool is_level = end == part.end || end - part.first >= hn::Lanes(hn::ScalableTag<T>());
+                if (is_level) part.end = end;
+                Locate(args, range.nodes_y, chunk.rest_y.data(),
+                       is_level ? PointRange{part.first, part.first + 1} : part, y);
+                reader(part, is_level, range.nodes_x);
+            }
+        }
+    };
+    const auto by_splines = [&](auto taps, RowPlaces<T>& row) {
+        SplineReader<taps, T> reader(args, chunk.rest_x.data(), y, row, targets);
+        read([&](PointRange part, bool is_level, double nodes_x) { reader.Read(part, is_level, nodes_x); });
     };
     if (args.sampling == Sampling::Nodes) {
-        read([&](PointRange range) { ReadNodes(args, range, x, y, values); });
-    } else if (args.taps == 6) {
-        SplineReader<6, T> reader(args, x, y, values);
-        read([&](PointRange range) { reader.Read(range); });
+        Places<T> x;
+        read([&](PointRange part, bool is_level, double nodes_x) {
+            Locate(args, nodes_x, chunk.rest_x.data(), part, x);
+            ReadNodes(args, part, is_level, x, y, targets);
+        });
     } else {
-        SplineReader<4, T> reader(args, x, y, values);
-        read([&](PointRange range) { reader.Read(range); });
+        RowPlaces<T> alone;
+        RowPlaces<T>& row = args.places ? *args.places : alone;
+        if (args.taps == 6)
+            by_splines(std::integral_constant<int, 6>(), row);
+        else
+            by_splines(std::integral_constant<int, 4>(), row);
     }
-    if (copies)
-        AddCopies(args, *copies, values, chunk);
-    else
-        AddValues(args, values, chunk);
+    if (!copies) return AddValues(args, own, chunk);
+    AddCopies(args, *copies, copies->sides[0], own, chunk);
+    if (copies->sides[1].count > 0) AddCopies(args, *copies, copies->sides[1], next, chunk);
 }
 
 }  // namespace grids_detail

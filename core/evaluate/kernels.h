@@ -19,8 +19,15 @@ struct PointRange {
     std::size_t first, end;  // `end` isn't one of them
 };
 
-// One copy of a grid's tile for each of a chunk's points, which sees it with a weight (core/plan/copies.h). All arrays are by
-// point, and those of T as long as a chunk's padded().
+// Points one after another that show one copy of a grid's tile, and where the chunk's origin lies in it [nodes]. Those of `own` lie
+// in the copy's own cell, those before and behind in cells beside it along x.
+struct CopyRange {
+    PointRange points, own;
+    double nodes_x, nodes_y;
+};
+
+// One copy of a grid's tile along y, and along x both that a chunk's points see, with their weights (core/plan/copies.h). All
+// arrays of T are by point, as long as a chunk's padded().
 template <class T>
 struct CopyArgs {
     // Along an axis: the copy's weight, and that of the other one beside it; how they change with the place [1/m]; and the
@@ -29,12 +36,51 @@ struct CopyArgs {
         const T *weight, *other, *rate;
         T sign;
     };
-    Axis x, y;
-    // Where the chunk's origin lies in the copy [nodes]; with room for a vector that begins at the last point.
-    const double *nodes_x, *nodes_y;
-    const PointRange* ranges;  // in order: the points that have this copy
+    // The copy in a point's own cell along x, or the one beside it; the points that show it, in order.
+    struct Side {
+        Axis x;
+        const PointRange* points;
+        std::size_t count;
+    };
+    std::array<Side, 2> sides;  // own, next
+    Axis y;
+    const CopyRange* ranges;
     std::size_t range_count;
     FieldSet wanted;  // fields that are added; samples hold what their gradients need as well
+};
+
+// Where a row of points lies along x in a grid, and its splines' weights there: kept for the next row of a patch, whose points have
+// the same x.
+template <class T>
+struct RowPlaces {
+    static constexpr std::size_t kRoom = 2 * Chunk<T>::kPoints + Chunk<T>::kLongestVector;
+    static constexpr std::size_t kParts = 32, kRuns = 64, kTaps = 6;
+    using Index = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+
+    // The first and the last one that begins a point's columns.
+    struct Columns {
+        Index low, high;
+    };
+    // Points that are read together, and from which of `vectors` on their columns stand.
+    struct Run {
+        PointRange points;
+        Columns columns;
+        std::size_t vector;
+    };
+    // Points one after another in one copy of the tile. Their values stand from `at` on.
+    struct Part {
+        PointRange points;
+        double nodes_x;
+        std::size_t at, first_run, end_run;
+    };
+
+    alignas(64) std::array<Index, kRoom> column;  // each point's first
+    alignas(64) std::array<std::array<T, kRoom>, kTaps> weight;
+    std::array<Columns, kRoom> vectors;  // of the points of runs
+    std::array<Run, kRuns> runs;
+    std::array<Part, kParts> parts;
+    std::size_t part_count = 0;
+    std::uint64_t row = 0;  // whose points' x these are; 0: nobody's
 };
 
 // A cascade's grid, to be read at a chunk's points.
@@ -49,6 +95,9 @@ struct GridArgs {
     FieldSet cell_group;                          // fields that cell_weight weighs; pixel_weight the others
     const T *cell_weight = nullptr, *pixel_weight = nullptr;  // by point; null: 1
     const CopyArgs<T>* copies = nullptr;                      // null: all points see the tile itself
+    RowPlaces<T>* places =
+        nullptr;  // where they are kept for chunks of the same x, which have the same `row`
+    std::uint64_t row = 0;
 };
 
 // The points' weight in a field; null: 1.

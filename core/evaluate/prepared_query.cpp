@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "core/base/number.h"
 #include "core/evaluate/taps.h"
@@ -71,7 +72,42 @@ struct PreparedQuery<T>::Work {
     bool apart;  // the strain of the waves that break is in `breaking`, not in `chunk`
     std::array<CopyPlaces<T>, limits::kCascades> copies;  // of the chunk's points, by cascade
     CopyReader<T> copy_reader;
+    std::vector<std::vector<std::unique_ptr<RowPlaces<T>>>> places;  // of grids by level; empty: not kept
+    std::uint64_t row = 0;  // that the chunk's x belong to; 0: x are not compared with those before
 };
+
+// How points are cut into chunks: in their order; or, of a patch, by columns of pieces of its rows, one above the other.
+template <class T>
+struct PreparedQuery<T>::Cut {
+    static constexpr std::size_t kBlock = 32;
+    std::size_t rows, row_points, width;
+
+    std::size_t pieces() const { return (row_points + width - 1) / width; }
+    std::size_t chunks() const { return rows * pieces(); }
+    PointRange chunk(std::size_t c) const {
+        const std::size_t of_block = kBlock * pieces(), block = c / of_block, above = block * kBlock;
+        const std::size_t high = std::min(kBlock, rows - above), in_block = c - block * of_block;
+        const std::size_t begin = (above + in_block % high) * row_points, piece = in_block / high * width;
+        return {begin + piece, begin + std::min(piece + width, row_points)};
+    }
+};
+
+template <class T>
+typename PreparedQuery<T>::Cut PreparedQuery<T>::cut(const Call& call) const {
+    constexpr std::size_t kPoints = Chunk<T>::kPoints, kVector = Chunk<T>::kLongestVector;
+    const Points<T>& points = call.points;
+    const Cut all{1, points.count, kPoints};
+    const bool has_splines = std::any_of(levels_.begin(), levels_.end(), [](const LevelGrids& level) {
+        return std::any_of(level.grids.begin(), level.grids.end(),
+                           [](const GridArgs<T>& grid) { return grid.sampling == Sampling::Spline; });
+    });
+    if (call.on_ladder || !has_splines) return all;
+    std::size_t row = 1;
+    while (row < points.count && points.rest_m[row].y == points.rest_m[0].y) ++row;
+    if (row == points.count || row < kPoints / 2 || points.count % row != 0) return all;
+    const std::size_t pieces = (row + kPoints - 1) / kPoints;
+    return {points.count / row, row, ((row + pieces - 1) / pieces + kVector - 1) / kVector * kVector};
+}
 
 template <class T>
 PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductSet wanted,
@@ -217,12 +253,13 @@ void PreparedQuery<T>::evaluate_by(const Points<T>& points, const Results<T>& re
     if (points.count == 0) return;
     const auto at = [&](const Place& place) {
         const Call call = this->call(points, results, place);
-        constexpr std::size_t kPoints = Chunk<T>::kPoints;
+        const Cut cut = this->cut(call);
         const auto work = [&](std::size_t begin, std::size_t end) {
             Work of_thread;
-            for (std::size_t c = begin; c < end; ++c) run(call, c * kPoints, of_thread);
+            if (cut.rows > 1) keep_places(of_thread);
+            for (std::size_t c = begin; c < end; ++c) run(call, cut.chunk(c), of_thread);
         };
-        const std::size_t chunks = (points.count + kPoints - 1) / kPoints;
+        const std::size_t chunks = cut.chunks();
         if (alone || chunks == 1) return work(0, chunks);
         tbb::parallel_for(
             tbb::blocked_range<std::size_t>(0, chunks),
@@ -235,14 +272,26 @@ void PreparedQuery<T>::evaluate_by(const Points<T>& points, const Results<T>& re
 }
 
 template <class T>
-void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) const {
+void PreparedQuery<T>::keep_places(Work& work) const {
+    for (const LevelGrids& level : levels_) {
+        auto& of_level = work.places.emplace_back();
+        for (std::size_t g = 0; g < level.grids.size(); ++g)
+            of_level.push_back(std::make_unique_for_overwrite<RowPlaces<T>>());
+    }
+    work.row = 1;
+}
+
+template <class T>
+void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     Chunk<T>& chunk = work.chunk;
     const Plan& plan = frame_->sea().plan();
-    chunk.count = std::min(Chunk<T>::kPoints, call.points.count - first);
+    const std::size_t first = of.first, before = std::exchange(chunk.count, of.end - of.first);
     const std::size_t padded = chunk.padded();
+    bool is_same = before == chunk.count;
     const auto take = [&](const auto& rest_m) {
         for (std::size_t i = 0; i < chunk.count; ++i) {
             const glm::vec<2, T> rest = rest_m[i];
+            is_same &= chunk.rest_x[i] == rest.x;
             chunk.rest_x[i] = rest.x;
             chunk.rest_y[i] = rest.y;
         }
@@ -251,6 +300,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
         take(&call.points.rest_m[first]);  // side by side: in vectors
     else
         take(from_point(call.points.rest_m, first));
+    if (work.row != 0 && !is_same) ++work.row;
     for (auto* rest : {&chunk.rest_x, &chunk.rest_y})
         std::fill(rest->begin() + chunk.count, rest->begin() + padded + Chunk<T>::kLongestVector, T(0));
     // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
@@ -264,7 +314,7 @@ void PreparedQuery<T>::run(const Call& call, std::size_t first, Work& work) cons
         work.pixels.take(query.pixel_m, call.points.pixel_m, call.points.pixel_axis_m, longest, first,
                          chunk.count);
     }
-    for (std::size_t c = 0; c < call.place.copies.size(); ++c) work.copies[c].forget();
+    for (std::size_t c = 0; c < call.place.copies.size(); ++c) work.copies[c].forget(work.row);
     work.apart = breaks_apart(call, work);
     work.needed = call.needed;
     if (call.breaks && !work.apart) work.needed |= strain_fields();
@@ -375,6 +425,8 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
         args.origin_nodes_y = call.place.nodes[level][g].y;
         args.cell_weight = share.cell_weight;
         args.pixel_weight = share.pixel_weight;
+        if (work.row != 0) args.places = work.places[level][g].get();
+        args.row = work.row;
         if (!has_copies_) {
             kernels_.add_grid(args, chunk);
             continue;
@@ -390,7 +442,7 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
 template <class T>
 void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
     auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
-           copy_reader] = work;
+           copy_reader, places, row] = work;
     FieldSet round;
     if (cells.any_round) round |= cell_fields();
     if (pixels.any_round) round |= ~cell_fields();
@@ -503,7 +555,7 @@ template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;
     auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
-           copy_reader] = work;
+           copy_reader, places, row] = work;
     const Points<T>& points = call.points;
     const std::size_t padded = chunk.padded();
     struct Own {

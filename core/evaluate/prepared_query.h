@@ -56,6 +56,7 @@ class PreparedQuery {
     // What one call has in common for all its points.
     struct Call;
     struct Work;
+    struct Cut;
     // Which of a level's grids, by breaks_alike.
     enum class Part { All, Alike, Other };
     // How a level's grids count at a chunk's points.
@@ -68,7 +69,9 @@ class PreparedQuery {
     void evaluate_by(const Points<T>& points, const Results<T>& results, bool alone) const;
     Place place_of(glm::dvec2 origin_m) const;
     Call call(const Points<T>& points, const Results<T>& results, const Place& place) const;
-    void run(const Call& call, std::size_t first, Work& work) const;
+    Cut cut(const Call& call) const;
+    void keep_places(Work& work) const;
+    void run(const Call& call, PointRange of, Work& work) const;
     void add_grids(const Call& call, std::size_t level, const Share& share, Work& work,
                    Chunk<T>& chunk) const;
     // Whether the strain of the waves that break isn't that of the chunk's normals.

@@ -58,7 +58,7 @@ class TapChunk {
             if (fields_[f]) std::fill(taps_.sums[f].begin(), taps_.sums[f].begin() + padded, T(0));
         if (turns_) std::fill(taps_.turn.begin(), taps_.turn.begin() + padded, T(0));
         if (copies_) {
-            places_.forget();
+            places_.forget(0);
             add_copies(whole_, args_, fields_, *copies_, places_, copy_reader_, taps_, *kernels_);
         } else {
             kernels_->add_grid(args_, taps_);

@@ -255,31 +255,53 @@ class MeshPart final : public OutputPart {
         keep(slot.foam_age_s, cage.foam_age_s);
     }
 
+    static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+    // Of a square of quads: each edge serves the two faces beside it, which go along it in opposite ways.
+    static double mean_coverage_of_square(const std::vector<glm::vec3>& positions,
+                                          const std::vector<float>& coverage) {
+        const auto side =
+            static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(positions.size()))));
+        AreaMean mean;
+        std::vector<glm::dvec2> below(positions.begin(), positions.begin() + side);
+        std::vector<double> along(side);  // the edges of the row below
+        for (std::size_t x = 0; x + 1 < side; ++x) along[x] = cross(below[x], below[x + 1]);
+        for (std::size_t y = 0; y + 1 < side; ++y) {
+            const float *low = coverage.data() + y * side, *high = low + side;
+            glm::dvec2 left(positions[(y + 1) * side]);
+            double up = cross(below[0], left);
+            for (std::size_t x = 0; x + 1 < side; ++x) {
+                const glm::dvec2 right(positions[(y + 1) * side + x + 1]);
+                const double next_up = cross(below[x + 1], right), above = cross(left, right);
+                const double twice_area = -up + along[x] + next_up - above;
+                const double sum = static_cast<double>(low[x]) + static_cast<double>(low[x + 1]) +
+                                   static_cast<double>(high[x + 1]) + static_cast<double>(high[x]);
+                mean.add(sum / 4.0, std::max(twice_area, 0.0));
+                along[x] = above;
+                below[x] = left;
+                left = right;
+                up = next_up;
+            }
+            below[side - 1] = left;
+        }
+        return mean.value();
+    }
+
     // Over the faces, as seen from above; a face that is folded over lies under others.
     double mean_coverage(const MeshSlot& slot, const std::vector<glm::vec3>& positions,
                          const std::vector<float>& coverage) const {
+        if (query().lattice) return mean_coverage_of_square(positions, coverage);
         AreaMean mean;
         const auto add = [&](std::span<const std::int32_t> corners) {
             double twice_area = 0.0, sum = 0.0;
             const std::int32_t* before = corners.data() + corners.size() - 1;
             for (const std::int32_t* at = corners.data(); at != corners.data() + corners.size();
                  before = at++) {
-                const glm::dvec2 a(positions[*before]), b(positions[*at]);
-                twice_area += a.x * b.y - a.y * b.x;
+                twice_area += cross(glm::dvec2(positions[*before]), glm::dvec2(positions[*at]));
                 sum += static_cast<double>(coverage[*at]);
             }
             mean.add(sum / static_cast<double>(corners.size()), std::max(twice_area, 0.0));
         };
-        if (query().lattice) {  // a square of quads
-            const auto side =
-                static_cast<std::int32_t>(std::lround(std::sqrt(static_cast<double>(positions.size()))));
-            for (std::int32_t y = 0; y + 1 < side; ++y)
-                for (std::int32_t x = 0; x + 1 < side; ++x) {
-                    const std::int32_t i = y * side + x;
-                    add(std::array{i, i + 1, i + side + 1, i + side});
-                }
-            return mean.value();
-        }
         const Faces& faces = attributes_.faces ? slot.faces : faces_;
         const std::int32_t* corner = faces.indices.data();
         for (const std::int32_t count : faces.counts) {

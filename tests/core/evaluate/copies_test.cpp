@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "core/evaluate/bounds.h"
+#include "core/evaluate/prepared_query.h"
 #include "tests/core/waves/samples.h"
 
 namespace pelagic {
@@ -194,6 +195,36 @@ TEST(CopiesOfTiles, AnswerEachPointAloneToTheBit) {
     for (std::size_t i = 0; i < rest.size(); ++i) {
         const auto one = ask(i, 1);
         for (const Product product : {Position, Normal, Velocity})
+            ASSERT_EQ(one.vectors(VectorProduct::checked(product))[0],
+                      all.vectors(VectorProduct::checked(product))[i])
+                << i;
+        ASSERT_EQ(one.numbers(Coverage)[0], all.numbers(Coverage)[i]) << i;
+    }
+}
+
+// What a row of a patch keeps for the row above (RowPlaces, CopyPlaces) changes nothing: not where copies blend along either axis, nor
+// where a row lies elsewhere.
+TEST(CopiesOfTiles, GiveAPatchTheBitsOfItsPointsAlone) {
+    const auto frame = frame_of<float>(copied_sea(), {unfiltered(products(Position, Normal, Coverage))}, 2.5);
+    constexpr std::size_t kRow = 300, kRows = 70;
+    std::vector<glm::vec2> rest;
+    for (std::size_t j = 0; j < kRows; ++j)
+        for (std::size_t i = 0; i < kRow; ++i)
+            rest.emplace_back(0.31f * static_cast<float>(i) - 60.0f + (j == 7 ? 0.1f : 0.0f),
+                              0.9f * static_cast<float>(j) - 40.0f);
+    const PreparedQuery<float> prepared(frame, 0, products(Position, Normal, Coverage));
+    const auto values_of = [&](std::size_t first, std::size_t count) {
+        ProductArrays<float> values;
+        values.resize(products(Position, Normal, Coverage), count);
+        // On one thread, which meets the rows one after another.
+        prepared.evaluate_alone(
+            {.count = count, .rest_m = {rest.data() + first}, .cell_m = {}, .pixel_m = {}}, values.results());
+        return values;
+    };
+    auto all = values_of(0, rest.size());
+    for (std::size_t i = 0; i < rest.size(); i += 13) {
+        auto one = values_of(i, 1);
+        for (const Product product : {Position, Normal})
             ASSERT_EQ(one.vectors(VectorProduct::checked(product))[0],
                       all.vectors(VectorProduct::checked(product))[i])
                 << i;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -109,7 +110,7 @@ SeaLayout::Ladder SeaLayout::ladder_of(const Plan& plan, const std::vector<doubl
     return ladder;
 }
 
-// Packs tiles in shelves, the largest first, into the texture of the fewest texels that most drivers have: as wide
+// Packs tiles, the largest first, into the texture of the fewest texels that most drivers have: as wide
 // as one of the tiles, as two side by side, and so on.
 glm::ivec2 SeaLayout::place(const Plan& plan, std::initializer_list<Ladder*> ladders) {
     const int skirt = plan.knobs.spline_taps - 1;
@@ -122,20 +123,26 @@ glm::ivec2 SeaLayout::place(const Plan& plan, std::initializer_list<Ladder*> lad
     for (auto& [key, tiles] : by_grid) grids.push_back(tiles);
     std::stable_sort(grids.begin(), grids.end(),
                      [](const auto& a, const auto& b) { return a.front()->n > b.front()->n; });
-    // Their size within this width; `put` is told where each goes.
-    const auto shelves = [&](int width, const auto& put) {
-        glm::ivec2 at(0), size(0);
-        int shelf = 0;
+    struct Room {
+        glm::ivec2 at, size;
+    };
+    // Their size within this width; `put` is told where each goes: to the topmost room that takes it. What is left of that beside
+    // it and below it is room for smaller ones.
+    const auto packed = [&](int width, const auto& put) {
+        std::vector<Room> rooms{{glm::ivec2(0), {width, std::numeric_limits<int>::max()}}};
+        glm::ivec2 size(0);
         for (const auto& tiles : grids) {
             const int side = tiles.front()->n + skirt;
-            if (at.x + side > width) {
-                at = {0, at.y + shelf};
-                shelf = 0;
-            }
-            put(tiles, at);
-            shelf = std::max(shelf, side);
-            at.x += side;
-            size = {std::max(size.x, at.x), std::max(size.y, at.y + shelf)};
+            const auto takes = [&](const Room& room) { return std::min(room.size.x, room.size.y) >= side; };
+            auto best = rooms.end();
+            for (auto room = rooms.begin(); room != rooms.end(); ++room)
+                if (takes(*room) && (best == rooms.end() || room->at.y < best->at.y)) best = room;
+            const Room room = *best;
+            rooms.erase(best);
+            put(tiles, room.at);
+            size = glm::max(size, room.at + side);
+            rooms.push_back({room.at + glm::ivec2(side, 0), {room.size.x - side, side}});
+            rooms.push_back({room.at + glm::ivec2(0, side), {room.size.x, room.size.y - side}});
         }
         return size;
     };
@@ -149,12 +156,12 @@ glm::ivec2 SeaLayout::place(const Plan& plan, std::initializer_list<Ladder*> lad
     int best_width = 0, width = 0;
     for (const auto& tiles : grids) {
         width += tiles.front()->n + skirt;
-        const auto judged = judge(shelves(width, [](const auto&, glm::ivec2) {}));
+        const auto judged = judge(packed(width, [](const auto&, glm::ivec2) {}));
         if (best && !(judged < *best)) continue;
         best = judged;
         best_width = width;
     }
-    return shelves(best_width, [](const auto& tiles, glm::ivec2 at) {
+    return packed(best_width, [](const auto& tiles, glm::ivec2 at) {
         for (Tile* tile : tiles) tile->first = at;
     });
 }

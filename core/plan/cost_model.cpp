@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/base/constants.h"
-#include "core/plan/foam_tiles.h"
+#include "core/plan/foam.h"
 #include "core/plan/mode_lattice.h"
 #include "core/plan/products.h"
 
@@ -69,7 +69,14 @@ double intervals_of_frame(const Plan& plan) {
 
 void add_foam(const Plan& plan, WorkDone& work) {
     const double intervals = intervals_of_frame(plan);
-    const std::array<double, FoamPlan::kLevels> tiles = foam_tiles(plan);
+    const bool are_pictures = plan.outputs.empty();
+    std::vector<Query> asked;
+    for (const PlannedQuery& planned : plan.queries) {
+        asked.push_back(planned.query);
+        // A picture's foam was timed by the tiles all round its camera: of points that aren't known.
+        if (are_pictures) asked.back().points = 0;
+    }
+    const auto tiles = foam_tiles(*plan.foam, plan.from->scene, asked, are_pictures);
     for (int level = 0; level < FoamPlan::kLevels; ++level) {
         const double count = tiles[static_cast<std::size_t>(level)];
         at(work, Work::Foam) += 1e-6 * intervals * count * static_cast<double>(FoamPlan::kTileNodes);

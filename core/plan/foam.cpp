@@ -113,9 +113,9 @@ Sector sector_of(const Camera& camera, double height_m) {
     return sector;
 }
 
-// Those whose cells footprints of so many of a camera's pixels need, whichever way it turns, or in its frame alone. A pixel is α s wide and α s²/h long at
-// the slant distance s from an eye at the height h: its area is that of the square of a cell at s = (cell/α)^⅔ h^⅓, and further
-// away coarser levels have it.
+// Those whose cells footprints of so many of a camera's pixels need, whichever way it turns, or in its frame alone. A pixel is
+// α s wide and α s²/h long at the slant distance s from an eye at the height h: its area is that of the square of a cell at
+// s = (cell/α)^⅔ h^⅓, and further away coarser levels have it.
 double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, double pixels, bool is_of_frame,
                      bool is_run, bool are_pictures) {
     const double cell_m = foam.cell_of(level);

@@ -109,7 +109,7 @@ TEST_F(Memory, APreviewThatDoesNotFitIsRefusedBeforeTheSeaIsBuilt) {
                    {"65536 x 36", "whose largest is ", "--size"});
     expect_refused(
         {"preview", "shot.toml", "--offscreen", "out.png", "--size", "32x18", "--max-memory", "200M"},
-        {"this picture needs about ", "--max-memory"});
+        {"this picture needs at least ", "--max-memory"});
 }
 
 // Largest resident memory of a run [KiB], and its exit status.

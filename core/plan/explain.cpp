@@ -207,10 +207,11 @@ std::string explain(const Plan& plan) {
         "frame, %s for points and results.\n",
         plan.transforms_per_frame(), plan.lines_per_frame(), bytes_text(plan.sea_bytes()).c_str(),
         bytes_text(plan.frame_bytes()).c_str(), bytes_text(plan.output_bytes()).c_str());
-    page += format("Quality %s: %s precision, %d-tap splines, %.3g × oversampled.\n",
-                   std::string(word_of(scene.quality.level)).c_str(),
-                   plan.knobs.double_precision ? "double" : "single", plan.knobs.spline_taps,
-                   plan.knobs.oversampling);
+    page += format(
+        "Quality %s: %s precision, %d-tap splines, %.3g × oversampled; what only pictures' light reads, %.3g × at "
+        "least.\n",
+        std::string(word_of(scene.quality.level)).c_str(), plan.knobs.double_precision ? "double" : "single",
+        plan.knobs.spline_taps, plan.knobs.oversampling, plan.knobs.light_oversampling);
     for (const PlannedOutput& output : plan.outputs)
         page += "Fingerprint of the " + plan.queries[output.query].query.name + " " +
                 output_fingerprint(plan, output) + "\n";

@@ -140,6 +140,22 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
             "with waves.tiling = \"periodic\" nothing"};
 }
 
+// Cascades with choppiness of their own, where those that hold the waves that break have none.
+std::vector<std::string> unpressed_warning(const PreparedScene& prepared) {
+    const Scene& scene = prepared.scene;
+    const Breaking breaking = breaking_of(scene, FootprintFilter());
+    if (!scene.effects.whitecaps || !(law_coverage(scene) > 0.0) || breaking.choppiness.is_of_all())
+        return {};
+    const auto presses = [&](const Choppiness& choppiness) {
+        const SpectralMoments all = moments_pressed(prepared.spectrum, 0.0, breaking.k_end(), choppiness);
+        return all.xxxx + all.yyyy > 0.0;
+    };
+    if (presses(breaking.choppiness) || !presses(1.0)) return {};
+    return {"there is no foam: the cascades whose waves break, those of more than " +
+            number_text(scene.effects.breaking_from_m) +
+            " m (effects.breaking_from_m), have no choppiness; waves.cascades[].choppiness gives them some"};
+}
+
 }  // namespace
 
 double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& choppiness) {
@@ -148,7 +164,7 @@ double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& chopp
 
 std::vector<std::string> sea_warnings(const PreparedScene& prepared) {
     std::vector<std::string> warnings = folding_warning(prepared);
-    for (auto* more : {&trough_warning, &repeats_warning, &copies_warning})
+    for (auto* more : {&trough_warning, &unpressed_warning, &repeats_warning, &copies_warning})
         for (std::string& warning : more(prepared)) warnings.push_back(std::move(warning));
     if (std::string thin = spray_warning(prepared.scene); !thin.empty()) warnings.push_back(std::move(thin));
     return warnings;

@@ -3,9 +3,12 @@
 #include "core/plan/fingerprint.h"
 
 #include <gtest/gtest.h>
+#include <algorithm>
 #include <array>
 
 #include "core/plan/products.h"
+#include "core/plan/quality.h"
+#include "core/scene/names.h"
 
 namespace pelagic {
 namespace {
@@ -307,6 +310,41 @@ TEST(Plan, ALaddersRungsArePowersOfTwoWhoeverAsks) {
             view_query(*prepared, {.finest_cell_m = 6.0 * finest_m, .finest_pixel_m = finest_m});
         for (const double rung_m : query.pixel_m) EXPECT_EQ(std::exp2(std::round(std::log2(rung_m))), rung_m);
         EXPECT_LE(query.cell_m.front(), 1.4143 * 6.0 * finest_m);
+    }
+}
+
+// A picture's light is read from fewer nodes than positions are, on levels of its own; a mesh's normals aren't light, and what is
+// as fine needs none.
+TEST(Plan, APicturesLightHasLevelsOfItsOwn) {
+    Scene scene;
+    const auto plan_of = [&](ProductSet wanted) {
+        const auto prepared = prepare(scene);
+        return make_plan(
+            prepared,
+            {view_query(*prepared,
+                        {.products = wanted, .finest_cell_m = 0.1, .finest_pixel_m = 0.1, .points = 1000})});
+    };
+    const auto finest_nodes = [](const Plan& plan, const std::vector<int>& levels) {
+        const CascadePlan& finest = plan.cascades.back();
+        return finest.grids[finest.grid_of_level[levels.front()]].resolution;
+    };
+    const auto are_of_light = [](const Plan& plan, const std::vector<int>& levels) {
+        return std::all_of(levels.begin(), levels.end(), [&](int i) { return plan.levels[i].is_of_light; });
+    };
+    for (const QualityRow& row : quality_table()) {
+        scene.quality.level = row.level;
+        const Plan picture = plan_of({});
+        const PlannedQuery& seen = picture.queries.front();
+        EXPECT_FALSE(are_of_light(picture, seen.cell_levels));
+        if (row.light_oversampling < row.oversampling) {
+            EXPECT_TRUE(are_of_light(picture, seen.pixel_levels)) << word_of(row.level);
+            EXPECT_LT(finest_nodes(picture, seen.pixel_levels), finest_nodes(picture, seen.cell_levels))
+                << word_of(row.level);
+        } else {
+            EXPECT_EQ(finest_nodes(picture, seen.pixel_levels), finest_nodes(picture, seen.cell_levels));
+        }
+        const Plan mesh = plan_of(products(Product::Position, Product::Normal));
+        EXPECT_FALSE(are_of_light(mesh, mesh.queries.front().pixel_levels));
     }
 }
 

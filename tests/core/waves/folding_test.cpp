@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/plan/copies.h"
 #include "core/scene/validate.h"
 #include "core/waves/frame.h"
@@ -48,6 +50,28 @@ TEST(SeaWarnings, SayThatTroughsReachTheBed) {
     EXPECT_NE(of()[0].find("sea.depth_m"), std::string::npos);
     shallow.sea.depth_m = 4.6;
     EXPECT_TRUE(of().empty());
+}
+
+// Long waves without choppiness beside ripples with it: nothing that breaks is pressed together.
+TEST(SeaWarnings, SayThatNothingBreaksForLackOfChoppiness) {
+    Scene scene = choppy(1.0);
+    scene.waves.tiling = Tiling::Random;
+    scene.waves.cascades = {{.size_m = 2000.0, .resolution = 1024, .choppiness = 0.0},
+                            {.size_m = 5.0, .resolution = 64, .choppiness = 1.0}};
+    const auto told = [&] {
+        const std::vector<std::string> warnings = sea_warnings(*prepare(scene));
+        return std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.find("there is no foam") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(told());
+    scene.effects.whitecaps = false;
+    EXPECT_FALSE(told());
+    scene.effects.whitecaps = true;
+    scene.waves.cascades[0].choppiness = 0.5;
+    EXPECT_FALSE(told());
+    scene.waves.cascades.clear();
+    EXPECT_FALSE(told());
 }
 
 TEST(Folding, GrowsWithChoppinessFromNothing) {

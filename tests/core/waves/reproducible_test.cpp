@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <stdexcept>
 
 #include "tests/core/waves/samples.h"
 
@@ -40,6 +41,18 @@ Query everything() {
     ProductSet all;
     all.set();
     return filtered(all, 0.8);
+}
+
+// Who gives a field's samples back has read them for the last time.
+TEST(Frame, ThatGaveSamplesBackTakesNoTime) {
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy(), {everything()}));
+    Frame<float> frame(sea);
+    frame.set(1.0);
+    ASSERT_NE(frame.samples(0, 0, Field::Height), nullptr);
+    frame.release(0, 0, Field::Height);
+    EXPECT_EQ(frame.samples(0, 0, Field::Height), nullptr);
+    EXPECT_NE(frame.samples(0, 0, Field::SlopeX), nullptr);
+    EXPECT_THROW(frame.set(2.0), std::logic_error);
 }
 
 TEST(Threads, ChangeNoBit) {

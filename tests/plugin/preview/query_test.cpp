@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <memory>
 #include <random>
 #include <string>
@@ -295,6 +296,33 @@ TEST(SeaTables, OfSizesChosenForTheSceneFitEverywhere) {
             const SeaLayout layout(std::make_shared<const Sea<float>>(make_plan(prepared, {query})), 0);
             EXPECT_LE(layout.tables(glm::dvec2(0.0), 0.0).size(), 16384u) << finest_m;
         }
+}
+
+// A ladder's tiles are halves of each other; the driver holds what lies between them as well.
+TEST(SeaLayout, LeavesLittleOfItsTexturesEmpty) {
+    Scene scene;
+    for (const double finest_m : {0.01, 0.05, 0.3}) {
+        const auto prepared = prepare(scene);
+        const Query query =
+            view_query(*prepared, {.finest_cell_m = 4.0 * finest_m, .finest_pixel_m = finest_m});
+        const SeaLayout layout(std::make_shared<const Sea<float>>(make_plan(prepared, {query})), 0);
+        for (const SeaLayout::Plane& plane : layout.planes()) {
+            double taken = 0.0;
+            const std::vector<SeaLayout::Tile> tiles = layout.tiles_of(plane);
+            for (std::size_t i = 0; i < tiles.size(); ++i) {
+                const glm::ivec2 side(layout.side_of(tiles[i])), first = tiles[i].first;
+                EXPECT_TRUE(glm::all(glm::lessThanEqual(first + side, plane.size)));
+                taken += static_cast<double>(side.x) * side.y;
+                for (std::size_t j = 0; j < i; ++j) {
+                    const glm::ivec2 other = tiles[j].first, end = other + layout.side_of(tiles[j]);
+                    EXPECT_TRUE(glm::any(glm::lessThanEqual(first + side, other)) ||
+                                glm::any(glm::lessThanEqual(end, first)))
+                        << "tiles " << i << " and " << j;
+                }
+            }
+            EXPECT_GT(taken, 0.9 * plane.size.x * plane.size.y) << finest_m;
+        }
+    }
 }
 
 // As many explicit cascades as a shot may have need more: who draws them refuses where the driver has less.

@@ -123,15 +123,17 @@ double expected_level_set_blocks(const Plan& plan) {
     const double reach = 0.5 * (band * std::sqrt(1.0 + waves.mss()) + rise);
     const double floor = std::floor(-plan.from->extent.height_m / voxel_m) - kBelow_voxels;
 
-    double along_surface = 0.0;
+    const auto block_of = [](double voxel) { return std::floor(voxel / kBlock); };
+    const double lowest = block_of(floor - kHalfWidth_voxels);
+    const double along_floor = block_of(floor + kHalfWidth_voxels - 1.0) - lowest + 1.0;
+    // A block's voxels have their middles from a half on to 7.5.
     const double farthest = std::ceil((8.0 * deviation + reach) / kBlock);
+    double along_surface = 0.0, along_side = 0.0;
     for (double block = -farthest; block <= farthest; ++block)
         along_surface += normal_share((kBlock * (block + 1.0) - 0.5 + reach) / deviation) -
                          normal_share((kBlock * block + 0.5 - reach) / deviation);
-    const auto block_of = [](double voxel) { return std::floor(voxel / kBlock); };
-    const double along_floor =
-        block_of(floor + kHalfWidth_voxels - 1.0) - block_of(floor - kHalfWidth_voxels) + 1.0;
-    const double along_side = blocks_of_row(band - floor);
+    for (double block = lowest; block <= farthest; ++block)
+        along_side += normal_share((kHalfWidth_voxels - 0.5 - kBlock * block) / deviation);
     // Near a side lie the first two columns of blocks, and those beside the last voxel.
     const double all = block_of(columns - 1.0 + kHalfWidth_voxels) + 2.0;
     const double inner = std::max(block_of(columns - kHalfWidth_voxels) - 1.0, 0.0);

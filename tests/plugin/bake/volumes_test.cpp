@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -26,6 +27,7 @@
 #include "core/plan/spray.h"
 #include "plugin/bake/bake.h"
 #include "plugin/bake/level_set.h"
+#include "plugin/bake/volume_blocks.h"
 #include "plugin/vdb/vdb.h"
 #include "tests/plugin/bake/read_vdb.h"
 #include "tests/plugin/bake/spray_balance.h"
@@ -510,6 +512,43 @@ TEST(VolumesPlan, SprayThatNobodyAsksForCostsNothing) {
     off.output.mesh = MeshFormat::None;
     off.output.volumes = {VolumeKind::LevelSet};
     EXPECT_FALSE(plan_bake(off).foam.has_value());
+}
+
+std::size_t blocks_of(const VdbGrid& grid) {
+    std::set<std::array<int, 3>> blocks;
+    const auto block_of = [](int voxel) { return voxel >> 3; };
+    grid.for_each([&](glm::ivec3 at, glm::vec3) {
+        blocks.insert({block_of(at.x), block_of(at.y), block_of(at.z)});
+    });
+    return blocks.size();
+}
+
+// In light wind and in a storm, coarse and fine. The bounds are those within which the memory that is said is that which is used.
+TEST_F(Volumes, HaveAboutAsManyBlocksAsTheirPlanExpects) {
+    struct Case {
+        double wind_mps, size_m, voxel_m;
+    };
+    for (const auto& [wind_mps, size_m, voxel_m] :
+         {Case{8.0, 100.0, 0.5}, {16.0, 150.0, 1.0}, {24.0, 40.0, 0.25}, {0.0, 40.0, 0.5}}) {
+        SCOPED_TRACE(testing::Message() << wind_mps << " m/s, voxels of " << voxel_m << " m");
+        Scene scene = stormy(size_m, voxel_m);
+        scene.sea.wind_speed_mps = wind_mps;
+        scene.waves.cascades.clear();
+        const Plan plan = plan_bake(scene);
+        const fs::path folder = baked(scene) / "volumes";
+        const auto solid =
+            static_cast<double>(blocks_of(read_vdb(folder / "sea.level-set.0001.vdb").front()));
+        EXPECT_NEAR(expected_level_set_blocks(plan) / solid, 1.0, 0.1);
+        const auto spray = static_cast<double>(blocks_of(read_vdb(folder / "sea.spray.0001.vdb").front()));
+        if (wind_mps > 0.0) {
+            EXPECT_GT(expected_spray(plan).blocks, 0.7 * spray);
+            EXPECT_LT(expected_spray(plan).blocks, 1.5 * spray);
+        } else {
+            EXPECT_EQ(spray, 0.0);
+            EXPECT_EQ(expected_spray(plan).blocks, 0.0);
+        }
+        fs::remove_all(folder_);
+    }
 }
 
 // ---- The format

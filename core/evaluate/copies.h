@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <span>
-#include <utility>
 
 #include "core/evaluate/chunk.h"
 #include "core/evaluate/kernels.h"
@@ -133,9 +132,10 @@ class CopyReader {
         copies.wanted = wanted;
         grid.copies = &copies;
         for (const bool next_y : {false, true}) {
-            if (next_y)
-                grid.places =
-                    nullptr;  // copies there lie elsewhere: what is kept are those of the rows between
+            if (next_y) {  // copies there lie elsewhere: what is kept are places in the points' own cells
+                grid.places = nullptr;
+                grid.row = 0;
+            }
             find(grid, origin, places, next_y);
             if (range_count_ == 0) continue;
             copies.range_count = range_count_;
@@ -187,8 +187,7 @@ class CopyReader {
         for (std::size_t r = range_count_; r > 0 && r + 2 > range_count_; --r) {
             CopyRange& range = ranges_[r - 1];
             const bool is_own_over = range.own.end > range.own.first && range.own.end < range.points.end;
-            if (cells_[r - 1] != std::pair(x, y) || range.points.end != points.first ||
-                (!next_x && is_own_over))
+            if (cells_[r - 1] != Cell{x, y} || range.points.end != points.first || (!next_x && is_own_over))
                 continue;
             range.points.end = points.end;
             if (!next_x)
@@ -207,10 +206,16 @@ class CopyReader {
         return (of_cells_ && of_cells_[i] > T(0)) || (of_pixels_ && of_pixels_[i] > T(0));
     }
 
+    // Not a pair, whose members would all be zeroed for each query.
+    struct Cell {
+        std::int64_t x, y;
+        bool operator==(const Cell&) const = default;
+    };
+
     const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
     // A point lies in one or two ranges.
     std::array<CopyRange, 2 * Chunk<T>::kPoints> ranges_;
-    std::array<std::pair<std::int64_t, std::int64_t>, 2 * Chunk<T>::kPoints> cells_;  // of their copies
+    std::array<Cell, 2 * Chunk<T>::kPoints> cells_;  // of their copies
     std::size_t range_count_ = 0;
     std::array<std::array<PointRange, Chunk<T>::kPoints>, 2> points_;  // that show copies: own, next
     std::array<std::size_t, 2> point_count_{};

@@ -246,7 +246,7 @@ class SplineReader {
 
     // Places the points along x, keeps that where there is room, and reads them.
     void Find(double nodes_x) {
-        row_.part_count = std::min(row_.part_count, part_);
+        row_.part_count = part_;  // those behind are of another row
         Part part{range_, nodes_x, 0, 0, 0};
         if (part_ > 0) {
             const Part& last = row_.parts[part_ - 1];
@@ -254,7 +254,7 @@ class SplineReader {
             part.at = last.at + (last.points.end - last.points.first + lanes - 1) / lanes * lanes;
             part.first_run = part.end_run = last.end_run;
         }
-        bool is_kept = is_level_ && args_.row != 0 && part_ < row_.kParts && part_ == row_.part_count &&
+        bool is_kept = is_level_ && args_.row != 0 && part_ < row_.kParts &&
                        part.at + (range_.end - range_.first) + 64 / sizeof(T) <= row_.kRoom;
         if (!is_kept) {
             DropAll(part);

@@ -275,8 +275,9 @@ template <class T>
 void PreparedQuery<T>::keep_places(Work& work) const {
     for (const LevelGrids& level : levels_) {
         auto& of_level = work.places.emplace_back();
-        for (std::size_t g = 0; g < level.grids.size(); ++g)
-            of_level.push_back(std::make_unique_for_overwrite<RowPlaces<T>>());
+        for (const GridArgs<T>& grid : level.grids)
+            of_level.push_back(
+                grid.sampling == Sampling::Spline ? std::make_unique_for_overwrite<RowPlaces<T>>() : nullptr);
     }
     work.row = 1;
 }

@@ -646,6 +646,23 @@ TEST(LivingFoam, OfAPictureHoldsWhatItsPlanSays) {
     }
 }
 
+// Of meshes whose points have footprints of their own, also of trains, which have no ladder: planned, and no more than is needed.
+TEST(LivingFoam, OfMeshesForACameraIsPlannedByTheirCells) {
+    for (const SurfaceKind kind : {SurfaceKind::NearFar, SurfaceKind::ProjectedGrid, SurfaceKind::Planet})
+        for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid})
+            for (const double height_m : {3.0, 100.0}) {
+                Scene scene = scene_of(4.0);
+                scene.shot.last_frame = scene.shot.first_frame;
+                scene.waves.model = model;
+                scene.surface.kind = kind;
+                scene.camera.position_m = {0.0, 0.0, height_m};
+                scene.camera.look_at_m = {0.0, 10.0 * height_m, 0.0};
+                const std::size_t bytes = plan_bake(scene).foam_history_bytes();
+                EXPECT_GT(bytes, std::size_t(1) << 20) << static_cast<int>(kind) << ", " << height_m;
+                EXPECT_LT(bytes, std::size_t(100) << 20) << static_cast<int>(kind) << ", " << height_m;
+            }
+}
+
 // Where no wave breaks nothing is kept, and no earlier time is looked at.
 TEST(LivingFoam, OfASeaWithoutFoamCostsNothing) {
     Scene scene = scene_of(4.0);

@@ -105,11 +105,13 @@ TEST_P(BakeStopped, AtRandomMomentsNothingIsTornAndTheNextRunFinishes) {
             ASSERT_EQ(leftovers(out), std::vector<std::string>()) << when();
         }
         const std::string first = "maps/small.displacement.0001.exr";
-        if (read_file(out / first) != read_file(undisturbed / first)) ++with_new_frames;
+        const bool has_new_frames = read_file(out / first) != read_file(undisturbed / first);
+        with_new_frames += has_new_frames;
 
         const Ended finished = run(bake("one.toml", "out"));
         ASSERT_EQ(finished.status, 0) << finished.err;
-        whole_s = finished.seconds;
+        // A run that finds its frames is short: by its time no stop would come after the first frame any more.
+        if (has_new_frames) whole_s = finished.seconds;
         ASSERT_EQ(leftovers(out), std::vector<std::string>()) << when();
         ASSERT_EQ(differences(out, undisturbed), "") << when();
     }

@@ -31,7 +31,7 @@ class LevelSetPart final : public VolumePart {
     }
 
     OutputMemory memory() const override {
-        constexpr double kFileBytes = 640.0;  // of a block
+        constexpr double kFileBytes = 640.0;  // of a block; found 490 … 650
         const double blocks = expected_level_set_blocks(plan_);
         return memory_of(query().points * sizeof(float), 1, blocks * vdb::bytes_a_block<float>(),
                          blocks * kFileBytes);

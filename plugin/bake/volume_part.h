@@ -31,7 +31,7 @@ class VolumePart : public OutputPart {
     // Of `grids` grids that take so much, in a file of so many bytes [bytes]. While a frame is encoded they are there with what
     // the heap loses between them, and the file grows by doubling.
     OutputMemory memory_of(std::size_t values, int grids, double in_grids, double in_file) const {
-        constexpr double kHeap = 1.25;
+        constexpr double kHeap = 1.25;  // found, over winds and voxels, beside what the grids' blocks take
         const auto file = static_cast<std::size_t>(in_file);
         return {.slot = values + file,
                 .encoding = static_cast<std::size_t>(kHeap * in_grids) + 2 * file + grids * vdb::kTreeBytes,

@@ -117,18 +117,17 @@ HWY_INLINE auto Widen(DD dd, const double* from) {
 }
 
 // Along one axis, in double: exact wherever in the world the origin is. A place that is no number, or so far
-// that nothing of it is left, becomes 0.
-template <class T>
-void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, PointRange range,
-            Places<T>& places) {
+// that nothing of it is left, becomes 0. `origin`: of the vector of points from one on [nodes].
+template <class T, class Origin>
+void Locate(const GridArgs<T>& args, Origin origin, const T* rest_m, PointRange range, Places<T>& places) {
     const hn::ScalableTag<double> dd;
     using Wide = decltype(dd);
     const hn::Rebind<T, Wide> narrow;
     const hn::Rebind<hwy::MakeSigned<T>, Wide> index;
     const auto n = hn::Set(dd, args.n), per_n = hn::Set(dd, 1.0 / args.n);
-    const auto scale = hn::Set(dd, args.nodes_per_m), origin = hn::Set(dd, origin_nodes);
+    const auto scale = hn::Set(dd, args.nodes_per_m);
     for (std::size_t i = range.first; i < range.end; i += hn::Lanes(dd)) {
-        const auto nodes = hn::MulAdd(Widen(dd, rest_m + i), scale, origin);
+        const auto nodes = hn::MulAdd(Widen(dd, rest_m + i), scale, origin(i));
         auto inside = hn::NegMulAdd(hn::Floor(hn::Mul(nodes, per_n)), n, nodes);
         // −1e-20 is rounded up to n itself, and the quotient may be off by a unit in its last place.
         inside = hn::IfThenElse(hn::Lt(inside, hn::Zero(dd)), hn::Add(inside, n), inside);
@@ -140,6 +139,16 @@ void Locate(const GridArgs<T>& args, double origin_nodes, const T* rest_m, Point
         hn::StoreU(Index(dd, node, T()), index, places.node.data() + i);
         hn::StoreU(Narrow(dd, rest, T()), narrow, places.rest.data() + i);
     }
+}
+
+// The same, of points with one origin.
+template <class T>
+void LocateAll(const GridArgs<T>& args, double origin_nodes, const T* rest_m, PointRange range,
+               Places<T>& places) {
+    const hn::ScalableTag<double> dd;
+    const auto origin = hn::Set(dd, origin_nodes);
+    Locate(
+        args, [origin](std::size_t) HWY_ATTR { return origin; }, rest_m, range, places);
 }
 
 // Where the points from `begin` on have another y than that one: a row of a patch ends there.
@@ -188,7 +197,169 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const P
     }
 }
 
-// A cascade's grid at points, by B-splines of P taps along each axis.
+// The taps of B-splines of P taps along each axis: what one point is summed in, and the order of every point's sum.
+template <int P, class T>
+struct SplineTaps {
+    static constexpr std::size_t kTaps = P <= 4 ? 4 : 8;          // with zeros behind the last
+    using D = hn::CappedTag<T, std::min(kTaps, 32 / sizeof(T))>;  // of at most 256 bits
+    static constexpr int kGroup = static_cast<int>(hn::MaxLanes(D()));
+
+    // Rows of a grid, and their weights.
+    struct Rows {
+        std::size_t at[P];  // where they begin, or a column of theirs
+        T weight[P];
+    };
+    static HWY_INLINE void PlaceRows(const GridArgs<T>& args, hwy::MakeSigned<T> node, std::size_t column,
+                                     std::size_t (&at)[P]) {
+        for (int p = 0; p < P; ++p) {
+            int row = static_cast<int>(node) - P / 2 + 1 + p;
+            // n may be smaller than the number of taps; a division for each row would cost more than the sums.
+            while (row < 0) row += args.n;
+            while (row >= args.n) row -= args.n;
+            at[p] = static_cast<std::size_t>(row) * line_stride<T>(args.n) + column;
+        }
+    }
+
+    // The rows' sums in V vectors from column k on.
+    template <int V, class Tag>
+    static HWY_INLINE void SumRows(Tag d, const T* samples, const Rows& rows, std::size_t k,
+                                   hn::Vec<Tag> (&sums)[V]) {
+        for (int p = 0; p < P; ++p) {
+            const auto weight = hn::Set(d, rows.weight[p]);
+            const T* row = samples + rows.at[p] + k;
+            for (int v = 0; v < V; ++v) {
+                const auto columns = hn::LoadU(d, row + static_cast<std::size_t>(v) * hn::Lanes(d));
+                sums[v] = p == 0 ? hn::Mul(weight, columns) : hn::MulAdd(weight, columns, sums[v]);
+            }
+        }
+    }
+
+    // A point by itself, nothing kept between. `rows`: from its first column on; `weights`: along x.
+    static HWY_NOINLINE void ReadAlone(const GridArgs<T>& args, const Rows& rows,
+                                       const hn::Vec<D> (&weights)[kTaps / kGroup], FieldValues<T>& values,
+                                       std::size_t point) {
+        const D d;
+        for (std::size_t f = 0; f < kFieldCount; ++f) {
+            const T* samples = args.samples[f];
+            if (!samples) continue;
+            auto sum = hn::Zero(d);
+            for (std::size_t k = 0; k < kTaps / kGroup; ++k) {
+                hn::Vec<D> of_rows[1];
+                SumRows(d, samples, rows, k * kGroup, of_rows);
+                sum = hn::MulAdd(of_rows[0], weights[k], sum);
+            }
+            values[f][point] = hn::GetLane(hn::SumOfLanes(d, sum));
+        }
+    }
+};
+
+// A cascade's grid at points that have no row in common, in whichever copies of it they lie.
+template <int P, class T>
+class ScatteredReader {
+  public:
+    ScatteredReader(const GridArgs<T>& args, const Chunk<T>& chunk) : args_(args), chunk_(chunk) {}
+
+    // nodes_x, nodes_y: where the points' origin lies.
+    void Read(PointRange points, double nodes_x, double nodes_y, const Targets<T>& targets) {
+        Places<T> x, y;
+        LocateAll(args_, nodes_x, chunk_.rest_x.data(), points, x);
+        LocateAll(args_, nodes_y, chunk_.rest_y.data(), points, y);
+        ReadPlaced(points, x, y, [&](std::size_t i) { return To{&targets.of(i), i}; });
+    }
+
+    // Collects points of many ranges, which are read together: ReadTaken() has to follow the last.
+    void Take(PointRange points, double nodes_x, double nodes_y, const Targets<T>& targets) {
+        for (std::size_t i = points.first; i < points.end; ++i) {
+            if (count_ == Chunk<T>::kPoints) ReadTaken();
+            rest_x_[count_] = chunk_.rest_x[i];
+            rest_y_[count_] = chunk_.rest_y[i];
+            nodes_x_[count_] = nodes_x;
+            nodes_y_[count_] = nodes_y;
+            to_[count_++] = {&targets.of(i), i};
+        }
+    }
+    void ReadTaken() {
+        if (count_ == 0) return;
+        const hn::ScalableTag<double> dd;
+        const auto origin = [dd](const std::array<double, kRoom<T>>& nodes) {
+            return [from = nodes.data(), dd](std::size_t i) HWY_ATTR { return hn::LoadU(dd, from + i); };
+        };
+        // What vectors meet beyond the last point has to be a number.
+        for (auto* values : {&rest_x_, &rest_y_})
+            std::fill_n(values->begin() + count_, Chunk<T>::kLongestVector, T(0));
+        for (auto* values : {&nodes_x_, &nodes_y_})
+            std::fill_n(values->begin() + count_, Chunk<T>::kLongestVector, 0.0);
+        Places<T> x, y;
+        Locate(args_, origin(nodes_x_), rest_x_.data(), {0, count_}, x);
+        Locate(args_, origin(nodes_y_), rest_y_.data(), {0, count_}, y);
+        ReadPlaced({0, count_}, x, y, [&](std::size_t j) { return to_[j]; });
+        count_ = 0;
+    }
+
+  private:
+    using D = hn::ScalableTag<T>;
+    using N = Pack<D>;
+    using Taps = SplineTaps<P, T>;
+    struct To {
+        FieldValues<T>* values;
+        std::size_t point;
+    };
+
+    // A point's weights. Eight are put together from registers: a load that spans two stores would wait for both.
+    static HWY_INLINE void Load(const T (&beside)[Taps::kTaps / 4][4 * hn::MaxLanes(D())], std::size_t at,
+                                hn::Vec<typename Taps::D> (&weights)[Taps::kTaps / Taps::kGroup]) {
+        const typename Taps::D d;
+        if constexpr (Taps::kGroup <= 4) {
+            for (std::size_t k = 0; k < Taps::kTaps; k += Taps::kGroup)
+                weights[k / Taps::kGroup] = hn::Load(d, beside[k / 4] + at + k % 4);
+        } else {
+#if HWY_TARGET != HWY_SCALAR
+            const hn::Half<typename Taps::D> four;
+            weights[0] = hn::Combine(d, hn::Load(four, beside[1] + at), hn::Load(four, beside[0] + at));
+#endif
+        }
+    }
+
+    // `to`: where the values of one of them go.
+    template <class Which>
+    void ReadPlaced(PointRange points, const Places<T>& x, const Places<T>& y, Which to) {
+        const D d;
+        constexpr std::size_t kFours = Taps::kTaps / 4;
+        for (std::size_t i = points.first; i < points.end; i += hn::Lanes(d)) {
+            N some[P], w[Taps::kTaps];  // of those beyond P, zeros
+            bspline_weights<P>(N(hn::LoadU(d, y.rest.data() + i)), some);
+            alignas(64) T along_y[P][hn::MaxLanes(d)];
+            for (int p = 0; p < P; ++p) hn::Store(some[p].v, d, along_y[p]);
+            bspline_weights<P>(N(hn::LoadU(d, x.rest.data() + i)), some);
+            std::copy_n(some, P, w);
+            // Side by side for each point, in fours as they are loaded again.
+            alignas(64) T beside[kFours][4 * hn::MaxLanes(d)];
+            for (std::size_t h = 0; h < kFours; ++h)
+                hn::StoreInterleaved4(w[4 * h].v, w[4 * h + 1].v, w[4 * h + 2].v, w[4 * h + 3].v, d,
+                                      beside[h]);
+            for (std::size_t j = 0; j < hn::Lanes(d) && i + j < points.end; ++j) {
+                hn::Vec<typename Taps::D> along_x[Taps::kTaps / Taps::kGroup];
+                Load(beside, 4 * j, along_x);
+                typename Taps::Rows rows;
+                auto column = x.node[i + j] - (P / 2 - 1);
+                if (column < 0) column += args_.n;
+                Taps::PlaceRows(args_, y.node[i + j], static_cast<std::size_t>(column), rows.at);
+                for (int p = 0; p < P; ++p) rows.weight[p] = along_y[p][j];
+                const To where = to(i + j);
+                Taps::ReadAlone(args_, rows, along_x, *where.values, where.point);
+            }
+        }
+    }
+
+    const GridArgs<T>& args_;
+    const Chunk<T>& chunk_;
+    std::size_t count_ = 0;
+    std::array<T, kRoom<T>> rest_x_, rest_y_;
+    std::array<double, kRoom<T>> nodes_x_, nodes_y_;
+    std::array<To, Chunk<T>::kPoints> to_;
+};
+
+// A cascade's grid at points of a patch's row, by B-splines of P taps along each axis.
 template <int P, class T>
 class SplineReader {
   public:
@@ -199,14 +370,13 @@ class SplineReader {
         row.row = args.row;
     }
 
-    // Points of one run have the same y and lie close together in x, as those of a patch do: the rows that they
-    // need are added up once, and what is left is a sum along x. `is_level`: all of the range have the first one's y, and the
-    // places along y have no other. `nodes_x`: where the points' origin lies.
-    void Read(PointRange range, bool is_level, double nodes_x) {
+    // All of the range have the first one's y, and the places along y have no other. Points of one run lie close together in x, as
+    // those of a patch do: the rows that they need are added up once, and what is left is a sum along x. `nodes_x`: where the points'
+    // origin lies.
+    void Read(PointRange range, double nodes_x) {
         range_ = range;
-        is_level_ = is_level;
-        WeighRows(is_level ? PointRange{range.first, range.first + 1} : range);
-        const Part* part = is_level ? Known(nodes_x) : nullptr;
+        PlaceRows();
+        const Part* part = Known(nodes_x);
         if (!part) return Find(nodes_x);
         At(part->at);
         for (std::size_t r = part->first_run; r < part->end_run; ++r) ReadOne(row_.runs[r]);
@@ -215,10 +385,8 @@ class SplineReader {
   private:
     using D = hn::ScalableTag<T>;
     using N = Pack<D>;
-    static constexpr std::size_t kTaps = P <= 4 ? 4 : 8;  // with zeros behind the last
-    // Of at most 256 bits: what a point alone is summed in, and the order of every point's sum.
-    using Taps = hn::CappedTag<T, std::min(kTaps, 32 / sizeof(T))>;
-    static constexpr int kGroup = static_cast<int>(hn::MaxLanes(Taps()));
+    using Taps = SplineTaps<P, T>;
+    using Rows = typename Taps::Rows;
     // A run pays for the columns that it spans, and saves P − 1 rows of its points: beyond a few columns a
     // point, or across the seam of the period, the next one begins.
     static constexpr int kColumnsPerPoint = 4;
@@ -228,11 +396,6 @@ class SplineReader {
     using Columns = typename RowPlaces<T>::Columns;
     using Run = typename RowPlaces<T>::Run;
     using Part = typename RowPlaces<T>::Part;
-
-    struct Rows {
-        std::size_t at[P];  // where they begin
-        T weight[P];
-    };
 
     // The part that comes next, where the row before has left it.
     const Part* Known(double nodes_x) {
@@ -254,7 +417,7 @@ class SplineReader {
             part.at = last.at + (last.points.end - last.points.first + lanes - 1) / lanes * lanes;
             part.first_run = part.end_run = last.end_run;
         }
-        bool is_kept = is_level_ && args_.row != 0 && part_ < row_.kParts &&
+        bool is_kept = args_.row != 0 && part_ < row_.kParts &&
                        part.at + (range_.end - range_.first) + 64 / sizeof(T) <= row_.kRoom;
         if (!is_kept) {
             DropAll(part);
@@ -299,7 +462,7 @@ class SplineReader {
         const std::size_t lanes = hn::Lanes(d);
         const auto n = hn::Set(di, args_.n), before = hn::Set(di, P / 2 - 1), none = hn::Zero(di);
         Places<T> x;
-        Locate(args_, nodes_x, rest_x_, range_, x);
+        LocateAll(args_, nodes_x, rest_x_, range_, x);
         for (std::size_t i = range_.first; i < range_.end; i += lanes) {
             N w[P];
             bspline_weights<P>(N(hn::LoadU(d, x.rest.data() + i)), w);
@@ -309,19 +472,16 @@ class SplineReader {
         }
     }
 
-    // The points' weights along y.
-    void WeighRows(PointRange range) {
-        const D d;
-        N before, w[P];
-        bool is_first = true;
-        for (std::size_t i = range.first; i < range.end; i += hn::Lanes(d)) {
-            const auto rest = hn::LoadU(d, y_.rest.data() + i);
-            // In a row of a patch all points have one place between two rows.
-            if (is_first || !hn::AllTrue(d, hn::Eq(rest, before.v))) bspline_weights<P>(N(rest), w);
-            before = rest;
-            is_first = false;
-            for (int p = 0; p < P; ++p) hn::StoreU(w[p].v, d, row_weights_[p].data() + i);
-        }
+    void PlaceRows() {
+        N w[P];
+        bspline_weights<P>(N(hn::Set(D(), y_.rest[range_.first])), w);
+        for (int p = 0; p < P; ++p) rows_.weight[p] = hn::GetLane(w[p].v);
+        Taps::PlaceRows(args_, y_.node[range_.first], 0, rows_.at);
+    }
+    Rows RowsFrom(Index column) const {
+        Rows rows = rows_;
+        for (std::size_t& at : rows.at) at += static_cast<std::size_t>(column);
+        return rows;
     }
 
     // Of at most a vector of points.
@@ -331,17 +491,6 @@ class SplineReader {
         const auto column =
             hn::IfThenElse(there, hn::LoadU(di, column_ + points.first), hn::Set(di, column_[points.first]));
         return {hn::GetLane(hn::MinOfLanes(di, column)), hn::GetLane(hn::MaxOfLanes(di, column))};
-    }
-
-    bool HaveOneY(PointRange points, std::size_t as) const {
-        if (is_level_) return true;
-        const D d;
-        const hn::RebindToSigned<D> di;
-        const std::size_t count = points.end - points.first;
-        const auto node = hn::LoadU(di, y_.node.data() + points.first);
-        const auto rest = hn::LoadU(d, y_.rest.data() + points.first);
-        return hn::AllFalse(di, hn::AndNot(hn::Eq(node, hn::Set(di, y_.node[as])), hn::FirstN(di, count))) &&
-               hn::AllFalse(d, hn::AndNot(hn::Eq(rest, hn::Set(d, y_.rest[as])), hn::FirstN(d, count)));
     }
 
     // Notes the columns of each vector of its points.
@@ -360,7 +509,6 @@ class SplineReader {
         // A vector of points at a time, as long as all of them belong to it.
         for (; run.points.end < range_.end; ++vector) {
             const PointRange next{run.points.end, std::min(run.points.end + lanes, range_.end)};
-            if (!HaveOneY(next, begin)) break;
             *vector = ColumnsOf(next);
             if (!grow(*vector, next.end - next.first)) break;
         }
@@ -370,45 +518,17 @@ class SplineReader {
         while (run.points.end < range_.end) {
             const std::size_t next = run.points.end;
             const Index column = column_[next];
-            if (!HaveOneY({next, next + 1}, begin) || !grow({column, column}, 1)) break;
+            if (!grow({column, column}, 1)) break;
             last = {std::min(last.low, column), std::max(last.high, column)};
         }
         return run;
     }
 
-    Rows RowsOf(std::size_t point, Index column) const {
-        Rows rows;
-        if (is_level_) point = range_.first;
-        for (int p = 0; p < P; ++p) {
-            rows.weight[p] = row_weights_[p][point];
-            int at = static_cast<int>(y_.node[point]) - P / 2 + 1 + p;
-            // n may be smaller than the number of taps; a division for each row would cost more than the sums.
-            while (at < 0) at += args_.n;
-            while (at >= args_.n) at -= args_.n;
-            rows.at[p] =
-                static_cast<std::size_t>(at) * line_stride<T>(args_.n) + static_cast<std::size_t>(column);
-        }
-        return rows;
-    }
-
-    // The rows' sums in V vectors from column k on.
-    template <int V, class D>
-    static HWY_INLINE void SumRows(D d, const T* samples, const Rows& rows, std::size_t k,
-                                   hn::Vec<D> (&sums)[V]) {
-        for (int p = 0; p < P; ++p) {
-            const auto weight = hn::Set(d, rows.weight[p]);
-            const T* row = samples + rows.at[p] + k;
-            for (int v = 0; v < V; ++v) {
-                const auto columns = hn::LoadU(d, row + static_cast<std::size_t>(v) * hn::Lanes(d));
-                sums[v] = p == 0 ? hn::Mul(weight, columns) : hn::MulAdd(weight, columns, sums[v]);
-            }
-        }
-    }
     template <int V>
     static HWY_INLINE void StoreRows(const T* samples, const Rows& rows, std::size_t k, T* columns) {
         const D d;
         hn::Vec<D> sums[V];
-        SumRows(d, samples, rows, k, sums);
+        Taps::SumRows(d, samples, rows, k, sums);
         for (int v = 0; v < V; ++v)
             hn::Store(sums[v], d, columns + k + static_cast<std::size_t>(v) * hn::Lanes(d));
     }
@@ -418,7 +538,7 @@ class SplineReader {
         const D d;
         const std::size_t lanes = hn::Lanes(d);
         const Index low = run.columns.low - run.columns.low % static_cast<Index>(lanes);
-        const Rows rows = RowsOf(run.points.first, low);
+        const Rows rows = RowsFrom(low);
         const std::size_t span =
             (static_cast<std::size_t>(run.columns.high - low) + P + lanes - 1) / lanes * lanes;
         T* columns = columns_;
@@ -503,35 +623,25 @@ class SplineReader {
                 taps[p] = tap;
             }
             columns += span;
-            // As ReadAlone() adds them, so that a point's value is the same in any company.
+            // As SplineTaps::ReadAlone() adds them, so that a point's value is the same in any company.
             N sum[P];
             for (int p = 0; p < P; ++p)
-                sum[p % kGroup] =
-                    p < kGroup ? w[p] * taps[p] : N(hn::MulAdd(taps[p].v, w[p].v, sum[p % kGroup].v));
-            for (int half = kGroup / 2; half > 0; half /= 2)
+                sum[p % Taps::kGroup] = p < Taps::kGroup
+                                            ? w[p] * taps[p]
+                                            : N(hn::MulAdd(taps[p].v, w[p].v, sum[p % Taps::kGroup].v));
+            for (int half = Taps::kGroup / 2; half > 0; half /= 2)
                 for (int p = 0; p < half && p + half < P; ++p) sum[p] += sum[p + half];
             hn::StoreU(sum[0].v, d, sums + f * apart);
         }
     }
 
-    // Rows and columns at once, nothing kept between.
     void ReadAlone(std::size_t point) {
-        const Taps taps;
-        const Rows rows = RowsOf(point, column_[point]);
-        alignas(64) T weights[kTaps] = {};
+        alignas(64) T weights[Taps::kTaps] = {};
         for (int p = 0; p < P; ++p) weights[p] = column_weights_[p][point];
-        FieldValues<T>& values = targets_.of(point);
-        for (std::size_t f = 0; f < kFieldCount; ++f) {
-            const T* samples = args_.samples[f];
-            if (!samples) continue;
-            auto sum = hn::Zero(taps);
-            for (std::size_t k = 0; k < kTaps; k += hn::Lanes(taps)) {
-                hn::Vec<Taps> of_rows[1];
-                SumRows(taps, samples, rows, k, of_rows);
-                sum = hn::MulAdd(of_rows[0], hn::Load(taps, weights + k), sum);
-            }
-            values[f][point] = hn::GetLane(hn::SumOfLanes(taps, sum));
-        }
+        hn::Vec<typename Taps::D> along_x[Taps::kTaps / Taps::kGroup];
+        for (std::size_t k = 0; k < Taps::kTaps; k += Taps::kGroup)
+            along_x[k / Taps::kGroup] = hn::Load(typename Taps::D(), weights + k);
+        Taps::ReadAlone(args_, RowsFrom(column_[point]), along_x, targets_.of(point), point);
     }
 
     const GridArgs<T>& args_;
@@ -541,10 +651,9 @@ class SplineReader {
     std::size_t part_ = 0;  // of the row
     const Targets<T>& targets_;
     PointRange range_{};
-    bool is_level_ = false;
-    Index* column_ = nullptr;             // by point of the range
-    std::array<T*, P> column_weights_{};  // the same
-    std::array<std::array<T, kRoom<T>>, P> row_weights_;
+    Rows rows_;                                      // of the range's y
+    Index* column_ = nullptr;                        // by point of the range
+    std::array<T*, P> column_weights_{};             // the same
     alignas(64) T columns_[kFieldCount * kColumns];  // of the wanted fields, one after another
 };
 
@@ -608,6 +717,9 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typenam
     }
 }
 
+// Fewer points of one y are read each by itself.
+constexpr std::size_t kShortestRow = 4;
+
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     const PointRange whole{0, chunk.count};
@@ -617,12 +729,13 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     const std::size_t range_count = copies ? copies->range_count : 1;
     FieldValues<T> own, next;
     // What vectors meet between the ranges, and beyond the last point, has to be a number.
-    const auto clear = [&](FieldValues<T>& values, PointRange but) {
+    const hn::ScalableTag<T> d;
+    const auto clear = [&](FieldValues<T>& values, PointRange but) HWY_ATTR {
         const bool is_whole = but.first == 0 && but.end == chunk.count;
+        const std::size_t first = is_whole ? (chunk.count - 1) / hn::Lanes(d) * hn::Lanes(d) : 0;
         for (std::size_t f = 0; f < kFieldCount; ++f)
-            if (args.samples[f])
-                std::fill(values[f].begin() + (is_whole ? chunk.count : 0),
-                          values[f].begin() + chunk.padded(), T(0));
+            for (std::size_t i = first; args.samples[f] && i < chunk.count; i += hn::Lanes(d))
+                hn::StoreU(hn::Zero(d), d, values[f].data() + i);
     };
     const auto shown = [&](const typename CopyArgs<T>::Side& side) {
         return side.count == 1 ? side.points[0] : PointRange{0, 0};
@@ -631,38 +744,53 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     if (copies && copies->sides[1].count > 0) clear(next, shown(copies->sides[1]));
     Targets<T> targets{own, next, whole};
     Places<T> y;
-    const auto read = [&](auto&& reader) {
+    const T *rest_x = chunk.rest_x.data(), *rest_y = chunk.rest_y.data();
+    // Of rows, their first point is placed along y.
+    const auto read = [&](auto&& row, auto&& scattered) {
         for (std::size_t r = 0; r < range_count; ++r) {
             const CopyRange& range = ranges[r];
             targets.in_own = range.own;
             for (PointRange part = range.points; part.first < part.end; part = {part.end, range.points.end}) {
-                const std::size_t end = EndOfLevel(chunk.rest_y.data(), part.first, part.end);
-                // Where y isn't the same for a while it soon isn't again.
-                const bool is_level = end == part.end || end - part.first >= hn::Lanes(hn::ScalableTag<T>());
-                if (is_level) part.end = end;
-                Locate(args, range.nodes_y, chunk.rest_y.data(),
-                       is_level ? PointRange{part.first, part.first + 1} : part, y);
-                reader(part, is_level, range.nodes_x);
+                const std::size_t end = EndOfLevel(rest_y, part.first, part.end);
+                if (end - part.first < kShortestRow) {  // a row may begin within the next ones
+                    part.end = std::min(part.first + 64 / sizeof(T) * 4, part.end);
+                    scattered(part, range);
+                    continue;
+                }
+                part.end = end;
+                LocateAll(args, range.nodes_y, rest_y, {part.first, part.first + 1}, y);
+                row(part, range);
             }
         }
     };
-    const auto by_splines = [&](auto taps, RowPlaces<T>& row) {
-        SplineReader<taps, T> reader(args, chunk.rest_x.data(), y, row, targets);
-        read([&](PointRange part, bool is_level, double nodes_x) { reader.Read(part, is_level, nodes_x); });
+    const auto by_splines = [&](auto taps, RowPlaces<T>& places) {
+        SplineReader<taps, T> reader(args, rest_x, y, places, targets);
+        ScatteredReader<taps, T> scattered(args, chunk);
+        read([&](PointRange part, const CopyRange& range) { reader.Read(part, range.nodes_x); },
+             [&](PointRange part, const CopyRange& range) {
+                 if (range_count == 1)
+                     scattered.Read(part, range.nodes_x, range.nodes_y, targets);
+                 else
+                     scattered.Take(part, range.nodes_x, range.nodes_y, targets);
+             });
+        scattered.ReadTaken();
     };
     if (args.sampling == Sampling::Nodes) {
         Places<T> x;
-        read([&](PointRange part, bool is_level, double nodes_x) {
-            Locate(args, nodes_x, chunk.rest_x.data(), part, x);
+        const auto by_nodes = [&](PointRange part, const CopyRange& range, bool is_level) {
+            LocateAll(args, range.nodes_x, rest_x, part, x);
+            if (!is_level) LocateAll(args, range.nodes_y, rest_y, part, y);
             ReadNodes(args, part, is_level, x, y, targets);
-        });
+        };
+        read([&](PointRange part, const CopyRange& range) { by_nodes(part, range, true); },
+             [&](PointRange part, const CopyRange& range) { by_nodes(part, range, false); });
     } else {
         RowPlaces<T> alone;
-        RowPlaces<T>& row = args.places ? *args.places : alone;
+        RowPlaces<T>& places = args.places ? *args.places : alone;
         if (args.taps == 6)
-            by_splines(std::integral_constant<int, 6>(), row);
+            by_splines(std::integral_constant<int, 6>(), places);
         else
-            by_splines(std::integral_constant<int, 4>(), row);
+            by_splines(std::integral_constant<int, 4>(), places);
     }
     if (!copies) return AddValues(args, own, chunk);
     AddCopies(args, *copies, copies->sides[0], own, chunk);

@@ -134,19 +134,17 @@ class FoamHistory<T>::Locator {
     // `which` = 0, and in the one after it, 1, where they read that as well. Where there are no cells, foam is the sea's mean.
     template <class Use>
     void operator()(std::size_t first, std::size_t count, Part& part, const Use& use) const {
-        const auto take = [&](const auto* rest_m) {
+        const auto take = [&](const auto& rest_m) {
             for (std::size_t i = 0; i < count; ++i) {
-                part.x_m[i] = static_cast<double>(rest_m[i].x);
-                part.y_m[i] = static_cast<double>(rest_m[i].y);
+                const glm::vec<2, T>& at = rest_m[first + i];
+                part.x_m[i] = static_cast<double>(at.x);
+                part.y_m[i] = static_cast<double>(at.y);
             }
         };
-        if (points_.rest_m.stride_bytes == sizeof(glm::vec<2, T>)) {
-            take(&points_.rest_m[first]);  // side by side: in vectors
-        } else {
-            std::array<glm::vec<2, T>, kPart> rest_m;
-            for (std::size_t i = 0; i < count; ++i) rest_m[i] = points_.rest_m[first + i];
-            take(rest_m.data());
-        }
+        if (points_.rest_m.stride_bytes == sizeof(glm::vec<2, T>))
+            take(&points_.rest_m[0]);  // side by side: in vectors
+        else
+            take(points_.rest_m);
         for (std::size_t i = 0; points_.pixel_m && i < count; ++i) {
             const FoamRung rung = rung_of(first + i);
             part.level[i] = rung.level;

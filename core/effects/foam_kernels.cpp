@@ -40,8 +40,8 @@ void Place(const FoamAxisArgs& args, std::size_t first, std::size_t end, FoamAxi
     }
 }
 
-void Between(const FoamTile& tile, const FoamAxis& x, const FoamAxis& y, std::size_t first, std::size_t end,
-             float* foam, float* foam_age) {
+void Between(const ResidualFoam& tile, const FoamAxis& x, const FoamAxis& y, std::size_t first,
+             std::size_t end, float* foam, float* foam_age) {
     const D d;
     const hn::RebindToSigned<D> di;
     constexpr int kSide = FoamPlan::kTileCells + 1;
@@ -77,7 +77,7 @@ void Between(const FoamTile& tile, const FoamAxis& x, const FoamAxis& y, std::si
     }
 }
 
-void Add(const FoamLeft& left, const float* breaking, std::size_t count, float* all, float* age_s) {
+void Add(const ResidualFoam& left, const float* breaking, std::size_t count, float* all, float* age_s) {
     const D d;
     for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
         const N active(hn::LoadU(d, breaking + i)), foam(hn::LoadU(d, left.foam + i));

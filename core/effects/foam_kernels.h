@@ -29,25 +29,21 @@ struct FoamAxisArgs {
     const double* rest_m = nullptr;  // by point
 };
 
-// What a tile has at its nodes, rows of kTileCells + 1. The 15 numbers behind the last node may be read.
-struct FoamTile {
-    const float *foam, *foam_age;
-};
-
-// What earlier breaking has left at points: foam, and foam times its age.
-struct FoamLeft {
+// What earlier breaking has left: foam, and foam times its age [s], by node or by point.
+struct ResidualFoam {
     const float *foam, *foam_age;
 };
 
 struct FoamKernels {
     // Of points first … end − 1. What lies beyond is overwritten.
     void (*place)(const FoamAxisArgs&, std::size_t first, std::size_t end, FoamAxis&);
-    // Between the nodes of the tile that points first … end − 1 lie in, and of these alone.
-    void (*between)(const FoamTile&, const FoamAxis& x, const FoamAxis& y, std::size_t first, std::size_t end,
-                    float* foam, float* foam_age);
+    // Between the nodes of the tile that points first … end − 1 lie in, and of these alone. A tile has rows of kTileCells + 1 nodes;
+    // the 15 numbers behind the last one may be read.
+    void (*between)(const ResidualFoam&, const FoamAxis& x, const FoamAxis& y, std::size_t first,
+                    std::size_t end, float* foam, float* foam_age);
     // Foam that is left, under foam that breaks: all foam, 0 … 1, and its mean age, where what breaks has none [s]. All five arrays
     // hold `count` numbers rounded up to a whole 16.
-    void (*add)(const FoamLeft&, const float* breaking, std::size_t count, float* all, float* age_s);
+    void (*add)(const ResidualFoam&, const float* breaking, std::size_t count, float* all, float* age_s);
     // y of Φ(y) = P(J < threshold), by node, limited to ± kFarthestFoamDeviate. Arrays as long as y's, or Buffers.
     void (*deviates)(const float* mean, const float* variance, const float* third, const float* threshold,
                      bool third_moment, std::span<float> y);

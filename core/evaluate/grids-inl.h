@@ -718,7 +718,7 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typenam
 }
 
 // Fewer points of one y are read each by itself.
-constexpr std::size_t kShortestRow = 4;
+constexpr std::size_t kShortestRow = 8;
 
 template <class T>
 void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {

@@ -21,6 +21,9 @@ random_scenes() {
     install_packages && build release test_random_scenes &&
         PELAGIC_SCENES=10000 "$PELAGIC_ROOT/build/release/tests/test_random_scenes"
 }
+benches() {
+    install_packages && build release benches
+}
 campaign() {
     install_packages && build release pelagic pelagic_python && "$here/campaigns/run.sh" "$1"
 }
@@ -35,6 +38,7 @@ part() {
 part release 60 "$here/run.sh release"
 for share in 1 2 3 4; do part "sanitize-$share" 75 "$here/run.sh sanitize --share $share/4"; done
 for share in 1 2; do part "tsan-$share" 75 "$here/run.sh tsan --share $share/2"; done
+part benches 10 benches
 part rays 30 rays
 part random-scenes 75 random_scenes
 for target in "$here"/fuzz/*_fuzz.cpp; do

@@ -1,6 +1,6 @@
 // FFTW plans ("wisdom") for 1-D transforms of 256, 512 … 16384 in single precision: up to a fifth faster than
 // FFTW's estimate, and more than twice as fast from 4096 on. Another build of FFTW rejects them and
-// estimates. Written by tests/bench/wisdom.cpp.
+// estimates. Each is what FFTW_PATIENT finds for a line as LineTransform plans it (transform.cpp), exported alone.
 #pragma once
 
 namespace pelagic {

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Builds the benchmarks and prints their tables, the numbers first. Some half an hour on two cores.
 #   tests/bench/run.sh [PROGRAM…]      default: all, the light last:
-#     frame ocean baked construction sky daylight choices sampling query stages conservation weather trains repeats copies sphere_tracing rays expand near_far trace cage fitted_cage crate bake optics whitecaps
+#     frame ocean baked construction sky daylight sampling query stages conservation weather trains copies sphere_tracing rays expand near_far trace cage fitted_cage crate bake optics whitecaps
 #     breaking backoff foam living_foam spray skyline spray_rays horizon sharpness preview window fig10 light played memory picture
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # shellcheck source=../../examples/setup.sh
 source "$here/../../examples/setup.sh"
-[ $# -gt 0 ] || set -- frame ocean baked construction sky daylight choices sampling query stages conservation weather trains repeats copies sphere_tracing rays expand near_far trace cage fitted_cage crate bake \
+[ $# -gt 0 ] || set -- frame ocean baked construction sky daylight sampling query stages conservation weather trains copies sphere_tracing rays expand near_far trace cage fitted_cage crate bake \
     optics whitecaps breaking backoff foam living_foam spray skyline spray_rays horizon sharpness preview window fig10 light played memory picture
 targets=()
 for program in "$@"; do

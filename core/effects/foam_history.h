@@ -90,8 +90,8 @@ class FoamHistory {
     // `watch`: as prepare()'s; of a call that was cancelled the results are worthless.
     void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
 
-    // Bytes of all tiles, and of the seas that they are sampled from: at most the plan's foam_history_bytes() where all that was
-    // asked is the plan's queries, after prepare() if the plan has no outputs.
+    // Bytes of all tiles, and of the seas that they are sampled from. The plan's foam_history_bytes() expects as many: for squares
+    // and views all round a camera no more are needed, in a picture's frame waves may show more tiles than a plan can know.
     std::size_t held_bytes() const;
 
   private:

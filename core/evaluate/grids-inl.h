@@ -248,12 +248,13 @@ struct SplineTaps {
                 SumRows(d, samples, rows, k * kGroup, of_rows);
                 sum = hn::MulAdd(of_rows[0], weights[k], sum);
             }
-            values[f][point] = hn::GetLane(hn::SumOfLanes(d, sum));
+            values[f][point] =
+                hn::GetLane(hn::SumOfLanes(d, sum));  // halves first, on x86: as SplineReader::SumTaps()
         }
     }
 };
 
-// A cascade's grid at points that have no row in common, in whichever copies of it they lie.
+// A cascade's grid at points, each by itself, in whichever copies of it they lie.
 template <int P, class T>
 class ScatteredReader {
   public:
@@ -284,11 +285,6 @@ class ScatteredReader {
         const auto origin = [dd](const std::array<double, kRoom<T>>& nodes) {
             return [from = nodes.data(), dd](std::size_t i) HWY_ATTR { return hn::LoadU(dd, from + i); };
         };
-        // What vectors meet beyond the last point has to be a number.
-        for (auto* values : {&rest_x_, &rest_y_})
-            std::fill_n(values->begin() + count_, Chunk<T>::kLongestVector, T(0));
-        for (auto* values : {&nodes_x_, &nodes_y_})
-            std::fill_n(values->begin() + count_, Chunk<T>::kLongestVector, 0.0);
         Places<T> x, y;
         Locate(args_, origin(nodes_x_), rest_x_.data(), {0, count_}, x);
         Locate(args_, origin(nodes_y_), rest_y_.data(), {0, count_}, y);
@@ -409,7 +405,6 @@ class SplineReader {
 
     // Places the points along x, keeps that where there is room, and reads them.
     void Find(double nodes_x) {
-        row_.part_count = part_;  // those behind are of another row
         Part part{range_, nodes_x, 0, 0, 0};
         if (part_ > 0) {
             const Part& last = row_.parts[part_ - 1];
@@ -717,7 +712,7 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typenam
     }
 }
 
-// Fewer points of one y are read each by itself.
+// Fewer points of one y are read each by itself. Rows of some ten points cost as much in either way.
 constexpr std::size_t kShortestRow = 8;
 
 template <class T>
@@ -752,8 +747,8 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
             targets.in_own = range.own;
             for (PointRange part = range.points; part.first < part.end; part = {part.end, range.points.end}) {
                 const std::size_t end = EndOfLevel(rest_y, part.first, part.end);
-                if (end - part.first < kShortestRow) {  // a row may begin within the next ones
-                    part.end = std::min(part.first + 64 / sizeof(T) * 4, part.end);
+                if (end - part.first < kShortestRow) {  // with the next ones, whatever they are
+                    part.end = std::min(part.first + 64 / sizeof(T), part.end);
                     scattered(part, range);
                     continue;
                 }

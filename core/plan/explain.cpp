@@ -143,7 +143,7 @@ std::string explain(const Plan& plan) {
         page += "  whitecaps: on, but no output asks for them: nothing is computed\n";
     if (plan.foam)
         page += format(
-            "  living foam: what broke in %d steps of %.4g s, over cells from %.4g m; drifts by %.3g m/s; at most %s\n",
+            "  living foam: what broke in %d steps of %.4g s, over cells from %.4g m; drifts by %.3g m/s; some %s\n",
             plan.foam->intervals(), plan.foam->step_s, plan.foam->cell_m,
             std::hypot(plan.foam->drift_mps.x, plan.foam->drift_mps.y),
             bytes_text(plan.foam_history_bytes()).c_str());

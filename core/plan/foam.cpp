@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/base/constants.h"
+#include "core/spectrum/cox_munk.h"
 #include "core/spectrum/dispersion.h"
 #include "core/surface/rungs.h"
 
@@ -105,6 +106,7 @@ Sector sector_of(const Camera& camera, double height_m) {
         return line.y > 0.0 ? height_m * std::hypot(line.x, aside) / line.y
                             : std::numeric_limits<double>::infinity();
     };
+    if (!(low.y > 0.0)) return {.farthest_m = 0.0};  // no sea is in the frame
     Sector sector{.farthest_m = std::max(distance_m(low, across), distance_m(high, across))};
     const double least_ahead = std::min(low.x, high.x);
     if (!(least_ahead > 0.0)) return sector;  // what is below it is in the frame
@@ -113,17 +115,27 @@ Sector sector_of(const Camera& camera, double height_m) {
     return sector;
 }
 
+// Which points a view asks for: pictures', of which those of waves' faces are among them, or a mesh's; all round a camera, or those
+// of its frame.
+struct ViewKind {
+    bool are_pictures = false, is_of_frame = false, is_run = false;
+    double faces = 0.0;  // the slope of waves' faces that pixels see
+};
+
 // Those whose cells footprints of so many of a camera's pixels need, whichever way it turns, or in its frame alone. A pixel is
-// α s wide and α s²/h long at the slant distance s from an eye at the height h: its area is that of the square of a cell at
-// s = (cell/α)^⅔ h^⅓, and further away coarser levels have it.
-double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, double pixels, bool is_of_frame,
-                     bool is_run, bool are_pictures) {
+// α s wide and α s/sin γ long at the slant distance s from an eye at the height h, sin γ = h/s on a flat sea: its area is that of
+// the square of a cell at s = (cell/α)^⅔ h^⅓, and further away coarser levels have it. Where h/s is less than the slope of waves'
+// faces those are seen under γ of that slope: their pixels have that area at s = cell/α √slope.
+double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, double pixels,
+                     const ViewKind& kind) {
     const double cell_m = foam.cell_of(level);
     const auto pixel_of = [&](double fov_deg) {
         return pixels * 2.0 * std::tan(0.5 * fov_deg * kPi / 180.0) / camera.resolution.x;
     };
-    const auto reach_m = [&](double height_m, double fov_deg, double footprint_m) {
-        const double slant_m = std::pow(footprint_m / pixel_of(fov_deg), 2.0 / 3.0) * std::cbrt(height_m);
+    const auto reach_m = [&](double height_m, double fov_deg, double footprint_m, double faces) {
+        const double wide_m = footprint_m / pixel_of(fov_deg);
+        const double slant_m =
+            std::max(std::pow(wide_m, 2.0 / 3.0) * std::cbrt(height_m), wide_m * std::sqrt(faces));
         return std::sqrt(std::max(slant_m * slant_m - height_m * height_m, 0.0));
     };
     double lowest_m = std::max(camera.position_m.z, 1.0), highest_m = lowest_m,
@@ -137,30 +149,29 @@ double tiles_in_view(const FoamPlan& foam, int level, const Camera& camera, doub
     // Between the keys a camera passes all heights. The reach grows with the height up to this one.
     const double farthest_height_m = cell_m / pixel_of(narrowest_deg) * std::pow(3.0, -0.75);
     const double farthest_m =
-        reach_m(std::clamp(farthest_height_m, lowest_m, highest_m), narrowest_deg, cell_m);
+        reach_m(std::clamp(farthest_height_m, lowest_m, highest_m), narrowest_deg, cell_m, kind.faces);
     if (!(farthest_m > 0.0)) return 0.0;
     const double tile_m = FoamPlan::kTileCells * cell_m;
     // A tile that touches a disc lies within a diagonal of it. A camera that moves looks from two places at the two times.
     const double radius = farthest_m / tile_m + std::sqrt(2.0);
     const double round_it = [&] {
-        if (are_pictures) return kPi * radius * radius;
+        if (kind.are_pictures) return kPi * radius * radius;
         if (!camera.keys.empty()) return 2.0 * kPi * radius * radius;
         return kPi * radius * radius + 2.0 * radius * glm::length(drift_between(foam, level));
     }();
-    if (!is_of_frame) return round_it;
+    if (!kind.is_of_frame) return round_it;
     // Footprints of less than a quarter of a cell read finer levels.
     const Sector sector = sector_of(camera, lowest_m);
-    const double finer_m = level > 0 ? reach_m(lowest_m, camera.fov_deg, 0.25 * cell_m) : 0.0;
+    const double finer_m = level > 0 ? reach_m(lowest_m, camera.fov_deg, 0.25 * cell_m, 0.0) : 0.0;
     const double from = std::max(sector.nearest_m, finer_m) / tile_m;
     const double to = std::min(sector.farthest_m, farthest_m) / tile_m;
     if (!(from < to)) return 0.0;
     // A region meets so many tiles of a lattice whose place is chance: its area, 2/π of its outline and one (Santaló 1976).
     const double outline = 2.0 * (to - from) + 2.0 * sector.half_angle * (to + from);
     const double in_frame = sector.half_angle * (to * to - from * from) + 2.0 / kPi * outline + 1.0;
-    if (!is_run) return in_frame;
-    // A run keeps what waves hide for a while, and makes the surroundings as well: with less room than this a picture takes a
-    // tenth longer.
-    constexpr double kRoom = 5.0;
+    if (!kind.is_run) return in_frame;
+    // A run keeps what waves hide for a while, and makes the surroundings as well: fitted to what runs hold.
+    constexpr double kRoom = 1.7;
     return std::min(kRoom * (in_frame + outline), round_it);
 }
 
@@ -175,25 +186,34 @@ double tiles_near_to_far(const FoamPlan& foam, int level, const Surface& surface
     for (double footprint_m = finest_m; footprint_m < foam.cell_of(level); footprint_m *= 2.0) {
         const FoamRung rung = foam_rung(foam, static_cast<float>(footprint_m));
         if (rung.level != level && rung.level + 1 != level) continue;
-        const double within = footprint_m > finest_m ? 0.25 * side * footprint_m / tile_m : 0.0;
+        const double within =
+            level > 0 && footprint_m > 2.0 * finest_m ? 0.25 * side * footprint_m / tile_m : 0.0;
         tiles = tiles_over(foam, level, side * footprint_m) - within * within;
     }
     return tiles;
 }
+
+// Of the RMS slope, since waves hide each other near the horizon. Fitted to what pictures hold, from 4 and 15 m, 6 … 20 m/s.
+constexpr double kFaces = 0.5;
 
 }  // namespace
 
 std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Scene& scene,
                                                  const std::vector<Query>& queries, bool are_pictures) {
     std::array<double, FoamPlan::kLevels> tiles{};
-    const bool is_run = scene.shot.first_frame != scene.shot.last_frame;
+    const double mean_square = 0.5 * CoxMunk::at_wind(scene.sea.wind_speed_mps).total;  // along one direction
     for (const Query& query : queries) {
         if (!query.products[index(Product::Coverage)] || query.only_cascade || query.breaking_alone)
             continue;  // a cascade's tile has no history
         const bool is_view = query.is_view && !query.lattice;
-        // Pictures and meshes know their points; who looks round, as a preview's window does, doesn't.
-        const bool is_of_frame =
-            (!are_pictures || query.is_picture) && query.points > 0 && scene.camera.keys.empty();
+        // Pictures and meshes that a camera lays out know their points. Who looks round, as a preview's window does, doesn't, and a
+        // cage lies where it was made.
+        const bool is_laid_out = are_pictures ? query.is_picture : scene.surface.kind != SurfaceKind::Cage;
+        const ViewKind kind{.are_pictures = are_pictures,
+                            .is_of_frame = is_laid_out && query.points > 0 && scene.camera.keys.empty(),
+                            // Only pictures make surroundings, and lose tiles behind waves.
+                            .is_run = are_pictures && scene.shot.first_frame != scene.shot.last_frame,
+                            .faces = are_pictures ? kFaces * std::sqrt(mean_square) : 0.0};
         const bool is_near_to_far = !are_pictures && scene.surface.kind == SurfaceKind::NearFar;
         const double points = static_cast<double>(query.points);
         const double spacing_m = query.lattice ? query.lattice->spacing_m : query.pixel_m.front();
@@ -205,7 +225,7 @@ std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Sce
                         (scene.camera.keys.empty() ? 1.0 : 2.0);
             else if (is_view)
                 here += tiles_in_view(foam, level, scene.camera, are_pictures ? 1.0 : scene.surface.cell_px,
-                                      is_of_frame, is_run, are_pictures);
+                                      kind);
             else if (level == rung.level || (level == rung.level + 1 && rung.t > 0.0f))
                 here += tiles_over(foam, level, std::sqrt(points) * spacing_m);
         }

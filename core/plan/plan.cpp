@@ -524,7 +524,8 @@ std::array<double, FoamPlan::kLevels> foam_tiles(const Plan& plan) {
 }
 
 std::size_t Plan::foam_history_bytes() const {
-    if (!foam) return 0;
+    const Scene& scene = from->scene;
+    if (!foam || !(scene.sea.wind_speed_mps > 0.0 && scene.effects.whitecap_amount > 0.0)) return 0;
     const std::array<double, FoamPlan::kLevels> tiles = foam_tiles(*this);
     std::size_t bytes = 0;
     for (int level = 0; level < FoamPlan::kLevels; ++level) {

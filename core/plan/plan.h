@@ -141,8 +141,8 @@ struct Plan {
     // Points at rest, shared by queries over the same square, and one frame's results: each query's own, in
     // single precision as files hold them; in double, besides, an array a product as long as its longest.
     std::size_t output_bytes() const;
-    // What the history of living foam has room for (core/effects/foam_history.h): it holds no more, but for a picture that shows
-    // more tiles than are to be expected of its frame.
+    // What the history of living foam has room for (core/effects/foam_history.h): what it holds, by expectation where a picture's
+    // frame or a mesh for a camera decides which tiles are read.
     std::size_t foam_history_bytes() const;
 };
 

@@ -47,9 +47,11 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
         if (!query.lattice || squares.insert({query.points, query.lattice->spacing_m}).second)
             during.add("points of the " + query.name, memory.once, memory.remedy);
         during.add("files of the " + query.name, in_flight * memory.slot, memory.remedy);
-        encodings.push_back({"files of the " + query.name, memory.encoding, memory.remedy});
+        // A thread encodes one file at a time, those of several frames at once.
+        const std::size_t at_once = memory.one_at_a_time ? 1 : in_flight;
+        encodings.insert(encodings.end(), at_once,
+                         {"files of the " + query.name, memory.encoding, memory.remedy});
     }
-    // A thread encodes one file at a time.
     std::ranges::sort(encodings, std::ranges::greater(), &MemoryPart::bytes);
     encodings.resize(std::min(encodings.size(), static_cast<std::size_t>(threads)));
     for (const MemoryPart& of : encodings) during.add(of.what, of.bytes, of.remedy);

@@ -57,7 +57,8 @@ struct OutputMemory {
     std::size_t once = 0;      // from its first frame on, whatever is in flight: points at rest
     std::size_t slot = 0;      // in each frame in flight, beside the query's values: a file as it is encoded
     std::size_t encoding = 0;  // while one frame is encoded
-    std::size_t fixed = 0;     // while files that belong to no frame are written, before the first frame
+    bool one_at_a_time = false;  // encodes one frame after another
+    std::size_t fixed = 0;       // while files that belong to no frame are written, before the first frame
     std::string remedy;
 };
 

@@ -86,6 +86,7 @@ ExpectedSpray expected_spray(const Plan& plan) {
     hidden.scale_strain(std::max(1.0 - variance.shown / variance.whole, 0.0));
     const auto whole = jacobian_of(total, 0.0, direction);
     const double least = kNegligibleSpray * coverage(whole, threshold, third);
+    if (!(least > 0.0)) return {};
     double pressed = 0.0;
     for (double low = -1.0, high = 1.0; high - low > 1e-6;) {
         pressed = 0.5 * (low + high);

@@ -35,6 +35,7 @@ class VolumePart : public OutputPart {
         const auto file = static_cast<std::size_t>(in_file);
         return {.slot = values + file,
                 .encoding = static_cast<std::size_t>(kHeap * in_grids) + 2 * file + grids * vdb::kTreeBytes,
+                .one_at_a_time = true,
                 .remedy = "raise output.voxel_m, or lower surface.size_m"};
     }
 

@@ -22,6 +22,11 @@ CAGE = {**SMALL_WAVES, "surface.kind": "cage", "surface.cage_file": "cage.obj"}
 NEAR = {"camera.resolution": [200, 112], "camera.position_m": [0.0, -4.0, 4.0], "camera.look_at_m": [0.0, 10.0, 0.0]}
 
 
+# A camera that looks along the sea, foam that lasts: much of what is held is foam's past, on waves' faces.
+LEVEL = {"camera.resolution": [640, 360], "camera.position_m": [0.0, 0.0, 15.0], "camera.look_at_m": [0.0, 100.0, 10.0],
+         "quality.level": "draft", "effects.foam_decay_s": 30.0}
+
+
 def patch(side, **keys):
     return {"surface.resolution": side, "surface.size_m": 200.0, **keys}
 
@@ -61,6 +66,11 @@ CASES = [
     ("render", ["--samples", 1], 2, {"quality.level": "draft", "camera.resolution": [1280, 720], "surface.cell_px": 1.0}),
     ("render", ["--samples", 1], 1, {"quality.level": "reference", "camera.resolution": [512, 288],
                                      "camera.position_m": [0.0, -60.0, 40.0], "surface.cell_px": 2.0}),
+    ("bake", ["--threads", 3], 6, {**NO_MESH, **SMALL_WAVES, "output.maps": ["whitecaps"], "output.map_resolution": 2048}),
+    ("bake", [], 1, {**CAGE, **LEVEL, "surface.cage_level": 6, "camera.look_at_m": [0.0, 100.0, 150.0]}),
+    ("render", ["--samples", 1], 1, LEVEL),
+    ("render", ["--samples", 1], 3, LEVEL),
+    ("render", ["--samples", 1], 1, {**LEVEL, "camera.look_at_m": [0.0, 0.0, 100.0]}),
     ("preview", [], 1, {"sea.wind_speed_mps": 20.0, "camera.resolution": [640, 360]}),
     ("preview", [], 1, {"quality.level": "draft", "camera.resolution": [4096, 2304]}),
     ("preview", [], 1, {**LARGE_WAVES, "camera.position_m": [0.0, -60.0, 1.0], "camera.look_at_m": [0.0, -59.0, 0.0],
@@ -92,7 +102,7 @@ def arguments_of(folder, case):
     shot = folder / "shot.toml"
     shot.write_text(common_shots.shot_text({"shot.frames": [1, frames], **keys}), encoding="utf-8")
     out = ["--offscreen", folder / "out.exr"] if verb == "preview" else ["--out", folder / "out"]
-    return [verb, shot, *out, *options, "--threads", 2]
+    return [verb, shot, *out, "--threads", 2, *options]
 
 
 def peak_mib(folder, arguments):

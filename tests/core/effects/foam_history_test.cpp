@@ -12,6 +12,7 @@
 #include <optional>
 #include <thread>
 
+#include "core/scene/cage.h"
 #include "core/surface/projected_grid.h"
 #include "core/surface/view.h"
 #include "core/waves/whitecaps.h"
@@ -600,7 +601,8 @@ TEST(LivingFoam, OfACameraHoldsNoMoreThanItsPlanSays) {
     }
 }
 
-// Of pictures by a camera at rest: what its frame shows, level, steep and from high up, wide and narrow.
+// Of pictures by a camera at rest: what its frame shows, level, steep and from high up, wide and narrow. Here the sea is flat: seen
+// level, waves' faces, which the plan knows of, would show more (the campaign memory has such pictures).
 TEST(LivingFoam, OfAPictureHoldsWhatItsPlanSays) {
     struct Shot {
         double height_m, ahead_m, fov_deg;
@@ -642,7 +644,7 @@ TEST(LivingFoam, OfAPictureHoldsWhatItsPlanSays) {
         const auto held = static_cast<double>(history.held_bytes()),
                    said = static_cast<double>(sea->plan().foam_history_bytes());
         EXPECT_LT(held, 1.1 * said);
-        EXPECT_GT(held, 0.7 * said);
+        EXPECT_GT(held, (shot.height_m < 10.0 ? 0.45 : 0.7) * said);
     }
 }
 
@@ -663,6 +665,33 @@ TEST(LivingFoam, OfMeshesForACameraIsPlannedByTheirCells) {
             }
 }
 
+// A cage lies where it was made, whatever the camera looks at; a picture without sea reads no foam.
+TEST(LivingFoam, IsPlannedForCagesAllRoundAndForNoSeaNotAtAll) {
+    Scene scene = scene_of(4.0);
+    scene.shot.last_frame = scene.shot.first_frame;
+    scene.camera.position_m = {0.0, 0.0, 15.0};
+    const auto of_a_picture = [&](double look_at_z_m) {
+        scene.camera.look_at_m = {0.0, 100.0, look_at_z_m};
+        const auto prepared = prepare(scene);
+        return make_plan(prepared, {view_query(*prepared, {.points = 1000})}, {.living_foam = true})
+            .foam_history_bytes();
+    };
+    EXPECT_GT(of_a_picture(10.0), 0u);
+    EXPECT_EQ(of_a_picture(300.0), 0u);
+    scene.surface.kind = SurfaceKind::Cage;
+    CageMesh square;
+    square.points_m = {{-5.0, -5.0, 0.0}, {5.0, -5.0, 0.0}, {5.0, 5.0, 0.0}, {-5.0, 5.0, 0.0}};
+    square.face_counts = {4};
+    square.indices = {0, 1, 2, 3};
+    scene.surface.cage = std::make_shared<const Cage>(square);
+    const auto of_a_cage = [&](double look_at_z_m) {
+        scene.camera.look_at_m = {0.0, 100.0, look_at_z_m};
+        return plan_bake(scene).foam_history_bytes();
+    };
+    EXPECT_GT(of_a_cage(10.0), 0u);
+    EXPECT_EQ(of_a_cage(300.0), of_a_cage(10.0));
+}
+
 // Where no wave breaks nothing is kept, and no earlier time is looked at.
 TEST(LivingFoam, OfASeaWithoutFoamCostsNothing) {
     Scene scene = scene_of(4.0);
@@ -672,6 +701,7 @@ TEST(LivingFoam, OfASeaWithoutFoamCostsNothing) {
     Shown<> shown(sea);
     shown.at(2.0, rest_points<float>({.per_side = 20, .spacing_m = 0.5, .first_m = 0.0}));
     EXPECT_EQ(shown.history().held_bytes(), 0u);
+    EXPECT_EQ(sea->plan().foam_history_bytes(), 0u);
 }
 
 // A sea of wave trains has the law's coverage as well, and its frame alone is that of a run.

@@ -102,7 +102,8 @@ def arguments_of(folder, case):
     shot = folder / "shot.toml"
     shot.write_text(common_shots.shot_text({"shot.frames": [1, frames], **keys}), encoding="utf-8")
     out = ["--offscreen", folder / "out.exr"] if verb == "preview" else ["--out", folder / "out"]
-    return [verb, shot, *out, "--threads", 2, *options]
+    threads = [] if "--threads" in options else ["--threads", 2]
+    return [verb, shot, *out, *options, *threads]
 
 
 def peak_mib(folder, arguments):

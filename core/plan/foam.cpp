@@ -194,7 +194,7 @@ double tiles_near_to_far(const FoamPlan& foam, int level, const Surface& surface
 }
 
 // Of the RMS slope, since waves hide each other near the horizon. Fitted to what pictures hold, from 4 and 15 m, 6 … 20 m/s.
-constexpr double kFaces = 0.5;
+constexpr double kFaces = 0.4;
 
 }  // namespace
 

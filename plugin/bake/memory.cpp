@@ -47,8 +47,9 @@ MemoryNeed bake_memory(const Plan& plan, std::size_t frames, int threads) {
         if (!query.lattice || squares.insert({query.points, query.lattice->spacing_m}).second)
             during.add("points of the " + query.name, memory.once, memory.remedy);
         during.add("files of the " + query.name, in_flight * memory.slot, memory.remedy);
-        // A thread encodes one file at a time, those of several frames at once.
-        const std::size_t at_once = memory.one_at_a_time ? 1 : in_flight;
+        // A thread encodes one file at a time. Those of an output in several frames meet where a thread is left beside the computing.
+        const std::size_t at_once =
+            memory.one_at_a_time ? 1 : std::clamp<std::size_t>(threads - 1, 1, in_flight);
         encodings.insert(encodings.end(), at_once,
                          {"files of the " + query.name, memory.encoding, memory.remedy});
     }

@@ -64,7 +64,7 @@ float foam_footprint_m(float width_m, float length_m);
 
 // How many tiles the history for these queries has room for, by level. Of a camera that moves, or that looks round, those all
 // round its places: of two times, of which one goes on from the other; of pictures, which ask for all at once, of one. Of a camera
-// at rest those that its frame shows, in expectation, and in a run its surroundings.
+// at rest those that its frame shows, in expectation, and in a run of pictures its surroundings.
 std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Scene& scene,
                                                  const std::vector<Query>& queries, bool are_pictures);
 

@@ -644,7 +644,7 @@ TEST(LivingFoam, OfAPictureHoldsWhatItsPlanSays) {
         const auto held = static_cast<double>(history.held_bytes()),
                    said = static_cast<double>(sea->plan().foam_history_bytes());
         EXPECT_LT(held, 1.1 * said);
-        EXPECT_GT(held, (shot.height_m < 10.0 ? 0.45 : 0.7) * said);
+        EXPECT_GT(held, (shot.height_m < 10.0 ? 0.45 : 0.7) * said);  // seen level: no faces
     }
 }
 

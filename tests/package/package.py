@@ -99,7 +99,7 @@ expect(set(run("nm", "-D", "--defined-only", "--format=posix", lib / "libpelagic
 # As a part of another build: the core alone is wanted, so no window, Python, tests or rules of ours.
 part = by_cmake("part", f"-DPELAGIC_SOURCE={SOURCE}", "-DCMAKE_BUILD_TYPE=Release")
 cache = (part / "CMakeCache.txt").read_text()
-for option in ("PREVIEW", "PYTHON", "TESTS", "BLENDER_TESTS", "BENCH", "INSTALL"):
+for option in ("PREVIEW", "PYTHON", "TESTS", "BLENDER_TESTS", "INSTALL"):
     expect(f"PELAGIC_{option}:BOOL=OFF" in cache, f"PELAGIC_{option} is on inside another project")
 for word in ("GLFW", "IMGUI", "EPOXY", "EGL", "GTest", "pybind11", "PELAGIC_BLENDER:", "PELAGIC_CLANG_FORMAT"):
     expect("\n" + word not in cache, f"{word} is looked for inside another project")  # a line's begin: not in help texts

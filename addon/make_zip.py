@@ -6,9 +6,7 @@
 In it is one folder, pelagic_ocean, with the sources, the compiled module and the shared libraries that it needs, and
 the licences of all of them. The C library and the C++ runtime are the system's.
 
-WRITER.so is the library that writes volumes. It lies within the module (plugin/vdb), which loads it from there when the
-first volume is baked. So the module doesn't say what that needs, and the loader wouldn't look for it beside the module:
-lib/volumes.txt lists it for pelagic_ocean/module.py.
+WRITER.so is what writes volumes (plugin/vdb): the module loads it from beside itself when the first volume is baked.
 """
 
 import re
@@ -39,22 +37,6 @@ def shared_libraries(binary):
     return found
 
 
-def in_loading_order(binary, libraries):
-    """The names of the libraries that a binary needs, each after those that it needs itself. libraries: as of
-    shared_libraries()."""
-    order = []
-
-    def add(file):
-        told = subprocess.run(["readelf", "-d", file], check=True, capture_output=True, text=True).stdout
-        for name in re.findall(r"\(NEEDED\).*\[(.+)\]", told):
-            if name in libraries and name not in order:
-                add(libraries[name])
-                order.append(name)
-
-    add(binary)
-    return order
-
-
 def licence_of(library):
     """The copyright file of the Debian package that a library is from."""
     # Packages name files by /lib or by /usr/lib, which are the same folder.
@@ -80,10 +62,9 @@ def contents(module, writer):
     files = {path.relative_to(HERE).as_posix(): path.read_bytes() for path in sorted(source.rglob("*"))
              if path.is_file() and "__pycache__" not in path.parts and "lib" not in path.relative_to(source).parts}
     files[f"{FOLDER}/LICENSE"] = (HERE.parent / "LICENSE").read_bytes()
-    files[f"{FOLDER}/lib/{module.name}"] = stripped(module)
-    of_writer = shared_libraries(writer)
-    files[f"{FOLDER}/lib/volumes.txt"] = "".join(f"{name}\n" for name in in_loading_order(writer, of_writer)).encode()
-    for name, path in (shared_libraries(module) | of_writer).items():
+    for binary in (module, writer):
+        files[f"{FOLDER}/lib/{binary.name}"] = stripped(binary)
+    for name, path in (shared_libraries(module) | shared_libraries(writer)).items():
         files[f"{FOLDER}/lib/{name}"] = stripped(path)
         owner, licence = licence_of(path)
         files[f"{FOLDER}/lib/licences/{owner}.txt"] = licence.read_bytes()

@@ -12,7 +12,7 @@ from bpy.props import PointerProperty, StringProperty
 
 from . import ocean
 from .exchange import PELAGIC_OT_export_shot, shot_of
-from .module import pelagic, ready_for_volumes
+from .module import pelagic
 from .operators import NeedsOcean
 
 TIMER_S = 0.1
@@ -33,8 +33,6 @@ class Baking:
     def __init__(self, obj, scene, out):
         """obj: the ocean. Its name is kept, since undo may make another object of it meanwhile."""
         self.ocean, self.scene, self.folder, self.report = obj.name, scene, out, None
-        if scene.output.volumes:
-            ready_for_volumes()
         self.task = pelagic.begin_bake(scene, out)
 
     @property

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The compiled module: `pelagic`, and `problem`, a sentence that says why it is None if it is."""
 
-import ctypes
 import importlib.util
-import os
 import sys
 from pathlib import Path
 
@@ -40,18 +38,6 @@ def _load():
         del sys.modules[NAME]
         raise
     return made
-
-
-def ready_for_volumes():
-    """Loads what writes volumes from the zip. The module brings its writer along, without the libraries that this needs, and
-    loads it when the first volume is baked; the loader takes what is there already, such as Blender's own OpenVDB.
-    OSError if one can't be loaded."""
-    listed = LIB / "volumes.txt"
-    for name in listed.read_text(encoding="utf-8").split() if listed.is_file() else ():
-        try:
-            ctypes.CDLL(name, os.RTLD_NOLOAD | os.RTLD_LAZY)
-        except OSError:
-            ctypes.CDLL(str(LIB / name))
 
 
 try:

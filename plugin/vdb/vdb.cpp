@@ -3,63 +3,17 @@
 #include <dlfcn.h>
 #include <malloc.h>
 #include <sys/mman.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <latch>
 #include <new>
 #include <stdexcept>
-#include <system_error>
 #include <thread>
 #include <vector>
 
 #include "plugin/vdb/openvdb_writer.h"
 
-// The library's bytes (openvdb_writer.h), as they lie in this program. PELAGIC_OPENVDB_WRITER is its file's path.
-asm(".pushsection .rodata\n"
-    ".balign 16\n"
-    "pelagic_openvdb_begin:\n"
-    ".incbin \"" PELAGIC_OPENVDB_WRITER
-    "\"\n"
-    "pelagic_openvdb_end:\n"
-    ".byte 0\n"
-    ".popsection\n");
-extern "C" {
-[[gnu::visibility("hidden")]] extern const char pelagic_openvdb_begin[];
-[[gnu::visibility("hidden")]] extern const char pelagic_openvdb_end[];
-}
-
 namespace pelagic::vdb {
 namespace {
-
-// A file in memory, which the loader takes as any other: the program needs no file beside it.
-class MemoryFile {
-  public:
-    MemoryFile() : descriptor_(memfd_create("pelagic-openvdb", MFD_CLOEXEC)) {
-        if (descriptor_ < 0) fail("can't be made");
-        for (const char* at = pelagic_openvdb_begin; at != pelagic_openvdb_end;) {
-            const ssize_t written =
-                ::write(descriptor_, at, static_cast<std::size_t>(pelagic_openvdb_end - at));
-            if (written < 0 && errno == EINTR) continue;
-            if (written <= 0) fail("can't be written");
-            at += written;
-        }
-    }
-    ~MemoryFile() { ::close(descriptor_); }
-    MemoryFile(const MemoryFile&) = delete;
-    MemoryFile& operator=(const MemoryFile&) = delete;
-
-    std::string path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
-  private:
-    [[noreturn]] static void fail(const char* problem) {
-        throw std::system_error(
-            errno, std::generic_category(),
-            std::string("the file in memory that OpenVDB's writer is loaded from ") + problem);
-    }
-
-    int descriptor_;
-};
 
 // That loading OpenVDB has room, and threads. Where it has too little, under a limit of addresses, data or processes (ulimit -v, -d,
 // -u), the loader doesn't fail but ends the process, or never returns: OpenVDB's log starts threads then, whose failure nobody handles.
@@ -91,12 +45,12 @@ void require_room() {
 const OpenVdbWriter& writer() {
     static const OpenVdbWriter& loaded = []() -> const OpenVdbWriter& {
         require_room();
-        const MemoryFile file;
-        void* const library = ::dlopen(file.path().c_str(), RTLD_NOW | RTLD_LOCAL);
+        void* const library = ::dlopen(PELAGIC_OPENVDB_WRITER, RTLD_NOW | RTLD_LOCAL);
         void* const symbol = library ? ::dlsym(library, "pelagic_openvdb_writer") : nullptr;
         if (!symbol)
-            throw std::runtime_error(std::string("OpenVDB can't be loaded: ") + ::dlerror() +
-                                     "; volumes need the library that Pelagic was built with (libopenvdb)");
+            throw std::runtime_error(
+                std::string("OpenVDB can't be loaded: ") + ::dlerror() +
+                "; volumes need that file of Pelagic's, and the OpenVDB that it was built with");
         return *reinterpret_cast<decltype(&pelagic_openvdb_writer)>(symbol)();
     }();
     return loaded;

@@ -65,7 +65,6 @@ def libraries():
 sys.path.insert(0, sys.argv[1])
 before = libraries()
 from pelagic_ocean import module
-module.ready_for_volumes()
 pelagic = module.pelagic
 scene = pelagic.Scene()
 scene.shot.frames, scene.surface.size_m, scene.output.voxel_m = (1, 1), 40.0, 2.0

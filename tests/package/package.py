@@ -49,10 +49,17 @@ for text in [*prefix.rglob("*.cmake"), *prefix.rglob("*.pc")]:
 # The program, the module, and the headers, each of which compiles by itself, without a warning of its own.
 expect(run(prefix / "bin/pelagic", "--version").startswith("pelagic "), "the program doesn't run")
 expect((prefix / "share/doc/pelagic/LICENSE").is_file(), "no licence")
+shot = folder / "volumes.toml"
+shot.write_text('[shot]\nframes = [1, 1]\n[surface]\nsize_m = 40.0\n[output]\nmesh = "none"\nvolumes = ["level-set"]\nvoxel_m = 2.0\n')
+run(prefix / "bin/pelagic", "bake", shot, "--out", folder / "volumes")
+expect(len(list((folder / "volumes").rglob("*.vdb"))) == 1, "the program writes no volume")
 if "python" in sys.argv[4:]:
     expect(run("/usr/bin/python3", "-c", "import pelagic; print(pelagic.__file__)", cwd="/",
                env={**os.environ, "PYTHONPATH": str(prefix / "lib/python3/dist-packages")}).startswith(str(prefix)),
            "the module isn't the installed one")
+    run("/usr/bin/python3", "-c", "import pelagic, sys; pelagic.bake(pelagic.Scene.from_file(sys.argv[1]), sys.argv[2])", shot, folder / "by_python",
+        cwd="/", env={**os.environ, "PYTHONPATH": str(prefix / "lib/python3/dist-packages")})
+    expect(len(list((folder / "by_python").rglob("*.vdb"))) == 1, "the module writes no volume")
 headers = sorted(p.relative_to(prefix / "include/pelagic") for p in prefix.glob("include/pelagic/core/**/*.h"))
 expect({p.relative_to(SOURCE) for p in SOURCE.glob("core/**/*.h") if not p.name.endswith("-inl.h")} == set(headers),
        "the headers aren't those of core")

@@ -1,8 +1,8 @@
 // What vdb.cpp asks of OpenVDB.
 //
-// The other side is a library of its own that lies within the program, and that the program loads when it makes the first
-// grid. Debian's OpenVDB brings log4cplus, which starts four threads as soon as it is loaded: neither a bake without volumes nor a
-// process that is about to fork shall have them.
+// The other side is a library of its own that lies within the program, which loads it when it makes the first grid.
+// Debian's OpenVDB brings log4cplus, which starts four threads as soon as it is loaded: neither a bake without
+// volumes nor a process that is about to fork should have them.
 #pragma once
 
 #include "plugin/vdb/vdb.h"

@@ -61,8 +61,9 @@ class MemoryFile {
     int descriptor_;
 };
 
-// That loading OpenVDB has room, and threads. Where it has too little, under a limit of addresses, data or processes (ulimit -v, -d,
-// -u), the loader doesn't fail but ends the process, or never returns: OpenVDB's log starts threads then, whose failure nobody handles.
+// Throws unless there is room, and threads, to load OpenVDB. With too little, under a limit of addresses, data or
+// processes (ulimit -v, -d, -u), the loader wouldn't fail but end the process, or never return: OpenVDB's log starts
+// threads then, whose failure nobody handles.
 void require_room() {
     constexpr std::size_t kAddresses = std::size_t{112}
                                        << 20;             // found 69 MiB, and 92 with four stacks of 8 MiB
@@ -122,7 +123,8 @@ void load() {
 }
 
 Grid::Grid(const GridOptions& options) : impl_(std::make_unique<Impl>(writer().make_grid(options))) {}
-// A grid is made of many small pieces, on all threads: their heaps would keep them, each as many as its busiest frame had.
+// A grid is made of many small pieces, on all threads, whose heaps would keep as many as their busiest frame had:
+// they are told to give them back.
 Grid::~Grid() {
     if (!impl_) return;
     impl_.reset();

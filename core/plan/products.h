@@ -30,7 +30,7 @@ struct ProductRow {
     FieldSet needs;          // the sums that it is derived from
     bool counts_what_hides;  // whether it depends on what a footprint leaves unresolved
     bool
-        is_of_breaking;  // whether its strain is that of the waves that break, of which a normal knows nothing
+        is_of_breaking;  // whether its displacement gradient is that of the waves that break, unlike a normal's
     const char* why;     // what the sums are needed for, or why there are none
     const char* description;  // of the values, with their unit
 };

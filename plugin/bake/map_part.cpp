@@ -73,7 +73,7 @@ class MapPart final : public OutputPart {
                     if (output_.cascade) return {0, 12 * 4 / 3};
                     return {12 * 4 / 3, 0, 12 / 3};
                 case MapKind::Whitecaps:
-                    // Moments, and by level what is written; of foam that lives, its past and what that becomes.
+                    // Moments, and by level what is written; of persistent foam, its past and what that becomes.
                     return has_foam_history() ? Encoded{22 * 4 / 3, 12 * 4 / 3 + 36 * 4 / 3}
                                               : Encoded{16 * 4 / 3, 12 * 4 / 3 + 12 * 4 / 3};
             }

@@ -23,7 +23,7 @@ class Buffer {
     Buffer() = default;
     explicit Buffer(std::size_t count) : Buffer(count, 0) {}  // throws std::bad_alloc
 
-    // Without clearing what the caller overwrites before anybody reads it: zero is only the slack.
+    // Without clearing, for callers that overwrite the values before anybody reads them; only the slack is zero.
     static Buffer uncleared(std::size_t count) { return Buffer(count, count); }
 
     T* data() { return data_.get(); }
@@ -38,7 +38,7 @@ class Buffer {
         void operator()(T* p) const { std::free(p); }
     };
 
-    // Zero from `cleared_from` on.
+    // Clears the values from index `cleared_from` on, and the slack.
     Buffer(std::size_t count, std::size_t cleared_from) : size_(count) {
         constexpr std::size_t kLine = 64, kHugePage = std::size_t(2) << 20;
         const std::size_t bytes = (count + kSlack) * sizeof(T);

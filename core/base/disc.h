@@ -1,11 +1,11 @@
-// Whole numbers in and out of a circle.
+// Integer points inside and outside a circle.
 #pragma once
 
 #include <cmath>
 
 namespace pelagic {
 
-// The smallest y ≥ 0 with x² + y² ≥ square, or `most` where that is larger.
+// The smallest integer y ≥ 0 with x² + y² ≥ square, but at most `most`.
 inline int first_beyond(double square, int x, int most) {
     const double rest = square - static_cast<double>(x) * x;
     if (!(rest > 0.0)) return 0;

@@ -42,12 +42,12 @@ HWY_INLINE void Philox(D64 d, std::uint64_t key, U64& c0, U64& c1, U64& c2, U64&
     }
 }
 
-// The number high·2³² + low, the lower halves of the lanes, rounded once to a double.
+// high·2³² + low, rounded once to a double. Each word is the lower half of its lane.
 template <class D, class U64>
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> WordsAsDouble(D d, U64 high, U64 low) {
     namespace hn = hwy::HWY_NAMESPACE;
     const hn::RebindToUnsigned<D> bits;
-    // A word in the last bits of 2⁵²'s fraction.
+    // Exact: a word that replaces the last bits of 2⁵²'s fraction makes the double 2⁵² + word.
     const auto exact = [&](U64 word) HWY_ATTR {
         const auto fraction = hn::And(word, hn::Set(bits, std::uint64_t{0xFFFFFFFF}));
         return hn::Sub(hn::BitCast(d, hn::Or(fraction, hn::Set(bits, std::uint64_t{0x4330000000000000}))),

@@ -24,7 +24,7 @@ std::size_t character_bytes(std::string_view text) {
     return is_overlong || is_surrogate || is_beyond ? 0 : count;
 }
 
-// What a UTF-8 character of at most three bytes stands for.
+// The code point of a UTF-8 character of at most three bytes.
 unsigned code_of(std::string_view character) {
     const auto bits = [&](std::size_t i, unsigned mask) {
         return static_cast<unsigned char>(character[i]) & mask;
@@ -34,8 +34,8 @@ unsigned code_of(std::string_view character) {
     return bits(0, 0x0f) << 12 | bits(1, 0x3f) << 6 | bits(2, 0x3f);
 }
 
-// Whether a terminal does something else than show it: control characters, line separators, and what turns the
-// writing direction of the text after it.
+// Whether a terminal obeys this character instead of showing it: control characters, line separators, and characters
+// that change the writing direction of the text after them.
 bool is_command(unsigned code) {
     return code < 0x20 || (code >= 0x7f && code < 0xa0) || (code >= 0x2028 && code <= 0x202e) ||
            (code >= 0x2066 && code <= 0x2069);
@@ -46,9 +46,9 @@ void append_hex(std::string& out, unsigned code, int digits) {
 }
 
 struct Escapes {
-    std::string_view before_x = "\\";  // of the "xe9" of a byte that isn't UTF-8
-    std::string_view characters = "";  // that get a backslash
-    bool commands = true;              // as "\u001b"
+    std::string_view before_x = "\\";  // stands before the "xe9" of a byte that isn't UTF-8
+    std::string_view characters = "";  // each gets a backslash
+    bool commands = true;              // control characters become "\u001b"
 };
 
 std::string escaped(std::string_view text, const Escapes& escapes) {

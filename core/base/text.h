@@ -19,7 +19,7 @@ std::string utf8_text(std::string_view text);
 // turns no writing direction; what would is shown as its escape.
 std::string line_text(std::string_view text);
 
-// Its first character, of as many bytes as UTF-8 gives it; of one that isn't UTF-8 the byte.
+// The text's first UTF-8 character, or its first byte where that isn't UTF-8.
 std::string_view first_character(std::string_view text);
 
 // The text, or its beginning and "…" where it has more bytes than that; cut between characters.

@@ -363,7 +363,8 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
             if (const auto found = tiles_.find(place); found != tiles_.end())
                 found->second->was_read(round, time_s_);
     };
-    // As if at the time before: what nobody has asked for isn't among the nodes, and needn't go on.
+    // They count as read at the time before: nobody has asked for them, so they are not among nodes(), and need no
+    // renewing.
     const auto mark_those_beside = [&] { mark(beside, round_ - 1); };
     try {
         make(made, watch);
@@ -375,9 +376,10 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
     mark_those_beside();
 }
 
-// A level that lacks one tile goes through its past for that one. In a run the missing tiles round all that are asked for come
-// along, so that moving waves and cameras don't ask for that at each frame: level by level, where there is room beside those that
-// were read not long ago. The first time of all has none beside: a picture alone would have no use for them.
+// A level that lacks one tile goes through its past for that one. In a run the missing tiles round all that are asked
+// for are made along with it, so that moving waves and cameras don't ask for that at each frame: level by level,
+// where there is room beside the tiles read not long ago. At the first time none are made beside: a single picture
+// would have no use for them.
 template <class T>
 std::vector<FoamPlace> FoamHistory<T>::surroundings_of(const std::vector<FoamPlace>& places) const {
     constexpr double kNotLong_s = 1.0;

@@ -1,4 +1,4 @@
-// Foam that lives: beside what breaks now, what earlier breaking has left, drifting with the wind and decaying.
+// Persistent foam: beside what breaks now, what earlier breaking has left, drifting with the wind and decaying.
 //
 // At a place x at rest and a time t the residual foam is
 //   R = (r/d) ∫ P(x − u a, t − a) e^{−a/τ} da  over ages a from 0 to the window,
@@ -47,7 +47,7 @@ struct FoamPlace {
 // In the order that tiles are made in, each once.
 void keep_each_once(std::vector<FoamPlace>& places);
 
-// What a tile has at its nodes, rows of kTileCells + 1: what add() reads, for who reads it elsewhere.
+// What a tile has at its nodes, in rows of kTileCells + 1, as add() reads it.
 struct FoamNodes {
     FoamPlace place;
     const float *foam, *foam_age;  // residual foam, not limited to 1, and that times its age [s]
@@ -56,22 +56,23 @@ struct FoamNodes {
 template <class T>
 class FoamHistory {
   public:
-    // Of a sea whose plan has living foam (std::invalid_argument otherwise).
+    // Of a sea whose plan has persistent foam (std::invalid_argument otherwise).
     explicit FoamHistory(std::shared_ptr<const Sea<T>> sea);
     ~FoamHistory();
 
-    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what the times before have in common with it: of rising times the
-    // most.
+    // The foam at this time, |t| ≤ Frame<T>::kLatest_s. Keeps what earlier calls have computed for it, which is most
+    // when times rise.
     void set(double t_s);
 
     // The tiles that add() will read at these points at this time, in order, each once. `query`: of the sea's plan, whose
     // footprint points without their own have.
     std::vector<FoamPlace> places(const Points<T>& points, int query) const;
-    // Makes these tiles, which are all that is asked for at this time: where add() is called for a few points at a time, it
-    // needn't take the earlier times again for each. Others are kept for the next time as long as there is room in the plan's
-    // foam_history_bytes(), those that were read last before all: a tile that a wave hides for a moment needn't begin anew. In
-    // a run some close ones are made as well. Where it has to go through many earlier times it says how far it is, and looks
-    // whether it shall end: it throws BuildCancelled then, and may be asked again.
+    // Makes these tiles, which are all that is asked for at this time. Where add() is called for a few points at a
+    // time, it then needn't go through the earlier times for each call. Other tiles are kept for the next time as
+    // long as there is room in the plan's foam_history_bytes(), those read last above all: a tile that a wave covers
+    // for a moment needn't begin anew. In a run some close ones are made as well. Where it has to go through many
+    // earlier times it tells `watch` how far it is; cancelled by it, it throws BuildCancelled, and may be asked
+    // again.
     void prepare(std::vector<FoamPlace> places, const BuildWatch& watch = {});
     void prepare(const Points<T>& points, int query, const BuildWatch& watch = {}) {
         prepare(places(points, query), watch);

@@ -1,5 +1,5 @@
-// The loops over a tile's nodes that living foam spends its time in, in the vectors of the CPU at hand (Highway, chosen at
-// run time).
+// The loops over a tile's nodes that persistent foam spends its time in, in the vectors of the CPU at hand (Highway,
+// chosen at run time).
 #pragma once
 
 #include <array>
@@ -41,8 +41,8 @@ struct FoamKernels {
     // the 15 numbers behind the last one may be read.
     void (*between)(const ResidualFoam&, const FoamAxis& x, const FoamAxis& y, std::size_t first,
                     std::size_t end, float* foam, float* foam_age);
-    // Foam that is left, under foam that breaks: all foam, 0 … 1, and its mean age, where what breaks has none [s]. All five arrays
-    // hold `count` numbers rounded up to a whole 16.
+    // Combines foam that is left with foam that breaks: all foam, 0 … 1, and its mean age, breaking foam counting as
+    // 0 [s]. All five arrays hold `count` numbers rounded up to a whole 16.
     void (*add)(const ResidualFoam&, const float* breaking, std::size_t count, float* all, float* age_s);
     // y of Φ(y) = P(J < threshold), by node, limited to ± kFarthestFoamDeviate. Arrays as long as y's, or Buffers.
     void (*deviates)(const float* mean, const float* variance, const float* third, const float* threshold,

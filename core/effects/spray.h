@@ -5,13 +5,13 @@
 
 namespace pelagic {
 
-// What breaks now, as a share of the sea's area in expectation: the mean of evaluate()'s coverage, of which what earlier breaking
-// has left (core/effects/foam_history.h) is no part. 0 where no wave breaks. In the mean wind.
+// The share of the sea's area that breaks now, in expectation: the mean of evaluate()'s coverage, without what
+// earlier breaking has left (core/effects/foam_history.h). 0 where no wave breaks. In the mean wind.
 template <class T>
 double mean_breaking(const Sea<T>& sea);
 
-// The law's extinction at the surface over that mean: times evaluate()'s coverage it is a place's own [1/m]. 0 without
-// spray, and where no wave breaks.
+// The law's extinction at the surface over mean_breaking(): multiplied by evaluate()'s coverage it is a place's own
+// [1/m]. 0 without spray, and where no wave breaks.
 template <class T>
 double spray_extinction_per_coverage(const Sea<T>& sea);
 

@@ -19,7 +19,7 @@ using Interval = DisplacementBounds::Interval;
 constexpr std::array<Field, 3> kFields{Field::Height, Field::Dx, Field::Dy};
 // Cells along the side of a pyramid's finest block.
 constexpr int kBlockCells = 2;
-// What evaluate() rounds, in units of the largest number that it adds up: some forty products and sums.
+// The rounding error of evaluate(), relative to the largest number that it adds up: some forty products and sums.
 template <class T>
 constexpr double kRounding = 64.0 * static_cast<double>(std::numeric_limits<T>::epsilon());
 
@@ -47,8 +47,8 @@ Interval cosine(double cycles, double by) {
     return {0.5 - phase <= by ? -1.0 : std::min(a, b), phase <= by ? 1.0 : std::max(a, b)};
 }
 
-// Whether a grid's spline is bounded by its coefficients at half the spacing: nearer to it by a factor of
-// four, for four times the work, which only grids that aren't large are worth.
+// Whether a grid's spline is bounded by its coefficients at half the spacing: four times tighter for four times the
+// work, which only small grids are worth.
 bool is_refined(const Grid& grid) {
     constexpr int kLargestResolution = 512;
     return grid.sampling == Sampling::Spline && grid.resolution <= kLargestResolution;
@@ -67,8 +67,8 @@ void lay_out(const T* row, int n, int before, std::vector<T>& out) {
 // 1980), whose mask is the binomial coefficients of P over 2^(P−1) along each axis.
 template <class T>
 std::vector<T> refined_spline(const T* samples, int n, int taps) {
-    // By the coefficients one before the place to two behind it: those on a node, and those halfway to the
-    // next.
+    // Masks over the coefficients from one before the place to two behind it: for new coefficients on a node, and
+    // halfway to the next.
     constexpr T kOnQuintic[] = {T(6) / 32, T(20) / 32, T(6) / 32, 0},
                 kHalfQuintic[] = {T(1) / 32, T(15) / 32, T(15) / 32, T(1) / 32},
                 kOnCubic[] = {T(1) / 8, T(6) / 8, T(1) / 8, 0}, kHalfCubic[] = {0, T(1) / 2, T(1) / 2, 0};
@@ -118,7 +118,7 @@ Interval times(const Interval& weight, const Interval& value) {  // weight ≥ 0
             value.hi * (value.hi > 0.0 ? weight.hi : weight.lo)};
 }
 
-// The copies of a tile that a block shows; more than two along an axis aren't told apart.
+// The shifted tiles that a block reads; more than two along an axis are bounded together.
 struct ShownCopy {
     Interval weight;
     glm::dvec2 offset;  // in tiles
@@ -129,13 +129,13 @@ struct ShownCopies {
     double most = 2.0;  // of the sum of their weights: √2 along each axis
 };
 
-// Along an axis, a copy's weight so far from its cell's middle.
+// Along an axis, a tile's blending weight at this distance from its cell's middle.
 double copy_weight(double distance) {
     if (distance <= 0.5) return copy_weights(distance).own;
     return distance < 0.5 + 0.5 * kCopyRamp ? copy_weights(1.0 - distance).next : 0.0;
 }
 
-// Of a block that begins and ends there, in cells.
+// For a block between these corners, in cells.
 ShownCopies copies_of(uint key, glm::dvec2 from, glm::dvec2 to) {
     constexpr double kHalf = 0.5 + 0.5 * kCopyRamp;
     glm::dvec2 first, last;
@@ -171,7 +171,7 @@ struct Pieces {
     std::array<std::array<int, 2>, 2> of{};
 };
 Pieces pieces_of(double from_cells, double to_cells, int n) {
-    // The query reduces a place to its tile in another order: by so much the two may differ.
+    // The query reduces a place to its tile in another order; rounding may make the two differ by this much.
     const double slack = 1e-6 + 1e-14 * std::max(std::abs(from_cells), std::abs(to_cells));
     const double first = std::floor(from_cells - slack), last = std::floor(to_cells + slack);
     if (!(last - first + 1.0 < n)) return {1, {{{0, (n - 1) / kBlockCells}}}};
@@ -201,8 +201,8 @@ FrameBounds<T>::FrameBounds(const Frame<T>& frame, int query_index, FootprintRan
         throw std::invalid_argument("query \"" + query.name + "\" holds no positions to bound");
     if (!(cells.finest_m >= 0.0) || !(cells.coarsest_m >= cells.finest_m))
         throw std::invalid_argument("footprints to bound must rise from 0 or more");
-    // From the rung at or below the finest to the one at or above the coarsest; what lies beyond the ladder
-    // is held within it.
+    // From the level at or below the finest footprint to the one at or above the coarsest. Footprints beyond the
+    // query's levels count as its first or last.
     const std::vector<double>& ladder_m = query.cell_m;
     const auto above = std::upper_bound(ladder_m.begin() + 1, ladder_m.end(), cells.finest_m);
     const auto first = above - ladder_m.begin() - 1;
@@ -268,8 +268,7 @@ void FrameBounds<T>::refresh() {
     times_set_ = frame_->times_set();
 }
 
-// A point between nodes i and i + 1 sees the taps round them, or, where grids are read at nodes, one of the
-// two.
+// A point between nodes i and i + 1 reads the taps round them or, where grids are read at nodes, one of the two.
 template <class T>
 typename FrameBounds<T>::Pyramid FrameBounds<T>::pyramid_of(int cascade, int grid, Field field) const {
     const T* samples = frame_->samples(cascade, grid, field);
@@ -376,7 +375,7 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
                 const Level& all = pyramid.levels.back();
                 const Interval whole{static_cast<double>(all.low[0]), static_cast<double>(all.high[0])};
                 Interval found{0.0, 0.0};
-                if (copies.count == 0)  // of any: their weights add up to that at most
+                if (copies.count == 0)  // too many: their weights add up to this at most
                     found = times({0.0, copies.most}, whole);
                 for (int i = 0; i < copies.count; ++i) {
                     const ShownCopy& copy = copies.of[static_cast<std::size_t>(i)];
@@ -397,8 +396,8 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
     }
     const Trains<T>& trains = frame_->sea().trains();
     const glm::dvec2 middle = 0.5 * (block.min_m + block.max_m), half = 0.5 * (block.max_m - block.min_m);
-    // Waves that are long against the block by value and slope at its middle, of which the sums are bounded:
-    // what is left is second order, |a| δ²/2 where the phase turns by δ. The others each by itself.
+    // Waves that are long against the block are bounded together, by the sums of their values and slopes at its
+    // middle; the rest is of second order, |a| δ²/2 where the phase turns by δ. The others are bounded one by one.
     constexpr double kSmooth = 1.0;
     std::array<glm::dvec2, 3> slopes{glm::dvec2(0.0), glm::dvec2(0.0), glm::dvec2(0.0)};
     for (std::size_t i = 0; i < finest_weight_.size(); ++i) {
@@ -437,8 +436,8 @@ DisplacementBounds FrameBounds<T>::bounds_of(const Block& block, const std::vect
     return bounds;
 }
 
-// The blocks that exceed most what the region surely reaches are split, until none exceeds it by much. What it reaches is seen in
-// the blocks' middles.
+// Splits the blocks whose bounds lie farthest beyond what the region surely reaches, until none lies far beyond. The
+// displacements at the blocks' middles are surely reached.
 template <class T>
 DisplacementBounds FrameBounds<T>::region(const RestRegion& region, int most_blocks) const {
     constexpr double kTolerance = 0.05;  // of what is surely reached

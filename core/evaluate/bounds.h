@@ -37,7 +37,7 @@ struct FootprintRange {
     double finest_m = 0.0, coarsest_m = 0.0;
 };
 
-// Bounds hold for round footprints. One that is an ellipse shows less of each wave, but reads a cascade up to 1.2 of its
+// Bounds hold for round footprints. An ellipse resolves less of each wave, but reads a cascade up to 1.2 of its
 // lengths away (core/plan/taps.inl): ask for a region that is larger by so much.
 //
 // Made from a frame by whoever wants bounds; a frame of which nobody does pays nothing. It must not outlive
@@ -79,7 +79,7 @@ class FrameBounds {
     struct GridBounds {
         double size_m = 1.0;
         int n = 1;                         // cells along an axis
-        std::optional<uint> copies_key{};  // where it has copies (core/plan/copies.h)
+        std::optional<uint> copies_key{};  // with random tiling (core/plan/copies.h)
         std::array<Pyramid, 3> fields;     // height, Dx, Dy
     };
     using Block = RestRegion;

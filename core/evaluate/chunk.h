@@ -16,8 +16,8 @@ struct Chunk {
 
     static constexpr std::size_t kLongestVector = 64 / sizeof(T);
 
-    // 1 … kPoints. Vectors work on whole multiples of their length: what lies beyond, up to padded(), is
-    // finite and goes nowhere.
+    // 1 … kPoints. Vectors work on whole multiples of their length: values beyond, up to padded(), are finite and
+    // unused.
     std::size_t count = 0;
     static constexpr std::size_t padded(std::size_t count) {
         return (count + kLongestVector - 1) / kLongestVector * kLongestVector;
@@ -28,7 +28,7 @@ struct Chunk {
     alignas(64) std::array<T, kPoints + kLongestVector> rest_x, rest_y;
     // Σ over the components so far, by field; only the wanted ones are set.
     alignas(64) std::array<Values, kFieldCount> sums;
-    alignas(64) Values turn;  // ∂Dy/∂x − ∂Dx/∂y: 0 but where copies blend (core/plan/copies.h)
+    alignas(64) Values turn;  // ∂Dy/∂x − ∂Dx/∂y: 0 except where tiles blend (core/plan/copies.h)
 };
 
 }  // namespace pelagic

@@ -1,4 +1,5 @@
-// A cascade's grid read at points that show copies of its tile, at random offsets and blended (core/plan/copies.h).
+// A cascade's grid with random tiling, read at points: each cell has the tile at an offset of its own, and tiles
+// blend across the cells' borders (core/plan/copies.h). A "copy" in names is the shifted tile of one cell.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 
 namespace pelagic {
 
-// A cascade's copies, seen from the origin of the points.
+// Where the origin of the points lies in a cascade's tiling.
 struct CopyOrigin {
     uint key = 0;
     CopyPlace x, y;
@@ -27,17 +28,17 @@ struct CopyOrigin {
           y(copy_place(origin_m.y / size_m)),
           cells_per_m(1.0 / size_m) {}
 
-    // Of a cell that is so many cells from the origin's.
+    // The offset of the tile whose cell is so many cells from the origin's.
     CopyOffset<double> offset(std::int64_t i, std::int64_t j) const {
         return copy_offset<double>(key, static_cast<uint>(x.cell + i), static_cast<uint>(y.cell + j));
     }
 };
 
-// Which copies a chunk's points show. Found when it is first asked for.
+// Which shifted tiles a chunk's points read. Found when it is first asked for.
 template <class T>
 class CopyPlaces {
   public:
-    // `row`: chunks that have the same have the same x. 0: this one's x are its own.
+    // `row`: chunks with the same number have the same x. 0: no other chunk has this one's x.
     void forget(std::uint64_t row) {
         is_known_ = false;
         row_ = row;
@@ -71,16 +72,16 @@ class CopyPlaces {
         const bool was_level = is_level_;
         is_level_ = span.is_finite && span.low_y == span.high_y;  // a row of a patch
         place_y({origin.cells_per_m, origin.y.from_middle}, chunk, kernels);
-        if (!(has_same_x && was_level && is_level_)) find_stretches(chunk.count);  // those of the row before
+        if (!(has_same_x && was_level && is_level_)) find_stretches(chunk.count);  // else as the row before
     }
 
-    // Whether all of the chunk's points show one and the same copy, and its offset.
+    // Whether all of the chunk's points read one and the same shifted tile, and its offset.
     bool is_one() const { return is_one_; }
     const CopyOffset<double>& offset() const { return offset_; }
     // Each point's, otherwise.
     const CopyAxis<T>& x() const { return x_; }
     const CopyAxis<T>& y() const { return y_; }
-    // Points one after another that show the same copies.
+    // Successive points that read the same tiles.
     struct Stretch {
         std::uint16_t first, end;
     };
@@ -115,7 +116,7 @@ class CopyPlaces {
     std::size_t stretch_count_ = 0;
 };
 
-// Reads a grid at the copies of a chunk's points.
+// Reads a grid's shifted tiles at a chunk's points.
 template <class T>
 class CopyReader {
   public:
@@ -132,7 +133,7 @@ class CopyReader {
         copies.wanted = wanted;
         grid.copies = &copies;
         for (const bool next_y : {false, true}) {
-            if (next_y) {  // copies there lie elsewhere: what is kept are places in the points' own cells
+            if (next_y) {  // tiles there have other offsets, and kept places are those in the points' own cells
                 grid.places = nullptr;
                 grid.row = 0;
             }
@@ -153,7 +154,7 @@ class CopyReader {
                     : typename CopyArgs<T>::Axis{of.own.data(), of.next.data(), of.rate.data(), T(-1)};
     }
 
-    // The points that see copies in their own cell or in the next one along y, and where these lie.
+    // The points that read the tiles of their own cell or of the next one along y, and these tiles' offsets.
     void find(const GridArgs<T>& grid, const CopyOrigin& origin, const CopyPlaces<T>& places, bool next_y) {
         range_count_ = 0;
         point_count_ = {};
@@ -175,7 +176,7 @@ class CopyReader {
         }
     }
 
-    // A copy's points beside its cell are read together with those in it, as one row.
+    // Points beside a tile's cell are read together with those in it, as one row.
     void take(PointRange points, bool next_x, std::int64_t x, std::int64_t y, const GridArgs<T>& grid,
               const CopyOrigin& origin) {
         PointRange* seen = points_[next_x].data() + point_count_[next_x];
@@ -183,7 +184,7 @@ class CopyReader {
             seen[-1].end = points.end;
         else
             *seen = points, ++point_count_[next_x];
-        // Two copies are under way at a time.
+        // Points can be added to the last two tiles.
         for (std::size_t r = range_count_; r > 0 && r + 2 > range_count_; --r) {
             CopyRange& range = ranges_[r - 1];
             const bool is_own_over = range.own.end > range.own.first && range.own.end < range.points.end;
@@ -201,7 +202,7 @@ class CopyReader {
                                    grid.origin_nodes_y + offset.y * grid.n};
     }
 
-    // Whether a point has a share in the grid: where it has a weight, that of what is read.
+    // Whether a point has a weight in the grid, for the fields that are read.
     bool counts(std::size_t i) const {
         return (of_cells_ && of_cells_[i] > T(0)) || (of_pixels_ && of_pixels_[i] > T(0));
     }
@@ -215,9 +216,9 @@ class CopyReader {
     const T *of_cells_ = nullptr, *of_pixels_ = nullptr;  // the points' weights
     // A point lies in one or two ranges.
     std::array<CopyRange, 2 * Chunk<T>::kPoints> ranges_;
-    std::array<Cell, 2 * Chunk<T>::kPoints> cells_;  // of their copies
+    std::array<Cell, 2 * Chunk<T>::kPoints> cells_;  // of their tiles
     std::size_t range_count_ = 0;
-    std::array<std::array<PointRange, Chunk<T>::kPoints>, 2> points_;  // that show copies: own, next
+    std::array<std::array<PointRange, Chunk<T>::kPoints>, 2> points_;  // of the own cell's tile, of the next
     std::array<std::size_t, 2> point_count_{};
 };
 

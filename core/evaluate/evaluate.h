@@ -18,8 +18,8 @@ struct Points {
     glm::dvec2 origin_m{0.0};
     std::size_t count = 0;
     Strided<const glm::vec<2, T>> rest_m{};
-    // Each point's footprints [m]; empty: the query's first one for all. Cascades hold them within the
-    // query's ladder; trains follow them from its first rung on, however large.
+    // Each point's footprints [m]; empty: the query's first one for all. Cascades keep them within the query's
+    // levels; trains use them from its first level on, however large.
     Strided<const T> cell_m{}, pixel_m{};
     // Footprints that are ellipses: the direction of the long axis times its length [m], cell_m or pixel_m being
     // the length of the short one. Empty, or no longer than the short axis: round.

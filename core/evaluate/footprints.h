@@ -1,4 +1,4 @@
-// The footprints of a chunk's points, held within a query's ladder.
+// The footprints of a chunk's points, kept within a query's levels.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace pelagic {
 
-// A point's place on a ladder of footprints: (1 − t) of the lower rung and t of the next.
+// A point's place between two levels of footprints: (1 − t) of the lower one and t of the next.
 template <class T>
 struct Rung {
     std::size_t lower = 0;
@@ -24,7 +24,7 @@ template <class T>
 Rung<T> rung_of(const std::vector<double>& ladder_m, T footprint_m) {
     if (ladder_m.size() == 1) return {};
     const double wanted = std::min(static_cast<double>(footprint_m), ladder_m.back());
-    if (!(wanted > ladder_m.front())) return {};  // the finest rung, for a footprint that is no number, too
+    if (!(wanted > ladder_m.front())) return {};  // the finest level, also for a footprint that is no number
     const auto above = std::upper_bound(ladder_m.begin() + 1, ladder_m.end() - 1, wanted);
     const std::size_t upper = static_cast<std::size_t>(above - ladder_m.begin());
     const double lower_m = ladder_m[upper - 1], upper_m = ladder_m[upper];
@@ -56,7 +56,7 @@ struct ChunkFootprints {
         }
     }
 
-    // The same points' for the waves that break, on a ladder of as many rungs (PlannedQuery::breaking_levels).
+    // The same points' for the waves that break, with as many levels (PlannedQuery::breaking_levels).
     void take_breaking(const ChunkFootprints& pixels, const Breaking& breaking, std::size_t count) {
         any_round = any_ellipse = false;
         const T least = static_cast<T>(breaking.footprint_m);

@@ -54,7 +54,7 @@ struct Targets {
     FieldValues<T>& of(std::size_t point) const {
         return point >= in_own.first && point < in_own.end ? own : next;
     }
-    // Whether a vector from this point on may be written whole: what it writes too much is written again in its turn.
+    // Whether a vector from this point on may be written whole: values beyond its own points are written again later.
     bool takes_whole(std::size_t first, std::size_t lanes) const {
         return first >= in_own.first && first + lanes <= in_own.end;
     }
@@ -116,8 +116,8 @@ HWY_INLINE auto Widen(DD dd, const double* from) {
     return hn::LoadU(dd, from);
 }
 
-// Along one axis, in double: exact wherever in the world the origin is. A place that is no number, or so far
-// that nothing of it is left, becomes 0. `origin`: of the vector of points from one on [nodes].
+// Along one axis, in double: exact wherever in the world the origin is. A place that is no number, or too far away to
+// have digits left, becomes 0. origin(i): that of the vector of points from i on [nodes].
 template <class T, class Origin>
 void Locate(const GridArgs<T>& args, Origin origin, const T* rest_m, PointRange range, Places<T>& places) {
     const hn::ScalableTag<double> dd;
@@ -197,7 +197,7 @@ void ReadNodes(const GridArgs<T>& args, PointRange range, bool is_level, const P
     }
 }
 
-// The taps of B-splines of P taps along each axis: what one point is summed in, and the order of every point's sum.
+// B-splines of P taps along each axis: the vectors in which one point is summed, and the order of every point's sum.
 template <int P, class T>
 struct SplineTaps {
     static constexpr std::size_t kTaps = P <= 4 ? 4 : 8;          // with zeros behind the last
@@ -234,7 +234,7 @@ struct SplineTaps {
         }
     }
 
-    // A point by itself, nothing kept between. `rows`: from its first column on; `weights`: along x.
+    // Reads a point by itself. `rows`: from its first column on; `weights`: along x.
     static HWY_NOINLINE void ReadAlone(const GridArgs<T>& args, const Rows& rows,
                                        const hn::Vec<D> (&weights)[kTaps / kGroup], FieldValues<T>& values,
                                        std::size_t point) {
@@ -254,7 +254,7 @@ struct SplineTaps {
     }
 };
 
-// A cascade's grid at points, each by itself, in whichever copies of it they lie.
+// Reads a cascade's grid at points one by one, whichever shifted tiles they lie in.
 template <int P, class T>
 class ScatteredReader {
   public:
@@ -383,8 +383,8 @@ class SplineReader {
     using N = Pack<D>;
     using Taps = SplineTaps<P, T>;
     using Rows = typename Taps::Rows;
-    // A run pays for the columns that it spans, and saves P − 1 rows of its points: beyond a few columns a
-    // point, or across the seam of the period, the next one begins.
+    // A run costs the columns that it spans, and saves P − 1 rows for each of its points. So the next run begins
+    // where there would be more than a few columns a point, and at the seam of the period.
     static constexpr int kColumnsPerPoint = 4;
     static constexpr std::size_t kColumns = kColumnsPerPoint * Chunk<T>::kPoints + P + 4 * (64 / sizeof(T));
 
@@ -393,7 +393,7 @@ class SplineReader {
     using Run = typename RowPlaces<T>::Run;
     using Part = typename RowPlaces<T>::Part;
 
-    // The part that comes next, where the row before has left it.
+    // The next part, if the row before has kept it.
     const Part* Known(double nodes_x) {
         if (part_ >= row_.part_count) return nullptr;
         const Part& part = row_.parts[part_];
@@ -528,7 +528,7 @@ class SplineReader {
             hn::Store(sums[v], d, columns + k + static_cast<std::size_t>(v) * hn::Lanes(d));
     }
 
-    // A run's rows added up, for all fields, from whole vectors on; then a vector of points at a time.
+    // Adds up a run's rows for all fields, in whole vectors, and then sums its points, a vector at a time.
     void ReadRun(const Run& run) {
         const D d;
         const std::size_t lanes = hn::Lanes(d);
@@ -572,7 +572,7 @@ class SplineReader {
         SumTaps<2>(points, from, columns, span);
     }
 
-    // Where points that lie far apart part: at the seam of the period, or in their middle.
+    // Where to split points that lie far apart: at the seam of the period, or in their middle.
     std::size_t Apart(PointRange points) const {
         const auto lanes = static_cast<Index>(hn::Lanes(D()));
         std::size_t next = points.first + 1;
@@ -580,7 +580,8 @@ class SplineReader {
         return next < points.end ? next : points.first + (points.end - points.first) / 2;
     }
 
-    // Each tap lies in V vectors of columns, and all of them in one where V is 0; `from`: where each point's first one does.
+    // Sums the taps at a vector of points. Each tap is looked up in V vectors of columns; where V is 0, one vector
+    // holds all taps. `from`: the first column of each point.
     template <int V>
     void SumTaps(PointRange points, hn::Vec<hn::RebindToSigned<D>> from, const T* columns, std::size_t span) {
         const D d;
@@ -593,7 +594,7 @@ class SplineReader {
         for (std::size_t f = 0; f < kFieldCount; ++f)
             if (args_.samples[f]) target.put(f, hn::Load(d, sums[f]));
     }
-    // Into `sums`, which begin so far apart from field to field.
+    // Into `sums`, in which fields are `apart` values apart.
     template <int V>
     HWY_INLINE void SumTaps(std::size_t first, hn::Vec<hn::RebindToSigned<D>> from, const T* columns,
                             std::size_t span, T* sums, std::size_t apart) {
@@ -618,7 +619,8 @@ class SplineReader {
                 taps[p] = tap;
             }
             columns += span;
-            // As SplineTaps::ReadAlone() adds them, so that a point's value is the same in any company.
+            // In the order of SplineTaps::ReadAlone(), so that a point's value doesn't depend on the points beside
+            // it.
             N sum[P];
             for (int p = 0; p < P; ++p)
                 sum[p % Taps::kGroup] = p < Taps::kGroup
@@ -668,7 +670,7 @@ void AddValues(const GridArgs<T>& args, const FieldValues<T>& values, Chunk<T>& 
     }
 }
 
-// The same of copies on one side along x, with their weights w and these weights' gradient (core/plan/copies.h).
+// The same for the tiles of one side along x, with their weights w and these weights' gradient (core/plan/copies.h).
 template <class T>
 void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typename CopyArgs<T>::Side& side,
                const FieldValues<T>& values, Chunk<T>& chunk) {
@@ -712,7 +714,7 @@ void AddCopies(const GridArgs<T>& args, const CopyArgs<T>& copies, const typenam
     }
 }
 
-// Fewer points of one y are read each by itself. Rows of some ten points cost as much in either way.
+// Shorter rows are read point by point. At some ten points both ways cost the same.
 constexpr std::size_t kShortestRow = 8;
 
 template <class T>
@@ -723,7 +725,7 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     const CopyRange* ranges = copies ? copies->ranges : &all;
     const std::size_t range_count = copies ? copies->range_count : 1;
     FieldValues<T> own, next;
-    // What vectors meet between the ranges, and beyond the last point, has to be a number.
+    // Vectors compute with the values between the ranges and beyond the last point too: these must be numbers.
     const hn::ScalableTag<T> d;
     const auto clear = [&](FieldValues<T>& values, PointRange but) HWY_ATTR {
         const bool is_whole = but.first == 0 && but.end == chunk.count;
@@ -740,7 +742,7 @@ void AddGrid(const GridArgs<T>& args, Chunk<T>& chunk) {
     Targets<T> targets{own, next, whole};
     Places<T> y;
     const T *rest_x = chunk.rest_x.data(), *rest_y = chunk.rest_y.data();
-    // Of rows, their first point is placed along y.
+    // Of a row only the first point is placed along y.
     const auto read = [&](auto&& row, auto&& scattered) {
         for (std::size_t r = 0; r < range_count; ++r) {
             const CopyRange& range = ranges[r];

@@ -13,7 +13,7 @@
 
 namespace pelagic {
 
-// A chunk of points on their way: where they are and what they see, and then what gusts do there.
+// A chunk of points: their pixels, and then the effect of gusts there.
 template <class T>
 struct GustChunk {
     using Values = typename Chunk<T>::Values;
@@ -25,7 +25,7 @@ struct GustChunk {
     void take(const Points<T>& points, T only_m, std::size_t first, std::size_t count);
 };
 
-// The pattern's phases where points have their origin.
+// The phases of the pattern's waves at the points' origin.
 using GustPhases = std::array<double, GustsPlan::kWaves>;
 
 // Of the chunk's points at rest, up to `padded`.
@@ -39,7 +39,8 @@ struct GustArgs {
 template <class T>
 void gusts_at(const GustArgs<T>& args, GustChunk<T>& chunk);
 
-// What J is compared with at each point, for who has moments of J of his own. `pixel_m`: the footprint of all.
+// The threshold with which J is compared at each point, for callers that have moments of J of their own. `pixel_m`:
+// the footprint of all points.
 template <class T>
 void whitecap_thresholds(const Gusts& gusts, double time_within_loop_s, const Points<T>& points,
                          double pixel_m, std::span<float> thresholds);

@@ -1,15 +1,15 @@
-// What a pixel's footprint hides of the waves' variances, for plain numbers, for vectors of them and for
+// What a pixel's footprint leaves unresolved of the waves' variances, for plain numbers, for vectors of them and for
 // GLSL: see core/base/number.h.
 
-// A moment of what a point between two rungs of a ladder is shown: (1 − t) of the fields of one and t of the
-// next, ((1 − t) w_a + t w_b)² expanded. here, next: what the two rungs show or hide alone; both: their mixed
-// sum. What is hidden blends alike, for the three factors add up to 1.
+// A moment at a point between two levels, which reads (1 − t) of one level's fields and t of the next one's: ((1 − t)
+// w_a + t w_b)² expanded. here, next: the moment that each level resolves, or leaves unresolved; both: with the
+// product of their weights. The three factors add up to 1, so that unresolved moments blend alike.
 template <class T>
 inline T blended_moment(T here, T both, T next, T t) {
     return (T(1) - t) * (T(1) - t) * here + (T(2) * t * (T(1) - t) * both + t * t * next);
 }
 
-// Second moments of slopes and of strains (times choppiness²) [-]: HiddenMoments by name.
+// Second moments of slopes and of displacement gradients (times choppiness²) [-]: HiddenMoments by name.
 template <class T>
 struct PixelMoments {
     T xx, xy, yy, xxxx, xxxy, xxyy, xyyy, yyyy;
@@ -20,7 +20,8 @@ inline T possible_covariance(T value, T bound) {
     return minimum(maximum(value, -bound), bound);
 }
 
-// Those that a difference of two sums stands for: variances never negative, covariances within their bounds.
+// Repairs the rounding of moments that are differences of sums: variances are never negative, covariances within
+// their bounds.
 template <class T>
 inline PixelMoments<T> possible_moments(PixelMoments<T> m) {
     const T xx = maximum(m.xx, T(0)), yy = maximum(m.yy, T(0));

@@ -94,7 +94,7 @@ ChunkSpan<T> SpanOf(const Chunk<T>& chunk) {
     return span;
 }
 
-// Of a vector of points, those that there are.
+// Writes those points of a vector that exist.
 template <class D, class T = hn::TFromD<D>>
 HWY_INLINE void Put(D d, const Strided<glm::vec<3, T>>& out, std::size_t i, std::size_t count,
                     const std::array<Pack<D>, 3>& value) {
@@ -120,7 +120,7 @@ HWY_INLINE void Put(D d, const Strided<T>& out, std::size_t i, std::size_t count
     for (std::size_t j = 0; j < std::min(lanes, count - i); ++j) out[i + j] = values[j];
 }
 
-// What a chunk's pixels hide, as vectors: by point, or the same for all.
+// What a chunk's pixels leave unresolved, as vectors: by point, or the same for all.
 template <class T>
 class Hidden {
   public:
@@ -151,8 +151,8 @@ class Hidden {
     alignas(64) T second_[64 / sizeof(T)], third_[64 / sizeof(T)];
 };
 
-// J in a chunk's pixels, and the coverage that follows: two loops, because the second is one long chain of
-// operations, of which a CPU has more under way at once when they stand alone.
+// J in a chunk's pixels, and the coverage that follows. These are two loops because the second is one long chain of
+// operations, and a CPU overlaps more of them when they stand alone.
 template <class T>
 void DeriveWhitecaps(const DeriveArgs<T>& args) {
     using D = hn::ScalableTag<T>;

@@ -19,24 +19,24 @@ struct PointRange {
     std::size_t first, end;  // `end` isn't one of them
 };
 
-// Points one after another that show one copy of a grid's tile, and where the chunk's origin lies in it [nodes]. Those of `own` lie
-// in the copy's own cell, those before and behind in cells beside it along x.
+// Successive points that read one shifted tile of a grid, and where the chunk's origin lies in it [nodes]. Those of
+// `own` lie in the tile's own cell, those before and behind in cells beside it along x.
 struct CopyRange {
     PointRange points, own;
     double nodes_x, nodes_y;
 };
 
-// One copy of a grid's tile along y, and along x both that a chunk's points see, with their weights (core/plan/copies.h). All
-// arrays of T are by point, as long as a chunk's padded().
+// The tiles that a chunk's points read: along y those of one cell, along x those of both, with their blending weights
+// (core/plan/copies.h). All arrays of T are by point, as long as a chunk's padded().
 template <class T>
 struct CopyArgs {
-    // Along an axis: the copy's weight, and that of the other one beside it; how they change with the place [1/m]; and the
-    // sign of this copy's change.
+    // Along an axis: the tile's weight, and that of the other one beside it; how they change with the place [1/m];
+    // and the sign of this tile's change.
     struct Axis {
         const T *weight, *other, *rate;
         T sign;
     };
-    // The copy in a point's own cell along x, or the one beside it; the points that show it, in order.
+    // The tile of a point's own cell along x, or of the cell beside it; the points that read it, in order.
     struct Side {
         Axis x;
         const PointRange* points;
@@ -61,13 +61,13 @@ struct RowPlaces {
     struct Columns {
         Index low, high;
     };
-    // Points that are read together, and from which of `vectors` on their columns stand.
+    // Points that are read together, and the index of their first columns in `vectors`.
     struct Run {
         PointRange points;
         Columns columns;
         std::size_t vector;
     };
-    // Points one after another in one copy of the tile. Their values stand from `at` on.
+    // Successive points in one shifted tile. Their values stand from `at` on.
     struct Part {
         PointRange points;
         double nodes_x;
@@ -94,7 +94,7 @@ struct GridArgs {
     std::array<const T*, kFieldCount> samples{};  // as Frame::samples(); null: not wanted
     FieldSet cell_group;                          // fields that cell_weight weighs; pixel_weight the others
     const T *cell_weight = nullptr, *pixel_weight = nullptr;  // by point; null: 1
-    const CopyArgs<T>* copies = nullptr;                      // null: all points see the tile itself
+    const CopyArgs<T>* copies = nullptr;                      // null: all points read the tile itself
     RowPlaces<T>* places =
         nullptr;  // where they are kept for chunks of the same x, which have the same `row`
     std::uint64_t row = 0;
@@ -113,12 +113,12 @@ struct ChunkSpan {
     bool is_finite = true;
 };
 
-// Along an axis, which of a cascade's copies a chunk's points show (core/plan/copies.h), and their CopyWeights.
+// Along an axis, which cells' tiles a chunk's points read (core/plan/copies.h), and their CopyWeights.
 template <class T>
 struct CopyAxis {
     using Code = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
-    // Four times the cell that each lies in, counted from the origin's, and the side on which the other copy lies that it
-    // shows: 1, above; 3, below; 0, it shows none.
+    // Four times the cell in which each point lies, counted from the origin's, plus the side of the other tile that
+    // it reads: 1, above; 3, below; 0, none.
     alignas(64) std::array<Code, Chunk<T>::kPoints> code;
     alignas(64) typename Chunk<T>::Values own, next,
         rate;  // rate: signed, as the weights change with the place [1/m]
@@ -135,7 +135,7 @@ struct CopyAxisArgs {
 template <class T>
 struct DeriveArgs {
     const Chunk<T>* chunk = nullptr;
-    const Chunk<T>* breaking = nullptr;  // whose strain is that of the waves that break
+    const Chunk<T>* breaking = nullptr;  // whose displacement gradient is that of the waves that break
     Results<T> results;                  // beginning at the chunk's first point
     HiddenMoments<T> hidden{};           // of all points' pixels, where there is no array
     const HiddenChunk<T>* hidden_of = nullptr;

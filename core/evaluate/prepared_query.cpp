@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array kStrain{Field::Dxx, Field::Dyy, Field::Dxy};
 
-// What a rung of pixels hides of `whole`: less what passes through the cascades, and more by what is hidden beside.
+// What a pixel's level leaves unresolved of `whole`: what the cascades don't resolve, and `beside` on top of it.
 template <class T>
 HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& rung,
                            const HiddenMoments<double>& whole, const HiddenMoments<double>& beside = {}) {
@@ -30,7 +30,7 @@ HiddenMoments<T> hidden_at(const QueryStatistics& statistics, const Rung<T>& run
     const auto left = [&](std::size_t moment) {
         const auto m = kHiddenMoments[moment];
         const double here = statistics.resolved[rung.lower].*m;
-        if (!(t > 0.0)) return whole[moment] - here + beside[moment];  // there may be no next rung
+        if (!(t > 0.0)) return whole[moment] - here + beside[moment];  // there may be no next level
         return beside[moment] + whole[moment] -
                blended_moment(here, statistics.resolved_next[rung.lower].*m,
                               statistics.resolved[rung.lower + 1].*m, t);
@@ -55,13 +55,13 @@ struct PreparedQuery<T>::Call {
     const Points<T>& points;
     const Results<T>& results;
     const Place& place;
-    FieldSet needed;  // but for breaking
+    FieldSet needed;  // except those of the waves that break
     bool breaks;      // something of the waves that break is wanted
     bool wants_hidden, on_ladder;
-    bool differ_in_hidden;  // where trains see each point's own pixel, or cascades a ladder
+    bool differ_in_hidden;  // where trains use each point's own pixel, or cascades have levels
 };
 
-// What is made for a chunk on its way.
+// The state of one chunk.
 template <class T>
 struct PreparedQuery<T>::Work {
     Chunk<T> chunk, breaking;
@@ -69,7 +69,7 @@ struct PreparedQuery<T>::Work {
     ChunkFootprints<T> cells, pixels, breaking_pixels;
     GustChunk<T> gusts;
     FieldSet needed;
-    bool apart;  // the strain of the waves that break is in `breaking`, not in `chunk`
+    bool apart;  // the displacement gradient of the waves that break is in `breaking`, not in `chunk`
     std::array<CopyPlaces<T>, limits::kCascades> copies;  // of the chunk's points, by cascade
     CopyReader<T> copy_reader;
     std::vector<std::vector<std::unique_ptr<RowPlaces<T>>>> places;  // of grids by level; empty: not kept
@@ -129,7 +129,7 @@ PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductS
         !query.only_cascade && std::any_of(plan.cascades.begin(), plan.cascades.end(),
                                            [](const CascadePlan& cascade) { return cascade.has_copies; });
     breaks_ = (wanted & breaking_products()).any();
-    // A cascade's own tile is periodic, and a part of the sea.
+    // A cascade's own tile is periodic and only a part of the sea: it has no gusts.
     if (frame.sea().gusts() && !query.only_cascade && (wanted & gusty_products()).any())
         gusts_ = &*frame.sea().gusts();
     if ((wanted & hidden_products()).any())
@@ -304,7 +304,7 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
     if (work.row != 0 && !is_same) ++work.row;
     for (auto* rest : {&chunk.rest_x, &chunk.rest_y})
         std::fill(rest->begin() + chunk.count, rest->begin() + padded + Chunk<T>::kLongestVector, T(0));
-    // What isn't needed, or is zero in this scene, is read as 0 where a product asks for it.
+    // Fields that aren't needed, or are zero in this scene, are 0 for products that ask for them.
     for (typename Chunk<T>::Values& sum : chunk.sums) std::fill(sum.begin(), sum.begin() + padded, T(0));
     std::fill(chunk.turn.begin(), chunk.turn.begin() + padded, T(0));
     if (call.on_ladder) {
@@ -364,8 +364,8 @@ void PreparedQuery<T>::take_gusts(const Call& call, std::size_t first, Work& wor
                 work.gusts);
 }
 
-// Where pixels are finer than the waves that break ask for; where trains differ for the same pixel; and where the
-// surface has no strain at all.
+// Where pixels are finer than the breaking waves' finest footprint, where trains differ for the same pixel, and where
+// the surface has no displacement gradient at all.
 template <class T>
 bool PreparedQuery<T>::breaks_apart(const Call& call, const Work& work) const {
     const Plan& plan = frame_->sea().plan();
@@ -438,8 +438,8 @@ void PreparedQuery<T>::add_grids(const Call& call, std::size_t level, const Shar
     }
 }
 
-// Each point between two rungs. Round footprints: the levels one after another, each with the points' shares in
-// it. Ellipses: see add_ellipses().
+// Each point between two levels. Round footprints: the levels one after another, each with the points' shares in it.
+// Ellipses: see add_ellipses().
 template <class T>
 void PreparedQuery<T>::add_ladder(const Call& call, Work& work) const {
     auto& [chunk, breaking, hidden_of, cells, pixels, breaking_pixels, gusts, needed, apart, copies,
@@ -531,7 +531,7 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
     for (std::size_t c = 0; c < whole_m_.size(); ++c) {
         const auto grid_of = [&](std::size_t rung) { return plan.cascades[c].grid_of_level[levels[rung]]; };
         for (std::size_t rung = lowest; rung <= highest; ++rung) {
-            // Rungs that let everything through whole share a grid.
+            // Levels that let everything through whole share a grid.
             const int grid = grid_of(rung);
             if (grid < 0 || (rung > lowest && grid == grid_of(rung - 1))) continue;
             const std::size_t l = level_of(rung);
@@ -551,7 +551,7 @@ void PreparedQuery<T>::add_ellipses(const Call& call, const std::vector<int>& le
     }
 }
 
-// The trains, which see each point's own footprints, and what all together hide.
+// The trains, filtered by each point's own footprints, and what they leave unresolved together with the cascades.
 template <class T>
 void PreparedQuery<T>::add_own_footprints(const Call& call, std::size_t first, Work& work) const {
     if (!has_trains_) return;

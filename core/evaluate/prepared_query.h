@@ -49,7 +49,7 @@ class PreparedQuery {
     struct Place {
         glm::dvec2 origin_m;
         std::vector<std::vector<glm::dvec2>> nodes;  // in each of a level's grids, 0 … n
-        std::vector<CopyOrigin> copies;              // in each cascade; empty: no copies
+        std::vector<CopyOrigin> copies;              // in each cascade; empty: periodic tiling
         std::vector<double> start_cycles;            // of each train
         GustPhases gusts{};
     };
@@ -74,7 +74,7 @@ class PreparedQuery {
     void run(const Call& call, PointRange of, Work& work) const;
     void add_grids(const Call& call, std::size_t level, const Share& share, Work& work,
                    Chunk<T>& chunk) const;
-    // Whether the strain of the waves that break isn't that of the chunk's normals.
+    // Whether the displacement gradient of the waves that break isn't that of the chunk's normals.
     bool breaks_apart(const Call& call, const Work& work) const;
     void add_only_footprint(const Call& call, Work& work) const;
     void add_ladder(const Call& call, Work& work) const;
@@ -87,7 +87,7 @@ class PreparedQuery {
     void add_own_footprints(const Call& call, std::size_t first, Work& work) const;
     // What gusts do to the chunk's points.
     void take_gusts(const Call& call, std::size_t first, Work& work) const;
-    // What an ellipse hides of the cascades' waves beyond a round footprint of its width.
+    // What an ellipse leaves unresolved of the cascades' waves beyond a round footprint of its width.
     HiddenMoments<double> beside_round(const Footprint<T>& pixel) const;
 
     const Frame<T>* frame_;

@@ -98,7 +98,7 @@ class TrainsAlongRay {
         if (kRates) sum.rate_mps += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, rate)));
         evaluated_ += std::min(kGroup, trains_.count - group * kGroup);
     }
-    // So that what follows is known of that many groups.
+    // Makes the sums below known for that many groups.
     HWY_INLINE void need(std::size_t groups) {
         while (ready_ < groups) prepare(ready_++);
     }

@@ -42,8 +42,9 @@ struct Tolerance {
         return std::max(least_m, at_beginning_m + (way.before_m + s_m) * per_m);
     }
 };
-// What is known of the ray at some place: the step that is safe, and of the trains that allow it, or of all where all were
-// evaluated, the height over the surface (of the ray's side), less the rest's amplitudes, and its slope along the ray and in time.
+// What is known of the ray at some place: a safe step; and, from the trains that were evaluated for it, the height
+// over the surface (positive on the ray's side), less the amplitudes of the others, with its slope along the ray and
+// in time.
 struct Look {
     double step_m = 0.0;
     bool is_whole = false;
@@ -65,7 +66,7 @@ class Tracer {
         waves_.begin(way.from_m, way.unit);
         side_ = side();
     }
-    // `enough`: nobody wants a longer step [m].
+    // `enough_m`: a longer step is of no use.
     HWY_INLINE Look look(double s_m, double enough_m) {
         Look seen;
         typename Waves::Sum sea;
@@ -87,7 +88,8 @@ class Tracer {
             waves_.add(group, s_m, sea);
         }
     }
-    // From the way's beginning [m]; infinite: none. With kSeen: `ray` is of another time, and then of this one.
+    // The hit's distance from the way's beginning [m]; infinite: none. With kSeen `ray` comes from another time, and
+    // leaves with this one's.
     double hit_m(const Tolerance& tolerance, int most_steps, SeenSpheres* seen, SeenSpheres::Ray* ray) {
         if constexpr (kSeen) {
             const bool is_same = ray->from_m == way_.from_m && ray->unit == way_.unit && ray->side == side_;
@@ -104,7 +106,7 @@ class Tracer {
     std::size_t evaluated() const { return waves_.evaluated(); }
 
   private:
-    // A hit, and from where to it the way is clear.
+    // A hit, and the distance from which the way to it is known to be clear.
     struct Ending {
         double hit_m = kInfinity, clear_from_m = kInfinity;
     };
@@ -159,7 +161,8 @@ class Tracer {
         return seen.clearance_m <= kGraze * within_m && seen.step_m <= within_m ? s_m : kInfinity;
     }
 
-    // Where the last hit must have gone, by what the sea there did. The look at it becomes the last of the old ones.
+    // Predicts where the last hit has moved, from the sea's slope and rate there. The look at that place becomes the
+    // last of the old ones.
     Ending guess(const Tolerance& tolerance) {
         const Sphere last = old_.back();
         const double slope = static_cast<double>(last.slope);
@@ -179,7 +182,8 @@ class Tracer {
             return {hit,
                     at_m - behind(seen.groups, seen.clearance_m - error_m, seen.slope + slope_error).zero()};
         }
-        // From behind the surface, backwards: at `first` F may be 0, at `latest` it must have been, and it stays above for a while.
+        // A look from behind the surface. Backwards from there F may be 0 from `first` on, has been 0 by `latest`,
+        // and then stays positive for a while.
         const double curvature = waves_.curvature(seen.groups), rise = -seen.slope - slope_error;
         const double square = rise * rise + 2.0 * curvature * (seen.clearance_m - error_m);
         if (!(seen.clearance_m < -error_m && rise > 0.0 && square > 0.0 && curvature > 0.0)) return {};
@@ -315,7 +319,7 @@ HWY_EXPORT(SafeStep);
 
 namespace {
 
-// Of what there was and a number: FNV-1a over its bits, in one step.
+// The hash with a number added: FNV-1a over its bits, in one step.
 std::uint64_t mixed(std::uint64_t hash, double number) {
     hash = (hash ^ std::bit_cast<std::uint64_t>(number)) * 0x100000001b3u;
     return hash ^ (hash >> 32);

@@ -8,7 +8,7 @@ struct SurfaceNormal {
 
 // T_x × T_y of T_x = (1 + Dxx, Dyx, ηx), T_y = (Dxy, 1 + Dyy, ηy), of length 1: its z has the sign of J, and
 // it is finite however J vanishes. Both tangents parallel: no normal exists; up is as good as any.
-// dxy = ∂Dx/∂y, dyx = ∂Dy/∂x: for a sum of waves both are the same, where copies blend (core/plan/copies.h) they aren't.
+// dxy = ∂Dx/∂y, dyx = ∂Dy/∂x: equal for a sum of waves, but not where tiles blend (core/plan/copies.h).
 template <class T>
 inline SurfaceNormal<T> surface_normal(T slope_x, T slope_y, T dxx, T dyy, T dxy, T dyx) {
     const T x = dyx * slope_y - slope_x * (T(1) + dyy), y = slope_x * dxy - slope_y * (T(1) + dxx);
@@ -25,12 +25,12 @@ struct SlopeVariances {
     T xx, yy, xy;
 };
 
-// Below this |J| hidden slopes are steepened no further: a crest that folds would make them infinite.
+// Below this |J| unresolved slopes are steepened no further: a crest that folds would make them infinite.
 inline constexpr double kLeastJacobian = 0.1;
 
-// Hidden waves ride on the waves that are shown. These move a point at rest x to P(x), M = ∂P/∂x = 1 + ∇D, so that a slope
-// ∇ₓη at rest is M⁻ᵀ ∇ₓη on the sea, and variances Σ at rest are M⁻ᵀ Σ M⁻¹: larger where a crest is compressed, smaller where
-// a trough is stretched.
+// Unresolved waves ride on the resolved ones. These move a point at rest x to P(x), M = ∂P/∂x = 1 + ∇D, so that a
+// slope ∇ₓη at rest is M⁻ᵀ ∇ₓη on the sea, and variances Σ at rest are M⁻ᵀ Σ M⁻¹: larger where a crest is compressed,
+// smaller where a trough is stretched.
 template <class T>
 inline SlopeVariances<T> carried_slopes(SlopeVariances<T> rest, T dxx, T dyy, T dxy, T dyx) {
     const T jacobian = (T(1) + dxx) * (T(1) + dyy) - dxy * dyx;

@@ -15,8 +15,9 @@
 namespace pelagic {
 namespace {
 
-// Squares are halved until they are sampled: this many cells a side of this size [m], or, of a footprint that lets only longer waves
-// through, this part of it: forty cells to the shortest wave. Where waves are choppy beyond measure they fold in less.
+// Squares are halved until kCells cells a side sample them finely enough. A cell is this long [m] or, where a
+// footprint lets only longer waves through, this part of the footprint: forty cells to the shortest wave. Extremely
+// choppy waves may fold within less.
 constexpr int kCells = 32;
 constexpr double kFinestSpacing_m = 0.02, kSpacingOfCell = 0.05;
 
@@ -26,7 +27,7 @@ struct Node {
     glm::dvec3 position_m;
 };
 
-// The surface round one place of the world, which is the origin of what it says.
+// The surface round one place of the world. Coordinates are relative to that place.
 template <class T>
 class Surroundings {
   public:
@@ -48,7 +49,7 @@ class Surroundings {
     }
 
   private:
-    // Of a square, of which neither more sheets nor higher ones are looked for than it can have.
+    // Searches a square, unless its bounds exclude a sheet over the place that is higher than those found.
     void search(const RestRegion& square) {
         const DisplacementBounds bounds =
             bounds_.region({place_m_ + square.min_m, place_m_ + square.max_m}, 1);

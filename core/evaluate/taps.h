@@ -15,7 +15,8 @@ namespace pelagic {
 template <class T>
 class TapChunk {
   public:
-    // origin_nodes: where the points' origin lies in the grid. `copies`: where the cascade has them.
+    // origin_nodes: where the points' origin lies in the grid. `copies`: of a cascade with random tiling; otherwise
+    // null.
     void begin(const GridArgs<T>& grid, glm::dvec2 origin_nodes, FieldSet fields, const CopyOrigin* copies,
                const EvaluateKernels<T>& kernels) {
         whole_ = args_ = grid;
@@ -34,7 +35,7 @@ class TapChunk {
 
     // Point i of `to`, which has this share in the grid. whole_m: of its cascade.
     void add(std::size_t i, const Footprint<T>& footprint, T share, T whole_m, Chunk<T>& to) {
-        if (fields_.none()) return;  // a tile without choppiness holds no strains
+        if (fields_.none()) return;  // a tile without choppiness has no displacement gradient
         const Taps<T> taps = taps_of(std::max(footprint.width_m, whole_m), footprint.length_m);
         const int last = last_tap(static_cast<double>(taps.reach));
         for (int j = -last; j <= last; ++j) {

@@ -1,5 +1,5 @@
-// The trains' fields at a chunk's points, in Highway's vectors: Bruneton, Neyret, Holzschuch 2010, Eqs. 2 and
-// 3, and what the pixels hide of Eq. 4 (§7.1). Formulas and signs: core/waves/trains.h.
+// The trains' fields at a chunk's points, in Highway's vectors: Bruneton, Neyret, Holzschuch 2010, Eqs. 2 and 3, and
+// the unresolved variances of Eq. 4 (§7.1). Formulas and signs: core/waves/trains.h.
 //
 // Included once per instruction set by files that use Highway's foreach_target (its own pattern of guards).
 #if defined(PELAGIC_CORE_EVALUATE_TRAINS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -162,15 +162,15 @@ struct Ellipses {
     }
 };
 
-// What the footprints hide, for the points of one vector. Each point's trains beyond its own end come as one
-// sum, looked up, and those of the blend one by one.
+// What the footprints leave unresolved, for the points of one vector. Each point's trains beyond its own end come as
+// one sum, looked up, and those of the blend one by one.
 template <class T, class D, class V = hn::Vec<D>>
 HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, const Ellipses<D>& footprints,
                          HiddenChunk<T>& hidden, std::size_t base) {
     const V footprint_m = footprints.width_m;
     V sum[kHiddenMoments.size()];
     const std::size_t longest_end = zone.end_of(hn::GetLane(hn::MaxOfLanes(d, footprint_m)), zone.any());
-    if (longest_end == zone.any()) {  // the rule, and cheaper: all points end with the same train
+    if (longest_end == zone.any()) {  // the usual case, and cheaper: all points end with the same train
         for (std::size_t m = 0; m < kHiddenMoments.size(); ++m)
             sum[m] = hn::Set(d, trains.hidden_from[zone.any()][m]);
     } else {
@@ -187,7 +187,8 @@ HWY_INLINE void HiddenOf(D d, const Trains<T>& trains, const Zone<T>& zone, cons
     }
     for (std::size_t i = zone.full(); i < zone.any(); ++i) {
         const V w = zone.weight(d, i, footprints.along(d, trains, i));
-        // Of strain: of what those that break show at best; the rest is in the sum of those outside.
+        // The displacement gradient counts relative to what is resolved of it at best; the rest is in the sum of the
+        // waves outside.
         const V most = hn::Set(d, trains.breaking[i]);
         const V strain_weight = hn::IfThenElse(hn::Gt(most, w), hn::Div(w, most), hn::Set(d, T(1)));
         // Else it is in the looked-up sum.

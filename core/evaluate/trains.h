@@ -9,7 +9,7 @@
 
 namespace pelagic {
 
-// What the points' pixels hide, by point; rows parallel to kHiddenMoments.
+// What the points' pixels leave unresolved, by point; rows parallel to kHiddenMoments.
 template <class T>
 struct HiddenChunk {
     alignas(64) std::array<typename Chunk<T>::Values, kHiddenMoments.size()> moments;
@@ -32,9 +32,9 @@ struct TrainArgs {
         const T *x = nullptr, *y = nullptr;
     };
     Stretch cell_stretch{}, pixel_stretch{};
-    // Where given: what pixel_of (or pixel_m) hides.
+    // Where given: what pixel_of (or pixel_m) leaves unresolved.
     HiddenChunk<T>* hidden = nullptr;
-    // Where given, its strain gets that of the waves that break. Its points at rest are the chunk's.
+    // Where given, it gets the displacement gradient of the waves that break. Its points at rest are the chunk's.
     Chunk<T>* breaking = nullptr;
 };
 

@@ -67,7 +67,8 @@ class Rows {
                 .elevation_rad = std::asin(std::max(sine, -1.0)),
                 .length_km = 1e-3 * distance_m(row)};
     }
-    // The root of a small share of the earth's radius, however low the eye.
+    // The dip of the horizon, by its arc from the nadir: never 0, since the eye counts as at least kLeastHeight_m
+    // high.
     double dip_rad() const { return std::atan(horizon_m_ / kEarthRadius_m); }
     // Of the sky, above the horizon.
     SightLine sky_line(int row) const {
@@ -153,8 +154,8 @@ class DaylightAir final : public AirModel {
     bool has_sky() const override { return true; }
 
   private:
-    // From half a kilometre up, where the sun is less than 0.8° lower at the horizon than below the eye, to the whole from
-    // four on.
+    // 0 up to half a kilometre, where the sun is less than 0.8° lower at the horizon than below the eye; 1 from four
+    // on.
     static float by_place(double height_m) {
         const double x = std::clamp(
             (height_m - kLightByPlaceFrom_m) / (kLightByPlaceWhole_m - kLightByPlaceFrom_m), 0.0, 1.0);
@@ -265,7 +266,7 @@ class PictureAir final : public AirModel {
     // At the least contrast that an eye sees, 2 %: −ln 0.02.
     static constexpr double kKoschmieder = 3.912;
 
-    // Of haze along a line of sight, in terms of that at sea level.
+    // The mean density of haze along a line of sight, relative to that at sea level.
     static double mean_density(const SightLine& line) {
         constexpr int kSteps = 256;
         const double radius = kEarthRadius_km + line.height_km;

@@ -1,11 +1,12 @@
-// What foam looks like from near: dense where waves break, then a net of filaments whose holes grow as bubbles burst, drawn out
-// along the wind. Pixels that hide the pattern show the coverage.
+// What foam looks like from near: dense where waves break, then a net of filaments whose holes grow as bubbles burst,
+// drawn out along the wind. Pixels that don't resolve the pattern show the coverage.
 //
 // The pattern is a sum of layers. Each has the normal distribution with variance 1 at a random place, and they are
-// independent, so that the sum with weights whose squares add up to 1 has it too. Foam lies where the sum is above the
-// quantile q of the coverage c. Of each layer a pixel shows the weight w that its footprint lets through, together the
-// variance v. What it hides is normal with variance 1 − v, so that its share of foam is Φ((shown − q)/√(1 − v)), whose mean
-// over the sea is Φ(−q) = c: at any distance, for any age, and for any strength of the pattern, which only scales w.
+// independent, so that the sum with weights whose squares add up to 1 has it too. Foam lies where the sum is above
+// the quantile q of the coverage c. Of each layer a pixel resolves the weight w that its footprint lets through,
+// together a sum s of variance v. The rest is normal with variance 1 − v, so that the pixel's share of foam is Φ((s −
+// q)/√(1 − v)). Its mean over the sea is Φ(−q) = c: at any distance, for any age, and for any strength of the
+// pattern, which only scales w.
 //
 // Layers are fixed to the water at rest, on grids of integer cells whose sizes are halves of one another. Age moves weight
 // from one to the next. kFoamCell_m (foam_structure.h) is the largest cell's size across the wind.
@@ -23,7 +24,7 @@ struct SeenFoam {
     float dense;
 };
 
-const float kFoamGrain = 0.1f;     // the part of the pattern's variance that is finer than anything shown: its edges' softness
+const float kFoamGrain = 0.1f;     // the part of the pattern's variance that is never resolved, which softens edges
 const float kThinFoam = 0.15f;     // dense foam in what looks thin
 const float kFaintFoam = 1.0e-3f;  // less coverage than this begins to lose its pattern, which nobody would see
 
@@ -128,7 +129,7 @@ float foam_weight(float size_m, float footprint_m) {
 
 struct FoamNoise {
     float shown;
-    float variance;  // of what is shown
+    float variance;  // of what is resolved
 };
 
 // rest_m: relative to the origin that the pattern was made for. footprint_m: on the water at rest.
@@ -159,7 +160,8 @@ FoamNoise foam_noise(FoamPattern pattern, vec2 rest_m, float footprint_m, float 
         bent = 0.25f * vec2(foam_clouds(slow, 101u), foam_clouds(slow, 102u)) +
                0.06f * vec2(foam_clouds(fast, 103u), foam_clouds(fast, 104u));
     }
-    // Nets of cells from 1/8 m on, each half as dense beside one twice as large, which grows 0.75 octaves a doubling of the age.
+    // A net, and one with cells half as large at 0.55 of its weight. Cells begin at 1/4 and 1/8 m, and grow by 0.75
+    // octaves for each doubling of 1 s + age.
     float octave = 1.0f + 0.75f * log2(1.0f + age_s);
     octave = min(octave, 5.0f);
     float all = 0.0f;

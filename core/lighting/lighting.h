@@ -34,7 +34,7 @@ struct LightingChoice {
     FresnelFit fresnel = FresnelFit::Exact;
     bool second_reflection = true;  // of what facets mirror onto the sea; without it that light is lost
     bool mesh_masking =
-        true;  // normals lean to the eye as those that a coarser mesh shows do (SeaPoint::mesh_variance)
+        true;  // normals lean to the eye as those of resolved waves do (SeaPoint::mesh_variance)
     bool operator==(const LightingChoice&) const = default;
 };
 
@@ -48,13 +48,14 @@ struct SeaRadiance {
 struct SeaPoint {
     glm::vec3 to_eye{0.0f, 0.0f, 1.0f};  // unit
     glm::vec3 normal{0.0f, 0.0f, 1.0f};  // unit, of the resolved waves; may face away from the eye
-    // (σxx, σyy, σxy) of the hidden waves [-], world axes: as the waves that are shown carry them, and at rest.
+    // (σxx, σyy, σxy) of the unresolved waves [-], world axes: as the resolved waves carry them, and at rest.
     glm::vec3 slope_variance{0.0f}, slope_variance_at_rest{0.0f};
     float coverage = 0.0f;  // of whitecaps, 0 … 1
     // Unit: the vertical at the point, in the axes of to_eye and of the sky. Normal and slope variance are relative to it.
     glm::vec3 up{0.0f, 0.0f, 1.0f};
-    // Of the slopes that the mesh beneath hides, at rest, along the view's horizontal direction; slope_variance_at_rest is
-    // what is left of these where the normal is finer than the mesh (visible_normal() in slopes.glsl). 0: the mesh is as fine.
+    // Variance of the slopes that the mesh leaves unresolved, at rest, along the view's horizontal direction;
+    // slope_variance_at_rest is what the normal, which is finer than the mesh, leaves unresolved of these
+    // (visible_normal() in slopes.glsl). 0: the mesh is as fine.
     float mesh_variance = 0.0f;
     // For the pattern of foam: the place at rest [m], relative to the pattern's origin, and the pixel there, its
     // width and long axis [m]; the part of the

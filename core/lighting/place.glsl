@@ -22,11 +22,11 @@ vec4 place_lookup(int row, float elevation) {
     return max(sum, vec4(0.0f));
 }
 
-// How many times the light below the eye there is at a place; what the place has beyond `most` times it is added.
+// The light at a place as a multiple of that below the eye, at most `most`: sea_radiance_at() adds the rest.
 vec3 place_share(vec3 here, vec3 there, float most) { return min(here / max(there, vec3(1.0e-20f)), vec3(most)); }
 
-// sea_radiance() at a place with that vertical. to_eye and normal: relative to it. light: that below the eye, in the eye's
-// axes. The sky's pattern stays; where the sky is much brighter than below the eye, the rest is uniform.
+// sea_radiance() at a place with that vertical. to_eye and normal: relative to it. light: that below the eye, in the
+// eye's axes. The sky's pattern is scaled; where the sky is much brighter than below the eye, the rest is uniform.
 SeaTerms sea_radiance_at(vec3 up, vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeaLight light, PlaceView place) {
     float rise = light.sun_direction.z - place.to_sun.z;
     light.sun_direction = levelled(light.sun_direction, up);

@@ -18,8 +18,8 @@ struct SeaTerms {
 };
 
 // to_eye, normal: unit vectors, world axes; the normal may face away. slope_variance: (σxx, σyy, σxy) of the
-// hidden waves, world axes. Each term is weighted by its share of the pixel (W for foam, 1 − W for the
-// others); their sum is the radiance.
+// unresolved waves, world axes. Each term is weighted by its share of the pixel (W for foam, 1 − W for the others);
+// their sum is the radiance.
 SeaTerms sea_radiance(vec3 to_eye, vec3 normal, vec3 slope_variance, SeenFoam seen, SeaLight light) {
     SlopeFrame frame = slope_frame(facing_normal(normal, to_eye), slope_variance);
     SeaTerms terms = SeaTerms(vec3(0.0f), vec3(0.0f), vec3(0.0f), vec3(0.0f));

@@ -78,7 +78,7 @@ class ScatteredTable {
         glm::dvec3 by_air{0.0}, by_haze{0.0}, more{0.0};
     };
 
-    // Past an end the table goes on as it came: mirrored at the sun's meridian, and at the horizon, where it is smooth in
+    // Past an end the table is continued: mirrored at the sun's meridian, and at the horizon, where it is smooth in
     // the elevation, the square of the index.
     const Entry& at(int i, int j) const {
         i = std::min(std::abs(i), kElevations);

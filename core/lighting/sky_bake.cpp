@@ -45,8 +45,8 @@ struct Texel {
 // Texels around the horizon to which the sky extends: a lookup reaches 1½ to each side.
 constexpr double kOpenTexels = 2.5;
 
-// The sky past the horizon goes on as it came, by ratios, so that it isn't negative: what is at the horizon, and how many
-// times that above it, mirrored there, is more or less.
+// The sky continued past the horizon, by ratios so that it isn't negative: from the place as far above the horizon to
+// the horizon it changes by a factor, and by the same factor again to here.
 glm::dvec3 beyond_horizon(const SkyDome& dome, glm::dvec2 u, double distance) {
     const auto at = [&](double place) {
         return glm::dvec3(dome.radiance(sky_map_direction(glm::vec2(u * (place / distance)))));

@@ -8,7 +8,7 @@ float sky_texels_in(float x) {
 }
 
 // The finest level as a quadratic B-spline whose coefficients are the texels: without kinks, and nowhere beyond its
-// neighbours. That level has no ground: beyond the horizon the sky goes on as it came.
+// neighbours. That level has no ground: the sky is continued past the horizon.
 vec3 sky_smooth(vec2 u) {
     vec2 x = (u * (0.5f / kSkyMapReach) + 0.5f) * kSkyMapSize - 0.5f;
     x = vec2(sky_texels_in(x.x), sky_texels_in(x.y));

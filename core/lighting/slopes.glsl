@@ -32,16 +32,17 @@ vec3 facing_normal(vec3 normal, vec3 to_eye) {
     return normalize(seen + bend * to_eye);
 }
 
-// The normal of a pixel whose waves are finer than the mesh's. Of waves that the mesh has, the eye sees those that lean to
-// it more often: they take more of the picture. Of those that only the normals have, each takes its part of the mesh,
-// also the back that a crest would hide, and the sea seems to lean away: skies mirrored at grazing angles were 5 to 15 %
-// too bright. So normals lean to the eye as visible ones do. With w = (v·n)/(n_z |v_xy|), 0 for a surface seen edge-on, and
-// the variance s of these slopes along the view, slopes that never face away (a Bessel-3 process) have the mean square
-// w0² + 3 s, where all of them have w0² + s; and so has √(w² + 2 s), which is w′ here. Seen from above it is the mean of
-// slopes weighted by the area that they show, w0 + s/w0.
+// The normal of a pixel that resolves finer waves than the mesh. The eye sees those of the mesh's waves that lean to
+// it more often: they take more of the picture. Waves that only the normals have take equal parts of the mesh, also
+// on the back that a crest would hide, and the sea seems to lean away: skies mirrored at grazing angles were 5 to 15
+// % too bright. So normals lean to the eye as visible ones do. With w = (v·n)/(n_z |v_xy|), 0 for a surface seen
+// edge-on, and the variance s of these slopes along the view, slopes that never face away (a Bessel-3 process) have
+// the mean square w0² + 3 s, where all of them have w0² + s; and so has √(w² + 2 s), which is w′ here. Seen from
+// above it is the mean of slopes weighted by the area that they show, w0 + s/w0.
 //
-// mesh_variance: of the slopes that the mesh hides, along the view's horizontal direction; variance: what is hidden of
-// these by the pixel, (σxx, σyy, σxy); both at rest. No more is hidden than by the mesh: the normal stays.
+// mesh_variance: of the slopes that the mesh leaves unresolved, along the view's horizontal direction; variance: of
+// those that the pixel leaves unresolved, (σxx, σyy, σxy); both at rest. Where the pixel resolves no more than the
+// mesh, the normal stays.
 // The includer defines const bool kMeshMasking: without it normals stay.
 vec3 visible_normal(vec3 normal, vec3 to_eye, vec3 variance, float mesh_variance) {
     if (!kMeshMasking) return normal;

@@ -128,8 +128,8 @@ SprayPath spray_path(vec3 to_eye, float distance_m, bool on_sea, SprayView spray
     }
     float at_m = row < 0 ? 0.0f : spray.first_m * exp(spray.row_step * float(row));
     vec2 here = spray_between(column, max(row, 0));
-    // The map's cells hide waves. A ray that ends on the surface ends at its height 0. The row before counts with it, and the one
-    // before that the more the nearer.
+    // The map's cells don't resolve all waves. A ray that ends on the surface ends at height 0. The row before its end
+    // is moved by the same height, and the one before that the more, the nearer the end is to the last row.
     vec2 ends = vec2(0.0f);
     float ends_z = 0.0f;
     float astray = 0.0f;

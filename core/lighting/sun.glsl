@@ -110,7 +110,7 @@ vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radianc
     return sun_seen_from(into_frame(frame, to_eye), to_sun, frame, sun_radiance, angular_radius);
 }
 
-// The same where it adds a twentieth: the disc is a Gaussian in the slopes.
+// The same for the second reflection, which adds a twentieth: the disc is a Gaussian in the slopes.
 vec3 sun_seen_again(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
     vec3 l = into_frame(frame, to_sun);
     vec3 h = v + l;

@@ -19,9 +19,9 @@ class Choppiness {
     Choppiness(double of_all = 1.0);
     // As the scene asks: waves.choppiness, or what a cascade of the fft model says of its own waves.
     static Choppiness asked(const Scene& scene);
-    // What a sea is built with: none where less than this is asked for. Such waves are displaced by less than a
-    // ten-thousandth of their height, and in single precision J, next to 1, keeps too few digits of its strain to tell where
-    // it breaks: half a step is 0.2 % of J's deviation here, and more of less.
+    // What a sea is built with: 0 where less than kLeastShown is asked for. Such waves are displaced by less than a
+    // ten-thousandth of their height, and in single precision J, next to 1, keeps too few digits of the displacement
+    // gradient to tell where it breaks: half a step is 0.2 % of J's deviation here, and more below.
     static constexpr double kLeastShown = 1e-4;
     Choppiness built() const;
 

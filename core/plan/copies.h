@@ -1,11 +1,12 @@
-// waves.tiling = "random": a cascade is copies of its one tile at random offsets, blended, so that no pattern is seen from
+// waves.tiling = "random": a cascade is its one tile at random offsets, blended, so that no pattern is seen from
 // the air (Heitz and Neyret 2018, "High-performance by-example noise using a histogram-preserving blending operator"; on
 // squares instead of triangles, and of a Gaussian field, which needs no histogram preserved).
 //
-// For cascade c of size L the plane is cut into square cells of side L, cell (i, j) round the middle (i L, j L). Each shows the
-// tile displaced by an offset of its own, copy_offset(copies_key(seed, c), i, j), and across a border the copies on both
-// sides blend over kCopyRamp L, along x and y apart: a point shows one copy, two, or near a corner four. The squares of their weights
-// add up to 1, and different copies are uncorrelated, so all second moments are the spectrum's. Offsets depend on the
+// For cascade c of size L the plane is cut into square cells of side L, cell (i, j) round the middle (i L, j L). Each
+// cell has the tile at an offset of its own, copy_offset(copies_key(seed, c), i, j): that is a "copy" in names.
+// Across a border the tiles on both sides blend over kCopyRamp L, along x and y apart: a point reads one tile, two,
+// or near a corner four. The squares of their weights add up to 1, and different offsets are uncorrelated, so all
+// second moments are the spectrum's. Offsets depend on the
 // shot's seed, the cascade and the cell alone: not on time, camera, surface or footprint. Cell (0, 0) has none: the middle of it,
 // out to 0.5 − 0.5 kCopyRamp of L, is the tile as it is.
 //
@@ -26,12 +27,13 @@ using uint = std::uint32_t;  // GLSL's name
 
 #include "core/plan/copies.inl"
 
-// The part of a cell's half in which there is but one copy.
+// The part of a cell's half in which nothing blends.
 inline constexpr double kPlainHalf = 0.5 - 0.5 * kCopyRamp;
-// E[w_x²] L², summed over the copies: the mean of θ′² over the plane, 3.0384 / kCopyRamp.
+// E[w_x²] L², summed over the blended tiles: the mean of θ′² over the plane, 3.0384 / kCopyRamp.
 inline constexpr double kCopySlopes = 3.0383937607 / kCopyRamp;
 
-// Along an axis from the points' origin, in cells: what lies further, or is no number, is shown the origin's cell.
+// Along an axis from the points' origin, in cells: places farther away, or that are no number, read the origin's
+// cell.
 inline constexpr double kFarthestCell = 0x1p28;
 
 // Below 2²⁰.

@@ -1,7 +1,7 @@
-// Where a cascade's copies lie and how they blend, for plain numbers, for vectors of them and for GLSL: see
+// Where a cascade's tiles lie and how they blend, for plain numbers, for vectors of them and for GLSL: see
 // core/base/number.h. The rule is in core/plan/copies.h.
 
-// Of the blend from a cell to the next, in cells: half of it lies on either side of the border.
+// The width of the blend from a cell to the next, in cells: half of it lies on either side of the border.
 inline constexpr double kCopyRamp = 0.15;
 inline constexpr double kCopySteps = 1024.0;  // offsets are whole multiples of the tile's size by this
 inline constexpr double kEighthTurnTangent = 0.41421356237309504880;  // tan(π/8)
@@ -29,8 +29,8 @@ inline CopyBits copy_bits(uint key, uint i, uint j) {
     return CopyBits(x >> 22u, y >> 22u);
 }
 
-// How far the tile's copy in cell (i, j) is displaced, in tiles, 0 … 1: the point x of the cell shows the tile's x + offset.
-// None in cell (0, 0).
+// The offset of the tile in cell (i, j), in tiles, 0 … 1: at the point x of the cell lies the tile's x + offset. None
+// in cell (0, 0).
 template <class T>
 struct CopyOffset {
     T x, y;
@@ -45,8 +45,9 @@ inline CopyOffset<T> copy_offset(uint key, uint i, uint j) {
     return CopyOffset<T>(T(bits.x) * T(1.0 / kCopySteps), T(bits.y) * T(1.0 / kCopySteps));
 }
 
-// Along an axis: the weight of the copy in the point's own cell, and of the one beyond the nearer border. Their squares add
-// up to 1. With the distance from the cell's middle the first changes by −next · rate, the second by own · rate [1/cell].
+// Along an axis: the weight of the tile of the point's own cell, and of the one beyond the nearer border. Their
+// squares add up to 1. With the distance from the cell's middle the first changes by −next · rate, the second by own
+// · rate [1/cell].
 template <class T>
 struct CopyWeights {
     T own, next, rate;

@@ -32,7 +32,7 @@ void add_grids(const CascadePlan& cascade, WorkDone& work) {
 // The grids that a point reads, each once for all of its fields.
 void add_points(const Plan& plan, const PlannedQuery& planned, WorkDone& work) {
     const double points = 1e-6 * static_cast<double>(planned.query.points);
-    // A point between two of a ladder's levels reads both.
+    // A point between two levels reads both.
     const double levels_read = planned.query.pixel_m.size() > 1 ? 2.0 : 1.0;
     for (const CascadePlan& cascade : plan.cascades) {
         if (planned.query.only_cascade && &cascade != &plan.cascades[*planned.query.only_cascade]) continue;

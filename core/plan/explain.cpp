@@ -105,7 +105,7 @@ std::string explain(const Plan& plan) {
                 "\n";
         for (const ProductRow& row : kProductTable) {
             if (!planned.query.products[index(row.product)]) continue;
-            // Waves break by a strain of their own, also where nothing is displaced.
+            // Breaking has a displacement gradient of its own, also where nothing is displaced.
             const FieldSet needed = row.is_of_breaking ? row.needs : row.needs & ~plan.dropped;
             page += format("    %-18s ← %s (%s)\n", row.name, field_list(needed).c_str(), row.why);
         }

@@ -30,7 +30,7 @@ constexpr FieldSet velocity_fields() {
     return fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
 }
 
-// The strain of the horizontal displacement. The waves that break have their own (Plan::breaking).
+// The gradient of the horizontal displacement. The waves that break have one of their own (Plan::breaking).
 constexpr FieldSet strain_fields() {
     return fields(Field::Dxx, Field::Dyy, Field::Dxy);
 }
@@ -41,8 +41,8 @@ constexpr FieldSet horizontal_fields() {
                   Field::VelocityY);
 }
 
-// Where copies of a tile blend, the weights' gradient times this field belongs to the derivative (core/plan/copies.h).
-// Height and Dx or Dy themselves have none.
+// Where tiles blend, the weights' gradient times this field belongs to the derivative (core/plan/copies.h). Height,
+// Dx and Dy themselves have no such term.
 struct Gradient {
     Field derivative, of;
     bool along_y;
@@ -53,7 +53,7 @@ inline constexpr Gradient kGradients[]{{Field::SlopeX, Field::Height, false},
                                        {Field::Dyy, Field::Dy, true},
                                        {Field::Dxy, Field::Dx, true}};
 
-// What the derivatives among these need so: Dyx, which has no transform of its own, needs Dy as well.
+// The fields that derivatives among these need for that: Dyx, which has no transform of its own, needs Dy as well.
 inline FieldSet gradient_fields(FieldSet derivatives) {
     FieldSet needed;
     for (const Gradient& gradient : kGradients)

@@ -53,7 +53,7 @@ std::string plan_text(const Plan& plan, int query_index) {
     }
     const std::vector<int> levels = summed_levels(plan, planned);
     for (const CascadePlan& cascade : plan.cascades) {
-        // A finer last cascade has more modes, of which no rung of this query shows any.
+        // A finer last cascade has more modes, of which no level of this query resolves any.
         text += "tile " + number_text(cascade.size_m) + " from " + number_text(cascade.k_lower) + '\n';
         if (query.is_view) continue;
         for (const int level : levels) {

@@ -1,9 +1,9 @@
 // What a file of a bake or a picture was made of, as one number: whoever finds the number in a file knows
 // that making the file again would give the same bits on this kind of CPU.
 //
-// It is made of the keys that feed the output, of the part of the resolved plan that the output reads, of the
-// output's revision, and, for a frame, of its number and of the camera's pose where that shapes it. It is not
-// made of anything else: not of the range of frames, of other outputs or of the program's version.
+// It is made of the keys on which the output depends, of the part of the resolved plan that the output reads, of the
+// output's revision, and, for a frame, of its number and of the camera's pose where that shapes it. It is not made of
+// anything else: not of the range of frames, of other outputs or of the program's version.
 #pragma once
 
 #include <string>
@@ -31,8 +31,8 @@ std::string output_fingerprint(const Plan& plan, const PlannedOutput& output);
 std::string frame_fingerprint(const Plan& plan, const PlannedOutput& output, const std::string& whole,
                               int frame);
 
-// What of a plan decides a query's answers, exact: two plans of one text give the same bits at the same
-// points. The rungs of a view's ladder are not in it: they are the same in every plan that has them.
+// The part of a plan that decides a query's answers, exact: two plans with the same text give the same bits at the
+// same points. The levels of a view's footprints are not in it: they are the same in every plan that has them.
 std::string plan_text(const Plan& plan, int query);
 
 // A pose, exact.

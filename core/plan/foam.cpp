@@ -181,7 +181,7 @@ double tiles_near_to_far(const FoamPlan& foam, int level, const Surface& surface
     const double tile_m = FoamPlan::kTileCells * foam.cell_of(level);
     const double rung_m = first_rung_m(surface.size_m / surface.resolution);
     const double side = surface.size_m / rung_m;  // of the first, in footprints
-    if (!(finest_m > 0.0)) finest_m = rung_m;     // trains have no ladder: each point's own counts
+    if (!(finest_m > 0.0)) finest_m = rung_m;     // trains have no levels: each point's own counts
     double tiles = 0.0;
     for (double footprint_m = finest_m; footprint_m < foam.cell_of(level); footprint_m *= 2.0) {
         const FoamRung rung = foam_rung(foam, static_cast<float>(footprint_m));

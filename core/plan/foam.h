@@ -1,4 +1,4 @@
-// Foam that lives: what the waves that broke have left, as core/effects keeps it.
+// Persistent foam: what the waves that broke have left, as core/effects keeps it.
 //
 // A point's residual foam is a sum over intervals of absolute time, [n, n + 1] · step_s, of the share of its surroundings
 // that broke then, each with the integral of e^{−age/decay} over the interval. Which intervals and where their sources lie
@@ -50,10 +50,11 @@ struct FoamPlan {
     Weight weight(double from_s, double to_s) const;
 };
 
-// steps_a_period: Knobs::foam_steps_a_period. Nothing where the foam doesn't live. `finest_m`: no breaking is resolved below it.
+// steps_a_period: Knobs::foam_steps_a_period. Nothing without persistent foam. `finest_m`: no breaking is resolved
+// below it.
 std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m, double steps_a_period);
 
-// Which level's cells show what a footprint shows, two of them a footprint: (1 − t) of `level` and t of the next.
+// Which level's cells serve a footprint, two cells a footprint: (1 − t) of `level` and t of the next.
 struct FoamRung {
     int level = 0;
     float t = 0.0f;
@@ -62,9 +63,9 @@ FoamRung foam_rung(const FoamPlan& foam, float footprint_m);
 // An ellipse counts as the circle of its area.
 float foam_footprint_m(float width_m, float length_m);
 
-// How many tiles the history for these queries has room for, by level. Of a camera that moves, or that looks round, those all
-// round its places: of two times, of which one goes on from the other; of pictures, which ask for all at once, of one. Of a camera
-// at rest those that its frame shows, in expectation, and in a run of pictures its surroundings.
+// How many tiles the history for these queries has room for, by level. For a camera that moves or turns these are all
+// round its places: at two successive times, or for pictures, which ask for all tiles at once, at one. For a camera
+// at rest they are those in its frame, in expectation, and in a run of pictures their surroundings.
 std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Scene& scene,
                                                  const std::vector<Query>& queries, bool are_pictures);
 

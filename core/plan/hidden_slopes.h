@@ -1,4 +1,4 @@
-// The slopes that a footprint hides, in expectation.
+// The slopes that a footprint leaves unresolved, in expectation.
 #pragma once
 
 #include "core/plan/choppiness.h"
@@ -7,14 +7,15 @@
 
 namespace pelagic {
 
-// The mean square slope that is not shown where every wave counts with its footprint's weight w:
-// ∫ k² S(k) (1 − w²) dk [-], S the omnidirectional spectrum (Bruneton, Neyret, Holzschuch 2010, §7.1: total
-// less resolved). footprint_m ≥ 0.
+// The mean square slope that is unresolved where every wave counts with its footprint's weight w: ∫ k² S(k) (1 − w²)
+// dk [-], S the omnidirectional spectrum (Bruneton, Neyret, Holzschuch 2010, §7.1: total less resolved). footprint_m
+// ≥ 0.
 double hidden_mean_square_slope(const DirectionalSpectrum& spectrum, const FootprintFilter& filter,
                                 double footprint_m);
 
-// How much larger the hidden slope variance is by area of sea than at rest, where the waves that are shown carry it: E[J Σ′]/Σ
-// of an isotropic Σ = E[|M|²/(2 J)] (core/evaluate/surface.inl), to second order 1 + ½ ∫ k² S λ² coth²(kd) w² dk.
+// How much larger the unresolved slope variance is by area of sea than at rest, where the resolved waves carry it:
+// E[J Σ′]/Σ of an isotropic Σ = E[|M|²/(2 J)] (core/evaluate/surface.inl), to second order 1 + ½ ∫ k² S λ² coth²(kd)
+// w² dk.
 double hidden_slope_gain(const DirectionalSpectrum& spectrum, const FootprintFilter& filter,
                          double footprint_m, const Choppiness& choppiness);
 

@@ -1,4 +1,4 @@
-// How far a mesh is from the sea that it shows, by expectation: what its cells filter away, and what straight edges cut off.
+// How far a mesh is from the sea, in expectation: what its cells filter away, and what straight edges cut off.
 //
 // A wave k of unit height, filtered by the weight w(k) of a cell (filter.h) and drawn by the mesh, differs from itself by
 //

@@ -51,7 +51,7 @@ void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<Ou
     requests.push_back({.row = &row, .surface = &context.surface, .query = std::move(query)});
 }
 
-// A map's levels hide more and more: the footprints of its mip pyramid, halved sizes rounded down as OpenEXR
+// Each level of a map leaves more unresolved: the footprints of its mip pyramid, halved sizes rounded down as OpenEXR
 // does.
 std::vector<double> mip_footprints(double size_m, int n) {
     std::vector<double> footprints_m;
@@ -76,7 +76,8 @@ void add_maps(const OutputRow& row, const OutputContext& context, const Square& 
             query.name = (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) +
                          std::string(word_of(map));
             query.products = at.needs() & ~context.gone;
-            // What carries a tile's slopes is the whole sea, not the tile.
+            // A tile's unresolved slopes are carried by the whole sea, not by the tile alone: so they are taken at
+            // rest.
             if (cascade && query.products[index(Product::SlopeVariance)])
                 query.products = products(Product::SlopeVarianceAtRest);
             query.points = static_cast<std::size_t>(n) * n;

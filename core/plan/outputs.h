@@ -1,4 +1,4 @@
-// What a bake leaves, as the plan sees it: each output is a query, the keys that feed it, and a revision. Its
+// What a bake leaves, as the plan sees it: each output is a query, the keys on which it depends, and a revision. Its
 // encoder and its files are a part of plugin/bake.
 //
 // There are the mesh, maps over the patch's square, the same maps over each cascade's own periodic tile, and volumes

@@ -96,7 +96,7 @@ int level_index(Plan& plan, const Level& level) {
     return static_cast<int>(plan.levels.size()) - 1;
 }
 
-// Whether all of the lattice's points show the tile itself, and no other copy of it.
+// Whether all of the lattice's points read the tile of cell (0, 0), without an offset or blending.
 bool shows_one_copy(const Lattice& lattice, double size_m) {
     return std::max(-lattice.first_m, lattice.last_m) < kPlainHalf * size_m;
 }
@@ -120,7 +120,7 @@ FieldSet fields_at(const Plan& plan, const CascadePlan& cascade, int level, bool
     return wanted & ~zero;
 }
 
-// Whether some query wants to know what this level's pixels hide.
+// Whether some query wants to know what this level's pixels leave unresolved.
 bool hides(const Plan& plan, int level) {
     const auto has = [level](const std::vector<int>& levels) {
         return std::find(levels.begin(), levels.end(), level) != levels.end();
@@ -170,8 +170,8 @@ void add_grids(Plan& plan, int cascade_index) {
             std::min({0.5 * resolution, filter_modes, modes_within(cascade.size_m, cascade.k_upper) + 1.0}));
         if (cutoff <= cascade.k_lower || radius < 2) continue;
         cascade.radius_of_level[level] = radius;
-        // What is hidden is the spectrum less what these modes hold, whether they are also asked for fields
-        // or not.
+        // The unresolved part is the spectrum less what these modes hold, whether they are also asked for fields or
+        // not.
         if (hides(plan, level)) cascade.mode_radius = std::max(cascade.mode_radius, radius);
         if (wanted.none()) continue;
         cascade.mode_radius = std::max(cascade.mode_radius, radius);
@@ -191,7 +191,7 @@ void add_grids(Plan& plan, int cascade_index) {
                            : plan.knobs.oversampling;
         grid.resolution = transform_size(static_cast<int>(std::ceil(oversampling * (2.0 * radius - 1.0))));
         auto nodes = at.lattice ? node_resolution(*at.lattice, cascade.size_m) : std::nullopt;
-        // So fine that copies of the tile are displaced by whole nodes.
+        // So fine that the tile's offsets are whole nodes.
         if (nodes && blends) *nodes = std::lcm(*nodes, static_cast<int>(kCopySteps));
         if (nodes && *nodes >= 2 * radius - 1 &&
             (at.only_cascade || (*nodes <= 2 * grid.resolution && *nodes == transform_size(*nodes)))) {
@@ -224,8 +224,8 @@ std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double 
     std::vector<CascadeSize> cascades(kCascades);
     std::vector<double> sizes;
     for (int i = 0; i < kCascades; ++i) sizes.push_back(kPeakWaves * kTwoPi / peak / std::pow(kRatio, i));
-    // All copies are of one tile: what its waves happen to have in common over short distances stays in the picture. With
-    // sixteen peak waves that is little, for a third more of all transforms.
+    // All cells have the same tile: what its waves happen to have in common over short distances stays in the
+    // picture. With sixteen peak waves that is little, for a third more of all transforms.
     constexpr double kCopiedPeakWaves = 16.0;
     if (scene.waves.tiling == Tiling::Random) sizes.front() *= kCopiedPeakWaves / kPeakWaves;
     const auto edges = lower_edges(sizes);
@@ -260,11 +260,12 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
     const FootprintFilter& filter = options.filter;
     const double finest_m = options.finest_pixel_m > 0.0 ? first_rung_m(options.finest_pixel_m) : 0.0;
     const auto cascades = resolve_cascades(prepared, finest_m, filter);
-    // Trains see each point's own footprints, whatever the ladder.
+    // Trains use each point's own footprints, whatever the levels.
     query.cell_m = query.pixel_m = {0.0};
     if (cascades.empty()) return query;
-    // Where the finest cascade's shortest wave is still whole: finer footprints change nothing. A camera's ladder begins at
-    // the nearest rung: what it hides of waves that are within √2 of the shortest isn't worth a second grid of that size.
+    // Where the finest cascade's shortest wave is still whole: finer footprints change nothing. A camera's levels
+    // begin at the nearest one: waves within √2 of the shortest, which that leaves unresolved, aren't worth a second
+    // grid of that size.
     const CascadeSize& finest = cascades.back();
     const double shortest_m = finest.size_m / (0.5 * finest.resolution);
     const double whole_m =

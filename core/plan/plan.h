@@ -65,7 +65,7 @@ struct CascadePlan {
 
     // λ of its modes, as Breaking has it. 0: none of horizontal_fields().
     double choppiness = 1.0;
-    // Of copies at random offsets (core/plan/copies.h), but for queries of a cascade's own tile.
+    // Whether it has random tiling (core/plan/copies.h), except for queries of a cascade's own tile.
     bool has_copies = false;
 
     bool moves() const;       // whether somebody asks for velocities
@@ -88,7 +88,7 @@ struct Knobs {
     bool double_precision = false;
     double longest_ellipse = 8.0;  // of footprints: over its width, 1 … kLongestEllipse (core/plan/taps.h)
     double foam_steps_a_period =
-        4.0;  // of the lattice of times of living foam, in periods of its shortest waves
+        4.0;  // of the lattice of times of persistent foam, in periods of its shortest waves
 
     bool operator==(const Knobs&) const = default;
 };
@@ -96,8 +96,8 @@ struct Knobs {
 struct PlannedQuery {
     Query query;
     std::vector<int> cell_levels, pixel_levels;  // into Plan::levels, parallel to the footprints
-    // Parallel to pixel_levels: where the strain of the waves that break is. The same levels but for pixels finer than
-    // Breaking::footprint_m. Empty where nobody asks.
+    // Parallel to pixel_levels: the levels of the breaking waves' displacement gradient. The same levels, except for
+    // pixels finer than Breaking::footprint_m. Empty where nobody asks.
     std::vector<int> breaking_levels;
 };
 
@@ -123,7 +123,7 @@ struct Plan {
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
     std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
-    std::optional<FoamPlan> foam;      // where foam lives, and a query asks for coverage
+    std::optional<FoamPlan> foam;      // with persistent foam, where a query asks for coverage
     std::optional<GustsPlan> gusts;    // where the wind varies over the surface
     FieldSet dropped;                  // fields that are zero in this scene, whoever asks: never computed
     std::vector<Reason> closure;
@@ -131,7 +131,7 @@ struct Plan {
     std::vector<PlannedOutput> outputs;          // of a bake; each has a query
     std::shared_ptr<const RestSurface> surface;  // of a bake: where the mesh's points are
 
-    // Whether modes have horizontal displacements, or strains that break.
+    // Whether modes have horizontal displacements, or a displacement gradient that decides about breaking.
     bool has_strain() const;
     int transforms_per_frame() const;  // real two-dimensional ones: one for each field of each grid
     long lines_per_frame() const;      // the one-dimensional complex ones that they are made of
@@ -141,7 +141,7 @@ struct Plan {
     // Points at rest, shared by queries over the same square, and one frame's results: each query's own, in
     // single precision as files hold them; in double, besides, an array a product as long as its longest.
     std::size_t output_bytes() const;
-    // What the history of living foam has room for (core/effects/foam_history.h): what it holds, by expectation where a picture's
+    // The bytes of the history of persistent foam (core/effects/foam_history.h), in expectation where a picture's
     // frame or a mesh for a camera decides which tiles are read.
     std::size_t foam_history_bytes() const;
 };
@@ -156,11 +156,11 @@ struct ViewQueryOptions {
     FootprintFilter filter{};
 };
 
-// A query for points at all distances from a camera: a ladder of footprints, each the double of the one
-// before. Its rungs are powers of two in metres, whatever the scene (core/surface/rungs.h), from the nearest
-// to the finest footprint (one of 0 before them, if nothing may be filtered) up to where no cascade has a wave
-// to show: a point's answer depends on the two rungs beside its own footprints, and never on how fine other
-// points are. The ladder of the cells is a part of that of the pixels, so that they share what they can.
+// A query for points at all distances from a camera: levels of footprints, each twice as large as the one before.
+// They are powers of two in metres, whatever the scene (core/surface/rungs.h), from the nearest to the finest
+// footprint (one of 0 before them, if nothing may be filtered) up to where no cascade has a wave to resolve. A
+// point's answer depends on the two levels beside its own footprints, and never on how fine other points are. The
+// cells' levels are among those of the pixels, so that they share what they can.
 // Named "view".
 Query view_query(const PreparedScene&, const ViewQueryOptions& options = {});
 
@@ -180,14 +180,13 @@ struct PlanOptions {
 Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&, const PlanOptions& = {});
 Plan make_plan(const Scene&, const std::vector<Query>&, const PlanOptions& = {});
 
-// Of a plan whose foam lives: the sea seen through the cells of one level of its history.
+// Of a plan with persistent foam: the sea seen through the cells of one level of its history.
 Plan plan_of_foam_level(const Plan&, double cell_m);
 
-// The plan of a bake of these frames: its outputs, in the order of the table, each with its query. Which
-// frames they are decides how fine a ladder the camera's own surfaces need, and nothing about any frame's
-// bits.
+// The plan of a bake of these frames: its outputs, in the order of the table, each with its query. The frames decide
+// how fine the levels for the camera's own surfaces are, and nothing about any frame's bits.
 Plan plan_bake(std::shared_ptr<const PreparedScene>, std::span<const int> frames);
-// Of representative frames (core/surface/rest_surface.h), for who wants to know what a bake is like.
+// Of representative frames (core/surface/rest_surface.h), for estimates of a bake.
 Plan plan_bake(const Scene&);
 
 // The cascades in force, largest first: the scene's own, or "auto" resolved for the finest footprint asked
@@ -196,7 +195,7 @@ std::vector<CascadeSize> resolve_cascades(const PreparedScene&, double finest_fo
                                           const FootprintFilter& filter = {});
 
 // The levels, of Plan::levels, from which the query's values are summed: none where they only count what is
-// hidden.
+// unresolved.
 std::vector<int> summed_levels(const Plan&, const PlannedQuery&);
 
 // A page of text: each output, product, field, transform with its size, bytes held, and why.

@@ -28,9 +28,9 @@ struct ProductRow {
     const char* name;        // for people: "slope variance"
     std::size_t components;  // of a point's value: 3, or 1
     FieldSet needs;          // the sums that it is derived from
-    bool counts_what_hides;  // whether it needs to know what a footprint hides
+    bool counts_what_hides;  // whether it depends on what a footprint leaves unresolved
     bool
-        is_of_breaking;  // whether its strain is that of the waves that break, of which a normal knows nothing
+        is_of_breaking;  // whether its displacement gradient is that of the waves that break, unlike a normal's
     const char* why;     // what the sums are needed for, or why there are none
     const char* description;  // of the values, with their unit
 };
@@ -98,7 +98,7 @@ inline ProductSet breaking_products() {
     return breaking;
 }
 
-// The products that count what a footprint hides.
+// The products that count what a footprint leaves unresolved.
 inline ProductSet hidden_products() {
     ProductSet hidden;
     for (const ProductRow& row : kProductTable) hidden[index(row.product)] = row.counts_what_hides;

@@ -15,9 +15,9 @@ namespace pelagic {
 struct Query {
     std::string name;     // for explain(): "mesh", "map normal", …
     ProductSet products;  // evaluate() writes these and no others
-    // Footprints [m], rising: one for points that all have the same, several as a ladder between which each
-    // point's own footprint is blended. 0: nothing is filtered. `cell_m` filters positions and velocities,
-    // `pixel_m` everything that comes from derivatives.
+    // Footprints [m], rising: one for points that all have the same, or several levels between which each point's own
+    // footprint is blended. 0: nothing is filtered. `cell_m` filters positions and velocities, `pixel_m` everything
+    // that comes from derivatives.
     std::vector<double> cell_m{0.0};
     std::vector<double> pixel_m{0.0};
     std::size_t points = 0;           // how many at a time, for explain()'s account of memory
@@ -29,7 +29,7 @@ struct Query {
     // What comes from derivatives is for light alone, which a spline's error changes less than other things do
     // (`pelagic accuracy --rows picture-interpolation`): Knobs::light_oversampling.
     bool is_picture = false;
-    // Where foam lives, its coverage is what breaks now alone: nobody adds what earlier breaking has left.
+    // With persistent foam, its coverage is what breaks now alone: nobody adds what earlier breaking has left.
     bool breaking_alone = false;
 };
 

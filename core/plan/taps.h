@@ -12,12 +12,13 @@ namespace pelagic {
 
 #include "core/plan/taps.inl"
 
-// A longer ellipse than Knobs::longest_ellipse counts as one that is as long and wider: so many widths. What it costs is in
-// proportion. What ellipses hide is known up to here.
+// A longer ellipse than Knobs::longest_ellipse counts as one that is as long and wider: so many widths. Costs are in
+// proportion. What ellipses leave unresolved is known up to here.
 inline constexpr double kLongestEllipse = 8.0;
 
-// What ellipses hide beyond round footprints (core/waves/ellipse_moments.h) is a table: so many nodes from a rung of the
-// ladder to the next and for an octave of length over width, and so many directions over half a turn.
+// What ellipses leave unresolved beyond round footprints (core/waves/ellipse_moments.h) is a table: so many nodes
+// from a level of footprints to the next and for an octave of length over width, and so many directions over half a
+// turn.
 struct EllipseTable {
     static constexpr int kNodesARung = 2, kNodesAnOctave = 3, kRatios = 3 * kNodesAnOctave + 1,
                          kDirections = 24;
@@ -28,7 +29,7 @@ struct EllipseTable {
     static constexpr std::size_t kBytesANode = 8 * sizeof(float);
 };
 
-// Whether points of a query may have ellipses, and ask what those hide.
+// Whether points of a query may have ellipses, and ask what those leave unresolved.
 inline bool has_ellipse_table(const Plan& plan, const Query& query) {
     return (query.products & hidden_products()).any() && query.pixel_m.size() > 1 && !query.lattice &&
            !plan.cascades.empty();

@@ -18,7 +18,7 @@ namespace pelagic {
 struct TrainsPlan {
     int count = 0;
     double longest_m = 0.0, shortest_m = 0.0;  // the bins' outer edges
-    int below_pixel = 0;  // trains too short for the finest footprint: they are never shown
+    int below_pixel = 0;  // trains too short for the finest footprint: they are never resolved
 
     // Bin i, 0 … count − 1, longest first: its longer edge (edge_m(count) is shortest_m), and its train.
     double edge_m(int i) const;

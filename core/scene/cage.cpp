@@ -42,7 +42,7 @@ class Checker {
   public:
     explicit Checker(const CageMesh& mesh) : mesh_(mesh) {}
 
-    // What costs nothing first: a mesh that is too large is not looked at.
+    // Cheap checks first: a mesh that is too large is not traversed.
     void check() {
         check_counts();
         check_points();
@@ -142,7 +142,7 @@ class Checker {
         }
     }
 
-    // Of three faces at an edge, or two that run the same way, the last one is named.
+    // Where an edge has three faces, or two that run the same way, the last one is named.
     void check_sides() {
         sides_.reserve(mesh_.indices.size());
         std::size_t first = 0;
@@ -179,7 +179,8 @@ class Checker {
                "faces that are all counter-clockwise seen from the same side");
     }
 
-    // Round a point each face is joined to the next by an edge: a point where faces meet without one has no surface round it.
+    // The faces round a point must be joined by edges: where they meet in the point alone, there is no surface round
+    // it.
     void check_fans() const {
         std::vector<std::int32_t> leader(mesh_.indices.size());  // of the corners that edges join
         for (std::size_t i = 0; i < leader.size(); ++i) leader[i] = static_cast<std::int32_t>(i);
@@ -226,8 +227,8 @@ class Checker {
             }
     }
 
-    // OpenSubdiv 3.5 crashes, or takes other faces' surfaces, where two faces alone meet all round a point (mended in its 3.6
-    // and 3.7: its pull requests 1301, 1336 and 1353).
+    // OpenSubdiv 3.5 crashes, or takes other faces' surfaces, at an inner point that has only two faces (mended in
+    // its 3.6 and 3.7: its pull requests 1301, 1336 and 1353).
     void check_insides() const {
         std::vector<std::int32_t> faces_at(mesh_.points_m.size()), shared_at(mesh_.points_m.size());
         for (const std::int32_t index : mesh_.indices) ++faces_at[static_cast<std::size_t>(index)];
@@ -295,7 +296,7 @@ class Checker {
         if (holes == faces) refuse(Part::Mesh, 0, "has holes alone", "at least one face that is no hole");
     }
 
-    // With CageBoundary::None a face whose corners touch the boundary only shapes the others.
+    // With CageBoundary::None a face whose corners touch the boundary has no surface; it only shapes its neighbours.
     void check_surface() const {
         if (mesh_.boundary != CageBoundary::None) return;
         std::vector<bool> is_on_boundary(mesh_.points_m.size());
@@ -325,7 +326,7 @@ class Checker {
     std::vector<Side> sides_;
 };
 
-// The structured binding has to name every member: one that is added doesn't compile without its place here.
+// The structured binding names every member, so that a new member doesn't compile until it is added here.
 std::string content_of(const CageMesh& mesh) {
     const auto& [points_m, counts, indices, st, st_indices, creases, corners, holes, boundary] = mesh;
     ByteHash hash;

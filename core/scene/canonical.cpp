@@ -7,11 +7,10 @@ namespace pelagic {
 
 namespace {
 
-// The structured bindings have to name every member: one that is added doesn't compile without its place
-// here.
+// The structured bindings name every member, so that a new member doesn't compile until it is added here.
 std::string content_text(const MeasuredSpectrum& measured) {
     const auto& [bins, station, time, file] = measured;
-    static_cast<void>(file);  // the content counts
+    static_cast<void>(file);  // only the content counts
     std::string text = quoted_text(station) + ' ' + quoted_text(time);
     for (const MeasuredSpectrum::Bin& bin : bins) {
         const auto& [frequency_hz, density, c1_re, c1_im, c2_re, c2_im, has_direction] = bin;
@@ -33,7 +32,7 @@ std::string canonical(const Scene& scene, FeedSet parts) {
         if (key.type == KeyType::DataFile) {
             if (scene.sea.measured && key.path == kSpectrumFile) value = content_text(*scene.sea.measured);
             if (scene.surface.cage && key.path == kCageFile) value = scene.surface.cage->content();
-        } else if (key.type != KeyType::DataTime) {  // in its file's line
+        } else if (key.type != KeyType::DataTime) {  // is part of its file's line
             value = value_text(key, value_of(scene, key));
         }
         if (!value.empty()) text += key.path + " = " + value + '\n';

@@ -8,14 +8,13 @@
 
 namespace pelagic {
 
-// Every key that feeds one of these parts and has a value, one "key = value" a line, in the order of the
-// table of keys, numbers in their shortest exact form. A measured spectrum stands with all its bins in the
-// line of its file, whose path does not count. Scenes of the same text are the same sea as far as these parts
-// go.
+// Every key that has a value and that one of these parts depends on: one "key = value" a line, in the order of the
+// table of keys, numbers in their shortest exact form. A measured spectrum stands with all its bins in the line of
+// its file, whose path does not count. Scenes with the same text are the same as far as these parts are concerned.
 std::string canonical(const Scene& scene, FeedSet parts);
 
-// The same of all keys but the range of frames: a frame is what it is whatever the range that was asked for,
-// and a longer range must not make a bake do its finished frames again.
+// The same for all keys except the range of frames. No frame depends on the range, and a bake with a longer range
+// must not repeat its finished frames.
 std::string canonical(const Scene& scene);
 
 }  // namespace pelagic

@@ -19,7 +19,7 @@ std::vector<double> lower_edges(std::span<const double> sizes_m) {
 
 int modes_within(double size_m, double edge) {
     const double modes = edge * size_m / (2.0 * std::numbers::pi) + std::sqrt(0.5);
-    // Where the bound is met exactly, rounding in the edge must not ask for a mode more.
+    // Where the bound is met exactly, rounding in the edge must not add a mode.
     constexpr double kRounding = 1e-12;
     const double whole = std::ceil(modes * (1.0 - kRounding));
     constexpr double kLargest = std::numeric_limits<int>::max() / 4;

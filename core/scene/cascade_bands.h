@@ -1,5 +1,5 @@
-// Which wavenumbers each cascade holds: a function of the tiles' sizes alone, never of their resolutions, so
-// that a finer grid adds detail and hands no energy to other random numbers.
+// Which wavenumbers each cascade holds: a function of the tiles' sizes alone, never of their resolutions, so that a
+// finer grid adds detail and moves no energy to a cascade with other random numbers.
 //
 // Cascades count from the largest. Cascade i holds the wavenumbers from its lower edge up to the next
 // cascade's lower edge: disjoint and together complete.

@@ -190,7 +190,7 @@ struct MemberValue<glm::ivec2> {
 
 // ---- Rows
 
-// What is said about a key, besides what its member says.
+// What a row says about a key beyond what follows from the key's member.
 struct About {
     const char* name;
     const char* help;
@@ -227,7 +227,7 @@ struct Pointee<OfType OfStruct::*> {
 // What a shot file may say for this key, from its type, range and choices.
 std::string accepted_text(const Key& key, const About& about);
 
-// "wind_speed_mps" → "Wind speed": without the unit, which the key names besides.
+// "wind_speed_mps" → "Wind speed": without the unit, which a key has as a member of its own.
 std::string label_of(std::string_view name, bool has_unit);
 
 Key key_about(const About& about, KeyType type);
@@ -263,7 +263,7 @@ Row<Owner, 1> row(const About& about) {
         [](Owner& owner, const KeyValue& value) { return MemberValue<Value>::take(value, owner.*kMember); }};
 }
 
-// The same in the entries of a list, where it has no default: an entry without it means nothing.
+// The same in the entries of a list, where it has no default: every entry must give it.
 template <auto kMember>
 auto required(const About& about) {
     auto made = row<kMember>(about);

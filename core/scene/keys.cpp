@@ -75,7 +75,7 @@ void add_shot(Built& out) {
 
 void add_sea(Built& out) {
     constexpr FeedSet kWaves = feeds(Feed::Waves);
-    // A measured spectrum is one member and two keys; the host that read the file has set it.
+    // A measured spectrum is one member and two keys. The host that reads the file sets it.
     Row<SeaState, 1> file{
         key_about({.name = "spectrum_file",
                    .help = "with spectrum = \"file\": the densities; the files d, i, j and k lie beside it",
@@ -282,7 +282,7 @@ void add_waves(Built& out) {
 
 void add_surface(Built& out) {
     constexpr FeedSet kSurface = feeds(Feed::Surface);
-    // A cage is two members and one key; the host that read the file has set it.
+    // A cage is two members and one key. The host that reads the file sets them.
     Row<Surface, 2> cage_file{
         key_about(
             {.name = "cage_file",
@@ -568,7 +568,7 @@ Built build() {
     add_effects_and_quality(out);
     add_output(out);
     static_assert(member_count<Scene>() == 10, "a table without keys: add it above");
-    // The keys of a table stand side by side.
+    // All keys of a table are neighbours in the list.
     for (KeyTable& table : out.tables) {
         const auto of_table = [&](const Key& key) { return key.path.starts_with(table.name + '.'); };
         const auto first = std::find_if(out.keys.begin(), out.keys.end(), of_table);

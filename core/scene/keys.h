@@ -26,22 +26,22 @@ namespace pelagic {
 
 // ---- What depends on a key
 
-// The parts of the work that a key can change. An output's fingerprint is made of the keys that feed it.
+// The parts of the work that a key can change. An output's fingerprint is made of the keys that it depends on.
 enum class Feed {
     Name,     // the names of files and of the stage's root prim
-    Range,    // which frames are made; none of them depends on it
+    Range,    // which frames are made; no frame's content depends on it
     Clock,    // the time that a frame shows
     Waves,    // the sea's motion
     Foam,     // whitecaps
-    Gusts,    // how the wind varies over the surface: hidden slopes and whitecaps
-    Surface,  // the points of the baked surface, where its needs don't say them and no grid is projected
-    Cage,     // the mesh of a surface of its own, and how finely it is refined
+    Gusts,    // how the wind varies over the surface: unresolved slopes and whitecaps
+    Surface,  // the kind, size, resolution and curvature of the baked surface
+    Cage,     // an artist's cage, and how finely it is refined
     Grid,     // the cells of projected grids, baked and in pictures
     View,     // the camera: pictures, and grids that are projected from it
     Light,    // sun and sky
     Water,    // the water body's colour, and how the foam on it looks
     Quality,  // the accuracy of waves and light
-    Mesh,     // what a mesh is of and what it carries, and the format of its files
+    Mesh,     // a mesh's kind of surface, its attributes, and the format of its files
     Maps,     // what is in a map, besides the sea
     Volumes,  // what a volume covers and how finely, besides the sea
     Spray,    // the droplets over breaking crests
@@ -122,7 +122,7 @@ struct Key {
     std::vector<Key> entry_keys;       // of entries
     std::string entry_name;            // of entries: "Swell"
     std::size_t most_entries = ~std::size_t{0};
-    bool are_entries_independent = true;  // none is judged by another one
+    bool are_entries_independent = true;  // whether an entry is valid doesn't depend on the others
     std::string other_word;               // of entries: the word that stands for none of them, "auto"; of an
                                           // integer: a word that may stand in its place, "adaptive"
 
@@ -182,8 +182,8 @@ struct DescribedKey {
     std::variant<double, std::string> number_or_text() const;
 };
 
-// The keys that feed these parts and have a value. A measured spectrum is described by its station and time, a cage by
-// its content (Cage::content), not by their files.
+// The keys that these parts depend on and that have a value. A measured spectrum is described by its station and
+// time, a cage by its content (Cage::content), not by their files.
 std::vector<DescribedKey> described(const Scene& scene, FeedSet parts);
 
 }  // namespace pelagic

@@ -172,7 +172,7 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
         64;  // nothing of ours is as long; keeps the table small for hostile input
     if (word.empty() || word.size() > kLongest) return {};
     const std::string wanted = folded(word);
-    const bool is_telling = wanted.size() >= 3;  // shorter ones begin, or are a part of, too much
+    const bool is_telling = wanted.size() >= 3;  // shorter ones occur in too many words
     std::string best;
     std::size_t best_score = 0;
     for (const std::string& candidate : candidates) {
@@ -182,8 +182,7 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
             distance <= std::max<std::size_t>(1, std::max(wanted.size(), offered.size()) / 3);
         const bool is_beginning = is_telling && offered.starts_with(wanted);
         if (!is_close && !is_beginning) continue;
-        // Two for a letter: the beginning of a word is nearer than any slip ("wind" isn't meant to be
-        // "kind").
+        // An edit costs two, a beginning one: "wind" is nearer to "wind_speed_mps" than to "kind".
         const std::size_t score = is_beginning ? std::min<std::size_t>(1, 2 * distance) : 2 * distance;
         if (best.empty() || score < best_score) {
             best = candidate;

@@ -149,7 +149,7 @@ Problem unknown_preset(const std::string& key, const std::string& name) {
 
 void apply(const Preset& preset, Scene& scene) {
     for (const auto& [path, value] : preset.values) {
-        // A buoy's hour stands in the way of any other spectrum.
+        // A measured spectrum would otherwise replace any other one.
         if (path == "sea.spectrum") scene.sea.measured.reset();
         if (const auto problem = set_value(scene, key_of(path), value))
             throw std::logic_error("a preset that doesn't fit its key: " + text_of(*problem));

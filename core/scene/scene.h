@@ -106,7 +106,7 @@ struct SeaState {
     std::optional<MeasuredSpectrum> measured;  // with SpectrumKind::File
 };
 
-// Waves of these lengths, times this.
+// Multiplies the amplitudes of waves of these lengths.
 struct BandGain {
     double from_m = 1.0, to_m = 10.0;  // wavelengths at its edges, in either order
     double gain = 1.0;                 // of amplitudes, ≥ 0

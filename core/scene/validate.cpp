@@ -40,7 +40,7 @@ class Checker {
         problems_.push_back(std::move(problem));
     }
 
-    // Whether nothing is known against the value of this key.
+    // Whether no problem with this key's value has been found yet.
     bool is_good(const std::string& key) const { return !refused_.contains(key); }
 
     // In the order of the shot file's tables.
@@ -68,7 +68,7 @@ bool is_in_range(const Key& key, double value) {
     return !key.range || key.range->holds(value) || (key.may_be_infinite && std::isinf(value) && value > 0.0);
 }
 
-// What would be right for a number; for lists of numbers, all of what is accepted.
+// The accepted range of a number; for lists of numbers, all that the key accepts.
 std::string range_text(const Key& key) {
     if (key.type != KeyType::Number && key.type != KeyType::Integer) return key.accepted;
     return text_of(*key.range) + (key.may_be_infinite ? ", or inf" : "");
@@ -134,7 +134,7 @@ void check_each_value(Checker& check, const Scene& scene) {
     for (const Key& key : keys()) check_value(check, {key, key.path}, value_of(scene, key));
 }
 
-// ---- What no range says, and what the values mean together
+// ---- What ranges can't express, and what the values mean together
 
 void check_shot(Checker& check, const Shot& shot) {
     const auto allowed = [](char c) {
@@ -390,8 +390,8 @@ void check_near_far(Checker& check, const Scene& scene) {
                   "1 … " + std::to_string(limits::kNearFarResolution)});
 }
 
-// A planet's points rest about the origin (azimuthal equidistant projection): nobody may see farther round it than a
-// quarter of the circle, where the projection stretches waves by half.
+// A planet's points rest about the origin (azimuthal equidistant projection). The camera may see no farther from
+// there than a quarter of the circle, where the projection stretches waves by half.
 void check_planet(Checker& check, const Scene& scene) {
     if (scene.surface.kind != SurfaceKind::Planet) return;
     if (!scene.surface.earth_curvature)
@@ -419,7 +419,7 @@ void check_budget(Checker& check, const Quality& quality) {
                       "is a second budget beside quality.max_error", "one of the two"});
 }
 
-// Each corner of a face becomes a square of quads. An index of their corners is an int.
+// Each corner of a face becomes a square of quads. Their corners are counted with an int.
 void check_refined(Checker& check, const Surface& surface) {
     if (surface.cage_level.is_adaptive || !check.is_good("surface.cage_level")) return;
     constexpr double kMostQuads = 1 << 28;
@@ -460,7 +460,7 @@ void check_light(Checker& check, const Light& light) {
     }
 }
 
-// The fit needs an even grid, whose limit surface is a spline.
+// The fit needs a regular grid, whose limit surface is a spline.
 void check_scheme(Checker& check, const Output& output, const Surface& surface) {
     if (output.mesh_scheme != MeshScheme::CatmullClark || surface.kind == SurfaceKind::Patch) return;
     check.refuse({"output.mesh_scheme", choice_text(output.mesh_scheme),

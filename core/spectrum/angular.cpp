@@ -201,7 +201,7 @@ double MaximumEntropy::density(double theta) const {
 // φ2, and 2π D = −1 + 2 Re Σ_{n≥0} c_n wⁿ (w = e^{−iθ}) integrates to θ + 2 Im Σ a_j ln(1 − p_j w). |p_j| < 1
 // keeps each logarithm on its principal branch.
 double MaximumEntropy::cumulative(double theta) const {
-    // Equal roots need another form: apart by 1e-5 they give the same D to 1e-10, and 1e-10 of rounding.
+    // Equal roots would need another form. Set 1e-5 apart they give the same D to 1e-10, and rounding costs as much.
     std::complex<double> discriminant = 0.25 * phi1_ * phi1_ + phi2_;
     if (std::abs(discriminant) < 2.5e-11) discriminant = 2.5e-11;
     const std::complex<double> root = std::sqrt(discriminant);

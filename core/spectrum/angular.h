@@ -81,9 +81,9 @@ class SecondHarmonic {
 // The maximum-entropy density with the two given Fourier coefficients (Lygre & Krogstad 1986):
 //   D = σ² / (2π |1 − φ1 e^{−iθ} − φ2 e^{−2iθ}|²),  φ1 = (c1 − c2 c1*)/(1 − |c1|²),  φ2 = c2 − c1 φ1,
 //   σ² = 1 − φ1 c1* − φ2 c2*.
-// A density with these coefficients exists only where |c2 − c1²| ≤ 1 − |c1|². Measured ones miss that by
-// noise, and on the edge D is a pair of needles: they are moved to the nearest of |c1| ≤ kMaxFirst, |c2 −
-// c1²| ≤ kMaxSecond (1 − |c1|²).
+// A density with these coefficients exists only where |c2 − c1²| ≤ 1 − |c1|². Noise makes measured ones miss that,
+// and at the limit D is a pair of needles. They are moved to the nearest of |c1| ≤ kMaxFirst, |c2 − c1²| ≤ kMaxSecond
+// (1 − |c1|²).
 class MaximumEntropy {
   public:
     static constexpr double kMaxFirst =
@@ -107,7 +107,7 @@ class MaximumEntropy {
     std::complex<double> c1_;
 };
 
-// ∫ D e^{inθ} dθ for the n that moments of slopes and strains ask for.
+// ∫ D e^{inθ} dθ for the n that the moments of slopes and displacement gradients need.
 struct Harmonics {
     std::complex<double> first{}, second{}, fourth{};
 

@@ -152,9 +152,10 @@ CellEnergies::Sum CellEnergies::cell(int mx, int my, bool is_polar) const {
     return sum;
 }
 
-// ∬ Ψ k dk dθ. Along a circle the position is told by its coordinate p on the axis that is farther away,
-// q = √(k² − p²) on the other: dθ = dp/q. Where the circle enters or leaves by a corner, p's range has a kink
-// in k, and where it touches a side a square root: k = a + (b − a) t²(3 − 2t) takes both ends' away.
+// ∬ Ψ k dk dθ. A place on the circle of radius k is given by its coordinate p on the axis that is farther away; with
+// q = √(k² − p²) on the other axis dθ = dp/q. Where the circle enters or leaves the cell by a corner, p's range has a
+// kink in k, and where it touches a side a square root. The substitution k = a + (b − a) t²(3 − 2t) makes both ends
+// smooth.
 void CellEnergies::polar(int mx, int my, Sum& sum) const {
     const bool is_turned = my > mx;  // p along x then
     const int along = std::min(mx, my), across = std::max(mx, my);

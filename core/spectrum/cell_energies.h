@@ -32,7 +32,7 @@ class CellEnergies {
   private:
     enum class Rule { Nothing, Polar, Sixteen, Four, One };
     struct Ring {
-        double end;  // mx² + my² < end, from the ring before on
+        double end;  // holds the cells with mx² + my² < end that no ring before it has
         Rule rule;
         std::size_t panel;
     };

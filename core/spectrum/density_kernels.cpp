@@ -109,7 +109,7 @@ struct MaximumEntropyShape {
     }
 };
 
-// Any of them drawn towards its direction: core/spectrum/directed.h, by half angles.
+// Any of these shapes with a directionality above 1: core/spectrum/directed.h, by half angles.
 template <class Shape>
 struct DirectedShape {
     Shape shape;

@@ -48,7 +48,7 @@ struct JonswapShape {
 
 struct Jonswap : JonswapShape {
     Jonswap(double wind_speed_mps, double fetch_m) {
-        // Beyond what was measured, on a metre of fetch, waves would be steeper than they can stand.
+        // At fetches far below those measured (a metre) waves would be steeper than they can be.
         constexpr double kLargestAlpha = 0.03;
         constexpr double kFetchExponent = 0.22;
         const double square = wind_speed_mps * wind_speed_mps / kGravity;

@@ -158,8 +158,8 @@ MeasuredEnergy::MeasuredEnergy(const MeasuredSpectrum& measured) {
         return;
     }
 
-    // The tail holds what the remaining bins hold, unless that is mere rounding: then what goes on from the
-    // others.
+    // The tail gets the energy of the bins that it replaces. Those may be mere rounding: so it stays within a factor
+    // of the tail that continues the bins before it.
     constexpr double kMostChange = 3.0;
     tail_exponent_ = tail_exponent(bins, peak_hz);
     const double tail_hz = edges_hz[last + 1], end_hz = edges_hz.back();

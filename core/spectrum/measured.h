@@ -1,21 +1,19 @@
 // A real sea: one hour of a directional buoy as energy law and spreading.
 //
-// Energy. Each bin is the mean density of a band [e_i, e_i+1] (bin_edges), and within it a parabola through
-// the edges' values carries exactly density × bandwidth (after Colella & Woodward 1984, §1, with the edge
-// values interpolated between the neighbours' means, and flattened where it would go negative). A buoy prints
-// densities in steps of 0.01 m²/Hz: beyond the last bin ≥ 0.02 there is mostly rounding. From that bin's
-// upper edge on the spectrum is a tail A f⁻ⁿ. n is fitted by least squares in the logarithms to the last bins
-// ≥ 0.05 above 1.5 fp, and kept within 4 (equilibrium range, Toba 1973) and 5 (saturation range, Phillips
-// 1958); A gives the tail the energy of the bins that it replaces, but stays within a factor 3 of going on
-// from the last three bins before it. Beyond the buoy's band n = 5. At last all is scaled by what that leaves
-// over, so that ∫ over the buoy's band is Σ density × bandwidth: NDBC's Hs. What lies beyond the band comes
-// on top.
+// Energy. Each bin is the mean density of a band [e_i, e_i+1] (bin_edges). Within it a parabola through the edges'
+// values carries exactly density × bandwidth (after Colella & Woodward 1984, §1, with the edge values interpolated
+// between the neighbours' means, and flattened where it would go negative). A buoy prints densities in steps of 0.01
+// m²/Hz: beyond the last bin ≥ 0.02 there is mostly rounding. From that bin's upper edge on the spectrum is a tail A
+// f⁻ⁿ. n is fitted by least squares in the logarithms to the last bins ≥ 0.05 above 1.5 fp, and kept within 4
+// (equilibrium range, Toba 1973) and 5 (saturation range, Phillips 1958). A gives the tail the energy of the bins
+// that it replaces, but stays within a factor 3 of continuing the last three bins before it. Beyond the buoy's band n
+// = 5. Finally all is scaled so that ∫ over the buoy's band is Σ density × bandwidth: NDBC's Hs. What lies beyond the
+// band comes on top.
 //
-// Direction. Each band has its bin's c1 and c2, so that the mean direction and every bin's own come back as
-// measured, as a maximum-entropy density. A bin without a direction takes what lies on the line between its
-// neighbours' coefficients (valid coefficients are a convex set, so that these are valid too), at the ends
-// its only neighbour's. The tail has the mean, by energy, of the bins that it replaces; of the last three
-// before it if those are empty.
+// Direction. Each band has the maximum-entropy density of its bin's c1 and c2, so that each bin's mean direction
+// comes back as measured. A bin without a direction takes coefficients interpolated between its neighbours' (valid
+// ones are a convex set, so that these are valid too), at the ends its only neighbour's. The tail has the mean, by
+// energy, of the bins that it replaces, or of the last three before it if those are empty.
 #pragma once
 
 #include <vector>

@@ -8,9 +8,10 @@
 
 namespace pelagic {
 
-// The values of a valid SeaState (core/scene/validate.h) that ask for such waves, and the height that they may have: swells
-// and sea.significant_height_m, which also needs waves to have it. What wind and fetch give is kept to the depth by itself (WaveSystem::sea). Limits are of
-// significant heights: 0.142 λ tanh(k d) with the peak's λ (Miche 1944; a single wave there may be no higher), and 0.6 d.
+// The values of a valid SeaState (core/scene/validate.h) that ask for such waves, and the heights that are possible.
+// It checks swells and sea.significant_height_m, which also needs waves that can have it; WaveSystem::sea itself
+// limits what wind and fetch give. Limits are of significant heights: 0.142 λ tanh(k d) with the peak's λ (Miche
+// 1944; a single wave there may be no higher), and 0.6 d.
 std::vector<Problem> impossible_waves(const SeaState& sea);
 
 // All that is wrong with a scene: what validate() finds or, where that is nothing, impossible waves.

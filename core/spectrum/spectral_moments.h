@@ -30,13 +30,13 @@ struct SpectralMoments {
     double energy_period_s() const;  // Tm−1,0; 0 for an empty band
     double mean_direction() const;   // arg ∬ Ψ e^{iθ} [rad], towards; 0 for an empty band
 
-    // Another band's waves beside these.
+    // Adds another band's waves.
     SpectralMoments& operator+=(const SpectralMoments& other);
     // All moments of waves whose energy is `factor` times as large.
     SpectralMoments& operator*=(double factor);
-    // The moments of the horizontal displacement alone: choppiness λ is a factor of λ².
+    // Multiplies the moments of the displacement gradient alone; choppiness λ is a factor of λ².
     SpectralMoments& scale_strain(double factor);
-    // Those of other waves instead.
+    // Replaces the moments of the displacement gradient by those of other waves.
     SpectralMoments& take_strain(const SpectralMoments& other);
 };
 

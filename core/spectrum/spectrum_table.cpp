@@ -64,7 +64,7 @@ struct Sample {
     Sampled operator()(const MaximumEntropy& shape) const { return {shape.numerator(), 0.0}; }
 };
 
-// A buoy's directions are absolute; what is drawn towards its mean is told from there.
+// Measures a buoy's directions, which are absolute, from the mean towards which directionality narrows them.
 void turn_to_centre(TableTerm& term, double centre) {
     const std::array<double, 5> d = term.denominator;
     const double c = std::cos(centre), s = std::sin(centre), c2 = std::cos(2.0 * centre),
@@ -75,8 +75,8 @@ void turn_to_centre(TableTerm& term, double centre) {
     term.sin_direction = s;
 }
 
-// How much the parameters of the spreadings change from k0 to k1, as logarithms: young seas in strong wind
-// lose theirs within a few per cent of k. A parameter near 0 says the same as 0.
+// How much the parameters of the spreadings change from k0 to k1, as logarithms: in young seas under strong wind they
+// vanish within a few per cent of k. Parameters near 0 count as equal to 0.
 double parameter_change(const DirectionalSpectrum& spectrum, double k0, double k1) {
     constexpr double kNearZero = 0.01;
     double most = 0.0;

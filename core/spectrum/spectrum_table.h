@@ -25,7 +25,7 @@ struct TableTerm {
     std::array<double, kCoefficients> amplitude{};  // S_k/k times the shape's norm [m⁴/rad]
     std::array<double, kCoefficients> parameter{};  // CosinePower's s, SechSquared's β, SecondHarmonic's Δ
     std::array<double, 5> denominator{};            // MaximumEntropy's, whose parameters are the panel's own
-    double directionality = 1.0;                    // above 1: f is drawn towards the direction (directed.h)
+    double directionality = 1.0;                    // above 1: f is narrowed about the direction (directed.h)
 };
 
 struct TablePanel {

@@ -18,8 +18,8 @@ constexpr double kRadiansPerDegree = kPi / 180.0;
 // Below this wind [m/s] there is no wind sea: Pierson–Moskowitz' Hs would be 2e-8 m.
 constexpr double kCalmWind = 1e-3;
 
-// Where the short waves begin to count, in peak wavenumbers, and where they are all that counts, relative to that. Below 3
-// the spectra are what was measured; from some 10 on slopes are of waves that know the wind alone.
+// Where the blend into the short waves begins, in peak wavenumbers, and where it ends, relative to that. Below 3 the
+// spectra are what was measured; from some 10 on slopes depend on the wind alone.
 constexpr double kJoinFrom = 3.0, kJoinWidth = 10.0 / 3.0;
 // Elfouhaily's sea is given from full development to this inverse wave age (Eq. 3).
 constexpr double kOldest = 0.84, kYoungest = 5.0;
@@ -48,7 +48,7 @@ auto with_shape(const SpreadingLaw& law, const WavePoint& point, Use&& use) {
         law);
 }
 
-// The same, of this directionality.
+// The same with this directionality.
 template <class Use>
 auto with_directed(const SpreadingLaw& law, const WavePoint& point, double directionality, Use&& use) {
     return with_shape(law, point, [&](const auto& shape) {
@@ -96,8 +96,8 @@ SpreadingLaw spreading_law(const SeaState& sea, double peak_wavenumber, const Di
         case SpreadingKind::Hasselmann:
             break;
     }
-    // Measured in deep water, and used with its wave age there: with the crawling waves of a puddle's depth
-    // U/cp would be so large that the sea were isotropic.
+    // Measured in deep water, and used with its wave age there: with the slow waves of a puddle U/cp would be so
+    // large that the sea would be isotropic.
     const double deep_peak_speed = peak_omega / Dispersion{}.wavenumber(peak_omega);
     return HasselmannSpreading(peak_omega, sea.wind_speed_mps / deep_peak_speed);
 }

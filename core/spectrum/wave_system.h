@@ -58,12 +58,11 @@ class WaveSystem {
     static constexpr double kMostHeightOverDepth = 0.6;
 
     WaveSystem scaled(double energy_factor) const;
-    // With these gains on top of all else, and of this directionality.
+    // With these gains on top of all else, and with this directionality.
     WaveSystem gained(const BandGains& gains, const Dispersion& dispersion) const;
     WaveSystem directed(double directionality) const;
 
-    // S_k [m³], viscous cutoff included; 0 outside panels(), where the laws' quotients of vanishing numbers
-    // end.
+    // S_k [m³], viscous cutoff included; 0 outside panels(), where the laws would divide vanishing numbers.
     double energy(const WavePoint& point) const;
 
     // D [1/rad] of waves travelling towards theta [rad], and its integral from theta0 to theta1.
@@ -73,7 +72,7 @@ class WaveSystem {
     // ∫ D e^{inθ} dθ for n of 1, 2 and 4.
     Harmonics harmonics(const WavePoint& point) const;
 
-    // D's shape at this wavenumber, about direction() [rad], before directionality() counts (directed.h).
+    // D's shape at this wavenumber, about direction() [rad], before directionality() is applied (directed.h).
     AngularShape shape(const WavePoint& point) const;
     double direction() const { return direction_; }
     double directionality() const { return directionality_; }

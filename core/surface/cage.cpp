@@ -83,7 +83,7 @@ CageAdaption::CageAdaption(const CageLimit& limit, std::span<const glm::dvec3> p
     take(coarse.of_faces, centres_);
 }
 
-// From an eye to a face, as eight triangles or as many as it has half edges.
+// From an eye to a face as a fan of triangles, one for each half of its edges.
 double CageAdaption::distance_m(const glm::dvec3& eye_m, std::size_t face) const {
     const auto edges = limit_.face_edges(face);
     const auto corners = limit_.face_points(face);
@@ -118,7 +118,7 @@ CageAdaption::Result CageAdaption::at(const View& view) const {
         std::array<double, 2> across_m{0.0, 0.0};
         for (std::size_t k = 0; k < edges.size(); ++k) {
             const auto edge = static_cast<std::size_t>(edges[k]);
-            // A half twice: what is nearest decides for the whole.
+            // Twice the half on this edge's side: the cell at the nearest place decides for the whole face.
             double& across = across_m[edges.size() == 4 ? (k + 1) % 2 : 0];
             across = std::max(across, 2.0 * glm::distance(middles_[edge], centres_[face]));
             if (is_done[edge]) continue;
@@ -227,7 +227,7 @@ std::string CageSurface::remedy() const {
 SurfaceNeeds CageSurface::needs(std::span<const int> frames) const {
     SurfaceNeeds needs{.own_footprints = true};
     if (frames.empty()) return needs;
-    // Of those in a row that see it alike, one.
+    // Successive frames with the same view count once.
     std::vector<int> seen;
     for (const int frame : frames)
         if (seen.empty() || shaped_by(frame) != shaped_by(seen.back())) seen.push_back(frame);
@@ -288,8 +288,8 @@ void CageSurface::lay_out(int frame, RestPoints<T>& points) const {
 }
 
 SurfaceBytes CageSurface::bytes(std::size_t points, std::size_t scalar) const {
-    // What a pose gives; the mesh that it is made from, with two samples at the points of the cage's edges; and of the
-    // points at rest the height, the normal and two footprints.
+    // A pose's points and faces; while they are made, the mesh on the cage, with two samples at the points of its
+    // edges; and of the points at rest the height, the normal and two footprints.
     const std::size_t faces = kQuadFaceBytes + (limit_.has_seams() ? kQuadSeamBytes : 0);
     constexpr std::size_t kLaid = 2 * sizeof(glm::dvec3) + sizeof(double);
     constexpr std::size_t kMade = sizeof(CageMeshing::Sample) + sizeof(glm::dvec3);

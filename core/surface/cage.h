@@ -73,7 +73,7 @@ class CageSurface final : public RestSurface {
         Faces faces;
     };
     std::shared_ptr<const Laid> laid_at(int frame) const;
-    // How finely the same pose asks for it, and how many points that makes; kept likewise.
+    // The rates that this pose asks for, and how many points they make; kept likewise.
     struct Fineness {
         std::optional<View> view;
         CageAdaption::Result rates;

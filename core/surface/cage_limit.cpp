@@ -27,9 +27,9 @@ using SharedCache = Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::sha
 using Factory = Bfr::RefinerSurfaceFactory<SharedCache>;
 using Surface = Bfr::Surface<double>;
 
-// Irregular places are isolated so many times before a single patch stands for what is left. At points between whole
-// halvings of an edge, as many as there are levels of cage_level and one more, the surface is then exact; sharpness
-// of any kind ends within its ten levels.
+// How many levels OpenSubdiv isolates irregular places before a single patch replaces the rest. The surface is then
+// exact at all points of cage_level's halvings and of one halving more; sharpness of any kind ends within its ten
+// levels.
 constexpr int kSmoothLevel = 7, kSharpLevel = 10;
 
 Sdc::Options::VtxBoundaryInterpolation rule_of(CageBoundary boundary) {
@@ -142,7 +142,7 @@ glm::dvec2 texture_at(std::span<const glm::dvec2> corners, glm::dvec2 uv) {
 glm::dvec3 unit_or_none(const glm::dvec3& place_m, const glm::dvec3& along_u, const glm::dvec3& along_v) {
     const glm::dvec3 normal = glm::cross(along_u, along_v);
     const double length = glm::length(normal);
-    // Rounding alone makes a normal of parallel tangents.
+    // The normal of parallel tangents is nothing but rounding.
     const double least = 1e-12 * glm::length(along_u) * glm::length(along_v);
     const double rounding_m = 1e-13 * glm::length(place_m);
     const bool has_tangents = glm::length(along_u) > rounding_m && glm::length(along_v) > rounding_m;

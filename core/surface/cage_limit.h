@@ -87,7 +87,7 @@ class CageLimit {
     void place(const CageMeshing& meshing, std::span<const glm::dvec3> points_m,
                std::vector<glm::dvec3>& places_m, std::vector<glm::dvec3>& normals) const;
     CageStencils stencils(const CageMeshing& meshing) const;
-    // The same, of stencils: for points that move from frame to frame.
+    // The same, with stencils: for points that move from frame to frame.
     static void place(const CageMeshing& meshing, const CageStencils& stencils,
                       std::span<const glm::dvec3> points_m, std::vector<glm::dvec3>& places_m,
                       std::vector<glm::dvec3>& normals);

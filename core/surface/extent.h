@@ -1,4 +1,4 @@
-// How far the sea's surface goes from its rest, by expectation [m]: what a view must look beyond its border for.
+// How far the sea's surface moves from rest, in expectation [m]: a view must look so far beyond its border.
 #pragma once
 
 #include "core/surface/hidden_height.h"
@@ -10,7 +10,7 @@ struct Extent {
     double height_m = 0.0;              // |z|
     double reach_m = 0.0;               // of the horizontal displacement, choppiness included
     double significant_height_m = 0.0;  // Hs = 4 √m0
-    HiddenHeight hidden{};              // by the footprints of a mesh's cells
+    HiddenHeight hidden{};              // by the length of a mesh's cells
 };
 
 }  // namespace pelagic

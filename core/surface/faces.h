@@ -15,8 +15,8 @@ struct Faces {
     bool is_st_of_corners = false;  // st is of each corner of each face instead: the texture has seams
 };
 
-// [bytes] of a quad's count and corners, and of a point's texture coordinate; with seams, of its corners' besides: in meshes of
-// quads there are as many of them as points.
+// [bytes] of a quad's count and corners, and of a point's texture coordinate. With seams each corner has one of its
+// own: four for each quad, of which a mesh has as many as points.
 inline constexpr std::size_t kQuadFaceBytes = 5 * sizeof(std::int32_t) + sizeof(glm::vec2);
 inline constexpr std::size_t kQuadSeamBytes = 3 * sizeof(glm::vec2);
 

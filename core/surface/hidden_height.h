@@ -1,5 +1,5 @@
-// How much height a mesh hides, by the length of its cells: what decides how long cells may be far away, where a
-// camera sees them from the side.
+// The height of the waves that a mesh leaves unresolved, by the length of its cells. It decides how long cells may be
+// far away, where a camera sees waves from the side.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace pelagic {
 
 struct HiddenHeight {
     static constexpr std::size_t kCells = 24;
-    // The standard deviation of the waves that a mesh with cells of cell_m(i) lacks [m]: rising. All 0: a calm.
+    // The standard deviation of the waves that cells of cell_m(i) leave unresolved [m]: rising. All 0: a calm.
     std::array<double, kCells> deviation_m{};
 
     // Powers of two, from 4 mm to 32 km.
     static double cell_m(std::size_t i) { return std::ldexp(1.0, static_cast<int>(i) - 8); }
 
-    // The longest cells that hide no more than this [m], > 0; infinite where all waves together are no higher.
-    // Between the table's cells, and below its first, by powers of their length.
+    // The longest cells that leave no more than this unresolved [m], > 0; infinite where all waves together are no
+    // higher. Between the table's cells, and below its first, by powers of their length.
     double longest_cell_m(double height_m) const {
         if (height_m >= deviation_m.back()) return std::numeric_limits<double>::infinity();
         const auto above = static_cast<std::size_t>(

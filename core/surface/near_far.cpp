@@ -16,13 +16,13 @@
 namespace pelagic {
 namespace {
 
-// A flat sea ends where it is this much below the horizontal, seen from the octave's greatest height; and so far that squared
-// distances stay finite in single precision.
+// A flat sea ends where it is this much below the horizontal [rad], seen from the octave's greatest height, and at
+// the latest at kFarthest_m: squared distances stay finite in single precision.
 constexpr double kFlatEnd = 0x1p-20, kFarthest_m = 1e15;
 // How far the earth's sphere touches z = 0 from the nadir, at most, along each axis.
 constexpr double kTouchStep_m = 128.0;
-// What is left of far places' digits, relative to their distance: a fiftieth of the narrowest column. Exact in single
-// precision, seen from any origin near the nadir.
+// Far places are rounded to this part of their distance, a fiftieth of the narrowest column. So they are exact in
+// single precision, relative to any origin near the nadir.
 constexpr double kFarDigits = 0x1p-18;
 
 // Eleven binary digits: a place of 2^12 cells has 23 of them, and single precision 24.
@@ -32,7 +32,7 @@ double rounded_cell_m(double cell_m) {
     return std::ldexp(std::round(std::ldexp(digits, 11)), exponent - 11);
 }
 
-// The largest power of two that `value` holds, and at least 1; its exponent.
+// The exponent of the largest power of two that is no larger than `value`, and at least 0.
 int octaves_in(double value) {
     return value >= 2.0 ? std::ilogb(value) : 0;
 }
@@ -126,7 +126,7 @@ void NearFar::lay_out(const NearFarPlace& place, RestPoints<T>& points) const {
     for (auto* places : {&points.rest_m, &points.cell_axis_m, &points.pixel_axis_m})
         places->resize(mesh_.points());
 
-    // A footprint is a rung of its own: it depends on the cell and on nothing else, and reads one level of a plan.
+    // Footprints are levels themselves: each depends on its cell alone, and reads a single level of a plan.
     double cell_m = place.cell_m, footprint_m = first_rung_m(cell_m);
     glm::dvec2 lowest_m{0.0};
     std::size_t i = 0;
@@ -135,7 +135,7 @@ void NearFar::lay_out(const NearFarPlace& place, RestPoints<T>& points) const {
         lowest_m = first * cell_m;
         level.for_each_point([&](int x, int y) {
             points.rest_m[i] = glm::vec<2, T>((first + glm::dvec2(x, y)) * cell_m - points.origin_m);
-            // The border is one of the next square's cells, too.
+            // A point on the border belongs to a cell of the next square, too.
             points.cell_m[i] = static_cast<T>(level.is_on_border(x, y) ? 2.0 * footprint_m : footprint_m);
             points.cell_axis_m[i] = glm::vec<2, T>(T(0));
             ++i;
@@ -153,7 +153,7 @@ template <class T>
 void NearFar::lay_out_far(const NearFarPlace& place, glm::dvec2 middle_m, RestPoints<T>& points) const {
     const int columns = mesh_.columns(), rows = mesh_.rows();
     const double first_m = begin_m_ * (place.cell_m / cell_m_);
-    // Seen from anywhere within a step, and in the middle of the chords between columns.
+    // Far enough from anywhere within a step, and in the middle of the chords between columns.
     const double aside_m = glm::length(middle_m - place.nadir_m) + kTouchStep_m * std::numbers::sqrt2;
     const double last_m = (place.far_m + aside_m) / std::cos(kPi / columns);
     const double octaves = std::log(last_m / first_m);

@@ -12,10 +12,10 @@
 // are longer by the largest power of two that keeps the near patch's half side no longer than the height, and the rings
 // within the horizon. The lattices of one octave are those of the others.
 //
-// Distance d, cell c: c/d is between 2 and 4 parts of `resolution` in all rings, whatever the height. Cells in proportion to
-// the distance hide waves of one size on the screen where their heights are in proportion to their lengths, and far away
-// more than all waves have. Far rows begin with the cells of the last ring. They lie on cones round the vertical through the
-// eye, and each is longer than the one before, up to the horizon.
+// Distance d, cell c: c/d is between 2/resolution and 4/resolution in all rings, whatever the height. Where waves are
+// as steep at every length, such cells leave heights unresolved that look equally high from the eye at any distance;
+// far away, where no wave is resolved, they look lower. Far rows begin with the cells of the last ring. They lie on
+// cones round the vertical through the eye, and each is longer than the one before, up to the horizon.
 //
 // On the earth's sphere the far part ends where no crest rises over the horizon any more (earth_view.h), for the
 // greatest height of the octave; otherwise where the sea is a millionth of a radian below the horizontal. The sphere

@@ -10,8 +10,9 @@
 namespace pelagic {
 namespace {
 
-// Rings go on until they reach so far, while the near patch is as given. Beyond, a deviation of 1 m (a significant height
-// of 4 m) is less than an eighth of a milliradian: a sixth of a pixel of the default camera. The far part may hide that.
+// Rings reach this far where the near patch is as given. Beyond, waves of 1 m (standard deviation; a significant
+// height of 4 m) span less than an eighth of a milliradian, a sixth of a pixel of the default camera. The far part
+// may leave that unresolved.
 constexpr double kRings_m = 8192.0;
 // A circle of fewer columns is seen to have corners.
 constexpr int kLeastColumns = 64;
@@ -20,8 +21,9 @@ constexpr int kLeastRows = 16, kCellsPerRow = 4;
 
 // The ring round a square.
 NearFarMesh::Level ring_round(const NearFarMesh::Level& inner, int resolution) {
-    // In steps of its own cells the square lies at p − before … p − before + cells relative to the ring's cell that the
-    // camera is over, p being 0 or 1. The hole lies at −2 left … −2 left + 2 hole. At least one cell is between them.
+    // In cells of the inner square, counted from the ring's cell below the camera: the square reaches from p − before
+    // to p − before + cells, where p is 0 or 1, and the hole from −2 left to −2 left + 2 hole. At least one cell is
+    // between them.
     const int left = inner.before / 2 + 1;
     NearFarMesh::Level ring;
     ring.hole = (inner.cells - inner.before + 2 * left + 3) / 2;
@@ -37,7 +39,7 @@ void add_face(Faces& faces, std::initializer_list<std::size_t> corners) {
     for (const std::size_t corner : corners) faces.indices.push_back(static_cast<std::int32_t>(corner));
 }
 
-// Points along one side of a border, and where along it they are for people who choose diagonals.
+// Points along one side of a border, and where they lie along it: a strip's diagonals are chosen by that.
 struct Side {
     std::vector<std::size_t> points;
     std::vector<double> at;
@@ -159,7 +161,7 @@ void NearFarMesh::add_band(std::size_t level, Faces& faces) const {
 void NearFarMesh::set_st(Faces& faces) const {
     faces.st.clear();
     faces.st.reserve(points());
-    // Of the onion's layers: each ring is one, and the far part is one.
+    // Concentric layers: one for each square, and one for the far part.
     const double layers = static_cast<double>(levels_.size()) + 1.0;
     const auto add = [&](double x, double y, double layer) {  // max(|x|, |y|) is 1
         const double half = 0.5 * layer / layers;

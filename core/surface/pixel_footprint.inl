@@ -31,17 +31,17 @@ inline PixelFootprint<T> pixel_footprint(T right_x, T right_y, T up_x, T up_y, T
 // from ray·w to (ray + right)·w/(1 + nearer_right).
 //
 // The slope matters most near crests: a triangle that is nearly edge-on shows in one pixel what a flat sea shows in
-// ten, and shaded with the flat sea's footprint it is one of its many colours, another one in each frame. Beyond
-// four times the flat sea's length a pixel shows no more of a triangle: the next one begins.
+// ten. With the flat sea's footprint it would be shaded with any one of its many colours, another one in each frame.
+// The length is at most four times the flat sea's: beyond that the pixel shows the next triangle.
 template <class T>
 inline PixelFootprint<T> footprint_on_mesh(PixelFootprint<T> at_rest, T right_x, T right_y, T up_x, T up_y,
                                            T ray_x, T ray_y, T nearer_right, T nearer_up) {
     const T longest =
         T(4) * maximum(square_root(at_rest.axis_x * at_rest.axis_x + at_rest.axis_y * at_rest.axis_y),
                        at_rest.width);
-    // A flat sea straight below; and where nothing is known.
+    // A flat sea straight below, or nothing is known.
     if (!(nearer_right != T(0) || nearer_up != T(0)) || !(longest > T(0))) return at_rest;
-    // Nearly edge-on without end: as far as squares reach.
+    // Limits triangles that are nearly edge-on, so that squares stay finite.
     const T most = T(1000000);
     const T r = minimum(maximum(nearer_right, -most), most), u = minimum(maximum(nearer_up, -most), most);
     return pixel_footprint(at_rest.width * (right_x - ray_x * r), at_rest.width * (right_y - ray_y * r),

@@ -38,13 +38,14 @@ constexpr double kSlack = 0.92;
 // crests come before the lens, gets no more rows than kBeside diagonals have cells, and columns are no more than
 // kAcross diagonals have. kSpare cells more let small pictures have a round grid.
 constexpr double kFine = 4.0, kBeside = 1.0, kAcross = 6.0, kSpare = 64.0;
-// What a footprint blurs compared with the mean over a pixel: this halves waves that are 1.66 pixels long, a footprint those
-// of three (core/plan/filter.h). So much of a pixel is one that blurs as pixels do.
+// The footprint that blurs as the mean over a pixel does, in pixels: the mean halves waves that are 1.66 pixels long,
+// a footprint those of three footprints (core/plan/filter.h).
 constexpr double kPixel = 0.6;
-// Rows are so close together that cells of their length hide heights of kHeight_px (standard deviation), if cells are no
-// larger than kHeightCell_px across; otherwise of more in proportion. The skyline of a gale is then within a pixel of the
-// sea's own in 99 % of a picture's columns (tests/bench, "skyline"). Rows that heights alone ask for are no more than
-// kHigh diagonals have cells: a telephoto lens sees crests behind crests for tens of kilometres.
+// Rows are so close together that the heights which cells of their length leave unresolved look kHeight_px high
+// (standard deviation), where cells are no larger than kHeightCell_px across; larger ones leave more in proportion.
+// The skyline of a gale is then within a pixel of the sea's own in 99 % of a picture's columns (tests/bench,
+// "skyline"). Rows that heights alone ask for are no more than kHigh diagonals have cells: a telephoto lens sees
+// crests behind crests for tens of kilometres.
 constexpr double kHeight_px = 0.3, kHeightCell_px = 8.0, kHigh = 6.0;
 // Counts are multiples of kCountStep. The largest serves an 8K picture with one cell per pixel.
 constexpr int kCountStep = 16, kLargestCount = 8192;
@@ -328,7 +329,7 @@ class RowSpacing {
         double cells = 0.0;          // up to last_m
     };
 
-    // The difference of two angles from the nadir. At the horizon these themselves differ by less than they are rounded.
+    // The difference of two angles from the nadir. At the horizon the angles differ by less than their rounding.
     double angle_between(double first_m, double last_m) const {
         if (earth_.is_round()) return earth_.angle_between(height_m_, first_m, last_m);
         return std::atan2(height_m_ * (last_m - first_m), height_m_ * height_m_ + first_m * last_m);
@@ -468,8 +469,8 @@ double foreshortening(const Station& at, double radius_m) {
     return std::hypot(radius_m, at.effective_height_m) / at.effective_height_m;
 }
 
-// The same at a point, which is so far from the eye. A pixel's angle shrinks with the cosine of its distance from the axis, down to
-// the corner's.
+// The same at a point at this distance from the eye. A pixel's angle shrinks with the cosine of its distance from the
+// axis, down to the corner's.
 double seen_pixel_m(const View& view, const Station& at, glm::dvec2 rest_m, double distance_m) {
     const double down_m = std::copysign(at.effective_height_m, at.height_m) * view.forward.z;
     const double ahead_m =
@@ -477,8 +478,9 @@ double seen_pixel_m(const View& view, const Station& at, glm::dvec2 rest_m, doub
     return kPixel * view.pixel_tangent() * ahead_m;
 }
 
-// How near the sea comes that is seen: its waves two deviations high, where the bounds are five. Only single crests come
-// nearer. Footprints for them would ask for grids four times as large, twice, which hardly a pixel reads.
+// How near the visible sea comes, with waves two standard deviations high where the bounds are five. Only single
+// crests come nearer. Footprints for them would need two more levels, each with a grid four times as large, which
+// hardly a pixel reads.
 double nearest_seen_m(const View& view, const ProjectedGridOptions& options, const Station& at,
                       double nearest_m) {
     constexpr double kUsual = 2.0 / 5.0;

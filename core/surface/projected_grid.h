@@ -1,14 +1,14 @@
 // The projected grid (Johanson 2004; Bruneton, Neyret, Holzschuch 2010, §3.2): points at rest, about one cell
 // apart on the screen, wherever the camera is.
 //
-// Rows are circles round the camera's nadir. Near by they are evenly spaced in the angle at which they are seen
-// from the effective height √(h² + (Hs/2)²): nearly the camera's own high above the waves, and never 0 among
-// them. Such a cell is d²/h times as long as that angle at the distance d: 330 m away and from 4 m, 250 m. What
-// rises above the sea at rest is seen from the side there, however. So rows are no farther apart than what
-// hides, of the waves' heights, a third of a pixel. With waves of some steepness at every scale that is a
-// length in proportion to d, up to where all waves together are no higher: a few hundred rows. Columns are evenly spaced in azimuth; each row has its own range. For a camera that looks at the horizon,
-// cells align with the screen. Looking straight down, looking up and being below the crests are no special
-// cases.
+// Rows are circles round the camera's nadir. Near by they are evenly spaced in the angle at which they are seen from
+// the effective height √(h² + (Hs/2)²): nearly the camera's own high above the waves, and never 0 among them. At the
+// distance d such a cell is d²/h times that angle long: 250 m at 330 m, seen from 4 m. There, however, waves are seen
+// from the side. So rows are also so close together that the heights they leave unresolved look no higher than a
+// third of a pixel. Where waves are as steep at every length, their distance is then in proportion to d, until all
+// waves together look lower than that: a few hundred rows. Columns are evenly spaced in azimuth; each row has its own
+// range. For a camera that looks at the horizon, cells align with the screen. Looking straight down, looking up and
+// being below the crests are no special cases.
 //
 // Coverage: the part of the slab |z| ≤ bounds.height_m that is in view is a convex polyhedron. Its projection
 // onto the plane is a convex polygon, and a point at rest may come into view if it lies within bounds.reach_m

@@ -152,7 +152,7 @@ class CameraGrid : public RestSurface {
     }
 
   protected:
-    // The camera over its nadir.
+    // The camera's view; on a planet in the axes of the place below it.
     virtual View seen(int frame) const { return view_at(camera_, frame); }
 
     template <class T>
@@ -173,7 +173,7 @@ class CameraGrid : public RestSurface {
     Camera camera_;
 
   private:
-    bool has_ladder_;  // wave trains alone have none: they see each point's own footprints
+    bool has_ladder_;  // wave trains alone need no levels: they use each point's own footprints
     int first_frame_;
 
   protected:

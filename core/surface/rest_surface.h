@@ -57,10 +57,10 @@ struct RestPoints {
     std::vector<glm::vec<3, T>> normal{};
 };
 
-// Where a mesh that floats hold has its origin: the world's own for points round a place near that, and otherwise a
-// point near the place, which moves in steps as the place does. It depends on these two alone. The steps are powers of
-// two, at most 4096 m: so long that the origin seldom moves, and so short that the finest cell, seen from the origin,
-// is rounded by no more than a hundredth of itself. finest_cell_m > 0.
+// The origin of a mesh whose points are floats: the world's own for points round a place near that, and otherwise a
+// point near the place, which moves in steps as the place does. It depends on these two arguments alone. The steps
+// are powers of two, at most 4096 m: so long that the origin seldom moves, and so short that the finest cell, seen
+// from the origin, is rounded by no more than a hundredth of itself. finest_cell_m > 0.
 glm::dvec3 local_origin(glm::dvec3 place_m, double finest_cell_m);
 
 // columns × rows quads over (columns + 1) × (rows + 1) points, columns fastest. The faces are counter-clockwise
@@ -70,7 +70,7 @@ glm::dvec3 local_origin(glm::dvec3 place_m, double finest_cell_m);
 Faces grid_faces(int columns, int rows);
 void set_grid_faces(int columns, int rows, Faces& faces);
 
-// What a surface takes: from its first points on, and only while it makes them.
+// The memory of a surface [bytes]: kept from its first points on, and needed only while it makes them.
 struct SurfaceBytes {
     std::size_t held = 0, making = 0;
 };
@@ -96,18 +96,18 @@ class RestSurface {
     virtual bool is_even() const = 0;
     // The camera's pose, where it shapes the frame's points: a frame depends on nothing else of the camera.
     virtual std::optional<View> shaped_by(int frame) const = 0;
-    // The keys that shape the points beyond what its needs say.
+    // The keys on which the points depend beyond what needs() says.
     virtual FeedSet feeds() const = 0;
-    // Of these frames together. A frame that is asked for alone needs no other to be looked at.
+    // Of these frames together. Asked for one frame it looks at no other.
     virtual SurfaceNeeds needs(std::span<const int> frames) const = 0;
     // The memory of `points` is used again.
     virtual void points_at(int frame, RestPoints<float>& points) const = 0;
     virtual void points_at(int frame, RestPoints<double>& points) const = 0;
     // Of the mesh's vertices: the points, or those of the cage.
     virtual void faces_at(int frame, Faces& faces) const = 0;
-    // For frames of so many points, each number in `scalar` bytes, beside their places at rest and a frame's faces.
+    // For frames of so many points, with numbers of `scalar` bytes, beside their places at rest and a frame's faces.
     virtual SurfaceBytes bytes(std::size_t /*points*/, std::size_t /*scalar*/) const { return {}; }
-    // Where the mesh is a cage that is fitted to the points.
+    // The cage fitted to the points, where the mesh is one.
     virtual std::optional<FittedCage> fitted() const { return {}; }
 };
 

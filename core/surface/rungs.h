@@ -1,5 +1,5 @@
-// The rungs of a view's ladder of footprints: powers of two in metres, whatever the scene and whichever frames
-// are asked for. A point between two rungs reads both.
+// The levels of footprints of a view: powers of two in metres, whatever the scene and whichever frames are asked for.
+// A point between two levels reads both.
 #pragma once
 
 #include <algorithm>
@@ -9,19 +9,19 @@
 
 namespace pelagic {
 
-// The finest rung that a frame reads whose finest footprint is this [m], > 0: the nearest one. The one below
-// would cost four times the samples for what at most a factor of √2 in footprint hides.
+// The finest level that a frame reads whose finest footprint is this [m], > 0: the nearest one. The level below would
+// cost four times the samples, for at most a factor of √2 in footprint.
 inline double first_rung_m(double finest_footprint_m) {
     return std::exp2(std::round(std::log2(finest_footprint_m)));
 }
 
-// The coarsest rung that is no coarser.
+// The coarsest level that is no coarser than the footprint.
 inline double rung_below_m(double footprint_m) {
     return std::exp2(std::floor(std::log2(footprint_m)));
 }
 
-// Footprints finer than the grid's own first rungs count as those: a plan that has finer ones, for other frames,
-// then gives this frame the same bits. `own`: of this very pose.
+// Footprints finer than the grid's own first level count as that level. So a plan that has finer levels, for other
+// frames, gives this frame the same bits. `own`: the needs of this very pose.
 inline void keep_to_rungs(ProjectedGrid& grid, const ProjectedGridNeeds& own) {
     const auto keep = [](std::vector<float>& footprints_m, double finest_m) {
         const auto first_m = static_cast<float>(first_rung_m(finest_m));

@@ -43,7 +43,7 @@ Value slope_at(const Value& before, double frames_before, const Value& after, do
         else
             return glm::length(v);
     };
-    // A number keeps between its keys: no camera dips below the sea, no angle of view below zero.
+    // A number stays between its keys': no camera dips below the sea, no angle of view below zero.
     if constexpr (std::is_same_v<Value, double>)
         if (before * after <= 0.0) return 0.0;
     const Value slope = (frames_after * before + frames_before * after) / (frames_before + frames_after);

@@ -34,9 +34,9 @@ struct View {
 // member and what is accepted.
 View checked_view(View view);
 
-// The shot's camera at a frame: its single pose, or camera.keys, constant outside them and between them, angles too, on
-// straight lines or, with camera.interpolation = "smooth", on C1 cubics whose heights and angles keep between their
-// keys'. Up is z, for a vertical direction +y, and then the roll.
+// The shot's camera at a frame: its single pose, or camera.keys. It is constant outside the keys. Between them it
+// moves, angles too, on straight lines or, with camera.interpolation = "smooth", on C1 cubics whose heights and
+// angles stay between their keys'. Up is z, for a vertical direction +y, and then the roll.
 View view_at(const Camera& camera, double frame);
 
 }  // namespace pelagic

@@ -33,8 +33,8 @@ std::vector<Band> bands_of(const Plan& plan, const Query& query) {
         if (query.only_cascade && *query.only_cascade != c) continue;
         const CascadePlan& cascade = plan.cascades[c];
         const double choppiness2 = cascade.choppiness * cascade.choppiness;
-        // Resolutions that were chosen for the finest footprint end where nothing passes, and must not decide about
-        // coarser ones' bits.
+        // Resolutions that the plan chose are fine enough for the finest footprint only, and must not decide about
+        // coarser ones' bits: their bands count to the end.
         const double end = plan.from->scene.waves.cascades.empty()
                                ? cascade.k_upper
                                : std::min(cascade.k_upper, kPi * cascade.resolution / cascade.size_m);
@@ -79,7 +79,7 @@ EllipseMoments::EllipseMoments(const Plan& plan, const Query& query)
     for (const CascadePlan& cascade : plan.cascades)
         whole_m.push_back(whole_footprint_m(cascade, plan.filter));
     values_.resize(static_cast<std::size_t>(widths_) * kRatios * kDirections);
-    std::array<HiddenMoments<double>, kSectors> wave;  // moments of a sector, for slopes and strains of 1
+    std::array<HiddenMoments<double>, kSectors> wave;  // moments of a sector of unit variance
     for (int s = 0; s < kSectors; ++s) {
         const double x = std::cos(kPi * s / kSectors), y = std::sin(kPi * s / kSectors);
         wave[s] = {x * x,         x * y,         y * y,         x * x * x * x,
@@ -90,9 +90,11 @@ EllipseMoments::EllipseMoments(const Plan& plan, const Query& query)
         const double t = static_cast<double>(width) / kNodesARung - lower;
         const double width_m = (1.0 - t) * ladder_m[lower] + t * ladder_m[lower + 1];
         const double length_m = width_m * std::exp2(static_cast<double>(ratio) / kNodesAnOctave);
-        // By the angle between wave and axis, and the wave's own: what is hidden of slopes and strains.
+        // Unresolved slopes and displacement gradients, by the angle between wave and axis and by the wave's own
+        // direction.
         std::array<std::array<double, kSectors>, kSectors> slopes{}, strains{};
-        // By angle: what an ellipse as wide as `wide_m` hides of the waves that rungs of these footprints show.
+        // By angle: what an ellipse as wide as `wide_m` leaves unresolved of the waves that levels with these
+        // footprints resolve.
         using ByAngle = std::array<double, kSectors>;
         const auto hidden_of = [&](const Band& band, double low_m, double high_m, double wide_m,
                                    ByAngle& hidden) {

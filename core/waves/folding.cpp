@@ -17,7 +17,7 @@
 namespace pelagic {
 namespace {
 
-// Of a sea with these moments, whose strain is multiplied by `gain`.
+// Of a sea with these moments, whose displacement gradient is multiplied by `gain`.
 double share_of(const SpectralMoments& all, double gain) {
     const double c = gain * gain;
     const auto j = jacobian_moments<double>(
@@ -39,7 +39,8 @@ std::string percent_text(double share) {
     return number_text(std::round(percent * parts) / parts);
 }
 
-// Linear waves know no bed. Of so many troughs the deepest is √(2 ln n) deviations deep (Rayleigh).
+// Linear waves may dip below the bed. The deepest of so many troughs is √(2 ln n) standard deviations deep
+// (Rayleigh).
 std::vector<std::string> trough_warning(const PreparedScene& prepared) {
     constexpr double kTroughs = 1000.0;
     const double depth_m = prepared.scene.sea.depth_m;
@@ -91,8 +92,8 @@ std::vector<std::string> repeats_warning(const PreparedScene& prepared) {
             why + "; waves.tiling = \"random\" shows copies at random offsets"};
 }
 
-// What the gradient of the copies' weights adds to the slopes of a cascade's waves, as a share of their own. Waves of more
-// than two tiles are none of its modes, and no mode is longer than the tile.
+// What the gradient of the blending weights adds to the slopes of a cascade's waves, as a share of their own. A tile
+// has no modes longer than itself; their cells begin at waves of two tiles.
 double gained_by_copies(const DirectionalSpectrum& spectrum, double size_m, double k_end) {
     const SpectralMoments own = moments(spectrum, kPi / size_m, k_end);
     const double mss = std::max(own.mss(), own.m0 * std::pow(kTwoPi / size_m, 2.0));
@@ -140,7 +141,7 @@ std::vector<std::string> copies_warning(const PreparedScene& prepared) {
             "with waves.tiling = \"periodic\" nothing"};
 }
 
-// Cascades with choppiness of their own, where those that hold the waves that break have none.
+// Cascades with their own choppiness, of which those that hold the breaking waves have none.
 std::vector<std::string> unpressed_warning(const PreparedScene& prepared) {
     const Scene& scene = prepared.scene;
     const Breaking breaking = breaking_of(scene, FootprintFilter());

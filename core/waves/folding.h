@@ -12,9 +12,9 @@ namespace pelagic {
 // three cumulants (core/waves/whitecaps.h).
 double folded_share(const DirectionalSpectrum& spectrum, const Choppiness& choppiness);
 
-// What an artist should know of a sea before it is built, a sentence each: a surface that folds over itself on more than 5 %
-// of its area, and the choppiness that leaves that much; troughs deeper than the water; explicit tiles that repeat in
-// sight, or whose copies gain more than 5 % of slope by blending; spray that is too thin to be seen.
+// What an artist should know of a sea before it is built, a sentence each: a surface that folds over itself on more
+// than 5 % of its area, and the choppiness that leaves that much; troughs deeper than the water; explicit tiles whose
+// repetition is visible, or whose blending adds more than 5 % of slope; spray that is too thin to be seen.
 std::vector<std::string> sea_warnings(const PreparedScene& prepared);
 
 }  // namespace pelagic

@@ -249,7 +249,7 @@ long Frame<T>::transform_rows(const Rows& rows) {
         state.transform.execute(at.line.data(), row);
         for (T* real : {row, row + stride})
             for (std::size_t i = 0; i < kRowSkirt; ++i)
-                real[n + i] = real[i];  // N may be shorter than the skirt: copies of copies then
+                real[n + i] = real[i];  // N may be shorter than the skirt, which then repeats itself
     }
     return lines;
 }

@@ -24,13 +24,13 @@ class Frame {
   public:
     explicit Frame(std::shared_ptr<const Sea<T>>);
 
-    // Runs the plan's transforms in parallel. t [s] within ± kLatest_s; throws std::invalid_argument
-    // otherwise. cancel: set from elsewhere; then throws BuildCancelled, and has no time.
+    // Runs the plan's transforms in parallel. t [s] within ± kLatest_s; throws std::invalid_argument otherwise.
+    // Another thread may set `cancel`: set() then throws BuildCancelled, and the frame has no time.
     void set(double t_s, const std::atomic<bool>* cancel = nullptr);
 
     static constexpr double kLatest_s = limits::kTime_s.high;
     bool is_set() const { return is_set_; }
-    // Calls of set() since the frame was made: who keeps what it held knows by it that this has changed.
+    // Calls of set() since the frame was made, by which those who keep its values notice that they have changed.
     long times_set() const { return times_set_; }
 
     const Sea<T>& sea() const { return *sea_; }
@@ -45,7 +45,7 @@ class Frame {
         const Buffer<T>& plane = grids_[cascade][grid].planes[index(field)];
         return plane.empty() ? nullptr : plane.data();
     }
-    // Gives a field's samples back, for who has read them for the last time: the frame has no time from then on, and set() throws
+    // Frees a field's samples after their last use. The frame has no time from then on, and set() throws
     // std::logic_error.
     void release(int cascade, int grid, Field field);
     // Counts since construction: 2-D transforms, and the 1-D transforms that they consist of. After n calls
@@ -55,7 +55,7 @@ class Frame {
     // Bytes of the fields' samples: plan().frame_bytes().
     std::size_t held_bytes() const;
 
-    // Sums over the modes at this time that `query` may show, filtered as it filters its finest positions and
+    // Sums over the modes at this time that `query` may resolve, filtered as it filters its finest positions and
     // normals, or with these footprints, which must be no finer.
     Realisation realisation(int query) const;
     Realisation realisation(int query, const Footprints& footprints) const;

@@ -13,7 +13,7 @@
 namespace pelagic {
 namespace {
 
-// What a round footprint leaves of each wave.
+// What a round footprint resolves of each wave's amplitude.
 std::array<double, GustsPlan::kWaves> shown_amplitudes(const GustsPlan& plan, double footprint_m) {
     const FootprintFilter filter;
     std::array<double, GustsPlan::kWaves> shown{};
@@ -22,8 +22,7 @@ std::array<double, GustsPlan::kWaves> shown_amplitudes(const GustsPlan& plan, do
     return shown;
 }
 
-// Values of a sum of waves whose phases are independent, each as likely as the others: the means of as many parts of its
-// distribution.
+// Equally likely values of a sum of waves with independent phases: the means of equal parts of its distribution.
 std::vector<double> likely_values(const std::array<double, GustsPlan::kWaves>& amplitudes) {
     constexpr std::size_t kSamples = 4096, kParts = 128;
     // Phases on a lattice that fills the eight dimensions evenly (Roberts 2018): powers of the root of x⁹ = x + 1.
@@ -93,7 +92,7 @@ Gusts make_gusts(const GustsPlan& plan, const FoamBalance& balance, double thres
     const double mean = balance.coverage_at(threshold);
     const auto coverage_at = [&](double at) { return balance.coverage_at(at); };
     const double highest = balance.highest_threshold(), most = std::min(kMostCoverage, coverage_at(highest));
-    // Scaled so that the mean over the whole pattern is the sea's; nowhere more than there may be.
+    // Scaled so that the mean over the whole pattern is the sea's. The coverage is nowhere above `most`.
     const auto share = [&](double level) { return std::pow(1.0 + plan.strength * level, exponent); };
     const auto whole = likely_values(shown_amplitudes(plan, 0.0));
     constexpr double kMostScale = 100.0;

@@ -1,9 +1,9 @@
-// What gusts do to the sea. Short waves follow the wind within seconds: the slope variance that a footprint hides is
-// multiplied by f = 1 + strength · level, since it is linear in the wind (Cox and Munk 1954). Whitecaps go by the shot's law: J is
-// compared with a threshold at which the whole sea would have a coverage in proportion to f^p, p being the law's exponent at the
-// mean wind. Of both the mean over area is what it is without gusts.
+// What gusts do to the sea. Short waves follow the wind within seconds: the slope variance that a footprint leaves
+// unresolved is multiplied by f = 1 + strength · level, since it is linear in the wind (Cox and Munk 1954). Whitecaps
+// follow the shot's law: J is compared with a threshold at which the whole sea would have a coverage in proportion to
+// f^p, p being the law's exponent at the mean wind. The mean of both over area is what it is without gusts.
 //
-// Waves that are shown are those of the mean wind, and so are the moments of J.
+// Resolved waves are those of the mean wind, and so are the moments of J.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace pelagic {
 
 struct Gusts {
     GustsPlan plan;
-    // ε = Σ of_level[n] · level^n + Σ of_kept[n] · kept^n: the second sum is what a footprint adds that hides a part of the
-    // pattern, 1 − kept of its variance.
+    // ε = Σ of_level[n] · level^n + Σ of_kept[n] · kept^n. The second sum corrects footprints that resolve only a
+    // part of the pattern, `kept` of its variance, so that the mean coverage stays.
     static constexpr int kLevelTerms = 9, kKeptTerms = 8;
     std::array<double, kLevelTerms> of_level{};
     std::array<double, kKeptTerms> of_kept{};

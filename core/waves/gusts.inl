@@ -4,7 +4,8 @@
 // How far the waves before shift a wave: cycles for each unit of their sum.
 inline constexpr double kGustShift = 0.238732414637843;
 
-// Waves so far, the longest first: the pattern that a footprint shows, what shifts the next one, and the variance shown.
+// Sums over the waves so far, the longest first: the pattern that a footprint resolves, the shift of the next wave,
+// and the resolved variance.
 template <class T>
 struct GustSum {
     T shown, shift, kept;
@@ -28,7 +29,7 @@ inline T length2_along(T width, T axis_x, T axis_y, T unit_x, T unit_y) {
     return width * width + beyond * along * along;
 }
 
-// −1 … 1, its mean over area 0, however much of the pattern a footprint shows.
+// The level of gusts, −1 … 1. Its mean over area is 0, however much of the pattern a footprint resolves.
 template <class T>
 inline T gust_level(T shown) {
     return shown / square_root(T(1) + shown * shown);

@@ -13,7 +13,7 @@ namespace pelagic {
 LevelSums::LevelSums(double size_m, int radius, const FootprintFilter& filter,
                      std::vector<FootprintPair> pairs)
     : step_(kTwoPi / size_m), filter_(filter), pairs_(std::move(pairs)) {
-    // Four rings an octave: what a footprint lets through whole ends within a ring, which is then weighed.
+    // Four rings an octave. The ring in which a footprint stops letting waves through whole is summed with weights.
     constexpr double kRingsAnOctave = 4.0;
     for (int i = 0; rings_.empty() || rings_.back() < static_cast<double>(radius) * radius; ++i)
         rings_.push_back(std::exp2(2.0 * i / kRingsAnOctave));
@@ -74,7 +74,7 @@ SpectralMoments LevelSums::finish(const std::vector<Part>& parts) const {
     std::vector<SpectralMoments> sums(rings_.size() + slots_.size());
     for (const Part& part : parts)
         for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += sum_of_lanes(part[i]);
-    std::vector<SpectralMoments> within(rings_.size() + 1);  // the first so many rings
+    std::vector<SpectralMoments> within(rings_.size() + 1);  // sums of the first rings
     for (std::size_t ring = 0; ring < rings_.size(); ++ring) (within[ring + 1] = within[ring]) += sums[ring];
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         const std::size_t slot = slot_of_pair_[p];

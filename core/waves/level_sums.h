@@ -14,8 +14,8 @@
 
 namespace pelagic {
 
-// Two footprints [m] that a mode has to pass, and whose sum that is. 0 lets everything pass. Only modes with
-// mx² + my² < radius² are shown at all.
+// Two footprints [m] whose weights are multiplied, and their sum. 0 lets everything pass. Only modes with mx² + my² <
+// radius² are resolved.
 struct FootprintPair {
     double a_m = 0.0, b_m = 0.0;
     int radius = 0;
@@ -35,7 +35,7 @@ class LevelSums {
     void add(void (*moments)(const MomentArgs&), const ColumnSums& column, int mx, int height,
              Part& part) const;
 
-    // Adds to each pair's sum what all parts hold of it, in their order; returns all that they hold.
+    // Adds up the parts, in their order, into each pair's sum. Returns the sum over all modes without weights.
     SpectralMoments finish(const std::vector<Part>& parts) const;
 
   private:

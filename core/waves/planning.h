@@ -1,4 +1,4 @@
-// How FFTW finds its plans, for who compares them. All others have the recorded ones (core/waves/transform.h).
+// How FFTW finds its plans, for comparisons. All other code uses the recorded ones (core/waves/transform.h).
 #pragma once
 
 namespace pelagic {
@@ -10,8 +10,9 @@ enum class Planning {
     Patient,   // the fastest of many, timed
 };
 
-// Transforms that the process plans while this lives are planned so. One at a time, and nobody else should plan meanwhile. It
-// forgets what FFTW knows of plans when it begins and when it ends, so that those of others are again the recorded ones.
+// While this object lives, the process plans its transforms in this way. Only one may live at a time, and nobody else
+// should plan meanwhile. It clears what FFTW knows of plans when it begins and when it ends, so that later plans are
+// the recorded ones again.
 class PlannedBy {
   public:
     explicit PlannedBy(Planning wanted);

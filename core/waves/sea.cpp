@@ -53,7 +53,7 @@ struct ColumnScratch {
 
 }  // namespace
 
-// Counts what is done, and tells it on.
+// Counts finished work and reports it.
 template <class T>
 class Sea<T>::Progress {
   public:
@@ -65,7 +65,8 @@ class Sea<T>::Progress {
         if (!watch_.progress) return;
         const std::lock_guard lock(mutex_);
         done_ += modes;
-        // Where it waits for tasks of its own, this thread takes up none of ours: they would wait for this lock.
+        // While the callback waits for tasks of its own, this thread must not take up ours: they would wait for this
+        // lock.
         tbb::this_task_arena::isolate(
             [&] { watch_.progress(static_cast<double>(done_) / static_cast<double>(all_)); });
     }
@@ -197,7 +198,7 @@ Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, std::vector<QuerySta
                 LevelSums::Part& part = parts[block] = levels.part();
                 std::size_t modes = 0;
                 for (int mx = first; mx < end; ++mx) {
-                    // Beyond the grids' radius modes are only counted: what they hold of the hidden
+                    // Modes beyond the grids' radius have no amplitudes. They only count in the unresolved
                     // statistics.
                     const int counted = half_height(planned.mode_radius, mx);
                     const FourWays energy = scratch.energies();

@@ -45,11 +45,11 @@ struct Cascade {
 
 // What the spectrum holds, in expectation: sums and integrals of Ψ, not of one realisation.
 struct QueryStatistics {
-    // Everything that the query could show: the whole spectrum, or its band alone for a cascade's own tile,
-    // so that what tiles hide adds up to what the sea hides. Strains: of the waves that break.
+    // All waves that the query may be asked for: the whole spectrum, or the band alone for a cascade's own tile, so
+    // that the unresolved parts of the tiles add up to the sea's. Displacement gradients: of the waves that break.
     SpectralMoments whole;
-    // Resolved by pixel level i alone, weights squared, and by levels i and i + 1 together (for blends). Strains: by the
-    // breaking level i.
+    // Resolved by pixel level i alone, weights squared, and by levels i and i + 1 together (for blends between them).
+    // Displacement gradients: by the breaking level i.
     std::vector<SpectralMoments> resolved, resolved_next;
 };
 
@@ -81,19 +81,21 @@ class Sea {
     // The whole sea, capillary tail included; Jacobian moments of the waves that break, times choppiness².
     const SpectralMoments& total() const { return total_; }
     const QueryStatistics& statistics(int query) const { return statistics_.at(query); }
-    // What ellipses hide of the cascades' waves beyond their round part, for queries that may ask (has_ellipse_table).
+    // What ellipses leave unresolved of the cascades' waves beyond their round part, for queries that may ask
+    // (has_ellipse_table).
     const EllipseMoments& ellipses(int query) const { return ellipses_.at(query); }
-    // How far the surface goes from its rest, by expectation (core/plan/extent.h).
+    // How far the surface moves from rest, in expectation (core/plan/extent.h).
     const Extent& extent() const { return plan_.from->extent; }
-    // What a query's finest pixels show of total(), cascades and trains.
+    // What a query's finest pixels resolve of total(), cascades and trains.
     SpectralMoments shown(int query) const;
     // J below this is foam (core/waves/whitecaps.h), in the mean wind.
     double whitecap_threshold() const { return whitecap_threshold_; }
-    // What a varying wind does; nothing unless plan().gusts.
+    // The effect of gusts; none unless plan().gusts.
     const std::optional<Gusts>& gusts() const { return gusts_; }
-    // What breaking leaves in a second where it goes on; 0 unless plan().foam.
+    // Coverage that breaking leaves per second that it lasts; 0 unless plan().foam.
     double foam_left_per_s() const { return foam_left_per_s_; }
-    // The mean of what is left of what broke, and what of it isn't under what breaks now: the coverage of residual foam.
+    // Means over the sea: the coverage left by earlier breaking, before it is limited to 1, and the part of it that
+    // present breaking doesn't cover, which is the coverage of residual foam.
     double left_coverage() const { return left_coverage_; }
     double residual_coverage() const { return residual_coverage_; }
     // Σ over this cascade's modes within the plan's mode_radius of E|h|² [m²]: its band's m0 where that

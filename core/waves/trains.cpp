@@ -81,14 +81,14 @@ double direction_share(int i, std::uint64_t seed) {
     return share - std::floor(share);
 }
 
-// The part of a train's shown strain that a weight leaves.
+// The part of a train's resolved displacement gradient that a footprint of this weight resolves.
 template <class T>
 double strain_weight(const Trains<T>& trains, std::size_t i, double weight) {
     const double most = static_cast<double>(trains.breaking[i]);
     return most > weight ? weight / most : 1.0;
 }
 
-// A train's moments, times this.
+// A train's moments times `part`, those of its displacement gradient times `strain_part`.
 template <class T>
 SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part, double strain_part) {
     SpectralMoments moments = trains.alone[i], strains = moments;
@@ -97,8 +97,9 @@ SpectralMoments part_of(const Trains<T>& trains, std::size_t i, double part, dou
     return moments;
 }
 
-// What a bin's waves have and one train of wavenumber k with their energy lacks: slopes and strains, in the bin's own
-// directions. The mean of k² is no less than the square of the mean. A train that doesn't break has none of the strain.
+// The moments of a bin's waves beyond those of one train of wavenumber k with their energy: slopes and displacement
+// gradients, in the bin's own directions. The mean of k² is no less than the square of the mean. A train that doesn't
+// break has no moments of displacement gradients.
 SpectralMoments beyond_train(const SpectralMoments& bin, double k, double horizontal_ratio, bool breaks) {
     SpectralMoments rest;
     const auto lacking = [](double of, double train) { return of > train ? 1.0 - train / of : 0.0; };
@@ -195,7 +196,7 @@ Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan, con
                                             .energy = bin.energy(),
                                             .omega = dispersion.omega(k),
                                             .chop = height_m > 0.0 ? strained_m / (k * height_m) : 0.0});
-        // Of the strain, what the waves that break are shown with at best; the rest is hidden with those outside.
+        // Of the displacement gradient, the part that is resolved at best; the rest counts with the waves outside.
         const bool breaks = wavelength_m > breaking.from_m;
         trains.breaking.push_back(breaks ? static_cast<T>(filter.weight(k, breaking.footprint_m)) : T(0));
         const double most = static_cast<double>(trains.breaking.back());

@@ -23,7 +23,7 @@
 
 namespace pelagic {
 
-// The moments of the waves that a pixel hides: slopes first, then those of the Jacobian.
+// The moments of the waves that a pixel leaves unresolved: slopes first, then those of the Jacobian.
 inline constexpr std::size_t kHiddenSlopes = 3;
 inline constexpr std::array<double SpectralMoments::*, 8> kHiddenMoments{
     &SpectralMoments::xx,   &SpectralMoments::xy,   &SpectralMoments::yy,   &SpectralMoments::xxxx,
@@ -47,17 +47,17 @@ struct Trains {
     std::vector<double> height_m, horizontal_m;            // h and H
     std::vector<double> wavelength_m;
 
-    // Each field's factor: on cos θ for height, horizontal velocity and strain, on sin θ for the others.
+    // Each field's factor: on cos θ for height, horizontal velocity and displacement gradient, on sin θ for the
+    // others.
     std::array<std::vector<T>, kFieldCount> amplitude;
 
     // Moments of each train at weight 1; of trains 0 … i − 1; of trains i and up, with those outside the
     // range.
     std::vector<SpectralMoments> alone, before, from;
-    SpectralMoments
-        outside;  // moments beyond the range, and of bins beyond their trains: hidden, never shown
+    SpectralMoments outside;  // moments beyond the range, and of bins beyond their trains: never resolved
 
-    // The most that the strain of those that break counts with (Breaking::footprint_m), of those that don't 0. The moments'
-    // strains are what that lets show; what it hides is outside.
+    // The weight with which a train's displacement gradient is resolved at best (Breaking::footprint_m); 0 of trains
+    // that don't break. The moments of `alone` have only the part that it lets through; the rest is in `outside`.
     std::vector<T> breaking;
 
     // `alone` and `from` again, as the vectorised query reads them.
@@ -73,10 +73,10 @@ template <class T>
 Trains<T> make_trains(const PreparedScene& prepared, const TrainsPlan& plan,
                       const FootprintFilter& filter = {});
 
-// The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and include
-// choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's: what a trochoid's own crest
-// compresses (appendix A: (kh)²/(1 + √(1 − k²H²)) by area of sea) is counted with the waves that carry it
-// (core/evaluate/surface.inl).
+// The moments of all trains and of what lies outside their range. Jacobian moments are of the waves that break, and
+// include choppiness². A train's slope variance along k̂ is (kh)²/2, by position at rest, as a cascade's is. Where a
+// trochoid's own crest is compressed (appendix A: (kh)²/(1 + √(1 − k²H²)) by area of sea), that is counted with the
+// waves that carry it (core/evaluate/surface.inl).
 template <class T>
 SpectralMoments total(const Trains<T>& trains);
 
@@ -85,9 +85,9 @@ SpectralMoments total(const Trains<T>& trains);
 template <class T>
 SpectralMoments resolved(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m);
 
-// The moments that a footprint hides: total − resolved (§7.1), summed without the subtraction, so that every
-// variance is ≥ 0 and exactly 0 where nothing is hidden. (Eq. 4 as printed sums (1 − w)h and loses variance
-// where trains fade.)
+// The moments that a footprint leaves unresolved: total − resolved (§7.1), summed without the subtraction, so that
+// every variance is ≥ 0 and exactly 0 where everything is resolved. (Eq. 4 as printed sums (1 − w)h and loses
+// variance where trains fade.)
 template <class T>
 SpectralMoments hidden(const Trains<T>& trains, const FootprintFilter& filter, double footprint_m);
 

@@ -7,7 +7,7 @@ struct JacobianMoments {
     T mean, variance, third;
 };
 
-// Covariance of (sxx, syy, sxy): fourth moments of the hidden waves, times choppiness².
+// Covariance of (sxx, syy, sxy): fourth moments of the unresolved waves, times choppiness².
 template <class T>
 struct HiddenStrain {
     T xxxx, xxxy, xxyy, xyyy, yyyy;
@@ -42,8 +42,8 @@ inline StrainTraces<T> strain_traces(HiddenStrain<T> v) {
     return StrainTraces<T>(second, third);
 }
 
-// J's cumulants, given the shown derivatives of the displacement, dxy = ∂Dx/∂y and dyx = ∂Dy/∂x. The variance is ≥ 0, and
-// exactly 0 where no waves are hidden.
+// J's cumulants, given the resolved derivatives of the displacement, dxy = ∂Dx/∂y and dyx = ∂Dy/∂x. The variance is ≥
+// 0, and exactly 0 where all waves are resolved.
 template <class T>
 inline JacobianMoments<T> jacobian_moments(T dxx, T dyy, T dxy, T dyx, HiddenStrain<T> v,
                                            StrainTraces<T> traces) {
@@ -67,7 +67,8 @@ namespace whitecaps_detail {
 inline constexpr double kLargestSkewness = 2.0;
 inline constexpr double kNoSkewness = 1e-4;  // the correction is below single precision
 
-// A standard normal deviate, and what turns its density into that of the deviate that it stands for.
+// A standard normal deviate y, and the cube root (1 + s z/2)^⅓ of the deviate z that it stands for, which converts
+// densities.
 template <class T>
 struct NormalDeviate {
     T y, root;
@@ -133,13 +134,14 @@ inline T coverage(JacobianMoments<T> j, T threshold, bool third_moment) {
     return select(j.variance > T(0), within, select(j.mean < threshold, T(1), T(0)));
 }
 
-// Waves that break lie on foam that they have left themselves, half of what one breaking leaves on average, and where they
-// press the sea together. A footprint that resolves the breaking has it so; in one that doesn't, so much of what is left is
-// under each share of what breaks, as measured at 14 m/s and decays of 0.5 … 4 s (0.3 … 0.5).
+// Breaking waves lie on foam that they have left themselves (half of what one breaking leaves, on average), and where
+// they compress the sea. A footprint that resolves the breaking has this by itself. In one that doesn't, each share
+// of breaking covers this share of what earlier breaking has left, as measured at 14 m/s and decays of 0.5 … 4 s (0.3
+// … 0.5).
 inline constexpr double kUnderBreaking = 0.42;
 
-// The share of a footprint that is residual foam: what earlier breaking has left (core/effects/foam_history.h), beside what
-// breaks now.
+// The share of a footprint that is residual foam: what earlier breaking has left (core/effects/foam_history.h) and
+// present breaking doesn't cover.
 template <class T>
 inline T residual_foam(T left, T breaking) {
     return minimum(maximum(left - T(kUnderBreaking) * breaking, T(0)), T(1)) * (T(1) - breaking);

@@ -1,7 +1,7 @@
 // What accuracy costs: each approximation of the program with its knob swept over a shot, the error against a named
 // reference and the time, both measured in one run.
 //
-// Rows of parts say what each effect that is on costs, by the shot without it.
+// Rows of parts say what each effect that is on costs: the whole shot less the shot without it.
 //
 // A new approximation is a row of approximation_table() with a function that lays out its trials. Timing, the table, the
 // page and the ages of what was recorded follow from the row.
@@ -28,7 +28,7 @@ struct Trial {
     std::string setting;    // "cubic, 2 nodes a sample"
     bool is_shots = false;  // what the shot has
     std::function<void()> run;
-    // What the last run differs by from the reference, in the order of the row's `errors`. Finite, and 0 for the reference
+    // How far the last run is from the reference, in the order of the row's `errors`. Finite, and 0 for the reference
     // itself.
     std::function<std::vector<double>()> errors;
     std::size_t bytes = 0;  // of what the row's `bytes` says
@@ -50,8 +50,8 @@ struct SweepWatch {
     const std::atomic<bool>* cancel = nullptr;
 };
 
-// Of rows of parts: the whole shot, the same again, which shows how far two times of the same differ, the shot without each
-// of its parts ("without whitecaps"), and what is left without all of them.
+// Settings of rows of parts: the whole shot; the whole shot again, which shows how far two times of the same differ;
+// the shot without each of its parts ("without whitecaps"); and what is left without all of them.
 inline constexpr const char *kWholeShot = "the shot", *kShotAgain = "the shot again", *kWithout = "without ",
                             *kBareShot = "without all of these";
 
@@ -100,10 +100,11 @@ class SweepCancelled : public std::exception {
     const char* what() const noexcept override { return "the sweep was cancelled"; }
 };
 
-// Sweeps one row: each trial once to warm up and for its errors, then all in turn, `repeats` times, so that a machine whose
-// speed drifts slows all alike; times are medians. Those of a part are the whole's less the median of their differences, of
-// kPartRepeats times as many and more where they are quick, since the differences are small. The shot must be valid. Throws SweepCancelled, std::bad_alloc, and
-// std::logic_error for errors that aren't finite.
+// Sweeps one row: each trial once to warm up and for its errors, then all in turn, `repeats` times, so that a machine
+// whose speed drifts slows all alike; times are medians. A part's time is the whole's less the median of their
+// differences. Since differences are small, they are measured kPartRepeats times as often, and more where trials are
+// quick. The shot must be valid. Throws SweepCancelled, std::bad_alloc, and std::logic_error for errors that aren't
+// finite.
 MeasuredRow sweep(const ApproximationRow& row, const Scene& shot, int repeats, const SweepWatch& watch);
 
 inline constexpr int kPartRepeats = 3;

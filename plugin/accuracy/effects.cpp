@@ -1,5 +1,5 @@
-// What each effect that is on in a shot costs: the shot without it. Which there are is said by the tables of effects and
-// outputs, and for the light of pictures by the one here.
+// What each effect that is on in a shot costs: the shot without it. The tables of effects and outputs list them, and
+// the table below those of a picture's light.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -17,7 +17,7 @@
 namespace pelagic::rows {
 namespace {
 
-// What a picture's light can do without.
+// The terms of a picture's light that can be left out.
 struct LightRow {
     const char* name;
     bool (*is_on)(const LightingChoice&);
@@ -74,7 +74,7 @@ ShotPicture picture_of(const Scene& shot, int widest) {
     return {scene, options};
 }
 
-// The mesh's positions are what is left, whatever else is taken away.
+// The parts of a bake. The mesh's positions aren't one: they are what is left when all parts are taken away.
 std::vector<MeasureItem> bake_items(const Scene& scene) {
     std::vector<MeasureItem> items = measure_items(scene);
     std::erase_if(items, [](const MeasureItem& item) { return item.name == "mesh"; });
@@ -122,7 +122,7 @@ Trials picture_steps(const Scene& shot) {
     ShotPicture whole = picture_of(shot, kWidest);
     const LightingChoice own = whole.options.lighting;
     whole.options.lighting.sky_quality = SkyQuality::Integral;
-    // From the whole down: what was added last is taken away first.
+    // From the whole picture down; the settings are reversed then, so that each adds a part.
     std::vector<PictureSetting> settings;
     for (ShotPicture at = whole;;) {
         std::vector<PicturePart> left = parts_of(at);

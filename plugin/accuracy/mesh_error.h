@@ -16,7 +16,7 @@
 
 namespace pelagic {
 
-// A sea at one time, as fine as anybody looks, and the camera.
+// A sea at one time, finer than any mesh, and the camera.
 struct SeenSurface {
     static constexpr double kFinest_m = 0.002;
 
@@ -57,8 +57,8 @@ class MeshPicture {
 FaceSamples samples_of(const SeenSurface& seen, const RestPoints<float>& at, const Faces& faces,
                        const MeshPicture& picture);
 
-// The distance of the samples from the exact surface, along its normal, over the width of a pixel there: what `share` of
-// them don't exceed [px]. 0 without samples.
+// The distance of the samples from the exact surface, along its normal, over the width of a pixel there: the value
+// that `share` of them don't exceed [px]. 0 without samples.
 double error_px(const SeenSurface& seen, const RestPoints<float>& at, const MeshPicture& picture,
                 const FaceSamples& samples, double share);
 

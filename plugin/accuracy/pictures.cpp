@@ -175,7 +175,7 @@ Trials masking(const Scene& shot) {
     const RenderOptions own = render_options(scene);
     RenderOptions one = own;
     one.samples = 1;
-    // Cells as fine as pixels hide nothing that pixels show.
+    // Cells as fine as pixels leave nothing unresolved that pixels resolve.
     Scene exact = scene;
     exact.surface.cell_px = 0.5;
     std::vector<PictureSetting> settings;

@@ -66,7 +66,8 @@ class TracedPicture {
         return hits;
     }
 
-    // Of each hit, along the normal of the sea where its place at rest lies, in footprints, which are a pixel wide.
+    // The distance of each hit from the sea, along the normal where its place at rest lies, in footprints, which are
+    // a pixel wide.
     std::vector<double> distances_px(const std::vector<SeaHit>& hits) const {
         std::vector<glm::vec2> rest_m;
         std::vector<std::size_t> ray;

@@ -77,8 +77,8 @@ Price price_of(const std::string& name, const MeasuredSetting& setting) {
 
 constexpr const char* kRest = "the rest";
 
-// The parts, the dearest first; what is left without them; what these add up to; the whole; and the same again less the
-// whole, which is how exact all this is.
+// The parts, the dearest first; what is left without them; their sum; the whole; and the same again less the whole,
+// which shows how exact all this is.
 std::vector<Price> prices_of(const MeasuredRow& row) {
     const Price whole = price_of(kWholeShot, row.settings.front()),
                 rest = price_of(kRest, row.settings.back());

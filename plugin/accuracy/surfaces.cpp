@@ -53,7 +53,7 @@ Trials of_surfaces(const Scene& shot, const std::vector<SurfaceSetting>& setting
 Trials near_far(const Scene& shot) {
     Surface surface = shot.surface;
     const bool is_shots = surface.kind == SurfaceKind::NearFar;
-    // The size that spends vertices best lies between six and ten of the eye's heights.
+    // The size with the least error for its vertices lies between six and ten of the eye's heights.
     constexpr double kHeights = 8.0, kLeast_m = 8.0;
     if (!is_shots)
         surface.size_m = std::max(kHeights * view_at(shot.camera, middle_frame(shot)).position_m.z, kLeast_m);

@@ -23,7 +23,7 @@ namespace {
 
 const ProductSet kShape = products(Product::Position, Product::Normal);
 
-// Copies of a tile at random offsets are left out: where they blend, no sum of waves is the surface.
+// The shot with periodic tiling: where tiles blend, the surface isn't a sum of waves.
 Scene plain_tiles(Scene shot) {
     shot.waves.tiling = Tiling::Periodic;
     return shot;
@@ -35,7 +35,7 @@ bool has_cascades(const Scene& shot) {
     return shot.waves.model != WaveModel::Trochoid || !shot.waves.cascades.empty();
 }
 
-// The shot with its cascades in force, however it names them.
+// The shot with the cascades that it resolves to, however it gives them.
 Scene resolved(const Scene& shot) {
     Scene scene = plain_tiles(shot);
     scene.waves.cascades = resolve_cascades(*prepare(scene), 0.0);
@@ -84,7 +84,7 @@ std::vector<glm::dvec3> summed_positions(const Scene& scene, const std::vector<g
     return positions;
 }
 
-// So many of the points, far from each other.
+// At most so many of the points, far from each other.
 SweepPoints some_of(const SweepPoints& all, std::size_t most) {
     SweepPoints some = all;
     some.rest_m.clear();
@@ -99,7 +99,7 @@ std::vector<glm::dvec3> positions_at(const Scene& scene, const SweepPoints& at, 
     return sea.vectors(Product::Position);
 }
 
-// How far the mean square slope and the significant height are from what they should be.
+// Relative errors of the mean square slope and of the significant height.
 std::vector<double> moment_errors(const SpectralMoments& shown, const SpectralMoments& whole) {
     const auto off = [](double is, double should_be) {
         return should_be > 0.0 ? std::abs(1.0 - is / should_be) : 0.0;

@@ -40,7 +40,7 @@ class LevelSetPart final : public VolumePart {
     void encode(int frame, OutputSlot& any_slot) const override {
         LevelSetSlot& slot = static_cast<LevelSetSlot&>(any_slot);
         slot.file = std::string();
-        // As of spray.
+        // One frame at a time, as in spray_part.cpp.
         const std::lock_guard lock(encoding_);
         tbb::this_task_arena::isolate([&] { slot.file = encoded(frame, slot); });
     }

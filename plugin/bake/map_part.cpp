@@ -73,7 +73,7 @@ class MapPart final : public OutputPart {
                     if (output_.cascade) return {0, 12 * 4 / 3};
                     return {12 * 4 / 3, 0, 12 / 3};
                 case MapKind::Whitecaps:
-                    // Moments, and by level what is written; of foam that lives, its past and what that becomes.
+                    // Moments, and by level what is written; of persistent foam, its past and what that becomes.
                     return has_foam_history() ? Encoded{22 * 4 / 3, 12 * 4 / 3 + 36 * 4 / 3}
                                               : Encoded{16 * 4 / 3, 12 * 4 / 3 + 12 * 4 / 3};
             }
@@ -117,7 +117,7 @@ class MapPart final : public OutputPart {
     struct State {
         SharedPoints<T> rest;
         QueryRunner<T> runner;
-        // Of slope variance: a mip level's texels, and what they hide.
+        // Of slope variance: a mip level's texels, and their unresolved slopes.
         std::vector<glm::vec<2, T>> level_rest;
         Values level;
     };
@@ -157,7 +157,7 @@ class MapPart final : public OutputPart {
                     (*state.rest)[nearest(y) * static_cast<std::size_t>(n_) + nearest(x)]);
     }
 
-    // A level's texel sees of the gusts what its own size lets it see.
+    // Gusts at a level's texel, as its own size resolves them.
     template <class T>
     void find_thresholds(State<T>& state, const Frame<T>& sea, MapSlot& slot) const {
         slot.whitecap_thresholds.clear();
@@ -176,8 +176,8 @@ class MapPart final : public OutputPart {
         }
     }
 
-    // Each level hides what its own texels are too coarse for, and shows the waves that carry it: the query's ladder, asked
-    // at those of the map's texels that lie nearest to the level's.
+    // Each level leaves unresolved what its own texels are too coarse for, and resolves the waves that carry it: the
+    // query's levels, asked at those of the map's texels that lie nearest to the level's.
     template <class T>
     void find_hidden(State<T>& state, const Frame<T>& sea, MapSlot& slot) {
         const std::vector<double>& footprints_m = query().pixel_m;
@@ -311,8 +311,8 @@ class MapPart final : public OutputPart {
         return encode_levels(header, levels, channels);
     }
 
-    // Of foam that lives: what breaks now, what is left of what broke, and its age, by level; the first of `texels` becomes
-    // all of it. What is left is a mean already: its levels are means of it, and ages count by it.
+    // Of persistent foam: what breaks now, what earlier breaking has left, and its age, by level; the first of
+    // `texels` becomes all of it. What is left is a mean already: its levels are means of it, and ages count by it.
     std::vector<std::vector<glm::vec3>> foam_levels(const MapSlot& slot,
                                                     std::vector<std::vector<glm::vec3>>& texels) const {
         if (slot.foam_age_s.empty()) return {};

@@ -130,7 +130,7 @@ Measured measure(const Scene& scene, const MeasureOptions& options) {
     };
     tell("the whole", 0.0);
     Runner whole(plan);
-    // Which also allocates.
+    // This run also allocates, and isn't one of the pairs.
     const double compute_s = 1e-3 * whole.compute_ms(scene.shot.first_frame);
     const double encode_s = 1e-3 * whole.encode_ms();
     // Half of an item's time for either.

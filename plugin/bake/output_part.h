@@ -45,7 +45,7 @@ struct FilePattern {
 struct OutputSlot {
     virtual ~OutputSlot() = default;
     Values values;
-    // Of foam that lives, beside its coverage among the values (core/effects/foam_history.h); otherwise empty.
+    // Of persistent foam, beside its coverage among the values (core/effects/foam_history.h); otherwise empty.
     std::vector<float> foam_active, foam_age_s;
     // Of the frame's record; absent where the output says nothing about it.
     std::optional<double> coverage, significant_height_m;

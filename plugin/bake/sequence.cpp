@@ -100,7 +100,7 @@ class SequenceOf final : public Sequence {
     void describe_waves(int frame, FrameRecord& record) const {
         const Plan& plan = sea_->plan();
         const Query& first = plan.queries[plan.outputs.front().query].query;
-        // A camera's ladder is as fine as all frames of the bake need it; the frame's own cells are its own.
+        // A camera's levels are as fine as all frames of the bake need them; the frame's own cells are its own.
         Footprints at{first.cell_m.front(), first.pixel_m.front()};
         if (first.is_view) {
             const std::array alone{frame};

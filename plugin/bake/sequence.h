@@ -17,7 +17,7 @@ namespace pelagic {
 // What one frame needs between its steps.
 struct FrameSlot {
     int frame = 0;
-    FrameRecord record;                                // its files' sizes are of who writes them
+    FrameRecord record;  // the sizes of its files are filled in when they are written
     std::vector<std::unique_ptr<OutputSlot>> outputs;  // by part
     std::vector<bool> wanted;                          // by part; empty: all
 };

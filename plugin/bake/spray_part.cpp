@@ -161,7 +161,7 @@ class SprayPart final : public VolumePart {
                     const std::size_t at = vdb::index_in_block(i, j, k);
                     thick.active[at] = moved.active[at] = true;
                     thick.values[at] = value;
-                    // In the middle of what of the voxel is air.
+                    // The wind at the middle of the voxel's part that is in the air.
                     const double speed_mps =
                         wind_.at(0.5 * (std::max(from_m, 0.0) + to_m)) * scene().shot.time_scale;
                     moved.values[at] = glm::vec3(glm::dvec3(downwind * speed_mps, 0.0));
@@ -172,7 +172,7 @@ class SprayPart final : public VolumePart {
         velocity.add(moved);
     }
 
-    // Of what the file holds, but for the share, which is of all columns.
+    // Totals of what the file holds; the share of breaking is of all columns.
     SprayRecord spray_of(const SpraySlot& slot) const {
         SprayRecord spray;
         double area = 0.0;  // in columns

@@ -34,8 +34,8 @@ double preview_roughness(double mss) {
     return std::min(std::sqrt(std::sqrt(std::max(mss, 0.0))), 1.0);
 }
 
-// What the finest cells of the shot's first frame hide: the stage has one material for all frames, which must
-// not depend on which of them are baked.
+// The slopes that the finest cells of the shot's first frame leave unresolved: the stage has one material for all
+// frames, which must not depend on which of them are baked.
 double roughness(const Plan& plan) {
     const std::array first{plan.from->scene.shot.first_frame};
     return preview_roughness(hidden_mean_square_slope(plan.from->spectrum, plan.filter,

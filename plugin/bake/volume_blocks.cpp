@@ -30,11 +30,11 @@ double blocks_of_row(double voxels) {
     return (voxels + kBlock - 1.0) / kBlock;
 }
 
-// First-order variances of J, which the strains' trace is.
+// First-order variances of J: of the trace of the displacement gradient.
 struct StrainVariance {
     double whole = 0.0,
            shown = 0.0;            // of all waves that break, and of what the voxels' footprint shows of them
-    double gradient_per_m2 = 0.0;  // of the shown J's gradient, both components together
+    double gradient_per_m2 = 0.0;  // of the resolved J's gradient, both components together
 };
 
 StrainVariance strain_variance(const Plan& plan, double footprint_m) {
@@ -80,7 +80,8 @@ ExpectedSpray expected_spray(const Plan& plan) {
     const StrainVariance variance = strain_variance(plan, plan.breaking.footprint_of(voxel_m));
     if (!std::isfinite(threshold) || !(variance.shown > 0.0)) return {};
 
-    // How far a voxel's sea must be pressed together for spray: there what its footprint hides breaks now and then.
+    // How far a voxel's sea must be compressed for spray: there what its footprint leaves unresolved breaks now and
+    // then.
     const double direction = total.mean_direction();
     SpectralMoments hidden = total;
     hidden.scale_strain(std::max(1.0 - variance.shown / variance.whole, 0.0));
@@ -98,7 +99,7 @@ ExpectedSpray expected_spray(const Plan& plan) {
                           .third = whole.third * std::pow(variance.shown / whole.variance, 1.5)},
                          -pressed, third);
 
-    // Of the world's columns: water that is pressed together covers less of it.
+    // Of the world's columns: water that is compressed covers less of it.
     const double share = std::clamp(1.0 - pressed, 0.0, 1.0) * normal_share(deviate);
     const double side = (kBlock - 1.0) * voxel_m * std::sqrt(0.5 * variance.gradient_per_m2 / variance.shown);
     const double edge = std::exp(-0.5 * deviate * deviate);

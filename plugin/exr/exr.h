@@ -67,7 +67,7 @@ struct Header {
     Compression compression = Compression::Auto;
 };
 
-// The bytes that an attribute of text is in a file: for who looks for one, or fills it in after the file is encoded.
+// The bytes of a text attribute in a file, for callers that look for one or fill it in after the file is encoded.
 std::string text_attribute_bytes(std::string_view name, std::string_view value);
 
 // The image as the bytes of a scan-line file.

@@ -23,8 +23,8 @@ namespace pelagic::exr {
 namespace {
 
 constexpr int kLargestSide = 32768;  // [pixels] 16 times a usual sky's; damaged headers may claim anything
-// What must be decoded at once, rows of tiles across the whole picture: 256 lines of the widest are half of it, and so
-// are usual tiles, 64 to 256 a side.
+// The most that is decoded at once: rows of tiles across the whole picture. 256 lines of the widest picture are half
+// of this, and so are usual tiles, 64 to 256 a side.
 constexpr std::int64_t kMostPixelsInPiece = std::int64_t{1} << 24;
 constexpr const char* kAccepted = "a whole file of half or float channels R, G, B or Y";
 
@@ -52,7 +52,7 @@ class Context {
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
-    // What one of the library's functions says of the first part.
+    // What one of the library's functions returns for the first part.
     template <class Value, class Get>
     Value get(Get ask) const {
         Value value{};

@@ -13,8 +13,8 @@
 
 namespace pelagic::exr {
 
-// A file that is no such picture. what() is the whole message, which names the file; the parts are for who says
-// more about where it was named.
+// A file that is no such picture. what() is the whole message, which names the file; the parts are for callers that
+// add where the file was named.
 class ReadError : public std::runtime_error {
   public:
     ReadError(const std::string& file, std::string problem, std::string accepted)
@@ -41,7 +41,7 @@ class RgbFile {
 
     int width() const { return width_; }
     int height() const { return height_; }
-    // Rows are stored in pieces of this many, from the top: who reads whole pieces decodes nothing twice.
+    // Rows are stored in pieces of this many, from the top: reading whole pieces decodes nothing twice.
     int rows_in_piece() const { return rows_in_piece_; }
 
     // Rows from the top, x fastest, three floats a pixel: as many from the first one as there is room for, a whole
@@ -61,8 +61,8 @@ struct RgbPixels {
 };
 RgbPixels read_rgb(const std::filesystem::path& path);
 
-// Whether the file is an image in scan lines whose last one is there, as RgbFile looks at that: false for a file that was cut
-// short, that is missing, or that can't be read.
+// Whether the file is an image in scan lines whose last line is there, judged as RgbFile does: false for a file that
+// was cut short, is missing, or can't be read.
 bool ends_whole(const std::filesystem::path& path);
 
 }  // namespace pelagic::exr

@@ -2,9 +2,10 @@
 // rename() replaces a name atomically. Without the first fsync a power cut may leave the new name with an
 // empty file.)
 //
-// Locks (flock()) tell which hidden files are still being written: a writer locks its own, and the kernel
-// releases the lock when the process ends, however it ends. Process numbers alone wouldn't do: they are
-// reused, and in containers every bake may have the same one. Where locks don't lock, whose process has it open is still being written.
+// Locks (flock()) tell which hidden files are still being written: a writer locks its own, and the kernel releases
+// the lock when the process ends, however it ends. Process numbers alone wouldn't do: they are reused, and in
+// containers every bake may have the same one. Where locks don't work, a file that its process has open is still
+// being written.
 #include "plugin/files/files.h"
 
 #include <fcntl.h>
@@ -38,7 +39,7 @@ constexpr std::int64_t kForeignAge_s = 24 * 3600;
 // The largest single write() [bytes]: Linux limits it to just below 2^31.
 constexpr std::size_t kLargestWrite = std::size_t{1} << 30;
 constexpr std::size_t kSummedAtOnce = std::size_t{1} << 18;  // [bytes]
-// A name is in use only where two processes have one number (containers), and they soon differ.
+// A name is taken only where two processes have the same number (containers), and their numbers soon differ.
 constexpr int kNameAttempts = 1000;
 
 // A reason and a remedy, in words.
@@ -285,7 +286,8 @@ FileState write_atomically(const std::filesystem::path& target, const Content& c
     return {written, sum.text()};
 }
 
-// Opened, and not only asked for by its name: network file systems answer that from what they knew seconds ago.
+// Opens the file instead of asking for its name's state: network file systems answer that from what they knew seconds
+// ago.
 FileIdentity identity_of(const fs::path& path) {
     const Descriptor file(open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     struct stat status {};
@@ -392,7 +394,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder, const LockWatch& wat
     constexpr double kSaidAfter_s = 1.0;
     const Clock::time_point start = Clock::now();
     if (descriptor_ < 0) problem_ = std::generic_category().message(errno);
-    // Asked again and again, and not waited for in the kernel, where nobody could say so or give up.
+    // Asks again and again instead of waiting in the kernel, where nobody could report progress or give up.
     while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EINTR) continue;
         if (errno != EWOULDBLOCK) {

@@ -64,8 +64,9 @@ struct FileIdentity {
 };
 FileIdentity identity_of(const std::filesystem::path& path);
 
-// write_atomically(), unless another file has the name by then: nothing then, and nothing was changed. Between the last look and
-// the renaming lie microseconds: where locks don't lock this makes a lost write rare, not impossible.
+// write_atomically(), unless the name has another file by then: nothing is changed then, and there is no result.
+// Between the last look and the renaming lie microseconds: where locks don't work this makes a lost write rare, not
+// impossible.
 std::optional<FileIdentity> replace_if_same(const std::filesystem::path& target, const FileIdentity& same,
                                             const Content& content);
 
@@ -81,16 +82,16 @@ std::size_t remove_stale_temporaries(const std::filesystem::path& folder);
 // empty path is the working folder. Throws FileError.
 void ensure_folder(const std::filesystem::path& folder);
 
-// Whether it could, without making anything. Throws FileError where it is sure that it couldn't.
+// Whether ensure_folder() could succeed, without making anything. Throws FileError where it surely couldn't.
 void check_folder(const std::filesystem::path& folder);
 
 // Told how long a lock has been awaited [s], some times a second from the first second on. What it throws ends the
 // waiting.
 using LockWatch = std::function<void(double waited_s)>;
 
-// Locks the folder for this process during the object's lifetime, and waits for other holders: for files that
-// several runs read, change and write again. On network file systems it may lock this machine's processes alone, and
-// without a word.
+// Locks the folder for this process during the object's lifetime, and waits for other holders: for files that several
+// runs read, change and write again. On network file systems it may lock only this machine's processes, and nothing
+// tells.
 class FolderLock {
   public:
     explicit FolderLock(const std::filesystem::path& folder, const LockWatch& watch = {});

@@ -1,4 +1,4 @@
-// Reads files of which nobody knows yet what they are: never waits for a pipe, and says what is wrong in words.
+// Reads files of unknown kind: never waits for a pipe, and says what is wrong in words.
 #pragma once
 
 #include <cstddef>

@@ -3,30 +3,29 @@
 // spline's number of taps.
 
 layout(std140) uniform SeaTables {
-    // Indexed by rung · kCascades + cascade, cells before pixels, and these before the waves that break. first.xy: the tile's first texel; .z: its
-    // number of nodes N, 0 where the filter lets nothing through; .w: a multiple of N that makes node numbers
-    // positive.
+    // Indexed by level · kCascades + cascade (a rung is a level of footprints): levels of cells, then of pixels, then
+    // of the waves that break. first.xy: the tile's first texel; .z: its number of nodes N, 0 where the filter lets
+    // nothing through; .w: a multiple of N that makes node numbers positive.
     ivec4 tile_first[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];
     ivec4 tile_origin[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];  // .xy: node at or below the origin; .zw: which tile that is in, modulo 2³²
     vec4 tile_scale[(kCellRungs + kPixelRungs + kBreakingRungs) * kTileCascades];    // .xy: fraction; .zw: nodes/m, split
     vec4 rungs[kCellRungs + kPixelRungs];  // .x: footprint [m]
-    // Four vectors per rung of pixels: its hidden moments (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy), and
-    // the same eight mixed with the next rung.
+    // Four vectors per level of pixels: its unresolved moments (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy), and the
+    // same eight mixed with the next level.
     vec4 hidden_rungs[4 * kPixelRungs];
-    vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]; .y: its copies' key; .z: tiles per metre
+    vec4 cascades[kTileCascades];  // .x: the largest round footprint that lets all of it pass whole [m]; .y: the key of its random tiling; .z: tiles per metre
     vec4 gusts[kGustRows];         // gusts.glsl
 };
 
 uniform vec2 finest_m;             // the finest footprints of cells and pixels; trains and gusts are filtered no finer
 uniform sampler2D cell_fields;     // Height, Dx, Dy
 uniform sampler2D pixel_fields;    // ηx, ηy, Dxx, Dyy
-uniform sampler2D pixel_fields_2;  // Dxy; where copies blend also Height, Dx, Dy
-// What ellipses hide beyond round footprints (core/waves/ellipse_moments.h): a row for each width; two texels for each
-// direction, the directions of a ratio side by side.
+uniform sampler2D pixel_fields_2;  // Dxy; where tiles blend also Height, Dx, Dy
+// What ellipses leave unresolved beyond round footprints (core/waves/ellipse_moments.h): a row for each width; two
+// texels for each direction, the directions of a ratio side by side.
 uniform sampler2D ellipse_table;
 
-// A point's place between the levels of filtering (rungs): weight 1 − t for the lower one, t for the next.
-// See evaluate.cpp.
+// A point's place between the levels of filtering: weight 1 − t for the lower one, t for the next. See evaluate.cpp.
 struct Rung {
     int lower;
     float t;
@@ -79,7 +78,7 @@ vec4 spline_sum(sampler2D fields, ivec2 texel, float wx[P], float wy[P]) {
     return sum;
 }
 
-// A footprint held within the ladder, as in core/evaluate/footprints.h: width and long axis [m] given.
+// A footprint kept within the levels, as in core/evaluate/footprints.h: width and long axis [m] given.
 struct Footprint {
     Rung rung;
     float width;
@@ -104,8 +103,8 @@ Taps taps_in(int cascade, Footprint footprint) {
 
 int last_tap(Taps taps) { return int(ceil(taps.reach - 0.5)); }
 
-// Where a tile stands for both rungs of a point, as it does where they let all of it pass whole: the point's share in it;
-// the second then has none. r: 0 for the lower rung, 1 for the next.
+// The point's share in a tile. Both levels of a point have the same tile where they let all waves pass whole: it is
+// then read once, with the lower level. r: 0 for the lower level, 1 for the next.
 float share_in(int tile, int r, float t) {
     if (!(t > 0.0)) return r == 0 ? 1.0 : 0.0;
     bool both = tile_first[tile] == tile_first[r == 0 ? tile + kCascades : tile - kCascades];
@@ -113,15 +112,15 @@ float share_in(int tile, int r, float t) {
     return both ? 0.0 : t;
 }
 
-// The sums over all cascades, rungs and taps of what these textures hold; `second` only if it is wanted.
+// The sums over all cascades, levels and taps of the fields in these textures; `second` only if it is wanted.
 struct FieldSums {
     vec4 first;
     float second;
-    float turn;  // Dyx − Dxy, where copies blend
+    float turn;  // Dyx − Dxy, where tiles blend
 };
 
-// The copies that a point shows along an axis, as in core/evaluate/copies.h: the cell that it lies in, and on which side the
-// other copy's lies.
+// The tiles that a point reads along an axis, as in core/evaluate/copies.h: the cell that it lies in, and the side on
+// which the other tile's cell lies.
 struct CopyAxis {
     int cell;
     int side;
@@ -138,8 +137,8 @@ CopyAxis copy_axis(int tile, int node, float rest, float cells_per_m) {
     return CopyAxis(cell, from_middle < 0.0 ? -1 : 1, weights);
 }
 
-// Adds what a tile's copies show of a point: `weight` times the fields, and with both textures the gradient of the copies' weights
-// where it belongs to them.
+// Adds a cascade's blended tiles at a point: `weight` times the fields, and with both textures the gradient of the
+// blending weights in the derivatives.
 FieldSums add_copies(sampler2D first, sampler2D second, bool both, int tile, int cascade, Node at, float weight,
                      FieldSums sums) {
     CopyAxis x = copy_axis(tile, at.node.x, at.rest.x, cascades[cascade].z);
@@ -182,7 +181,7 @@ FieldSums cascade_sums(sampler2D first, sampler2D second, bool both, int first_r
         Taps taps = taps_in(c, footprint);
         int last = last_tap(taps);
         for (int r = 0; r < 2; ++r) {
-            if (r == 1 && !(footprint.rung.t > 0.0)) continue;  // there may be no next rung
+            if (r == 1 && !(footprint.rung.t > 0.0)) continue;  // there may be no next level
             int tile = (first_rung + footprint.rung.lower + r) * kCascades + c;
             if (tile_first[tile].z == 0) continue;
             float share = share_in(tile, r, footprint.rung.t);
@@ -226,7 +225,7 @@ PixelFields pixel_cascades(vec2 rest_m, Footprint footprint) {
 
 uniform float breaking_footprint_m;
 
-// Whether the strain of the waves that break isn't that of the pixel's normals.
+// Whether the displacement gradient of the waves that break isn't that of the pixel's normals.
 bool breaks_apart(Footprint footprint) {
     return kBreakingRungs > 0 &&
            (!kChoppy || kTrains || rungs[kCellRungs + footprint.rung.lower].x < breaking_footprint_m);
@@ -241,7 +240,8 @@ vec4 breaking_cascades(vec2 rest_m, Footprint pixel) {
     return vec4(sums.first.zw, sums.second, sums.second + sums.turn);
 }
 
-// What an ellipse hides beyond a round footprint of its width: (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy, yyyy).
+// What an ellipse leaves unresolved beyond a round footprint of its width: (xx, xy, yy, xxxx), (xxxy, xxyy, xyyy,
+// yyyy).
 struct EllipseHidden {
     vec4 low, high;
 };
@@ -267,7 +267,7 @@ EllipseHidden ellipse_hidden(Footprint footprint) {
     return sum;
 }
 
-// The rung's hidden moments without the trains' part. May be negative by rounding.
+// The level's unresolved moments without the trains' part. May be negative by rounding.
 PixelMoments hidden_of(Footprint footprint) {
     Rung rung = footprint.rung;
     vec4 low = hidden_rungs[4 * rung.lower];

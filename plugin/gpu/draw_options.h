@@ -8,8 +8,8 @@ namespace pelagic {
 // What a picture shows instead of the light.
 enum class FalseColour {
     None,
-    FilterLevel,     // the rung that the pixel's waves come from: hues, interpolated between rungs
-    HiddenVariance,  // σxx + σyy of the waves that the pixel hides
+    FilterLevel,     // the level that the pixel's waves come from: hues, interpolated between levels
+    HiddenVariance,  // σxx + σyy of the waves that the pixel leaves unresolved
     Coverage,        // of whitecaps
 };
 

@@ -8,7 +8,7 @@ uniform sampler2D foam_pages;  // which tile of foam_nodes; -1: none
 // beyond it, and the finest level's cells per metre.
 uniform sampler2D foam_levels;
 
-// Nothing, and false, where the tile isn't there.
+// Changes nothing and returns false where the tile isn't there.
 bool foam_of_level(int level, vec2 rest_m, inout vec2 foam) {
     vec4 at = texelFetch(foam_levels, ivec2(0, level), 0);
     vec4 box = texelFetch(foam_levels, ivec2(1, level), 0);

@@ -1,5 +1,5 @@
-// The residual foam of pictures that don't wait for it: a thread of its own goes through the earlier times, while pictures
-// show what there is.
+// The residual foam of pictures that don't wait for it: a thread goes through the earlier times, while pictures show
+// what is ready.
 #pragma once
 
 #include <atomic>
@@ -18,19 +18,19 @@ class FoamWorker {
   public:
     using Grids = std::vector<std::shared_ptr<const ProjectedGrid>>;
 
-    // Of a sea with living foam.
+    // Of a sea with persistent foam.
     explicit FoamWorker(std::shared_ptr<const Sea<float>> sea);
     // Cancels a history that isn't done, and waits for the step of it that is being made.
     ~FoamWorker();
 
-    // Wants the foam at a time that these grids show, above all the last of them. The latest request wins, but what is being made is finished: it is most
-    // of the next one.
+    // Asks for the foam at a time within these grids, above all the last of them. The latest request wins, but the
+    // one being made is finished: it is most of the next one.
     void ask(double time_s, Grids grids);
     // The latest that is done, once; otherwise null.
     std::shared_ptr<const PackedFoam> take() { return worker_->take(); }
     bool is_busy() const { return worker_->is_busy(); }
     std::string error() const { return worker_->error(); }
-    // What is being made, and whatever is asked for later, ends within a step.
+    // The request being made, and whatever is asked for later, ends within a step.
     void cancel() { cancel_ = true; }
 
   private:

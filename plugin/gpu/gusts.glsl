@@ -1,8 +1,9 @@
-// Gusts at a point, as in core/evaluate/gusts.cpp. The rows of `gusts`: a wave's cycles/m along x and y, its phase at the origin
-// at the frame's time, and its amplitude; then, a wave each, its shortest length [m] and its direction; then number after
-// number the terms of the threshold, by level and by what is kept, and the strength.
+// Gusts at a point, as in core/evaluate/gusts.cpp. The rows of `gusts`: for each wave its cycles/m along x and y, its
+// phase at the origin at the frame's time, and its amplitude; then for each wave its shortest length [m] and its
+// direction; then, number after number, the terms of the threshold by level and by the resolved share of variance,
+// and the strength.
 struct GustAnswer {
-    float factor;              // of the slope variance that the pixel hides
+    float factor;              // on the slope variance that the pixel leaves unresolved
     float whitecap_threshold;
 };
 

@@ -118,9 +118,10 @@ std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const Pr
             const std::array<glm::dvec2, 4> at{
                 glm::dvec2(grid.rest_m[corners[0]]), glm::dvec2(grid.rest_m[corners[1]]),
                 glm::dvec2(grid.rest_m[corners[2]]), glm::dvec2(grid.rest_m[corners[3]])};
-            // The next one is mixed in, and one more is for pixels that waves stretch.
+            // The next level is blended in, and one more serves pixels that waves stretch.
             for (int level = finest; level <= std::min(coarsest + 2, FoamPlan::kLevels - 1); ++level) {
-                // A long cell isn't along the axes: in parts no longer than a tile, its boxes hold little else.
+                // A long cell isn't along the axes. It is cut into parts no longer than a tile, so that their boxes
+                // hold little else.
                 const double tile_m = std::ldexp(foam.cell_m * FoamPlan::kTileCells, level);
                 const auto parts = [&](double length_m) {
                     return static_cast<int>(std::clamp(std::ceil(length_m / tile_m), 1.0, 64.0));

@@ -16,8 +16,8 @@ namespace pelagic {
 class PackedFoam {
   public:
     PackedFoam() = default;  // nothing is left anywhere
-    // What was asked of the history since its time was set, around a place [m]: of views that are far from each other it has
-    // one's.
+    // The tiles that the history was asked for since its time was set, around a place [m]: of views that are far from
+    // each other only one's.
     PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m);
 
     static constexpr int kTilesAcross = 256;    // the texture of nodes
@@ -36,7 +36,7 @@ class PackedFoam {
     // What the history held when this was made.
     std::size_t history_bytes() const { return history_bytes_; }
     std::size_t bytes() const { return nodes_.size() * sizeof(glm::vec2) + pages_.size() * sizeof(float); }
-    // Of foam that takes so much in a history, at most.
+    // The bytes of foam that takes this much in a history, at most.
     static std::size_t bytes_for(const FoamPlan& foam, std::size_t history_bytes);
 
   private:
@@ -56,7 +56,8 @@ class PackedFoam {
     float mean_ = 0.0f, mean_times_age_s_ = 0.0f, cells_per_m_ = 1.0f;
 };
 
-// The tiles that pixels between a grid's points read at the history's time, and some of coarser levels, which they need where waves turn away.
+// The tiles that pixels between a grid's points read at the history's time, and some of coarser levels, which are
+// read where waves turn away from the eye.
 // `cancel` is looked at for each row of the grid: throws BuildCancelled.
 std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const ProjectedGrid& grid,
                                    const std::atomic<bool>* cancel = nullptr);

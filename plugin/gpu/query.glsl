@@ -18,7 +18,7 @@ vec3 query_cell(vec2 rest_m, vec3 cell) {
     return sum;
 }
 
-// What a mesh of such cells hides of the slopes, at rest: variances (xx, yy, xy).
+// The slopes that a mesh of such cells leaves unresolved, at rest: variances (xx, yy, xy).
 vec3 query_mesh_variance(vec2 rest_m, vec3 cell) {
     Footprint footprint = footprint_of(kCellRungs, kPixelRungs, cell);
     TrainSums sums = TrainSums(PixelFields(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), vec4(0.0), hidden_of(footprint));
@@ -35,7 +35,7 @@ struct AllFoam {
 
 struct PixelAnswer {
     vec3 normal;
-    vec3 slope_variance, slope_variance_at_rest;  // of what is hidden: xx, yy, xy
+    vec3 slope_variance, slope_variance_at_rest;  // of unresolved waves: xx, yy, xy
     float coverage;
     float rung;  // lower + t
 };

@@ -53,7 +53,7 @@ std::vector<SeaLayout::Plane> SeaLayout::lay_out(const Plan& plan, int query, La
     if (breaks && (!is_choppy || plan.trains || planned.breaking_levels != planned.pixel_levels))
         breaking = ladder_of(plan, planned.query.pixel_m, planned.breaking_levels);
     const glm::ivec2 cell_size = place(plan, {&cells}), pixel_size = place(plan, {&pixels, &breaking});
-    // Where copies blend, derivatives need what they are of.
+    // Where tiles blend, derivatives need the fields that they are derivatives of.
     if (blends_copies(plan))
         return {is_choppy ? Plane{true, 4, {Field::Height, Field::Dx, Field::Dy}, cell_size}
                           : Plane{true, 1, {Field::Height}, cell_size},
@@ -82,7 +82,7 @@ SeaLayout::SeaLayout(std::shared_ptr<const Sea<float>> sea, int query) : sea_(st
     has_coverage_ = plan.queries[query].query.products[index(Product::Coverage)];
     is_choppy_ = !plan.dropped[index(Field::Dx)];
 
-    // Differences are taken in double: in single precision those of the finest rungs would cancel.
+    // Differences are taken in double: in single precision those of the finest levels would cancel.
     const QueryStatistics& statistics = sea_->statistics(query);
     const auto whole = hidden_moments<double>(has_trains() ? sea_->trains().outside : statistics.whole);
     const auto left = [&](const SpectralMoments& resolved) {
@@ -114,7 +114,7 @@ SeaLayout::Ladder SeaLayout::ladder_of(const Plan& plan, const std::vector<doubl
 // as one of the tiles, as two side by side, and so on.
 glm::ivec2 SeaLayout::place(const Plan& plan, std::initializer_list<Ladder*> ladders) {
     const int skirt = plan.knobs.spline_taps - 1;
-    std::map<std::pair<int, int>, std::vector<Tile*>> by_grid;  // several rungs may share a grid
+    std::map<std::pair<int, int>, std::vector<Tile*>> by_grid;  // several levels may share a grid
     for (Ladder* ladder : ladders)
         for (Tile& tile : ladder->tiles)
             if (tile.n > 0) by_grid[{tile.cascade, tile.grid}].push_back(&tile);
@@ -126,8 +126,8 @@ glm::ivec2 SeaLayout::place(const Plan& plan, std::initializer_list<Ladder*> lad
     struct Room {
         glm::ivec2 at, size;
     };
-    // Their size within this width; `put` is told where each goes: to the topmost room that takes it. What is left of that beside
-    // it and below it is room for smaller ones.
+    // The size that they take within this width, each put into the topmost room that holds it; `put` is told where.
+    // The room left beside it and below it serves smaller ones.
     const auto packed = [&](int width, const auto& put) {
         std::vector<Room> rooms{{glm::ivec2(0), {width, std::numeric_limits<int>::max()}}};
         glm::ivec2 size(0);
@@ -146,7 +146,7 @@ glm::ivec2 SeaLayout::place(const Plan& plan, std::initializer_list<Ladder*> lad
         }
         return size;
     };
-    // How many of the sizes that drivers stop at it is larger than, and then its texels.
+    // How many of the limits that drivers have it exceeds, and then its texels.
     const auto judge = [&](glm::ivec2 size) {
         const int side = std::max(size.x, size.y);
         return std::pair((side > 4096) + (side > 8192) + (side > 16384),

@@ -28,9 +28,9 @@ class SeaLayout {
     int query() const { return query_; }
     bool is_choppy() const { return is_choppy_; }
     bool has_coverage() const { return has_coverage_; }
-    // Cascades are copies of their tiles, blended (core/plan/copies.h).
+    // Whether cascades have random tiling: their tiles at random offsets, blended (core/plan/copies.h).
     bool has_copies() const;
-    // What earlier breaking has left is part of the picture (PackedFoam).
+    // Whether what earlier breaking has left is part of the picture (PackedFoam).
     bool has_living_foam() const { return has_coverage_ && sea_->plan().foam.has_value(); }
     bool has_trains() const { return sea_->plan().trains.has_value(); }
     bool has_gusts() const { return sea_->gusts().has_value(); }
@@ -38,7 +38,7 @@ class SeaLayout {
 
     // A texture: rows of `width` texels, fields interleaved, zeros up to `channels`.
     struct Plane {
-        bool of_cells = false;  // grids of the cells' ladder, otherwise of the pixels'
+        bool of_cells = false;  // grids of the cells' levels, otherwise of the pixels'
         int channels = 1;       // 1, 2 or 4
         std::vector<Field> fields;
         glm::ivec2 size{1};
@@ -55,22 +55,23 @@ class SeaLayout {
         int n = 0;
         int cascade = 0, grid = 0;
     };
-    // Footprints [m], ascending, and the tiles by rung · cascades() + cascade.
+    // Levels of footprints [m], ascending, and the tiles by level · cascades() + cascade.
     struct Ladder {
         std::vector<double> footprints_m;
         std::vector<Tile> tiles;
     };
-    // A plane's tiles, each grid's once, without those through which nothing passes; and rows of one's texels, of which each is
-    // so many texels from the one before.
+    // A plane's tiles, each grid's once, without those through which nothing passes. fill_row() writes one row of a
+    // tile, side_of() texels.
     std::vector<Tile> tiles_of(const Plane& plane) const;
     int side_of(const Tile& tile) const { return tile.n + sea_->plan().knobs.spline_taps - 1; }
     void fill_row(const Frame<float>& frame, const Plane& plane, const Tile& tile, int row, float* to) const;
     const Ladder& cells() const { return cells_; }
     const Ladder& pixels() const { return pixels_; }
-    // The strain of the waves that break, rung by rung of the pixels; without rungs where that is the pixels' own.
+    // The tiles of the breaking waves' displacement gradient, by the pixels' levels; none where they are the pixels'
+    // own.
     const Ladder& breaking() const { return breaking_; }
 
-    // The hidden moments of a rung of pixels without the trains' part: alone, and mixed with the next rung.
+    // The unresolved moments of a level of pixels without the trains' part: alone, and mixed with the next level.
     struct HiddenRung {
         HiddenMoments<float> alone{}, with_next{};
     };

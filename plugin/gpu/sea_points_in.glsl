@@ -6,7 +6,7 @@ in vec3 mesh_variance;  // of slopes: xx, yy, xy
 
 void read_point() {}
 float point_distance_m() { return length(from_eye_m); }
-// Of the slopes that the mesh hides, along the view.
+// Variance of the slopes that the mesh leaves unresolved, along the view.
 float mesh_variance_along() {
     vec2 d = from_eye_m.xy;
     vec3 products = vec3(d.x * d.x, d.y * d.y, 2.0 * d.x * d.y);

@@ -31,7 +31,7 @@ TileRow tile_row(const SeaLayout& layout, const SeaLayout::Tile& tile, glm::dvec
         const double tiles = origin_m[axis] / size_m;
         const double nodes = (tiles - std::floor(tiles)) * tile.n, node = std::floor(nodes);
         row.origin[axis] = static_cast<std::int32_t>(node);
-        // In 32 bits wherever the origin is: copies' offsets need no more.
+        // In 32 bits wherever the origin is: the tiles' offsets need no more.
         row.origin[2 + axis] = static_cast<std::int32_t>(static_cast<std::int64_t>(std::floor(tiles)));
         row.scale[axis] = static_cast<float>(nodes - node);
     }

@@ -11,8 +11,8 @@
 
 namespace pelagic {
 
-// Whether the sea is drawn in two passes: where each pixel is at rest, and then its light, once. A driver in software
-// shades small triangles in blocks of pixels, and most of a block lies outside.
+// Whether the sea is drawn in two passes: first the point at rest of each pixel, then its light, once. A driver in
+// software shades small triangles in blocks of pixels, and most of a block lies outside.
 bool is_lit_afterwards(const DrawOptions& options);
 
 class ShaderVariant {

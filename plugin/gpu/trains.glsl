@@ -1,10 +1,9 @@
 // The trochoid trains at a point, as in evaluate() (core/evaluate/trains-inl.h), from tables that SeaLayout
 // makes. Only the trains that pass the footprint's filter are read.
 //
-// Texels of train i, in column i: 0: kx, ky [cycles/m], each as (high, low); 1: amplitudes of ηx, ηy, Dxx,
-// Dyy; 2: of Dxy, Height, Dx, Dy; 3: wavelength [m], and the most that its strain counts with in breaking; 4, 5: its
-// moments; 6, 7: the summed
-// moments of trains i … last.
+// Texels of train i, in column i: 0: kx, ky [cycles/m], each as (high, low); 1: amplitudes of ηx, ηy, Dxx, Dyy; 2: of
+// Dxy, Height, Dx, Dy; 3: wavelength [m], and the weight with which its displacement gradient counts at best in
+// breaking; 4, 5: its moments; 6, 7: the summed moments of trains i … last.
 uniform sampler2D train_table;
 uniform sampler2D train_cycles;  // phases at the origin, at the frame's time
 uniform int train_count;
@@ -55,10 +54,10 @@ vec3 cell_trains(SplitMetres x, vec3 footprint) {
     return sum;
 }
 
-// Adds the trains' part to the shown and hidden sums of the cascades.
+// Adds the trains' part to the cascades' resolved fields and unresolved moments.
 struct TrainSums {
     PixelFields fields;
-    vec4 breaking;  // strain of the waves that break
+    vec4 breaking;  // displacement gradient of the waves that break
     PixelMoments hidden;
 };
 
@@ -89,7 +88,7 @@ TrainSums pixel_trains(SplitMetres x, vec3 footprint, TrainSums sums) {
         dxy += across * wave.y;
         breaking += vec3(amplitude.zw, across) * most;
     }
-    if (!kChoppy) {  // the strain is there for breaking alone
+    if (!kChoppy) {  // the displacement gradient serves breaking alone
         first.zw = vec2(0.0);
         dxy = 0.0;
     }

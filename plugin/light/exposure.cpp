@@ -23,10 +23,10 @@ constexpr int kColumns = 24;  // of places in a view; rows as many as make them 
 // A picture that shows nothing but black, such as one at night, is exposed as if it were this bright.
 constexpr double kDarkest = 1e-5;  // [kcd/m²]
 
-// What is so many times darker than the brightest of a view without the sun, as space beside the earth is, isn't metered:
-// pictures show it black whatever their exposure.
+// Parts of a view that are this many times darker than its brightest part without the sun aren't metered, such as
+// space beside the earth: pictures show them black whatever their exposure.
 constexpr double kRange = 1024.0;
-// Air looks alike from heights this much apart, as a logarithm: its table takes tens of milliseconds.
+// Heights that differ by less than this, as a logarithm, share one table of air, which takes tens of milliseconds.
 constexpr double kSameHeight = 0.1;
 
 class Meter {

@@ -139,7 +139,7 @@ FoamLook make_foam(const Scene& scene, double active) {
                   .wind_direction_deg = scene.sea.wind_direction_deg};
     if (!(active < 1.0)) return look;
     constexpr double kLeft =
-        0.4;  // how dense what is left would be beside what breaks, were that not all white
+        0.4;  // density of the foam left, relative to foam that breaks, before the latter is limited to white
     const auto mean = static_cast<double>(look.dense_active);
     const double breaking = std::min(1.0, mean / (active + (1.0 - active) * kLeft));
     look.dense_active = static_cast<float>(breaking);

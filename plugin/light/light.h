@@ -16,7 +16,7 @@ namespace pelagic {
 // What is wrong with the picture that light.sky is the path of, as far as can be said without its pixels: the check
 // of named files that hosts pass to load_shot().
 std::vector<Problem> check_sky(const Scene& scene);
-// The same, and waves that no sea has (core/spectrum/possible.h), where the scene is valid but for them: what hosts check
+// The same, and impossible waves (core/spectrum/possible.h) where the scene is valid otherwise: all that hosts check
 // of a shot.
 std::vector<Problem> check_scene(const Scene& scene);
 // The shot's light: its daylight, or the picture that light.sky is the path of. A large picture is read in parts.
@@ -34,13 +34,15 @@ std::string radiance_unit(const Scene& scene);
 std::vector<exr::Attribute> radiance_attributes(const Scene& scene);
 // What is in the shot's water.
 WaterBody make_water(const Scene& scene);
-// The light's keys as text: while that stays, sky and water do. How foam looks is no part of them.
+// The keys on which the light depends, as text: while it stays the same, sky and water do. How foam looks is no part
+// of it.
 std::string light_content(const Scene& scene);
-// Of the law's foam, the share that breaks now in a sea whose earlier breaking has left that coverage; 1 where foam doesn't live.
+// The share of the law's foam that breaks now, in a sea in which earlier breaking has left that coverage; 1 without
+// persistent foam.
 double active_foam(const Scene& scene, double residual_coverage);
-// How its foam looks. active: that share, the rest is what it left.
-// Foam is white while it breaks, and what it leaves is thin (Darles et al. 2007: less with its age), so that all of the law's foam
-// has Koepke's mean: in lighting by shares of area, whatever a pixel's size.
+// How the foam of a shot looks. active: that share; the rest is what earlier breaking left. Foam is white while it
+// breaks, and what it leaves is thin (Darles et al. 2007: less with its age). All of the law's foam together has
+// Koepke's mean: in lighting by shares of area, whatever a pixel's size.
 FoamLook make_foam(const Scene& scene, double active = 1.0);
 
 }  // namespace pelagic

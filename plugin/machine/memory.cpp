@@ -84,14 +84,14 @@ constexpr std::size_t kBesidePlans =
     24 * kMebi;  // shot, record, the light's tables, files' libraries: found by the campaign "limits"
 bool shares_one_heap = false;
 
-// Of threads that are to come: TBB's, and one that writes.
+// Of threads yet to come: TBB's, and one that writes.
 std::size_t threads_bytes(std::size_t heap) {
     using Control = tbb::global_control;
     const std::size_t workers = Control::active_value(Control::max_allowed_parallelism) - 1;
     return workers * (Control::active_value(Control::thread_stack_size) + heap) + kStack + heap;
 }
 
-// What a limit of the process leaves. What is mapped now, the program and its libraries, stays.
+// What a limit of the process leaves. What is mapped now, the program and its libraries, counts as taken.
 std::size_t left_of(decltype(RLIMIT_AS) kind, std::size_t mapped, std::size_t heap) {
     rlimit limit{};
     if (getrlimit(kind, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
@@ -138,7 +138,7 @@ bool run_on_large_stack(const std::function<void()>& work) {
         rlimit limit{};
         return getrlimit(kind, &limit) == 0 && limit.rlim_cur < bytes;
     };
-    // The main thread's stack is mapped as it grows: where a limit has no room for that, a signal ends the process.
+    // The main thread's stack is mapped as it grows: where a limit has no room for it, a signal ends the process.
     if (!is_below(RLIMIT_STACK, kMainStack) && !is_below(RLIMIT_AS, RLIM_INFINITY) &&
         !is_below(RLIMIT_DATA, RLIM_INFINITY)) {
         work();

@@ -1,5 +1,5 @@
-// How much memory the system gives this process, and what a program does first so that it is enough. Linux; elsewhere the
-// machine's own alone.
+// How much memory the system gives this process, and how a program prepares its threads for small limits. Linux;
+// elsewhere the machine's memory alone.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct Sources {
 // that no plan counts. Not what is free at the moment: a run is refused or not whatever else runs.
 MemoryLimit memory_limit(const Sources& sources = {});
 
-// The limit that somebody asks for, or memory_limit() where he asks for none (0).
+// The limit that a user gives, or memory_limit() where none is given (0).
 MemoryLimit memory_limit_or(std::size_t max_memory_bytes);
 
 // For a program's main(), before it has threads: those that it and its libraries make get stacks of 2 MiB, whatever the

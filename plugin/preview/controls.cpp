@@ -227,7 +227,7 @@ void waves_section(Controls& controls, const Readout& readout) {
     if (!section(keys_of(kWavesSection).title)) return;
     const bool had_whitecaps = controls.scene.effects.whitecaps;
     key_controls(controls.scene, keys_of(kWavesSection));
-    // Foam that is computed is shown, also in a shot that begins without.
+    // Foam that is turned on is drawn, also in a shot that begins without.
     if (controls.scene.effects.whitecaps && !had_whitecaps) controls.draw.lighting.whitecaps = true;
     ImGui::PushStyleColor(ImGuiCol_Text,
                           readout.building_sea ? kAccent : ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);

@@ -14,7 +14,7 @@ namespace pelagic {
 
 // What the panel changes.
 struct Controls {
-    Scene scene;  // as asked for now: the waves of it that play may still be older
+    Scene scene;  // as asked for now: the sea on show may still be an older one's
     DrawOptions draw;
     double exposure_stops = 0.0;  // above what suits the light
     int pixel_size = 1;           // 1, 2, 4: a drawn pixel covers this many of the window's, squared
@@ -28,8 +28,8 @@ struct Controls {
 // How the panel begins for a shot.
 Controls controls_for(const Scene& scene);
 
-// The playhead, which never leaves the shot's frames: so many seconds on while it plays; played or paused, from the
-// first frame where it had come to its end; by hand to a frame.
+// The playhead, which never leaves the shot's frames. play_on(): so many seconds on while it plays. play_or_pause():
+// from the first frame again where it had come to the end. go_to(): by hand to a frame.
 void play_on(Controls& controls, double seconds, const Shot& shot);
 void play_or_pause(Controls& controls, const Shot& shot);
 void go_to(Controls& controls, double frame, const Shot& shot);

@@ -41,9 +41,9 @@ struct LiveLimits {
     int texture = std::numeric_limits<int>::max();
 };
 
-// Plans and builds the sea for pictures of the scene. Where that doesn't fit the limits, the shortest waves are left
-// to the slope variance until it does, and the note says so. Throws std::invalid_argument with every problem that
-// problems_of() finds, and NotEnoughMemory where nothing is left to leave out.
+// Plans and builds the sea for pictures of the scene. Where that exceeds the limits, the shortest waves become mere
+// slope variance until it fits, and the note says so. Throws std::invalid_argument with every problem that
+// problems_of() finds, and NotEnoughMemory where nothing can be left out any more.
 std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits& limits,
                                             const BuildWatch& watch = {});
 
@@ -82,15 +82,15 @@ class LiveSea {
     // current sea between two frames. During a build only the latest request is kept.
     void ask(const Scene& scene);
     // Requests a frame at this time [s], finite, of the latest sea that is ready; the latest request wins.
-    // Must be called for every picture drawn: this call swaps in a sea that is ready. `eye`: a camera among the
-    // waves (is_among_waves()), of which water_over_eye() will tell. `spray_from`: a camera of which newest_spray() will tell.
+    // Must be called for every picture drawn: this call swaps in a sea that is ready. `eye`: a camera among the waves
+    // (is_among_waves()), for water_over_eye(). `spray_from`: a camera for newest_spray().
     void show(double time_s, const std::optional<View>& eye = {}, const std::optional<View>& spray_from = {});
     // The latest finished frame; null before the first. Unchanged until the next call.
     const LiveFrame* newest();
     // The height z [m] of the surface above the eye, in the latest frame computed; nullopt for one in the air.
     std::optional<double> water_over_eye() const;
-    // Before the latest camera that was asked for, without light; null before the first. Of fewer texels than a picture of
-    // its own has.
+    // The spray before the latest camera that was asked for, not lit yet; null before the first. It has fewer texels
+    // than that of a single picture.
     std::shared_ptr<const Spray> newest_spray() const;
     LiveStatus status() const;
 

@@ -67,7 +67,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
     Plan plan = plan_from(0.0);
     const Plan whole = plan;
     std::string left_out;
-    // Rung by rung of the whole ladder, whose first lets everything pass.
+    // Level by level of the pixels' footprints, of which the first lets everything pass.
     for (const double rung_m : whole.queries.front().query.pixel_m) {
         if (fits(plan, limits)) break;
         if (rung_m == 0.0) continue;

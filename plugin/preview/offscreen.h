@@ -37,7 +37,7 @@ struct OffscreenPicture {
     std::string note;    // what the scene asks for and the GPU doesn't do; usually empty
 };
 
-// What a picture needs, known before the sea is built: its grid, and a sea whose ladder is as fine as the pixels
+// What a picture needs, known before the sea is built: its grid, and a sea whose levels are as fine as the pixels
 // that show it. Frames and pictures of other plans give the same picture.
 struct OffscreenPlan {
     Scene scene;  // its resolution is the picture's
@@ -55,7 +55,7 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size = gl
 // What drawing it holds at most: with a driver in software that is all memory of this process.
 MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads);
 
-// Of building the sea, and of going through its foam's past where that is long.
+// Progress of building the sea, and of going through its foam's past where that is long.
 struct OffscreenWatch {
     BuildWatch sea{}, foam_past{};
 };

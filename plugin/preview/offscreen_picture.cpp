@@ -46,7 +46,7 @@ void check_size(glm::ivec2 size) {
                        " a side: ask for a smaller one with --size, or use pelagic render");
 }
 
-// Positions of the grid's points, relative to its origin, by waves as long as its cells show.
+// Positions of the grid's points, relative to its origin, with the waves that its cells resolve.
 std::vector<glm::vec3> positions_of(const std::shared_ptr<const Sea<float>>& sea, double time_s,
                                     const ProjectedGrid& grid) {
     Frame<float> frame(sea);
@@ -114,7 +114,7 @@ std::string smaller() {
 MemoryNeed offscreen_memory(const OffscreenPlan& planned, int threads) {
     MemoryNeed need;
     add_sea(need, planned.plan, threads);
-    // The frame's fields go when the driver has them, a texture after another.
+    // Fields of the frame are freed one after another, as soon as the driver has them.
     const std::size_t frame = planned.plan.frame_bytes();
     std::size_t textures = 0, largest = 0;
     for (const SeaLayout::Plane& plane : SeaLayout::planes_of(planned.plan, 0)) {
@@ -163,9 +163,9 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
         if (has_spray) query.products |= products(Product::Displacement);
         return make_plan(prepared, {query}, {.double_precision = false, .living_foam = true});
     };
-    // Positions alone, by waves no shorter than the cells: little beside what pixels show. But which pixels are there
-    // follows from them. A low camera has points nearby that a crest might bring into view and that no pixel shows:
-    // what they would ask of the sea is gigabytes.
+    // Positions alone, with waves no shorter than the cells: little beside what pixels resolve. They tell which
+    // pixels are in the picture. A low camera has points nearby that a crest might bring into view and that no pixel
+    // shows: their footprints would ask for gigabytes.
     MemoryNeed first;
     const Plan of_points = plan_for(products(Product::Position), needs.finest_cell_m);
     add_sea(first, of_points, threads);
@@ -179,7 +179,7 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
         const auto sea = std::make_shared<const Sea<float>>(of_points);
         const double in_view_m = finest_pixel_in_view(
             view, planned.grid, positions_of(sea, planned.scene.shot.time_s(frame), planned.grid));
-        // The rung below, as every point reads the two beside its footprint.
+        // The level below, as every point reads the two levels beside its footprint.
         finest_pixel_m = std::max(first_rung_m(needs.finest_pixel_m),
                                   rung_below_m(std::min(in_view_m, needs.finest_cell_m)));
     }
@@ -190,7 +190,7 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
 
 namespace {
 
-// What the waves that broke before have left where the picture's pixels are.
+// Uploads what earlier breaking has left where the picture's pixels are.
 void upload_foam(SeaRenderer& renderer, const std::shared_ptr<const Sea<float>>& sea, double time_s,
                  const View& view, const ProjectedGrid& grid, const BuildWatch& watch) {
     const SeaRenderer::ShownPoints shown = renderer.shown_points(view, grid);

@@ -62,13 +62,14 @@ class SeaRenderer {
     // shaders only if the number of cascades or footprints changed. Returns before the copy is done. Throws
     // PreviewError if the driver's textures are too small for the sea.
     void upload(const PackedFrame& frame);
-    // The same for a picture that is the only one: takes the frame apart as it is copied, and holds nothing twice. `query`: as
-    // PackedFrame's.
+    // The same for a single picture: takes the frame apart as it is copied, so that nothing is in memory twice.
+    // `query`: as PackedFrame's.
     void upload_once(Frame<float>&& frame, int query);
     bool has_frame() const;
-    // What earlier breaking has left in the uploaded sea, whose foam must live; nothing is left before the first call for it.
+    // What earlier breaking has left in the uploaded sea, whose foam must be persistent. Before the first call there
+    // is none.
     void upload_foam(std::shared_ptr<const PackedFoam> foam);
-    // The points at rest that a picture's pixels of the sea show, with their footprints: for what depends on them. Waits.
+    // The points at rest that a picture's pixels of the sea show, with their footprints. Waits for the GPU.
     struct ShownPoints {
         std::vector<glm::vec2> rest_m;  // relative to the grid's origin
         std::vector<float> pixel_m;

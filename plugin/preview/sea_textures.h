@@ -22,7 +22,7 @@ class SeaTextures {
     // As SeaRenderer::upload() and upload_once().
     void upload(const PackedFrame& frame);
     void upload_once(Frame<float>&& frame, int query);
-    // What earlier breaking has left in that sea, for living foam; nothing before the first.
+    // What earlier breaking has left in that sea, for persistent foam; none before the first call.
     void upload_foam(std::shared_ptr<const PackedFoam> foam);
     bool empty() const { return layout_ == nullptr; }
     const SeaLayout& layout() const { return *layout_; }

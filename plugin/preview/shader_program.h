@@ -24,7 +24,7 @@ class ShaderProgram {
     GlProgram program_;
 };
 
-// Those that the program, which must be in use, has.
+// Sets those uniforms that the program has; it must be in use.
 void set_uniforms(const ShaderProgram& program, const std::vector<Uniform>& uniforms);
 
 }  // namespace pelagic

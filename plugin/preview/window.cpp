@@ -511,7 +511,8 @@ class Preview {
         }
         const auto start = Clock::now();
         ProjectedGridOptions grid_options = frame_->build->grid;
-        // Of the drawn picture's pixels, as in `pelagic render` of that size: as many times fewer vertices.
+        // Cells in pixels of the picture as drawn, as in `pelagic render` of that size: with larger pixels there are
+        // fewer vertices.
         grid_options.cell_px = controls_.scene.surface.cell_px;
         const auto grid = std::make_shared<const ProjectedGrid>(projected_grid(view, grid_options));
         smooth(readout_.times.grid_ms, milliseconds_since(start));
@@ -529,7 +530,7 @@ class Preview {
         readout_.times.gpu = renderer_.times();
     }
 
-    // As the last camera had it that it was ready for.
+    // The spray before the last camera for which it is ready.
     void show_spray() {
         const std::shared_ptr<const Spray> ready = sea_.newest_spray();
         if (!ready || !sky_) return;
@@ -538,7 +539,7 @@ class Preview {
         renderer_.set_spray(spray);
     }
 
-    // Living foam comes when it is ready: until then a picture has what there is.
+    // Persistent foam comes when it is ready. Until then a picture shows what there is.
     void follow_foam(const View& view, const std::shared_ptr<const ProjectedGrid>& grid) {
         if (foam_of_ != frame_->build) {
             foam_worker_.reset();
@@ -609,7 +610,7 @@ class Preview {
     int pictures_ = 0;
     Clock::time_point first_picture_, asked_at_ = Clock::now();
     std::shared_ptr<const LiveBuild> foam_of_;
-    std::optional<FoamWorker> foam_worker_;  // of foam_of_, where its foam lives
+    std::optional<FoamWorker> foam_worker_;  // of foam_of_, where its foam is persistent
     std::optional<View> foam_view_;          // what it was asked for last
     double foam_time_s_ = 0.0;
     bool is_flying_ = false, save_picture_ = false, is_under_water_ = false, has_spray_ = false;

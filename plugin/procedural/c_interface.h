@@ -1,4 +1,4 @@
-// What the files of the C interface share: handles, and how they look at what comes in and let no exception out.
+// What the files of the C interface share: handles, checks of what comes in, and guards that let no exception out.
 #pragma once
 
 #include <algorithm>
@@ -78,7 +78,7 @@ inline constexpr std::size_t kFirstSize<pelagic_open_options> = offsetof(pelagic
 template <>
 inline constexpr std::size_t kFirstSize<pelagic_expand_options> = offsetof(pelagic_expand_options, error_px);
 
-// No version's structures are larger: what says so has something else where its size should be.
+// No version's structures are larger. A larger number isn't a size.
 inline constexpr std::size_t kLargestSize = 4096;
 
 // The size that a structure says it has.
@@ -94,8 +94,8 @@ std::size_t checked_size(const S* structure, const char* name) {
     return size;
 }
 
-// A structure of the caller's, as this version knows it. One of an earlier version has zeros for what came later; a longer one is of a later
-// version: what this one doesn't know of it must be 0.
+// A structure of the caller's, as this version knows it. One of an earlier version has zeros for later members. A
+// longer one is of a later version: all beyond this version's members must be 0.
 template <class S>
 S taken(const S* from, const char* name) {
     const std::size_t size = checked_size(from, name);
@@ -112,7 +112,7 @@ template <class S>
 S taken_or_zeros(const S* from, const char* name) {
     return from ? taken(from, name) : S{};
 }
-// Into the caller's; its size stays.
+// Copies into the caller's structure, whose size stays.
 template <class S>
 void give(S from, S* to, const char* name) {
     const std::size_t size = checked_size(to, name);
@@ -120,14 +120,14 @@ void give(S from, S* to, const char* name) {
     std::memcpy(to, &from, std::min(size, sizeof(S)));
 }
 
-// [m], as cameras' may be.
+// A place [m], within the range of cameras.
 inline void check_place(double metres, const char* name) {
     if (!limits::kCameraCoordinate_m.holds(metres))
         throw std::invalid_argument(std::string(name) + " is outside the range; accepted: " +
                                     text_of(limits::kCameraCoordinate_m) + " m");
 }
 
-// Of a batch. More vectors than memory has room for would have places that wrap.
+// The size of a batch. More vectors than memory has room for would have addresses that wrap.
 inline void check_count(std::size_t count, const char* name) {
     constexpr std::size_t kMost = PTRDIFF_MAX / sizeof(glm::vec3);
     if (count > kMost)

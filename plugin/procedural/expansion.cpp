@@ -67,7 +67,7 @@ Samples samples_of(const ProjectedGrid& grid, std::size_t count) {
 
 ProjectedGrid grid_of(const ShotFrame& frame, const Expansion& expansion) {
     ProjectedGrid grid = projected_grid(expansion.view, expansion.options);
-    // Trains have no ladder: they see each point's own footprints.
+    // Trains need no levels: they use each point's own footprints.
     if (frame.shot().query().cell_m.size() > 1) keep_to_rungs(grid, expansion.needs);
     return grid;
 }
@@ -118,7 +118,7 @@ double mesh_error_px(const ShotFrame& frame, const Expansion& expansion) {
         const glm::vec3 on_face_m = weight.x * at_m[0] + weight.y * at_m[1] + weight.z * at_m[2];
         const glm::dvec3 a = on_screen(at_m[0]), b = on_screen(at_m[1]), c = on_screen(at_m[2]),
                          p = on_screen(on_face_m);
-        // From behind, or beside the picture, a face isn't seen.
+        // Faces seen from behind or beside the picture don't count.
         const double area_px2 = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
         if (!(area_px2 > 0.0) || !(std::min({a.z, b.z, c.z}) > 0.0) ||
             std::abs(p.x) > 0.5 * view.resolution.x || std::abs(p.y) > 0.5 * view.resolution.y)

@@ -13,7 +13,7 @@ inline constexpr double kFinestCell_px = 0.25;
 
 struct ExpansionChoice {
     double cell_px = kCell_px;  // the side of a cell on the screen
-    double error_px = 0.0;      // beyond 0: cells as large as keep 95 % of the picture so near to the surface
+    double error_px = 0.0;  // above 0: the largest cells that keep 95 % of the picture so near to the surface
     bool triangles = false, on_earth = false;
 };
 
@@ -29,8 +29,8 @@ Expansion expansion_of(const ShotFrame& frame, const View& view, const Expansion
 ProjectedGrid grid_of(const ShotFrame& frame, const Expansion& expansion);
 Points<float> points_of(const ProjectedGrid& grid);
 
-// The distance from a point of a face to the surface of the finest cells along its normal, over the width of a pixel there: what 95 % of the
-// picture's sea is within, by samples.
+// The distance of the mesh's faces from the surface of the finest cells, along its normal, in pixels there: 95 % of
+// the picture's sea are within it. By samples.
 double mesh_error_px(const ShotFrame& frame, const Expansion& expansion);
 
 }  // namespace pelagic::procedural

@@ -67,8 +67,8 @@ float largest(const float* samples, std::size_t n) {
     return *std::max_element(most.begin(), most.end());
 }
 
-// The most that a field's sum can be, everywhere: splines stay within their coefficients, and the weights of the copies at a
-// point add up to 2 at most (core/plan/copies.h).
+// The most that a field's sum can be, everywhere: splines stay within their coefficients, and the blending weights at
+// a point add up to 2 at most (core/plan/copies.h).
 double most_of(const Frame<float>& frame, Field field) {
     const Plan& plan = frame.sea().plan();
     double most = 0.0;
@@ -93,7 +93,8 @@ double most_of(const Frame<float>& frame, Field field) {
     return (1.0 + kRounding) * most;
 }
 
-// A cell that holds back no train [m], far below what the filter asks for (core/plan/filter.h); without trains any will do.
+// A cell through which all trains pass whole [m], far below what the filter asks for (core/plan/filter.h); without
+// trains any will do.
 double whole_cell_m(const Sea<float>& sea) {
     constexpr double kOfShortest = 1.0 / 64.0;
     const std::vector<double>& lengths_m = sea.trains().wavelength_m;
@@ -114,7 +115,7 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
         add_sea(need, plan, arena->max_concurrency());
         require_memory(need, machine::memory_limit(), "a frame of this sea");
         sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
-        // As the plan's rungs have it; a sea of trains has none.
+        // As the plan's levels have it; a sea of trains has none.
         finest_ray_m =
             query().cell_m.front() > 0.0 ? query().cell_m.front() : std::max(finest_ray_m, finest_cell_m());
     });
@@ -159,8 +160,8 @@ void ShotFrame::set(double open_s, double close_s) {
 
 void ShotFrame::check_times(const float* time_s, std::size_t count, const char* name) const {
     if (!time_s) return;
-    // A host that scales a share of the shutter by its length in single precision lies beyond the end by what that rounds: half an epsilon
-    // each for the length, the share, their product and a sum. Late ends are themselves rounded.
+    // A host may scale a share of the shutter by its length in single precision. Rounding then takes times beyond the
+    // end: half an epsilon each for the length, the share, their product and a sum. Late ends are themselves rounded.
     const double open_for_s = 2.0 * half_open_s_,
                  rounding_s = 2.0 * std::numeric_limits<float>::epsilon() * open_for_s +
                               2.0 * std::numeric_limits<double>::epsilon() * std::abs(frame_.time_s());
@@ -174,7 +175,7 @@ void ShotFrame::check_times(const float* time_s, std::size_t count, const char* 
 const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
     const std::lock_guard<std::mutex> lock(lock_);
     auto& bounds = bounds_[rung_m];
-    // By this thread alone, which takes up nobody else's work meanwhile: that might want the lock.
+    // By this thread alone, which must not take up other work meanwhile: that might wait for the lock.
     if (!bounds)
         tbb::task_arena(1).execute([&] {
             bounds = std::make_unique<const FrameBounds<float>>(
@@ -183,12 +184,12 @@ const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
     return *bounds;
 }
 
-// Rung by rung: what all footprints of a wide range have in common is a loose bound of each.
+// Level by level: a bound that holds for all footprints of a wide range would be loose for each.
 template <class Bound>
 DisplacementBounds ShotFrame::over_rungs(FootprintRange cells, const Bound& bound) const {
     double rung_m = rung_below_m(std::max(cells.finest_m, of_->finest_cell_m()));
     DisplacementBounds all = bound(bounds_from(rung_m));
-    // Where a footprint hides all waves, nothing moves, and larger ones change nothing.
+    // Where a footprint resolves no waves, nothing moves, and larger ones change nothing.
     const auto moves = [](const DisplacementBounds& b) { return b.z.hi > b.z.lo; };
     for (bool goes_on = moves(all); goes_on && 2.0 * rung_m < cells.coarsest_m;) {
         const DisplacementBounds here = bound(bounds_from(rung_m *= 2.0));

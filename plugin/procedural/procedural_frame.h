@@ -21,7 +21,7 @@
 
 namespace pelagic::procedural {
 
-// The side of a mesh's cells on the screen where nobody says another.
+// The side of a mesh's cells on the screen by default.
 inline constexpr double kCell_px = 2.0;
 
 // Points move in straight lines while the shutter is open. Within a longer one they would go further than waves do, and a ray would
@@ -45,7 +45,7 @@ struct ShotSea {
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
     std::shared_ptr<const Sea<float>> sea;
     const Query& query() const { return sea->plan().queries.front().query; }
-    // The cell at which nothing more comes to light [m], > 0.
+    // The cell below which nothing more is resolved [m], > 0.
     double finest_cell_m() const;
 };
 
@@ -72,20 +72,21 @@ class ShotFrame {
     double half_open_s() const { return half_open_s_; }  // half of the time for which the shutter is open
     // Of a batch, from the shutter's opening on; null: none. Throws std::invalid_argument, which calls them `name`, for one outside.
     void check_times(const float* time_s, std::size_t count, const char* name) const;
-    // What rays see; made when asked for, as those of a frame that nobody traces cost nothing.
+    // The surface for rays. Made when first asked for, so that frames without rays cost nothing.
     const SurfaceTiles& tiles() const;
 
     // The cells of the last mesh that was asked for by its error, if it was this one.
     std::optional<double> remembered_cell_px(const View& view, double error_px, bool on_earth) const;
     void remember_cell_px(const View& view, double error_px, bool on_earth, double cell_px) const;
 
-    // By the calling thread alone. Times are the shutter's; what they lie outside by a rounding counts as its ends.
+    // By the calling thread alone. Times count from the shutter's opening; those that rounding puts outside count as
+    // its ends.
     void evaluate(const TimedPoints& points, Results<float> results) const;
     // The same in the middle of the shutter, by all threads of the calling arena.
     void evaluate_by_all(const Points<float>& points, const Results<float>& results) const;
 
   private:
-    // Of cells from this rung to the next.
+    // Bounds for cells from this level to the next.
     const FrameBounds<float>& bounds_from(double rung_m) const;
     template <class Bound>
     DisplacementBounds over_rungs(FootprintRange cells, const Bound& bound) const;
@@ -95,9 +96,9 @@ class ShotFrame {
     std::optional<PreparedQuery<float>> query_;
     double half_open_s_ = 0.0;
     glm::dvec3 fastest_mps_{0.0};  // no point moves faster along the axes
-    mutable std::mutex lock_;      // of what is made when asked for
+    mutable std::mutex lock_;      // of members that are made when asked for
     mutable std::map<double, std::unique_ptr<const FrameBounds<float>>>
-        bounds_;  // by rung, made when asked for
+        bounds_;  // by level, made when asked for
     mutable std::unique_ptr<const SurfaceTiles> tiles_;
     mutable std::optional<SurfaceBounds> everywhere_;
     struct Cells {

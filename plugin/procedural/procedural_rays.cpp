@@ -16,7 +16,7 @@
 namespace pelagic::procedural {
 namespace {
 
-// As far as a ray that ends nowhere is followed, and where no ray begins: a tenth of a millimetre is lost there.
+// No ray is followed farther, and none begins farther away: a tenth of a millimetre is lost there.
 constexpr double kFarthest_m = 1e12, kFarthestOffset_m = 1e10;
 
 // The rays of a call, one by one.
@@ -41,7 +41,7 @@ class Batch {
 
     const RaySea& sea() const { return sea_; }
 
-    // False for one that hits nothing, whatever the sea. `length_m`: of its direction.
+    // False for a ray that hits nothing, whatever the sea is like. `length_m`: of its direction.
     bool ray(std::size_t i, SeaRay& ray, double& length_m) const {
         const auto vector = [&](const float* values) {
             return values ? glm::dvec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]) : glm::dvec3(0.0);
@@ -85,7 +85,7 @@ struct Waiting {
     }
 };
 
-// Of one place each, in the middle of the shutter, at the hits' rays.
+// The values at the hits, each at its place in the middle of the shutter, written where its ray's belong.
 void give_values(const ShotFrame& frame, const RaySea& sea, const Waiting& hits, const Results<float>& to) {
     const std::size_t count = hits.ray.size();
     if (count == 0) return;

@@ -14,13 +14,13 @@
 namespace pelagic::procedural {
 namespace {
 
-// A ray that goes so far through the waves' heights meets nothing but the sea at rest beyond: a level ray above the crests would look at
-// each wave as far as doubles go.
+// A ray that has gone this far between the heights of the waves meets only the sea at rest from there on: a level ray
+// above the crests would look at each wave as far as doubles go.
 constexpr double kLongestWay_m = 32768.0;
-// Cells for which two levels count: the two surfaces cross each other every one or two of them.
+// Over this many cells two levels count: their surfaces cross each other every one or two cells.
 constexpr double kSharedCells = 32.0;
 
-// Of from + s · direction with the box, within near … far.
+// Narrows near … far to the part of from + s · direction within the box; false if there is none.
 bool enters(glm::dvec3 from_m, glm::dvec3 per_direction, glm::dvec3 low_m, glm::dvec3 high_m, double& near_m,
             double& far_m) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -54,7 +54,7 @@ double RayTracer::footprint_m(const SeaRay& ray, double s_m) const {
     return std::min(std::max(ray.footprint_m + ray.spread * s_m, sea_.finest_footprint_m), kWidest_m);
 }
 
-// Within the earth's sphere, so much higher than the sea at rest; no less than that.
+// The part of a ray within the sphere that lies this much higher than the sea at rest.
 RayTracer::Span RayTracer::within_sphere(const SeaRay& ray, double height_m) const {
     const double radius_m = 1.0 / sea_.curvature_per_m;
     const double b = glm::dot(ray.from_m, ray.direction) + radius_m * ray.direction.z;
@@ -66,7 +66,7 @@ RayTracer::Span RayTracer::within_sphere(const SeaRay& ray, double height_m) con
     return {-b - std::sqrt(within) - rounding_m, -b + std::sqrt(within) + rounding_m};
 }
 
-// Where it is no higher and no lower than any point of the sea.
+// The part of a ray that is no higher and no lower than the waves go.
 RayTracer::Span RayTracer::span_in_waves(const SeaRay& ray) const {
     const double height_m = sea_.everywhere.height_m;
     double near_m = ray.near_m, far_m = ray.far_m;
@@ -152,7 +152,7 @@ bool RayTracer::trace(const SeaRay& ray, bool any, SeaHit& hit) {
     return true;
 }
 
-// A ray that goes on over the sea at rest may have come to its other side meanwhile.
+// Whether a ray that goes on over the sea at rest has come to its other side between these distances.
 bool RayTracer::meets_rest_between(const SeaRay& ray, double begin_m, double end_m, SeaHit& best) const {
     const auto at = [&](double s_m) {
         const glm::dvec3 place_m = ray.from_m + s_m * ray.direction;
@@ -215,7 +215,7 @@ void RayTracer::push_roots(const Piece& piece) {
         b_m(piece.from_m + piece.far_m * piece.direction);
     const glm::dvec2 low_m = glm::min(a_m, b_m) - sea_.everywhere.reach_m,
                      high_m = glm::max(a_m, b_m) + sea_.everywhere.reach_m;
-    // So wide that a few of them hold all that may reach the piece.
+    // Roots so wide that a few of them hold all that may reach the piece.
     const double wide_m = std::max(
         {2.0 * sea_.everywhere.reach_m, 0.5 * std::abs(b_m.x - a_m.x), 0.5 * std::abs(b_m.y - a_m.y)});
     int level = piece.level;

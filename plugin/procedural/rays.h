@@ -1,7 +1,8 @@
 // Rays against the sea of a frame, from above and from below.
 //
-// A ray sees the level of tiles (surface_tiles.h) that is within its tolerance, which widens with its footprint. Where it goes on to the next level,
-// both count for a while: a ray that slips between the two surfaces, which cross each other every few cells, meets one of them there.
+// A ray reads the level of tiles (surface_tiles.h) that is within its tolerance, which widens with its footprint.
+// Where it changes to the next level, both count for a while: a ray that slips between the two surfaces, which cross
+// each other every few cells, meets one of them there.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@
 
 namespace pelagic::procedural {
 
-// What rays of a batch have in common.
+// What the rays of a batch share.
 struct RaySea {
     const SurfaceTiles* tiles = nullptr;
     SurfaceBounds everywhere;         // of all points, at any time of the shutter
@@ -39,7 +40,7 @@ struct SeaHit {
     double footprint_m = 0.0;
 };
 
-// Rays of one call, one after another: what the last ones asked for is at hand for the next.
+// Rays of one call, one after another: tiles that the last ones asked for are at hand for the next.
 class RayTracer {
   public:
     explicit RayTracer(const RaySea& sea);

@@ -10,9 +10,10 @@
 namespace pelagic::procedural {
 namespace {
 
-// The finest level that any tolerance takes, below the query's finest cell: deviations fall with the square of the points' distance.
+// The finest level that any tolerance needs, below the query's finest cell: deviations fall with the square of the
+// points' distance.
 constexpr int kLevelsBelowFinest = 4;
-// Of flat water, or where cells hide all waves from far above.
+// For flat water, or where the cells of all levels resolve no waves.
 constexpr int kMostLevels = 40;
 
 TileBox box_of(const float* const at_m[3], const float* const velocity_mps[3], double half_open_s, int x0,
@@ -98,11 +99,11 @@ int SurfaceTiles::level_within(double tolerance_m) const {
     return first_level_ + std::max(static_cast<int>(above - deviations_m_.begin()) - 1, 0);
 }
 
-// Triangles differ most from the surface in the middle of their longest edge, the cell's diagonal. Waves are many and independent of each other,
-// so that differences are normal: a sample's largest of 512 is some three standard deviations.
+// Triangles differ most from the surface in the middle of their longest edge, the cell's diagonal. Waves are many and
+// independent, so that differences are normal: the largest of 512 samples is some three standard deviations.
 double SurfaceTiles::sampled_deviation_m(int level, bool& is_flat) const {
     constexpr int kPlaces = 128, kCells = 4;
-    constexpr double kAboveLargest = 1.8;  // more than five of them
+    constexpr double kAboveLargest = 1.8;  // so many times that is over five standard deviations
     const double step_m = std::ldexp(1.0, level);
     std::vector<glm::vec2> rest_m;
     std::vector<float> cell_m;

@@ -40,7 +40,7 @@ struct Tile {
     TilePoints points;
 };
 
-// What was made so far. Any number of threads at once; nothing is taken away.
+// The tiles made so far. Any number of threads at once; nothing is removed.
 class TileStore {
   public:
     const Tile* find(const TilePlace& place) const;
@@ -65,15 +65,16 @@ class SurfaceTiles {
 
     // From this level on the sea is its plane at rest.
     int flat_level() const { return first_level_ + static_cast<int>(deviations_m_.size()); }
-    // No point of the level is further from the surface of the finest cells, where the same place at rest lies: by five
-    // standard deviations of what is sampled. Levels below the finest count as that, flat ones as the first of these.
+    // No point of the level is farther than this from the surface of the finest cells at the same place at rest: five
+    // standard deviations of samples. Levels below the finest count as the finest, flat ones as the first of these.
     double deviation_m(int level) const;
     // The coarsest level that keeps this near to the surface.
     int level_within(double tolerance_m) const;
-    // By half as much again as both deviations together, since a box that is too small loses hits: tiles of the coarser level, or boxes of their quarters, hold all of the finer one's points when they are so much larger.
+    // How much larger tiles of the coarser level, or the boxes of their quarters, must be to hold all of the finer
+    // one's points: 1.5 times both deviations, since a box that is too small loses hits.
     double widening_m(int coarse, int fine) const { return 1.5 * (deviation_m(coarse) + deviation_m(fine)); }
 
-    // What calls hold while they use its tiles; an empty one once the last is full.
+    // The store that calls hold while they use its tiles; a new one once the last is full.
     std::shared_ptr<TileStore> store() const;
     bool is_full(const TileStore& store) const { return store.bytes() > most_bytes_; }
     const Tile& tile(TileStore& store, const TilePlace& place) const;

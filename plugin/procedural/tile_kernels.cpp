@@ -31,7 +31,8 @@ HWY_INLINE Corner CornerAt(const Sheared& points, int i) {
     const D d;
     return {hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
 }
-// Of the triangle between the ray and an edge: twice the area, exactly opposite for the opposite edge, and what of it is the points' rounding.
+// Twice the area of the triangle between the ray and an edge, exactly opposite for the opposite edge; and how much of
+// it may be the rounding of the points.
 struct Edge {
     N area, slack;
 };
@@ -63,7 +64,7 @@ HWY_INLINE void Take(const Weighted& a, const Weighted& b, const Weighted& c, N 
     auto is_hit = hn::And(hn::Ge(inside.v, hn::Zero(D())), sum > N(0));
     if (hn::AllFalse(D(), is_hit)) return;
     const N per = N(1) / select<D>(is_hit, sum, N(1));
-    // Beyond a sharp corner, or where a triangle that is seen edge-on has no weights to speak of, the place isn't on the ray.
+    // Beyond a sharp corner, or where a triangle seen edge-on has hardly any weights, the place isn't on the ray.
     const N off = maximum(magnitude(ia * a.corner.x + ib * b.corner.x + ic * c.corner.x),
                           magnitude(ia * a.corner.y + ib * b.corner.y + ic * c.corner.y));
     is_hit = hn::And(is_hit, off * per < N(4) * rounding);

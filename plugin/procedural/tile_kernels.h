@@ -11,7 +11,7 @@ namespace pelagic::procedural {
 // from the lower to the higher corner.
 inline constexpr int kTileCells = 8;
 inline constexpr int kTileRow = kTileCells + 1, kTilePoints = kTileRow * kTileRow;
-// Values that an array of them must have: vectors read beyond the last.
+// The length of arrays of points: vectors read beyond the last point.
 inline constexpr int kTileRoom = (kTilePoints + 15) / 16 * 16;
 
 // By axis.

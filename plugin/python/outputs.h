@@ -1,4 +1,4 @@
-// What evaluate() can be asked for in Python: the core's products, and what only foam that lives has
+// What evaluate() can be asked for in Python: the core's products, and what only persistent foam has
 // (core/effects/foam_history.h). The same names as in meshes that are read back.
 #pragma once
 

@@ -83,7 +83,7 @@ Query plain_query(const Scene& scene, const SeaRequest& request) {
     return query;
 }
 
-// The ladder of footprints that the views' projected grids need.
+// The levels of footprints that the views' projected grids need.
 Query query_of_views(const PreparedScene& prepared, const SeaRequest& request, ProductSet products) {
     const ProjectedGridOptions options = projected_grid_options(prepared);
     ProjectedGridNeeds needs = projected_grid_needs(request.views.front(), options);

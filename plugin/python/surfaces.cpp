@@ -141,7 +141,7 @@ PythonGrid grid_of(const PythonSea& sea, const View& view, const std::optional<s
             .pixel_axis_m = array_of<float>(std::move(grid.pixel_axis_m))};
 }
 
-// Whether the sea's ladder begins no coarser than the view's own grid would have it.
+// Whether the sea's levels begin no coarser than the view's own grid needs.
 bool serves(const PythonSea& sea, const View& view) {
     const Query& query = sea.query();
     if (!query.is_view) return false;

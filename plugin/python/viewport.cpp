@@ -391,7 +391,7 @@ class GpuSea {
     std::vector<glm::vec4> train_table_, ellipse_table_;
     mutable std::mutex mutex_;
     std::shared_ptr<const PackedFoam> foam_;  // what was taken last
-    std::optional<FoamThread> foam_thread_;   // of living foam that was asked for
+    std::optional<FoamThread> foam_thread_;   // of persistent foam that was asked for
 };
 
 void add_gpu_light(py::module_& module) {

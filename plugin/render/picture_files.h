@@ -27,9 +27,9 @@ struct PictureContext {
 // tests/plugin/bake/golden_test.cpp notices bits that change without it.
 inline constexpr int kPictureRevision = 9;
 
-// What the two files of a frame are made of: the keys that feed pictures, the camera's pose, the resolved
-// plan, the sky's picture, the samples, terms and lookups of the light, the shutter, alpha, the layers, and the
-// exposure. Pictures with the same are the same, byte for byte, on one kind of CPU; each file carries it.
+// What the two files of a frame are made of: the keys on which pictures depend, the camera's pose, the resolved plan,
+// the sky's picture, the samples, terms and lookups of the light, the shutter, alpha, the layers, and the exposure.
+// Pictures with the same are the same, byte for byte, on one kind of CPU; each file carries it.
 struct PictureSource {
     const Scene& scene;  // its resolution is the picture's
     const RenderOptions& options;

@@ -144,8 +144,8 @@ class RendererOf final : public Impl {
     // Rows that are computed at once.
     int rows_of_pass() const { return rows_of_batch(raster_size().x, options_.samples / sampling_.stride); }
 
-    // What earlier times have left where the samples look: those are found twice, which takes far less than to go through the
-    // past once for each batch. False when it was cancelled.
+    // Makes the foam that earlier times have left where the samples look. So the samples' places are found twice,
+    // which takes far less than going through the past once for each batch. False when it was cancelled.
     bool prepare_foam(double moment, const BuildWatch& watch) {
         sea_.begin_foam(scene_.shot.time_s(moment));
         const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
@@ -239,7 +239,7 @@ class RendererOf final : public Impl {
         return !is_cancelled(watch);
     }
 
-    // What the cells hide of the slopes, at rest.
+    // The slopes that the cells leave unresolved, at rest.
     void find_mesh_variance() {
         const std::size_t count = grid_.rest_m.size();
         mesh_variance_.resize(count);
@@ -346,7 +346,7 @@ class RendererOf final : public Impl {
                 triangle, first_row, batch_.sea[i],
                 PixelFootprint<double>{.width = pixel_m, .axis_x = pixel_axis_m.x, .axis_y = pixel_axis_m.y});
             seen.pixel_axis_m[i] = glm::vec<2, T>(pixel.axis_x, pixel.axis_y);
-            // Rounding must not reach the rung below the frame's first.
+            // Rounding must not reach the level below the frame's first.
             seen.pixel_m[i] = std::max(static_cast<T>(pixel.width), first_pixel_m_);
             const glm::dvec3 way = eye - position;
             const double distance = glm::length(way);
@@ -469,7 +469,7 @@ class RendererOf final : public Impl {
                                              glm::dvec3(batch_.seen.up[i])));
         set(PictureLayer::SlopeVariance, sea_.answers().vectors(Product::SlopeVariance)[i]);
         set(PictureLayer::Coverage, glm::vec1(coverage.empty() ? 0.0f : coverage[i]));
-        // Foam that doesn't live is all of waves that break now.
+        // Foam that isn't persistent is all of waves that break now.
         set(PictureLayer::FoamActive, glm::vec1(sea_.foam_lives()  ? sea_.foam_active()[i]
                                                 : coverage.empty() ? 0.0f
                                                                    : coverage[i]));
@@ -487,11 +487,11 @@ class RendererOf final : public Impl {
     Spray spray_;
     Sampling sampling_;
     ProjectedGrid grid_;
-    T first_pixel_m_ = T(0);  // the finest rung that the frame reads
+    T first_pixel_m_ = T(0);  // the finest level that the frame reads
     ProjectedGridSize triangles_size_;
     std::vector<std::uint32_t> triangles_;       // vertex indices
     std::vector<glm::vec<2, T>> rest_;           // the grid's own, in T
-    std::vector<glm::vec<3, T>> mesh_variance_;  // (σxx, σyy, σxy) of the slopes that cells hide
+    std::vector<glm::vec<3, T>> mesh_variance_;  // (σxx, σyy, σxy) of the slopes that cells don't resolve
     std::vector<T> cell_m_;
     std::vector<glm::vec<2, T>> cell_axis_m_;
     std::vector<glm::vec<3, T>> position_;

@@ -83,8 +83,8 @@ RenderOptions render_options(const Scene& scene);
 // a picture can have.
 void check_render(const Scene& scene, const RenderOptions& options);
 
-// The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike,
-// whose ladder is as fine as these frames need it. They decide nothing about any frame's bits.
+// The sea that pictures of the shot need: one query, number 0, for the grid's points and the pixels alike, whose
+// levels are as fine as these frames need. The frames decide nothing about any frame's bits.
 Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderOptions& options = {});
 
 // A picture is computed while the one before is encoded and written.

@@ -78,8 +78,9 @@ class SeaLight {
     Air air_before(double height_m) const;
     // The spray before a camera at the frame's time, with its light; none where the light or the scene has none.
     Spray spray_before(const View& view, const ProjectedGridOptions& grid) const;
-    // Before the first answer of a picture: its time, all places that it will show, and what earlier times have left there, so that
-    // its parts don't each go through them. Nothing where no foam lives. The last throws BuildCancelled.
+    // Before the first answer of a picture: its time, all places that it will show, and what earlier times have left
+    // there, so that its parts don't each go through them. Nothing without persistent foam. The last throws
+    // BuildCancelled.
     void begin_foam(double time_s);
     void ask_foam(const Points<T>& points);
     void prepare_foam(const BuildWatch& watch);
@@ -95,7 +96,7 @@ class SeaLight {
 
     const Values& answers() const { return answers_; }
     bool foam_lives() const { return history_.has_value(); }
-    // Of the places that were answered last, where foam lives.
+    // Of the places that were answered last, with persistent foam.
     const std::vector<float>& foam_active() const { return foam_active_; }
     const std::vector<float>& foam_age_s() const { return foam_age_s_; }
 

@@ -148,7 +148,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     std::vector<glm::vec<3, T>> displacement(count);
     double finest_m = 0.0;
     if (frame.sea().plan().queries[kQuery].query.cell_m.size() > 1) {
-        // The same rungs whichever other frames the plan is for.
+        // The same levels whichever other frames the plan is for.
         const ProjectedGridNeeds own = projected_grid_needs(view, options);
         finest_m = first_rung_m(std::max(own.finest_cell_m, own.finest_pixel_m));
     }

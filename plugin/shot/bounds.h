@@ -1,5 +1,5 @@
-// What a shot file may be at most, looked at before it is parsed: parsers of TOML, and whatever walks through what
-// they made, go as deep as the file does.
+// Bounds of a shot file that are checked before it is parsed: parsers of TOML, and all code that walks through what
+// they made, recurse as deep as the file nests.
 #pragma once
 
 #include <cstddef>

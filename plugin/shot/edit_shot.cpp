@@ -10,7 +10,7 @@
 namespace pelagic {
 namespace {
 
-// The byte at a place. Columns count characters: bytes that go on with one don't count.
+// The byte at a place. Columns count characters: continuation bytes don't count.
 std::size_t offset_of(const std::string& text, const toml::source_position& place) {
     std::size_t at = 0;
     for (toml::source_index line = 1; line < place.line; ++line) at = text.find('\n', at) + 1;

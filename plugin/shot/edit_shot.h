@@ -8,9 +8,10 @@
 
 namespace pelagic {
 
-// `text`, a shot file that describes `base`, with the keys written into it whose values differ in `scene`, each where it
-// stands or else in its table; comments and everything else stay. Text that gives its tables in another way than under
-// their [headers] or inline may come out wrong: read it again, with parse_shot(). ShotError for what is no TOML.
+// `text`, a shot file that describes `base`, with the keys written into it whose values differ in `scene`: each where
+// it stands, or else in its table. Comments and everything else stay. Text that gives its tables in another way than
+// under their [headers] or inline may come out wrong: read it again, with parse_shot(). ShotError for text that is no
+// TOML.
 std::string edited_shot(std::string_view text, const Scene& scene, const Scene& base);
 
 }  // namespace pelagic

@@ -46,7 +46,7 @@ std::nullopt_t refuse_type(Reader& reader, const Asked& asked) {
     return refuse(reader, asked, "is " + type_of(asked.node));
 }
 
-// A table's keys in the order of the file: its first problems are those that are listed.
+// A table's keys in the order of the file, so that the problems listed are the file's first.
 std::vector<std::pair<toml::key, const toml::node*>> in_order(const toml::table& table) {
     std::vector<std::pair<toml::key, const toml::node*>> out;
     out.reserve(table.size());
@@ -271,7 +271,7 @@ std::optional<KeyValue> read_value(Reader& reader, const Asked& asked) {
     return std::nullopt;
 }
 
-// ---- What is more than a value
+// ---- Values that need more than reading
 
 // A zone has to be said: the buoys' times are UTC, and a time without one would be taken for local time by
 // many.
@@ -341,7 +341,7 @@ void read_table(Reader& reader, const toml::table& table, const KeyTable& about,
     }
 }
 
-// The sea that all else lies on top of. Only a string can stand there: a table would be the file's own.
+// The preset on which all other keys lie. Only a string can stand there: a table would be the file's own.
 void read_preset(Reader& reader, const toml::node& node, Scene& scene) {
     const toml::source_position at = node.source().begin;
     const auto* name = node.as_string();

@@ -27,7 +27,7 @@ toml::source_position or_start(const toml::source_position& place) {
 
 void append_text(std::string& out, const toml::node& node);
 
-// Texts are for messages: what a list has beyond their length is left out.
+// These texts are for messages: lists are cut at their length.
 void append_list(std::string& out, const toml::array& list) {
     out += '[';
     bool first = true;

@@ -57,8 +57,8 @@ class Reader {
 
     std::size_t problem_count() const { return count_; }
 
-    // Whether a problem at this place would be in the report, as far as is known: what is costly to say need not be
-    // said otherwise.
+    // Whether a problem at this place would be in the report, as far as is known. Texts that are costly to make
+    // aren't made otherwise.
     bool is_listed(const toml::source_position& place) const;
 
     // The first problems in the order of the file, a line each, and how many more there are.

@@ -25,7 +25,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t most_b
     if (status.type() == std::filesystem::file_type::not_found) throw TextFileError("does not exist");
     if (status.type() == std::filesystem::file_type::directory)
         throw TextFileError("is a folder, not a file");
-    // Opening it would wait for whoever may write to it. The shell's own have someone who does.
+    // Opening a pipe would wait for a writer. The shell's own pipes have one.
     if (status.type() == std::filesystem::file_type::fifo && !is_open_already(file))
         throw TextFileError("is a pipe, not a file");
     errno = 0;

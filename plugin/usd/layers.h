@@ -15,10 +15,11 @@
 // others it mixes both.
 //
 // A float holds a place to a 16 millionth of its distance from the origin. A mesh that follows a camera has
-// therefore an origin of its own: its points, and its extent with them, are relative to xformOp:translate. That is
-// a double3 and a sample of the frame's own layer, so that it comes with the points, and is mixed where they are.
-// It moves in long steps. Who blurs motion by velocities takes it at the frame itself, as the points: what lies
-// between two frames of which the second has another origin is no motion.
+// A float holds a place to a 16 millionth of its distance from the origin. So a mesh that follows a camera has an
+// origin of its own: its points, and its extent with them, are relative to xformOp:translate. That is a double3 and a
+// sample of the frame's own layer, so that it comes with the points, and is mixed where they are. It moves in long
+// steps. Whoever blurs motion by velocities takes origin and points at the frame itself: the way to a frame with
+// another origin is no motion.
 //
 // Space is right-handed, z up, in metres. A time code is a frame number. The structs here refer to the
 // caller's arrays, which must live until the writer returns.
@@ -155,8 +156,8 @@ struct Stage {
     int last_frame = 48;
     double fps = 24.0;  // > 0
     AttributeSet attributes{};
-    // Of the mesh, as its surface says: whether a vertex is another place where the camera is another, and whether the
-    // places' origin (attributes.origin) is one near the camera.
+    // Of the mesh's surface: whether its vertices are at other places when the camera moves, and whether the places'
+    // origin (attributes.origin) is one near the camera.
     bool points_follow_camera = false, origin_follows_camera = false;
     std::string frame_extension = "usda";     // without the dot
     std::string topology_extension = "usda";  // without the dot
@@ -187,7 +188,7 @@ std::string frame_file(std::string_view shot_name, int frame, std::string_view e
 // frame_file with "####" for the number.
 std::string frame_file_template(std::string_view shot_name, std::string_view extension);
 
-// How a varying attribute is declared, but for the origin. The attribute is an array; `type` is its element's.
+// How a varying attribute is declared, except the origin. The attribute is an array; `type` is its element's.
 struct VaryingAttribute {
     std::string_view name;
     std::string_view type;

@@ -25,7 +25,8 @@ void check(const MeshLayer& layer) {
     Faces faces{.counts = values_of<std::int32_t>(layer, "faceVertexCounts"),
                 .indices = values_of<std::int32_t>(layer, "faceVertexIndices"),
                 .st = vectors_of<glm::vec2>(layer, "primvars:st")};
-    // Frames don't say it: their topology does. Where there are as many of both, each is as good.
+    // Frames don't say whether st is of corners: their topology does. With as many corners as points either is
+    // possible.
     const std::size_t points = vectors_of<glm::vec3>(layer, "points").size();
     faces.is_st_of_corners =
         faces.st.size() == faces.indices.size() && (!layer.frame || faces.st.size() != points);
@@ -37,7 +38,7 @@ void check(const MeshLayer& layer) {
         return;
     }
     if (!std::isfinite(*layer.frame)) throw ReadError("is damaged: its frame is no number");
-    // For the writers such an array isn't there; here it is, and not as long as the points.
+    // The writers take an empty array for one that isn't given; in a file it is damage.
     for (const MeshArray& array : layer.arrays)
         if (points > 0 && std::visit([](const auto& values) { return values.empty(); }, array.values))
             throw ReadError("is damaged: " + array.name + " is empty");

@@ -106,7 +106,7 @@ std::string_view text_of_origin(const Stage& stage) {
     return "is the same at all frames: far from the world's origin floats are too coarse for places.";
 }
 
-// Where a point of the next frame isn't the same place: what that means for who reads two of them.
+// A note for those who read the points of two frames, where a point of the next frame isn't the same place.
 std::string_view text_of_points(const Stage& stage) {
     if (!stage.points_follow_camera) return "";
     if (stage.attributes.faces)

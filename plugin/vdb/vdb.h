@@ -63,13 +63,13 @@ template <class Value>
 constexpr std::size_t bytes_a_block() {
     return kBlockVoxels * sizeof(Value) + 512;
 }
-// Of the tree above, however few blocks there are.
+// Bytes of the tree above, however few blocks there are.
 inline constexpr std::size_t kTreeBytes = std::size_t{4} << 20;
-// Of the library itself, once it is loaded.
+// Bytes of the library itself, once it is loaded.
 inline constexpr std::size_t kLibraryBytes = std::size_t{24} << 20;
 
-// Loads OpenVDB, as the first grid would: who asks what memory is left asks after it. Throws std::runtime_error where the
-// library isn't to be had, std::bad_alloc where there is no room for it, std::system_error where there are no threads.
+// Loads OpenVDB, as the first grid would: memory is measured after it. Throws std::runtime_error where there is no
+// such library, std::bad_alloc where there is no room for it, std::system_error where there are no threads.
 void load();
 
 // A grid that is being filled.
@@ -91,13 +91,13 @@ class Grid {
     std::unique_ptr<Impl> impl_;
 };
 
-// The grids, and what is said about all of them, as the bytes of a file. Level sets get their signs far inside. Compressed by
-// Blosc, or by zip where OpenVDB was built without. `fingerprint`: sixteen hexadecimal digits, of which the file's
-// identifier is made. Throws std::invalid_argument for a fingerprint that is none.
+// The grids, and the attributes of all of them, as the bytes of a file. Level sets get their signs far inside.
+// Compressed by Blosc, or by zip where OpenVDB was built without. `fingerprint`: sixteen hexadecimal digits, of which
+// the file's identifier is made. Throws std::invalid_argument for anything else.
 std::string encode(std::span<const Grid> grids, const std::vector<Attribute>& attributes,
                    const std::string& fingerprint);
 
-// Where that identifier stands among the bytes, for who compares files without it.
+// Where that identifier stands among the bytes, for callers that compare files without it.
 inline constexpr std::size_t kIdentifierAt = 21, kIdentifierLength = 36;
 
 }  // namespace pelagic::vdb

@@ -28,7 +28,7 @@
  * Motion. During the shutter each point moves in a straight line, with its velocity in the middle of the shutter. At the ends of 1/48 s that
  * differs from its way by g/2 (1/96 s)² times the slope of its wave at most: by 0.2 mm.
  *
- * Threads. Any number of seas and frames at once. A sea is immutable: any number of threads may use it. So is a frame, but while
+ * Threads. Any number of seas and frames at once. A sea is immutable: any number of threads may use it. So is a frame, except while
  * pelagic_frame_set() or pelagic_frame_release() runs on it. pelagic_open(), pelagic_frame_create(), pelagic_frame_set(),
  * pelagic_expand_size() and pelagic_expand() use several threads (pelagic_open_options.threads); all others work on the calling thread
  * alone, because renderers bring their own. Values don't depend on the number of threads, nor on what was asked before. Frames are made
@@ -210,7 +210,7 @@ typedef struct pelagic_values {
     float* position_m;     /* x, y, z, relative to the origin at z = 0 */
     float* normal;         /* x, y, z: unit; z is negative where the surface has folded over */
     float* velocity_mps;   /* x, y, z */
-    float* slope_variance; /* xx, yy, xy of the slopes that a pixel hides */
+    float* slope_variance; /* xx, yy, xy of the slopes that a pixel doesn't resolve */
     float* coverage;       /* of whitecaps that break now, 0 … 1 */
 } pelagic_values;
 
@@ -248,7 +248,7 @@ typedef struct pelagic_hits {
 } pelagic_hits;
 
 /* The first place where each ray meets the sea, from above or from below. The sea is the exact surface of the frame's finest cells, but for the
- * tolerance: a hit lies no further from it than tolerance x footprint, a ray that goes deeper through it has a hit, and one that stays
+ * tolerance: a hit lies no farther from it than tolerance x footprint, a ray that goes deeper through it has a hit, and one that stays
  * further away has none. That is by samples of the frame, of which five standard deviations are within the tolerance. Footprints below
  * pelagic_open_options.finest_cell_m count as that, and so do, of wave trains, those below 1/64 of the shortest.
  *
@@ -296,8 +296,8 @@ typedef struct pelagic_mesh_buffers {
     double origin_m[3];           /* out: what positions are relative to: below the camera, at z = 0 */
 } pelagic_mesh_buffers;
 /* All of the sea that may be in view from there while the shutter is open, with cells that are as large on the screen as `options` say:
- * they grow with distance, and each point shows the waves that its cells can. Cells that are longer than wide show the waves along
- * their longer side that they can, so that positions aren't exactly those of pelagic_evaluate(), and may leave a box of the same region
+ * they grow with distance, and each point has the waves that its cells resolve. Cells that are longer than wide filter each wave
+ * by their length in its direction, so that positions aren't exactly those of pelagic_evaluate(), and may leave a box of the same region
  * by little. `options` may be null. */
 PELAGIC_API pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* camera,
                                           const pelagic_expand_options* options,

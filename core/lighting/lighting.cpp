@@ -13,30 +13,33 @@ namespace shading {
 
 using namespace glm;
 
-// The shared source as members of a struct, one instance per variant, so that its constants fold.
-template <LightingChoice kChoice>
+// The shared source as members of a struct: an instance for each Fresnel term and number of sky lookups, whose loops
+// then unroll. The terms are chosen at run time, which costs 3 % of the time per point; a variant for each as well took
+// seven times as long to compile.
+template <FresnelFit kFresnel, SkyQuality kSkyQuality>
 struct Shading {
-    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr,
-                     const LightingChoice& choice = kChoice)
+    explicit Shading(const SkyMap& sky_map, const Air* of_air = nullptr, const LightingChoice& choice = {})
         : map(sky_map),
           seen_air(of_air),
           kSkyMapSize(static_cast<float>(sky_map.size())),
+          kSun(choice.sun),
+          kSky(choice.sky),
+          kWater(choice.water),
+          kWhitecaps(choice.whitecaps),
           kSecondReflection(choice.second_reflection),
           kMeshMasking(choice.mesh_masking) {}
 
     static constexpr int kAirColumns = Air::kColumns, kAirRows = Air::kRows, kAirSkyRows = Air::kSkyRows,
                          kAirHorizonRow = Air::kHorizonRow;
 
-    static constexpr bool kSun = kChoice.sun, kSky = kChoice.sky, kWater = kChoice.water,
-                          kWhitecaps = kChoice.whitecaps,
-                          kExactFresnel = kChoice.fresnel == FresnelFit::Exact;
-    static constexpr int kSkyLookups = kChoice.sky_quality == SkyQuality::One    ? 1
-                                       : kChoice.sky_quality == SkyQuality::Nine ? 9
-                                                                                 : 0;
+    static constexpr bool kExactFresnel = kFresnel == FresnelFit::Exact;
+    static constexpr int kSkyLookups = kSkyQuality == SkyQuality::One    ? 1
+                                       : kSkyQuality == SkyQuality::Nine ? 9
+                                                                         : 0;
     const SkyMap& map;
     const Air* seen_air;
     const float kSkyMapSize;
-    const bool kSecondReflection, kMeshMasking;  // seldom off: no variants of their own
+    const bool kSun, kSky, kWater, kWhitecaps, kSecondReflection, kMeshMasking;
 
     vec3 sky_lookup(vec2 u, float level) const { return map.radiance(u, level); }
     vec4 air_texel(int column, int row) const {
@@ -63,7 +66,7 @@ struct Shading {
 
 SeaAlbedo albedo(const WaterBody& water) {
     const SkyMap none;
-    Shading<LightingChoice{}> shading(none);
+    Shading<FresnelFit::Exact, SkyQuality::One> shading(none);
     // Of irradiance π the radiance is the albedo.
     return {
         .water = shading.water_radiance({0.0f, 0.0f, 1.0f}, vec3(0.0f), vec3(shading.kPi), water.reflectance),
@@ -74,11 +77,11 @@ SeaAlbedo albedo(const WaterBody& water) {
 using Batch = void (*)(const LightingChoice&, const Sky&, const WaterBody&, std::span<const SeaPoint>,
                        std::span<SeaRadiance>, const Air*, const FoamPattern&);
 
-template <LightingChoice kChoice>
+template <FresnelFit kFresnel, SkyQuality kSkyQuality>
 void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
                  std::span<const SeaPoint> points, std::span<SeaRadiance> radiance, const Air* air,
                  const FoamPattern& foam) {
-    using Variant = Shading<kChoice>;
+    using Variant = Shading<kFresnel, kSkyQuality>;
     const bool by_place = air && air->by_place > 0.0f;
     Variant shading(sky.map, air, choice);
     const typename Variant::PlaceView place{by_place ? air->to_sun : sky.sun_direction,
@@ -89,7 +92,7 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SeaPoint& p = points[i];
         typename Variant::SeenFoam seen = shading.plain_foam(0.0f);
-        if (kChoice.whitecaps)
+        if (choice.whitecaps)
             seen = shading.seen_foam(pattern, p.rest_m, p.pixel_m, p.coverage, p.active, p.age_s);
         const glm::vec3 to_eye = shading.levelled(p.to_eye, p.up);
         const typename Variant::SeaTerms terms = shading.sea_radiance_at(
@@ -98,38 +101,6 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
         radiance[i] = {terms.sun, terms.sky, terms.sea, terms.foam};
     }
 }
-
-// A variant's number: four bits for the terms, one for Fresnel, and the sky's quality.
-constexpr std::size_t kVariants = 16 * 2 * 3;
-
-constexpr std::size_t number_of(const LightingChoice& c) {
-    const std::size_t terms =
-        std::size_t(c.sun) + 2 * std::size_t(c.sky) + 4 * std::size_t(c.water) + 8 * std::size_t(c.whitecaps);
-    return terms + 16 * (std::size_t(c.fresnel) + 2 * std::size_t(c.sky_quality));
-}
-
-constexpr LightingChoice choice_of(std::size_t number) {
-    return {.sun = (number & 1) != 0,
-            .sky = (number & 2) != 0,
-            .water = (number & 4) != 0,
-            .whitecaps = (number & 8) != 0,
-            .sky_quality = SkyQuality(number / 32),
-            .fresnel = FresnelFit(number / 16 % 2)};
-}
-
-// Maps choices that give equal results to one variant.
-constexpr LightingChoice canonical(LightingChoice c) {
-    if (!c.sky) c.sky_quality = SkyQuality::One;
-    if (!c.sun && !c.sky && !c.water) c.fresnel = FresnelFit::Paper;
-    return c;
-}
-
-template <std::size_t... kNumbers>
-constexpr std::array<Batch, kVariants> batches(std::index_sequence<kNumbers...>) {
-    return {&shade_batch<canonical(choice_of(kNumbers))>...};
-}
-
-constexpr std::array<Batch, kVariants> kBatches = batches(std::make_index_sequence<kVariants>());
 
 }  // namespace shading
 
@@ -147,7 +118,15 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
         throw std::invalid_argument(
             "shade_sea: the sky has no map; make one with daylight_sky() or picture_sky()");
     }
-    shading::kBatches[shading::number_of(choice)](choice, sky, water, points, radiance, air, foam);
+    // By FresnelFit, then by SkyQuality.
+    static constexpr shading::Batch kBatches[2][3] = {{shading::shade_batch<FresnelFit(0), SkyQuality(0)>,
+                                                       shading::shade_batch<FresnelFit(0), SkyQuality(1)>,
+                                                       shading::shade_batch<FresnelFit(0), SkyQuality(2)>},
+                                                      {shading::shade_batch<FresnelFit(1), SkyQuality(0)>,
+                                                       shading::shade_batch<FresnelFit(1), SkyQuality(1)>,
+                                                       shading::shade_batch<FresnelFit(1), SkyQuality(2)>}};
+    kBatches[std::size_t(choice.fresnel)][std::size_t(choice.sky_quality)](choice, sky, water, points,
+                                                                           radiance, air, foam);
 }
 
 }  // namespace pelagic

@@ -24,8 +24,8 @@ enum class FresnelFit {
     Exact,  // our fit of the mean of the exact unpolarised term
 };
 
-// A variant: which terms are on, and how they are computed. Each variant is compiled separately, as a C++
-// template or as GLSL with constants, so that a term that is off costs nothing.
+// A variant: which terms are on, and how they are computed. A term that is off costs no more than asking whether it is on;
+// in GLSL, which is compiled for each variant with constants, not even that.
 struct LightingChoice {
     bool sun = true, sky = true, water = true, whitecaps = true;
     bool air = true;  // between eye and sea (air.h): shade_sea() itself knows no distance, see_through() does

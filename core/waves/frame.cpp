@@ -1,5 +1,6 @@
 #include "core/waves/frame.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -53,7 +54,26 @@ long sum_of_each(const std::vector<Item>& items, Work&& work) {
 }  // namespace
 
 template <class T>
-Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea) : sea_(std::move(sea)), kernels_(kernels<T>()) {
+struct Frame<T>::Scratch {
+    Buffer<T> height_re, height_im, rate_re, rate_im, through, chop_through;  // by mode of a block
+    Buffer<T> line, lines;  // one spectrum before its 1-D transform; a block's results
+};
+
+template <class T>
+struct Frame<T>::Scratches {
+    tbb::enumerable_thread_specific<Scratch> of_thread;
+};
+
+template <class T>
+Frame<T>::~Frame() = default;
+template <class T>
+Frame<T>::Frame(Frame&&) noexcept = default;
+template <class T>
+Frame<T>& Frame<T>::operator=(Frame&&) noexcept = default;
+
+template <class T>
+Frame<T>::Frame(std::shared_ptr<const Sea<T>> sea)
+    : sea_(std::move(sea)), kernels_(kernels<T>()), scratches_(std::make_unique<Scratches>()) {
     const Plan& plan = sea_->plan();
     std::map<int, LineTransform<T>> transforms;
     for (int c = 0; c < static_cast<int>(plan.cascades.size()); ++c) {
@@ -126,7 +146,7 @@ void Frame<T>::release(int cascade, int grid, Field field) {
 
 template <class T>
 typename Frame<T>::Scratch& Frame<T>::scratch() const {
-    Scratch& scratch = scratches_.local();
+    Scratch& scratch = scratches_->of_thread.local();
     if (scratch.line.empty()) {
         const Plan& plan = sea_->plan();
         const auto want = [&](std::initializer_list<Buffer<T>*> buffers, std::size_t count) {

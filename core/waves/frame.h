@@ -1,8 +1,6 @@
 // The state of the sea at one time. The caller owns a Frame and reuses it: its buffers are allocated once.
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <array>
 #include <atomic>
 #include <memory>
@@ -23,6 +21,9 @@ template <class T>
 class Frame {
   public:
     explicit Frame(std::shared_ptr<const Sea<T>>);
+    ~Frame();
+    Frame(Frame&&) noexcept;
+    Frame& operator=(Frame&&) noexcept;
 
     // Runs the plan's transforms in parallel. t [s] within ± kLatest_s; throws std::invalid_argument otherwise.
     // Another thread may set `cancel`: set() then throws BuildCancelled, and the frame has no time.
@@ -76,10 +77,8 @@ class Frame {
         Field field;
         int first, count;
     };
-    struct Scratch {                                                              // of one thread
-        Buffer<T> height_re, height_im, rate_re, rate_im, through, chop_through;  // by mode of a block
-        Buffer<T> line, lines;  // one spectrum before its 1-D transform; a block's results
-    };
+    struct Scratch;    // of one thread
+    struct Scratches;  // of all
 
     Scratch& scratch() const;  // of the calling thread
     void advance(const Block&, Scratch&) const;
@@ -93,7 +92,7 @@ class Frame {
     std::vector<Block> blocks_;                  // largest first, so that the threads end together
     std::vector<Rows> rows_;
     std::size_t block_modes_ = 0, line_values_ = 0;  // sizes of a scratch's buffers
-    mutable tbb::enumerable_thread_specific<Scratch> scratches_;
+    std::unique_ptr<Scratches> scratches_;
     double time_s_ = 0.0, time_within_loop_s_ = 0.0;
     long executed_transforms_ = 0, executed_lines_ = 0, times_set_ = 0;
     bool is_set_ = false, is_whole_ = true;

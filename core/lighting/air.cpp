@@ -20,7 +20,7 @@
 namespace pelagic {
 namespace {
 
-namespace shading {
+namespace air_shading {
 using namespace glm;
 
 struct Shading {
@@ -36,7 +36,7 @@ struct Shading {
 #include "core/lighting/air.glsl"
 };
 
-}  // namespace shading
+}  // namespace air_shading
 
 constexpr double kLeastHeight_m = 0.1;
 // Thicker air lets nothing through that single precision could add to its own light.
@@ -303,7 +303,7 @@ std::shared_ptr<const AirModel> daylight_air(std::shared_ptr<const Atmosphere> a
 
 namespace {
 
-shading::Shading::AirView view_of(const Air& air) {
+air_shading::Shading::AirView view_of(const Air& air) {
     return {air.azimuth, air.to_sun, air.nearest_m, air.horizon_m, air.farthest_m, air.dip, air.sky_span};
 }
 
@@ -311,7 +311,7 @@ shading::Shading::AirView view_of(const Air& air) {
 
 glm::vec3 sky_through(const Air& air, glm::vec3 direction) {
     if (!air.has_sky) throw std::invalid_argument("sky_through: this air has no sky");
-    shading::Shading shading{air.texels.data()};
+    air_shading::Shading shading{air.texels.data()};
     return shading.air_sky(direction, view_of(air));
 }
 
@@ -320,8 +320,8 @@ void see_through(const Air& air, std::span<const glm::vec3> to_eye, std::span<co
     if (to_eye.size() != radiance.size() || distance_m.size() != radiance.size())
         throw std::invalid_argument("see_through: give one direction and one distance for each SeaRadiance");
     if (air.empty()) return;
-    shading::Shading shading{air.texels.data()};
-    const shading::Shading::AirView view = view_of(air);
+    air_shading::Shading shading{air.texels.data()};
+    const air_shading::Shading::AirView view = view_of(air);
     for (std::size_t i = 0; i < radiance.size(); ++i) {
         const auto path = shading.air_path(to_eye[i], distance_m[i], view);
         SeaRadiance& at = radiance[i];

@@ -9,7 +9,7 @@
 #include "core/lighting/air.h"
 
 namespace pelagic {
-namespace shading {
+namespace sea_shading {
 
 using namespace glm;
 
@@ -102,10 +102,10 @@ void shade_batch(const LightingChoice& choice, const Sky& sky, const WaterBody& 
     }
 }
 
-}  // namespace shading
+}  // namespace sea_shading
 
 SeaAlbedo sea_albedo(const WaterBody& water) {
-    return shading::albedo(water);
+    return sea_shading::albedo(water);
 }
 
 void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& water,
@@ -119,12 +119,13 @@ void shade_sea(const LightingChoice& choice, const Sky& sky, const WaterBody& wa
             "shade_sea: the sky has no map; make one with daylight_sky() or picture_sky()");
     }
     // By FresnelFit, then by SkyQuality.
-    static constexpr shading::Batch kBatches[2][3] = {{shading::shade_batch<FresnelFit(0), SkyQuality(0)>,
-                                                       shading::shade_batch<FresnelFit(0), SkyQuality(1)>,
-                                                       shading::shade_batch<FresnelFit(0), SkyQuality(2)>},
-                                                      {shading::shade_batch<FresnelFit(1), SkyQuality(0)>,
-                                                       shading::shade_batch<FresnelFit(1), SkyQuality(1)>,
-                                                       shading::shade_batch<FresnelFit(1), SkyQuality(2)>}};
+    static constexpr sea_shading::Batch kBatches[2][3] = {
+        {sea_shading::shade_batch<FresnelFit(0), SkyQuality(0)>,
+         sea_shading::shade_batch<FresnelFit(0), SkyQuality(1)>,
+         sea_shading::shade_batch<FresnelFit(0), SkyQuality(2)>},
+        {sea_shading::shade_batch<FresnelFit(1), SkyQuality(0)>,
+         sea_shading::shade_batch<FresnelFit(1), SkyQuality(1)>,
+         sea_shading::shade_batch<FresnelFit(1), SkyQuality(2)>}};
     kBatches[std::size_t(choice.fresnel)][std::size_t(choice.sky_quality)](choice, sky, water, points,
                                                                            radiance, air, foam);
 }

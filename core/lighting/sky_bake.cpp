@@ -17,7 +17,7 @@
 namespace pelagic {
 namespace {
 
-namespace shading {
+namespace sky_shading {
 using namespace glm;
 
 struct Fresnel {
@@ -27,7 +27,7 @@ struct Fresnel {
     // clang-format on
 };
 
-}  // namespace shading
+}  // namespace sky_shading
 
 // Samples per side of a texel that the horizon crosses: the eye is sensitive to that line.
 constexpr int kHorizonSamples = 8;
@@ -150,7 +150,7 @@ std::vector<Ring> rings_of(std::size_t texels, double side, double height, const
 }  // namespace
 
 float diffuse_fresnel() {
-    return shading::Fresnel().kDiffuseFresnel;
+    return sky_shading::Fresnel().kDiffuseFresnel;
 }
 
 BakedSky bake_sky_map(int size, const SkyDome& dome) {

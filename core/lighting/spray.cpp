@@ -11,7 +11,7 @@
 namespace pelagic {
 namespace {
 
-namespace shading {
+namespace spray_shading {
 using namespace glm;
 
 struct Shading {
@@ -30,23 +30,23 @@ struct Shading {
     // clang-format on
 };
 
-}  // namespace shading
+}  // namespace spray_shading
 
-shading::Shading::SprayView view_of(const Spray& spray) {
+spray_shading::Shading::SprayView view_of(const Spray& spray) {
     return {spray.columns,  spray.rows,    spray.azimuth, spray.columns_per_rad, spray.first_m,
             spray.row_step, spray.scale_m, spray.eye_m,   spray.top_m,           spray.to_sun,
             spray.sun,      spray.above,   spray.below};
 }
 
-void take(SeaRadiance& radiance, const shading::Shading::SprayPath& path) {
+void take(SeaRadiance& radiance, const spray_shading::Shading::SprayPath& path) {
     for (glm::vec3* layer : {&radiance.sun, &radiance.sky, &radiance.sea, &radiance.foam, &radiance.air})
         *layer *= path.transmittance;
     radiance.air += path.scattered;
 }
 
-shading::Shading::SprayPath path_of(const Spray& spray, glm::vec3 direction, std::optional<float> distance_m,
-                                    bool on_sea) {
-    shading::Shading shading{spray};
+spray_shading::Shading::SprayPath path_of(const Spray& spray, glm::vec3 direction,
+                                          std::optional<float> distance_m, bool on_sea) {
+    spray_shading::Shading shading{spray};
     return shading.spray_path(-direction, distance_m.value_or(shading.kSprayEndless_m), on_sea,
                               view_of(spray));
 }
@@ -81,8 +81,8 @@ void see_through_spray(const Spray& spray, std::span<const glm::vec3> to_eye,
         throw std::invalid_argument(
             "see_through_spray: give one direction and one distance for each SeaRadiance");
     if (spray.empty()) return;
-    shading::Shading shading{spray};
-    const shading::Shading::SprayView view = view_of(spray);
+    spray_shading::Shading shading{spray};
+    const spray_shading::Shading::SprayView view = view_of(spray);
     for (std::size_t i = 0; i < radiance.size(); ++i)
         take(radiance[i], shading.spray_path(to_eye[i], distance_m[i], true, view));
 }

@@ -29,16 +29,16 @@
 namespace pelagic {
 namespace {
 
-constexpr std::size_t kBands = 31;  // 400, 410 … 700 nm
+constexpr std::size_t kSpectrumBands = 31;  // 400, 410 … 700 nm
 
 // [1/m], Pope and Fry 1997.
-constexpr std::array<double, kBands> kWaterAbsorption{
+constexpr std::array<double, kSpectrumBands> kWaterAbsorption{
     0.00663, 0.00473, 0.00454, 0.00495, 0.00635, 0.00922, 0.00979, 0.0106, 0.0127, 0.0150, 0.0204,
     0.0325,  0.0409,  0.0434,  0.0474,  0.0565,  0.0619,  0.0695,  0.0896, 0.1351, 0.2224, 0.2644,
     0.2755,  0.2916,  0.3108,  0.340,   0.410,   0.439,   0.465,   0.516,  0.624};
 
 // Relative to 440 nm, Prieur and Sathyendranath 1981.
-constexpr std::array<double, kBands> kPlanktonAbsorption{
+constexpr std::array<double, kSpectrumBands> kPlanktonAbsorption{
     0.687, 0.828, 0.913, 0.973, 1.000, 0.944, 0.917, 0.870, 0.798, 0.750, 0.668,
     0.618, 0.528, 0.474, 0.416, 0.357, 0.294, 0.276, 0.291, 0.282, 0.236, 0.252,
     0.276, 0.317, 0.334, 0.356, 0.441, 0.595, 0.502, 0.329, 0.215};
@@ -94,7 +94,7 @@ WaterBody water_body(const WaterChoice& choice) {
     }
     const Rivers rivers = rivers_of(choice.kind);
     glm::dvec3 sum(0.0), white(0.0);
-    for (std::size_t band = 0; band < kBands; ++band) {
+    for (std::size_t band = 0; band < kSpectrumBands; ++band) {
         const glm::dvec3 seen = observed_xyz(wavelength_of(band));
         const Optics at = optics_at(band, c, rivers);
         sum += 0.33 * at.backscatter / (at.absorption + at.backscatter) * seen;

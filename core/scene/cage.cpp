@@ -38,9 +38,9 @@ std::string index_range(std::size_t count) {
     return "0 … " + std::to_string(count - 1);
 }
 
-class Checker {
+class CageChecker {
   public:
-    explicit Checker(const CageMesh& mesh) : mesh_(mesh) {}
+    explicit CageChecker(const CageMesh& mesh) : mesh_(mesh) {}
 
     // Cheap checks first: a mesh that is too large is not traversed.
     void check() {
@@ -375,7 +375,7 @@ CageError::CageError(Where where, std::string problem, std::string accepted)
       accepted_(std::move(accepted)) {}
 
 Cage::Cage(CageMesh mesh) : mesh_(std::move(mesh)) {
-    Checker(mesh_).check();
+    CageChecker(mesh_).check();
     content_ = content_of(mesh_);
 }
 

@@ -33,7 +33,7 @@ std::string choice_text(Choice choice) {
     return quoted_text(word_of(choice));
 }
 
-class Checker {
+class SceneChecker {
   public:
     void refuse(Problem problem) {
         refused_.insert(problem.key);
@@ -79,10 +79,10 @@ struct Place {
     std::string path;
 };
 
-void check_value(Checker& check, const Place& at, const KeyValue& value);
+void check_value(SceneChecker& check, const Place& at, const KeyValue& value);
 
 struct ValueCheck {
-    Checker& check;
+    SceneChecker& check;
     const Place& at;
 
     void refuse(const KeyValue& value, const char* problem) const {
@@ -126,17 +126,17 @@ struct ValueCheck {
     }
 };
 
-void check_value(Checker& check, const Place& at, const KeyValue& value) {
+void check_value(SceneChecker& check, const Place& at, const KeyValue& value) {
     std::visit(ValueCheck{check, at}, value);
 }
 
-void check_each_value(Checker& check, const Scene& scene) {
+void check_each_value(SceneChecker& check, const Scene& scene) {
     for (const Key& key : keys()) check_value(check, {key, key.path}, value_of(scene, key));
 }
 
 // ---- What ranges can't express, and what the values mean together
 
-void check_shot(Checker& check, const Shot& shot) {
+void check_shot(SceneChecker& check, const Shot& shot) {
     const auto allowed = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
                c == '-';
@@ -196,7 +196,7 @@ void check_shot(Checker& check, const Shot& shot) {
     }
 }
 
-void check_measured(Checker& check, const MeasuredSpectrum& measured) {
+void check_measured(SceneChecker& check, const MeasuredSpectrum& measured) {
     const std::string key = "sea.spectrum_file";
     const std::string value = quoted_text(measured.station + " at " + measured.time);
     if (measured.bins.size() < 2) {
@@ -225,7 +225,7 @@ void check_measured(Checker& check, const MeasuredSpectrum& measured) {
     }
 }
 
-void check_sea(Checker& check, const SeaState& sea) {
+void check_sea(SceneChecker& check, const SeaState& sea) {
     const bool wants_file = sea.spectrum == SpectrumKind::File;
     if (wants_file && !sea.measured) {
         check.refuse({"sea.spectrum", choice_text(sea.spectrum), "comes without a measured spectrum",
@@ -239,7 +239,7 @@ void check_sea(Checker& check, const SeaState& sea) {
 
 // Bands must reach each other: the edge between two cascades depends on sizes alone, and the larger one's
 // grid has to hold everything below it.
-void check_bands(Checker& check, const std::vector<CascadeSize>& cascades) {
+void check_bands(SceneChecker& check, const std::vector<CascadeSize>& cascades) {
     std::vector<double> sizes_m;
     for (const CascadeSize& cascade : cascades) sizes_m.push_back(cascade.size_m);
     const std::vector<double> edges = lower_edges(sizes_m);
@@ -263,7 +263,7 @@ void check_bands(Checker& check, const std::vector<CascadeSize>& cascades) {
     }
 }
 
-void check_trains(Checker& check, const Waves& waves) {
+void check_trains(SceneChecker& check, const Waves& waves) {
     const bool all_good = check.is_good("waves.shortest_m") && check.is_good("waves.longest_m");
     if (all_good && waves.shortest_m && waves.longest_m && !(*waves.shortest_m < *waves.longest_m)) {
         check.refuse({"waves.shortest_m", number_text(*waves.shortest_m),
@@ -286,7 +286,7 @@ void check_trains(Checker& check, const Waves& waves) {
                       "more than " + number_text(finest_wave_m) + " m, or finer cascades"});
 }
 
-void check_no_trains(Checker& check, const Waves& waves) {
+void check_no_trains(SceneChecker& check, const Waves& waves) {
     const auto refuse = [&](const char* key, std::string value) {
         if (!check.is_good(key)) return;
         check.refuse({key, std::move(value), "speaks of wave trains, and the model has none",
@@ -297,7 +297,7 @@ void check_no_trains(Checker& check, const Waves& waves) {
     if (waves.longest_m) refuse("waves.longest_m", number_text(*waves.longest_m));
 }
 
-void check_waves(Checker& check, const Waves& waves) {
+void check_waves(SceneChecker& check, const Waves& waves) {
     if (waves.model == WaveModel::Trochoid) {
         check_trains(check, waves);
     } else {
@@ -346,7 +346,7 @@ double distance_to_origin(const glm::dvec3& a, const glm::dvec3& b) {
 
 constexpr const char* kOffTarget = "a target at least 1e-6 m away from the camera's position";
 
-void check_camera(Checker& check, const Camera& camera) {
+void check_camera(SceneChecker& check, const Camera& camera) {
     // With keys, the camera's own two points are not used.
     if (check.is_good("camera.position_m") && check.is_good("camera.look_at_m") && camera.keys.empty() &&
         glm::distance(camera.position_m, camera.look_at_m) < limits::kOnTarget_m) {
@@ -382,7 +382,7 @@ void check_camera(Checker& check, const Camera& camera) {
     }
 }
 
-void check_near_far(Checker& check, const Scene& scene) {
+void check_near_far(SceneChecker& check, const Scene& scene) {
     if (scene.surface.kind != SurfaceKind::NearFar || !check.is_good("surface.resolution")) return;
     if (scene.surface.resolution <= limits::kNearFarResolution) return;
     check.refuse({"surface.resolution", std::to_string(scene.surface.resolution),
@@ -392,7 +392,7 @@ void check_near_far(Checker& check, const Scene& scene) {
 
 // A planet's points rest about the origin (azimuthal equidistant projection). The camera may see no farther from
 // there than a quarter of the circle, where the projection stretches waves by half.
-void check_planet(Checker& check, const Scene& scene) {
+void check_planet(SceneChecker& check, const Scene& scene) {
     if (scene.surface.kind != SurfaceKind::Planet) return;
     if (!scene.surface.earth_curvature)
         check.refuse({"surface.earth_curvature", "false", "leaves no sphere, and surface.kind is a planet",
@@ -413,14 +413,14 @@ void check_planet(Checker& check, const Scene& scene) {
         check_place(indexed("camera.keys", i) + ".position_m", scene.camera.keys[i].position_m);
 }
 
-void check_budget(Checker& check, const Quality& quality) {
+void check_budget(SceneChecker& check, const Quality& quality) {
     if (quality.max_error && quality.frame_ms)
         check.refuse({"quality.frame_ms", number_text(*quality.frame_ms),
                       "is a second budget beside quality.max_error", "one of the two"});
 }
 
 // Each corner of a face becomes a square of quads. Their corners are counted with an int.
-void check_refined(Checker& check, const Surface& surface) {
+void check_refined(SceneChecker& check, const Surface& surface) {
     if (surface.cage_level.is_adaptive || !check.is_good("surface.cage_level")) return;
     constexpr double kMostQuads = 1 << 28;
     const double corners = static_cast<double>(surface.cage->mesh().indices.size());
@@ -433,7 +433,7 @@ void check_refined(Checker& check, const Surface& surface) {
                   "0 … " + number_text(most) + ", or \"adaptive\""});
 }
 
-void check_cage(Checker& check, const Surface& surface) {
+void check_cage(SceneChecker& check, const Surface& surface) {
     if (!check.is_good("surface.kind")) return;
     const bool wants_cage = surface.kind == SurfaceKind::Cage;
     if (wants_cage && !surface.cage) {
@@ -447,7 +447,7 @@ void check_cage(Checker& check, const Surface& surface) {
     }
 }
 
-void check_light(Checker& check, const Light& light) {
+void check_light(SceneChecker& check, const Light& light) {
     const auto is_exr = [](std::string_view path) {
         constexpr std::string_view kExr = ".exr";
         return path.size() > kExr.size() &&
@@ -461,14 +461,14 @@ void check_light(Checker& check, const Light& light) {
 }
 
 // The fit needs a regular grid, whose limit surface is a spline.
-void check_scheme(Checker& check, const Output& output, const Surface& surface) {
+void check_scheme(SceneChecker& check, const Output& output, const Surface& surface) {
     if (output.mesh_scheme != MeshScheme::CatmullClark || surface.kind == SurfaceKind::Patch) return;
     check.refuse({"output.mesh_scheme", choice_text(output.mesh_scheme),
                   "fits a cage to the even grid of a patch, and surface.kind is " + choice_text(surface.kind),
                   "\"none\", or surface.kind = \"patch\""});
 }
 
-void check_tiles(Checker& check, const Output& output, const Waves& waves) {
+void check_tiles(SceneChecker& check, const Output& output, const Waves& waves) {
     if (output.cascade_tiles && waves.model == WaveModel::Trochoid && waves.cascades.empty()) {
         check.refuse({"output.cascade_tiles", "true",
                       "asks for the tiles of cascades, and wave trains alone have none",
@@ -476,7 +476,7 @@ void check_tiles(Checker& check, const Output& output, const Waves& waves) {
     }
 }
 
-void check_output(Checker& check, const Effects& effects, const Output& output) {
+void check_output(SceneChecker& check, const Effects& effects, const Output& output) {
     if (output.mesh == MeshFormat::None && output.maps.empty() && output.volumes.empty()) {
         check.refuse({"output.mesh", choice_text(output.mesh),
                       "leaves nothing to bake: there are no maps and no volumes either",
@@ -495,7 +495,7 @@ void check_output(Checker& check, const Effects& effects, const Output& output) 
     }
 }
 
-void check_volumes(Checker& check, const Scene& scene) {
+void check_volumes(SceneChecker& check, const Scene& scene) {
     const Output& output = scene.output;
     for (std::size_t i = 0; i < output.volumes.size(); ++i) {
         if (output.volumes[i] != VolumeKind::Spray) continue;
@@ -535,7 +535,7 @@ std::string text_of(const Problem& problem) {
 }
 
 std::vector<Problem> validate(const Scene& scene) {
-    Checker check;
+    SceneChecker check;
     check_each_value(check, scene);
     check_shot(check, scene.shot);
     check_sea(check, scene.sea);

@@ -25,7 +25,7 @@ namespace Sdc = OpenSubdiv::Sdc;
 using SharedCache = Bfr::SurfaceFactoryCacheThreaded<std::shared_mutex, std::shared_lock<std::shared_mutex>,
                                                      std::unique_lock<std::shared_mutex>>;
 using Factory = Bfr::RefinerSurfaceFactory<SharedCache>;
-using Surface = Bfr::Surface<double>;
+using LimitSurface = Bfr::Surface<double>;
 
 // How many levels OpenSubdiv isolates irregular places before a single patch replaces the rest. The surface is then
 // exact at all points of cage_level's halvings and of one halving more; sharpness of any kind ends within its ten
@@ -178,7 +178,7 @@ struct CageLimit::Surfaces {
         constexpr std::size_t kGrain = 16;
         const std::size_t faces = meshing.first_samples.size() - 1;
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces, kGrain), [&](const auto& range) {
-            Surface surface;
+            LimitSurface surface;
             for (std::size_t face = range.begin(); face != range.end(); ++face) {
                 const std::size_t first = meshing.first_samples[face], end = meshing.first_samples[face + 1];
                 if (first == end) continue;
@@ -378,7 +378,7 @@ void CageLimit::place(const CageMeshing& meshing, std::span<const glm::dvec3> po
     const Bfr::Surface<double>::PointDescriptor triples(3);
     places_m.resize(meshing.points);
     std::vector<glm::dvec3> of_samples(meshing.samples.size());
-    surfaces_->for_faces(meshing, [&](const Surface& surface, std::size_t first, std::size_t end) {
+    surfaces_->for_faces(meshing, [&](const LimitSurface& surface, std::size_t first, std::size_t end) {
         std::vector<glm::dvec3> patch(static_cast<std::size_t>(surface.GetNumPatchPoints()));
         surface.PreparePatchPoints(&points_m.data()->x, triples, &patch.data()->x, triples);
         for (std::size_t i = first; i < end; ++i) {
@@ -397,14 +397,14 @@ CageStencils CageLimit::stencils(const CageMeshing& meshing) const {
     const std::size_t samples = meshing.samples.size();
     out.first.resize(samples + 1);
     // First how many weights each has, then the weights where they belong.
-    surfaces_->for_faces(meshing, [&](const Surface& surface, std::size_t first, std::size_t end) {
+    surfaces_->for_faces(meshing, [&](const LimitSurface& surface, std::size_t first, std::size_t end) {
         for (std::size_t i = first; i < end; ++i)
             out.first[i + 1] = static_cast<std::size_t>(surface.GetNumControlPoints());
     });
     for (std::size_t i = 0; i < samples; ++i) out.first[i + 1] += out.first[i];
     out.control.resize(out.first.back());
     out.weights.resize(out.first.back());
-    surfaces_->for_faces(meshing, [&](const Surface& surface, std::size_t first, std::size_t end) {
+    surfaces_->for_faces(meshing, [&](const LimitSurface& surface, std::size_t first, std::size_t end) {
         const auto count = static_cast<std::size_t>(surface.GetNumControlPoints());
         std::vector<int> control(count);
         std::vector<double> weights(3 * count);

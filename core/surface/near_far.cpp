@@ -17,8 +17,8 @@ namespace pelagic {
 namespace {
 
 // A flat sea ends where it is this much below the horizontal [rad], seen from the octave's greatest height, and at
-// the latest at kFarthest_m: squared distances stay finite in single precision.
-constexpr double kFlatEnd = 0x1p-20, kFarthest_m = 1e15;
+// the latest at kFarthestEnd_m: squared distances stay finite in single precision.
+constexpr double kFlatEnd = 0x1p-20, kFarthestEnd_m = 1e15;
 // How far the earth's sphere touches z = 0 from the nadir, at most, along each axis.
 constexpr double kTouchStep_m = 128.0;
 // Far places are rounded to this part of their distance, a fiftieth of the narrowest column. So they are exact in
@@ -68,7 +68,7 @@ NearFarPlace NearFar::place_of(glm::dvec3 camera_m) const {
     NearFarPlace place;
     place.height_m = std::ldexp(size_m_, octaves);
     const EarthView earth(place.height_m, curvature_per_m_, crest_m_);
-    const double end_m = std::min({earth.farthest_m(), place.height_m / kFlatEnd, kFarthest_m});
+    const double end_m = std::min({earth.farthest_m(), place.height_m / kFlatEnd, kFarthestEnd_m});
     // Within twice the first row's half side the far part becomes round.
     const int coarser = std::min(octaves, octaves_in(end_m / (2.0 * begin_m_)));
     place.cell_m = std::ldexp(cell_m_, coarser);

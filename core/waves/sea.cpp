@@ -20,7 +20,7 @@ namespace pelagic {
 namespace {
 
 // Columns that a task builds: enough for its sums and arrays to be worth making.
-constexpr int kBlockColumns = 16;
+constexpr int kTaskColumns = 16;
 
 // Of one column at a time.
 struct ColumnScratch {
@@ -186,14 +186,14 @@ Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, std::vector<QuerySta
     const double step = kTwoPi / planned.size_m;
 
     // Blocks of columns side by side; their sums are added up in their order, whoever computed them.
-    const int blocks = (planned.mode_radius + kBlockColumns - 1) / kBlockColumns;
+    const int blocks = (planned.mode_radius + kTaskColumns - 1) / kTaskColumns;
     std::vector<LevelSums::Part> parts(blocks);
     tbb::parallel_for(
         tbb::blocked_range<int>(0, blocks, 1),
         [&](const tbb::blocked_range<int>& range) {
             for (int block = range.begin(); block < range.end(); ++block) {
-                const int first = block * kBlockColumns;
-                const int end = std::min(first + kBlockColumns, planned.mode_radius);
+                const int first = block * kTaskColumns;
+                const int end = std::min(first + kTaskColumns, planned.mode_radius);
                 ColumnScratch scratch(half_height(planned.mode_radius, first));
                 LevelSums::Part& part = parts[block] = levels.part();
                 std::size_t modes = 0;

@@ -195,7 +195,7 @@ constexpr std::size_t kErrors = 3;
 constexpr std::string_view kNames =
     "row,shot,when,machine,setting,is_shots,ms,bytes,transforms,error_1,error_2,error_3,why_none";
 
-std::string quoted(std::string_view field) {
+std::string csv_quoted(std::string_view field) {
     std::string text = "\"";
     for (const char c : field) text += c == '"' ? std::string("\"\"") : std::string(1, c);
     return text + '"';
@@ -257,11 +257,11 @@ void add_line(std::vector<MeasuredRow>& rows, const std::vector<std::string>& fi
 std::string csv_report(const std::vector<MeasuredRow>& rows) {
     std::string text = std::string(kNames) + "\r\n";
     for (const MeasuredRow& row : rows) {
-        const std::string begin = quoted(row.name) + ',' + quoted(row.shot) + ',' + quoted(row.when) + ',' +
-                                  quoted(row.machine) + ',';
-        if (!row.why_none.empty()) text += begin + ",,,,,,,," + quoted(row.why_none) + "\r\n";
+        const std::string begin = csv_quoted(row.name) + ',' + csv_quoted(row.shot) + ',' +
+                                  csv_quoted(row.when) + ',' + csv_quoted(row.machine) + ',';
+        if (!row.why_none.empty()) text += begin + ",,,,,,,," + csv_quoted(row.why_none) + "\r\n";
         for (const MeasuredSetting& setting : row.settings) {
-            text += begin + quoted(setting.setting) + (setting.is_shots ? ",1," : ",0,") +
+            text += begin + csv_quoted(setting.setting) + (setting.is_shots ? ",1," : ",0,") +
                     number_text(setting.ms) + ',' + std::to_string(setting.bytes) + ',' +
                     std::to_string(setting.transforms);
             for (std::size_t e = 0; e < kErrors; ++e)

@@ -50,9 +50,9 @@ TentWeights tent_weights(int fine, int coarse, bool periodic) {
 }
 
 std::vector<MipLevel<JacobianMoments<float>>> moment_mips(const FullMap<JacobianMoments<float>>& full) {
-    using Level = FullMap<JacobianMoments<float>>;
+    using Moments = FullMap<JacobianMoments<float>>;
     using Taps = std::vector<TentWeights::Tap>;
-    return mips(full, [](const Level& fine, const Taps& columns, const Taps& rows) {
+    return mips(full, [](const Moments& fine, const Taps& columns, const Taps& rows) {
         MomentSum<double> sum;
         for (const auto& row : rows)
             for (const auto& column : columns) {

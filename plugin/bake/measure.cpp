@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) {
+double elapsed_s(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
@@ -24,7 +24,7 @@ class Runner {
     explicit Runner(const Plan& plan) {
         const auto start = Clock::now();
         if (!plan.outputs.empty()) sequence_ = make_sequence(plan);
-        build_s_ = seconds_since(start);
+        build_s_ = elapsed_s(start);
     }
     double compute_ms(int frame) {
         return timed_ms([&] { sequence_->compute(frame, slot_); });
@@ -41,7 +41,7 @@ class Runner {
         if (!sequence_) return 0.0;
         const auto start = Clock::now();
         work();
-        return 1e3 * seconds_since(start);
+        return 1e3 * elapsed_s(start);
     }
 
     std::unique_ptr<Sequence> sequence_;
@@ -157,14 +157,14 @@ Measured measure(const Scene& scene, const MeasureOptions& options) {
             std::vector<double> ms;
             const auto start = Clock::now();
             for (int i = 0; i < options.most_pairs; ++i) {
-                if (i % 2 == 0 && i >= options.least_pairs && seconds_since(start) > half_s) break;
+                if (i % 2 == 0 && i >= options.least_pairs && elapsed_s(start) > half_s) break;
                 double with = 0.0;
                 if (i % 2 == 0) with = once_ms(whole, i);
                 const double less = once_ms(without, i);
                 if (i % 2 == 1) with = once_ms(whole, i);
                 of_whole.push_back(with);
                 ms.push_back(with - less);
-                tell(item.name, std::max(item_s - seconds_since(begin), 0.0) +
+                tell(item.name, std::max(item_s - elapsed_s(begin), 0.0) +
                                     item_s * (progress.items - progress.item - 1));
             }
             return ms;

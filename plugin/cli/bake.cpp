@@ -26,7 +26,7 @@
 namespace pelagic::cli {
 namespace {
 
-struct Arguments {
+struct BakeArguments {
     std::string shot;
     std::optional<std::string> out;
     std::optional<std::string> frames;
@@ -82,7 +82,7 @@ int stopped(const BakeReport& report, const std::string& out, int signal) {
     return kSignal + signal;
 }
 
-int run(const Arguments& arguments) {
+int run(const BakeArguments& arguments) {
     const Scene scene = load_shot(arguments.shot, check_scene);
     BakeOptions options;
     if (arguments.frames) {
@@ -141,7 +141,7 @@ Verb add_bake(CLI::App& program) {
     CLI::App* command = program.add_subcommand("bake", help::kBake);
     command->group(help::kVerbs);
     command->footer(help::kBakeFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<BakeArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");

@@ -34,7 +34,7 @@
 namespace pelagic::cli {
 namespace {
 
-struct Arguments {
+struct ExplainArguments {
     std::string shot;
     bool measure = false;
     std::string threads;
@@ -78,7 +78,7 @@ int refuse_memory(std::size_t needed, const std::string& there) {
     return kRefused;
 }
 
-int print_prices(const Scene& scene, const Arguments& arguments) {
+int print_prices(const Scene& scene, const ExplainArguments& arguments) {
     Threads threads(arguments.threads);
     const std::size_t needed = measure_bytes(scene, threads.count());
     if (const MemoryLimit limit = machine::memory_limit(); needed > limit.bytes)
@@ -154,7 +154,7 @@ Verb add_explain(CLI::App& program) {
     CLI::App* command = program.add_subcommand("explain", help::kExplain);
     command->group(help::kVerbs);
     command->footer(help::kExplainFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<ExplainArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);

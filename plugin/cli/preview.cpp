@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct PreviewArguments {
     std::string shot;
     std::optional<std::string> offscreen, screenshot, quality;
     std::optional<int> frame;
@@ -65,7 +65,7 @@ std::string refuse_file(const fs::path& file, const std::vector<std::string>& ex
            joined(extensions);
 }
 
-int draw_offscreen(const Scene& shot, const fs::path& file, const Arguments& arguments) {
+int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArguments& arguments) {
     Scene scene = without_budget(shot);  // of bakes and renders
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
@@ -117,7 +117,7 @@ void save_shot(const fs::path& file, const Scene& scene, const Scene& shot) {
     files::write_atomically(file, text);
 }
 
-int run(const Arguments& arguments) {
+int run(const PreviewArguments& arguments) {
     Scene scene = load_shot(arguments.shot, check_scene);
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
@@ -169,7 +169,7 @@ Verb add_preview(CLI::App& program) {
     CLI::App* command = program.add_subcommand("preview", help::kPreview);
     command->group(help::kVerbs);
     command->footer(help::kPreviewFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<PreviewArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     CLI::Option* offscreen =
         command->add_option("--offscreen", arguments->offscreen, help::kOffscreen)->type_name("FILE");

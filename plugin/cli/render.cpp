@@ -46,7 +46,7 @@ namespace {
 
 constexpr double kMostStops = 30.0;
 
-struct Arguments {
+struct RenderArguments {
     std::string shot;
     std::optional<std::string> out, frames, terms, sky_quality, layers;
     std::optional<int> samples;
@@ -102,7 +102,7 @@ struct Job {
     bool has_samples = false, has_sky_quality = false;  // asked for by name: no budget decides them
 };
 
-Job job_of(const Arguments& arguments) {
+Job job_of(const RenderArguments& arguments) {
     Job job{.scene = load_shot(arguments.shot, check_scene), .options = {}, .frames = {}, .out = {}};
     const Shot& shot = job.scene.shot;
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) job.scene.camera.resolution = size;
@@ -306,7 +306,7 @@ Done render_all(const Job& job, StopSignals& stop, Progress& progress) {
     return done;
 }
 
-int run(const Arguments& arguments) {
+int run(const RenderArguments& arguments) {
     Job job;
     try {
         job = job_of(arguments);
@@ -374,7 +374,7 @@ Verb add_render(CLI::App& program) {
     CLI::App* command = program.add_subcommand("render", help::kRender);
     command->group(help::kVerbs);
     command->footer(help::kRenderFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<RenderArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");

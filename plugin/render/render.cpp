@@ -39,7 +39,7 @@ class Renderer::Impl {
 namespace {
 
 // Which samples are taken at once: all of them, or of each pixel the one in this column and row.
-struct Sampling {
+struct SamplesOfPass {
     int stride = 1;  // samples between two that are taken
     glm::ivec2 first{0};
 };
@@ -76,9 +76,9 @@ class RendererOf final : public Impl {
             // With a shutter the first pass is for what isn't blurred, and each of the others takes one sample.
             const bool is_own = pass == 0, is_lit = passes == 1 || !is_own;
             const int sample = pass - 1;
-            sampling_ = passes == 1 ? Sampling{}
-                        : is_own    ? Sampling{n, glm::ivec2(n / 2)}
-                                    : Sampling{n, {sample % n, sample / n}};
+            sampling_ = passes == 1 ? SamplesOfPass{}
+                        : is_own    ? SamplesOfPass{n, glm::ivec2(n / 2)}
+                                    : SamplesOfPass{n, {sample % n, sample / n}};
             const bool is_answered = is_lit || has_data();
             begun = 0.0;
             if (!begin(moments[pass], watch)) return false;
@@ -485,7 +485,7 @@ class RendererOf final : public Impl {
     View view_;
     Air air_;  // before that view's eye
     Spray spray_;
-    Sampling sampling_;
+    SamplesOfPass sampling_;
     ProjectedGrid grid_;
     T first_pixel_m_ = T(0);  // the finest level that the frame reads
     ProjectedGridSize triangles_size_;

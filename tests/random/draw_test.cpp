@@ -21,7 +21,7 @@ namespace pelagic::test {
 namespace {
 
 // As many as the tests make.
-constexpr std::uint64_t kScenes = 1000;
+constexpr std::uint64_t kDrawnScenes = 1000;
 
 struct Drawn {
     int times = 0;       // with another value than the default, in a shot that is not refused
@@ -67,7 +67,7 @@ bool is_good(const RandomScene& scene) {
 const std::map<std::string, Drawn>& all_drawn() {
     static const std::map<std::string, Drawn> all = [] {
         std::map<std::string, Drawn> found;
-        for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
+        for (std::uint64_t seed = 0; seed < kDrawnScenes; ++seed) {
             const RandomScene scene = random_scene(seed);
             const bool counts = is_good(scene);
             for (const auto& [key, value] : scene.keys) {
@@ -168,7 +168,7 @@ TEST(RandomScene, CapsNameKeysWithRanges) {
 // What costs a feature its test if it never comes up in a shot that is not refused.
 TEST(RandomScene, MeetsEveryKindOfShot) {
     std::map<std::string, int> times;
-    for (std::uint64_t seed = 0; seed < kScenes; ++seed) {
+    for (std::uint64_t seed = 0; seed < kDrawnScenes; ++seed) {
         const RandomScene random = random_scene(seed);
         if (!is_good(random)) continue;
         const Scene scene = *random.scene();
@@ -200,7 +200,7 @@ TEST(RandomScene, MeetsEveryKindOfShot) {
         count("gusts", scene.sea.gust_strength > 0.0);
         count("foam that lives", scene.effects.whitecaps && scene.effects.foam_decay_s > 0.0);
     }
-    EXPECT_GE(times["a shot"], 8 * static_cast<int>(kScenes) / 10);
+    EXPECT_GE(times["a shot"], 8 * static_cast<int>(kDrawnScenes) / 10);
     for (const auto& [what, count] : times) EXPECT_GE(count, 10) << what;
 }
 

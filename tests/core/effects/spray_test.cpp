@@ -20,7 +20,7 @@ std::shared_ptr<const Sea<float>> sea_of(const Scene& scene) {
                   {.living_foam = true}));
 }
 
-Scene scene_of(double wind_mps, double decay_s = 0.0) {
+Scene spray_scene(double wind_mps, double decay_s = 0.0) {
     Scene scene;
     scene.sea.wind_speed_mps = wind_mps;
     scene.effects.foam_decay_s = decay_s;
@@ -51,23 +51,23 @@ double seen_over_area(const std::shared_ptr<const Sea<float>>& sea) {
 
 TEST(Spray, TheMeanOfWhatBreaksIsTheSeasOwn) {
     for (const double decay_s : {0.0, 4.0}) {
-        const auto sea = sea_of(scene_of(15.0, decay_s));
+        const auto sea = sea_of(spray_scene(15.0, decay_s));
         // Four patches of 2 km: they hold some 4 % more or less than the whole sea.
         EXPECT_NEAR(seen_over_area(sea) / mean_breaking(*sea), 1.0, 0.08) << decay_s;
     }
 }
 
 TEST(Spray, FoamThatStaysIsNoneThatBreaks) {
-    const Scene scene = scene_of(15.0);
+    const Scene scene = spray_scene(15.0);
     EXPECT_NEAR(mean_breaking(*sea_of(scene)) / law_coverage(scene), 1.0, 1e-6);
-    EXPECT_LT(mean_breaking(*sea_of(scene_of(15.0, 4.0))), 0.6 * law_coverage(scene));
+    EXPECT_LT(mean_breaking(*sea_of(spray_scene(15.0, 4.0))), 0.6 * law_coverage(scene));
 }
 
 TEST(Spray, ThereIsNoneWhereNoWaveBreaks) {
-    Scene scene = scene_of(0.0);
+    Scene scene = spray_scene(0.0);
     EXPECT_EQ(mean_breaking(*sea_of(scene)), 0.0);
     EXPECT_EQ(spray_extinction_per_coverage(*sea_of(scene)), 0.0);
-    scene = scene_of(15.0);
+    scene = spray_scene(15.0);
     const auto sea = sea_of(scene);
     EXPECT_NEAR(spray_extinction_per_coverage(*sea) * mean_breaking(*sea), spray_law(15.0).extinction_per_m,
                 1e-12);

@@ -12,11 +12,11 @@ namespace {
 
 using namespace test;
 
-struct Kind {
+struct SeaKind {
     const char* name;
     void (*set)(Scene&);
 };
-constexpr Kind kSeas[] = {
+constexpr SeaKind kSeas[] = {
     {"cascades", [](Scene&) {}},
     {"trains", [](Scene& s) { s.waves.model = WaveModel::Trochoid; }},
     {"trains and cascades",
@@ -38,7 +38,7 @@ constexpr Kind kSeas[] = {
     {"a few metres", [](Scene& s) { s.effects.breaking_from_m = 3.3; }},
 };
 
-Scene scene_of(const Kind& sea, double wind_mps = 14.0) {
+Scene scene_of(const SeaKind& sea, double wind_mps = 14.0) {
     Scene scene;
     scene.sea.wind_speed_mps = wind_mps;
     sea.set(scene);
@@ -51,7 +51,7 @@ const ProductSet kFoam = products(Product::Coverage, Product::JacobianMoments);
 // break none of these holds.
 TEST(Breaking, FinerPixelsSeeTheSameFoam) {
     const auto points = random_points<double>(200.0, 300);
-    for (const Kind& sea : kSeas) {
+    for (const SeaKind& sea : kSeas) {
         SCOPED_TRACE(sea.name);
         const Scene scene = scene_of(sea);
         const double finest_m = 0.5 * scene.effects.breaking_from_m;
@@ -85,7 +85,7 @@ TEST(Breaking, FinerPixelsSeeTheSameFoam) {
 
 // Coarser ones as well, and none of a point's answers depends on its neighbours in a chunk.
 TEST(Breaking, APointDependsOnNothingButThePoint) {
-    for (const Kind& sea : kSeas) {
+    for (const SeaKind& sea : kSeas) {
         SCOPED_TRACE(sea.name);
         Query query = filtered(kFoam | products(Position, Normal, SlopeVariance), 0.0);
         query.pixel_m = {0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
@@ -109,7 +109,7 @@ TEST(Breaking, APointDependsOnNothingButThePoint) {
 
 // An ellipse that is longer than what breaks, and finer across.
 TEST(Breaking, LongPixelsHideAlongTheirAxisAlone) {
-    for (const Kind& sea : {kSeas[0], kSeas[5]}) {
+    for (const SeaKind& sea : {kSeas[0], kSeas[5]}) {
         SCOPED_TRACE(sea.name);
         const auto points = random_points<double>(400.0, 4000);
         Query query = filtered(kFoam, 0.0);
@@ -145,7 +145,7 @@ TEST(Breaking, LongPixelsHideAlongTheirAxisAlone) {
 
 // Over area, the law's at every footprint.
 TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
-    for (const Kind& sea : kSeas) {
+    for (const SeaKind& sea : kSeas) {
         SCOPED_TRACE(sea.name);
         const Scene scene = scene_of(sea);
         const auto points = random_points<float>(3000.0, 40000);

@@ -161,12 +161,13 @@ TEST(PhaseOfTheSea, IsThatOfDoublePrecisionFarAwayAndLate) {
     copies.waves.tiling = Tiling::Random;
     trains.waves.model = WaveModel::Trochoid;
     trains.waves.shortest_m = 0.02;
-    struct Kind {
+    struct Filtered {
         const char* name;
         const Scene* scene;
         double shortest_m;
     };
-    for (const Kind& kind : {Kind{"copies", &copies, 2.0 * 17.0 / 128}, Kind{"trains", &trains, 0.02}})
+    for (const Filtered& kind :
+         {Filtered{"copies", &copies, 2.0 * 17.0 / 128}, Filtered{"trains", &trains, 0.02}})
         for (const At& at : kFarAndLate) {
             const double wavelengths = shift_m(*kind.scene, at) / kind.shortest_m;
             const std::string text = std::string(kind.name) + " at (" + std::to_string(at.origin_m.x) + ", " +

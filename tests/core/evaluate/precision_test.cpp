@@ -36,7 +36,8 @@ TEST(SinglePrecision, IsWithinARoundingOfDouble) {
                 larger(displacement, a.vectors(Displacement)[i][axis], b.vectors(Displacement)[i][axis]);
                 larger(normal, a.vectors(Normal)[i][axis], b.vectors(Normal)[i][axis]);
                 larger(velocity, a.vectors(Velocity)[i][axis], b.vectors(Velocity)[i][axis]);
-                larger(jacobian, a.vectors(JacobianMoments)[i][axis], b.vectors(JacobianMoments)[i][axis]);
+                larger(jacobian, a.vectors(Product::JacobianMoments)[i][axis],
+                       b.vectors(Product::JacobianMoments)[i][axis]);
             }
             coverage = std::max(coverage, std::abs(double(a.numbers(Coverage)[i]) - b.numbers(Coverage)[i]));
         }

@@ -16,29 +16,29 @@ namespace {
 
 using namespace test;
 
-ProductSet all_products() {
+ProductSet every_product() {
     ProductSet all;
     all.set();
     return all;
 }
 
-struct Case {
+struct PreparedCase {
     const char* name;
     WaveModel model;
     bool cascades, ladder;
 };
-constexpr Case kCases[] = {{"cascades", WaveModel::Fft, true, false},
-                           {"cascades on a ladder", WaveModel::Fft, true, true},
-                           {"trains", WaveModel::Trochoid, false, true},
-                           {"trains and a cascade on a ladder", WaveModel::Trochoid, true, true}};
+constexpr PreparedCase kCases[] = {{"cascades", WaveModel::Fft, true, false},
+                                   {"cascades on a ladder", WaveModel::Fft, true, true},
+                                   {"trains", WaveModel::Trochoid, false, true},
+                                   {"trains and a cascade on a ladder", WaveModel::Trochoid, true, true}};
 
 template <class T>
-Frame<T> frame_of(const Case& c) {
+Frame<T> prepared_frame(const PreparedCase& c) {
     Scene scene;
     scene.waves.model = c.model;
     if (c.cascades) scene.waves.cascades = {{.size_m = 60.0, .resolution = 64}};
     if (c.model == WaveModel::Trochoid && c.cascades) scene.waves.shortest_m = 5.0;
-    Query query = unfiltered(all_products());
+    Query query = unfiltered(every_product());
     query.cell_m = query.pixel_m = {0.5};
     if (c.ladder && c.cascades) query.cell_m = query.pixel_m = {0.5, 1.0, 2.0, 4.0};
     return test::frame_of<T>(scene, {query}, 3.25);
@@ -86,20 +86,20 @@ bool same_bits(const ProductArrays<T>& a, const ProductArrays<T>& b) {
 }
 
 template <class T>
-void expect_the_same_bits_in_any_batches(const Case& c) {
+void expect_the_same_bits_in_any_batches(const PreparedCase& c) {
     constexpr std::size_t kCount = 700;
-    const Frame<T> frame = frame_of<T>(c);
-    const PreparedQuery<T> prepared(frame, 0, all_products());
+    const Frame<T> frame = prepared_frame<T>(c);
+    const PreparedQuery<T> prepared(frame, 0, every_product());
     Asked<T> asked(c.ladder, kCount);
     for (const glm::dvec2 origin_m : {glm::dvec2(0.0), glm::dvec2(1e6 + 0.375, -3e5)}) {
         asked.origin_m = origin_m;
         ProductArrays<T> whole;
-        whole.resize(all_products(), kCount);
+        whole.resize(every_product(), kCount);
         evaluate(frame, 0, asked.points(0, kCount), whole.results());
         std::mt19937 random(3);
         for (const std::size_t most : {std::size_t(1), std::size_t(5), std::size_t(40), std::size_t(400)}) {
             ProductArrays<T> pieces;
-            pieces.resize(all_products(), kCount);
+            pieces.resize(every_product(), kCount);
             for (std::size_t first = 0; first < kCount;) {
                 const std::size_t count = std::min<std::size_t>(1 + random() % most, kCount - first);
                 prepared.evaluate(asked.points(first, count), pieces.results().from_point(first));
@@ -111,7 +111,7 @@ void expect_the_same_bits_in_any_batches(const Case& c) {
 }
 
 TEST(PreparedQuery, GivesTheSameBitsInBatchesOfAnySize) {
-    for (const Case& c : kCases) {
+    for (const PreparedCase& c : kCases) {
         expect_the_same_bits_in_any_batches<float>(c);
         expect_the_same_bits_in_any_batches<double>(c);
     }
@@ -121,11 +121,11 @@ TEST(PreparedQuery, GivesTheSameBitsInBatchesOfAnySize) {
 template <class T>
 void expect_the_same_bits_alone_and_in_a_row() {
     constexpr std::size_t kCount = 300;
-    const Frame<T> frame = frame_of<T>(kCases[0]);
+    const Frame<T> frame = prepared_frame<T>(kCases[0]);
     const Grid& grid = frame.sea().plan().cascades[0].grids[0];
     ASSERT_EQ(grid.sampling, Sampling::Spline);
     const double node_m = 60.0 / grid.resolution;
-    const PreparedQuery<T> prepared(frame, 0, all_products());
+    const PreparedQuery<T> prepared(frame, 0, every_product());
     for (const double columns : {0.03, 0.6, 1.3, 2.3, 3.2, 3.9, 5.0})
         for (const bool in_order : {true, false}) {
             Asked<T> asked(false, kCount);
@@ -134,8 +134,8 @@ void expect_the_same_bits_alone_and_in_a_row() {
                     glm::vec<2, T>(static_cast<T>(columns * node_m * static_cast<double>(i)), T(7.3));
             if (!in_order) std::shuffle(asked.rest.begin(), asked.rest.end(), std::mt19937(9));
             ProductArrays<T> row, alone;
-            row.resize(all_products(), kCount);
-            alone.resize(all_products(), kCount);
+            row.resize(every_product(), kCount);
+            alone.resize(every_product(), kCount);
             prepared.evaluate(asked.points(0, kCount), row.results());
             for (std::size_t i = 0; i < kCount; ++i)
                 prepared.evaluate(asked.points(i, 1), alone.results().from_point(i));
@@ -150,13 +150,13 @@ TEST(PreparedQuery, GivesAPointOfARowTheSameBitsAlone) {
 
 // Which products are asked for together changes none of them.
 TEST(PreparedQuery, GivesEachProductAloneAsAmongAll) {
-    for (const Case& c : kCases) {
-        const Frame<float> frame = frame_of<float>(c);
-        const PreparedQuery<float> prepared(frame, 0, all_products());
+    for (const PreparedCase& c : kCases) {
+        const Frame<float> frame = prepared_frame<float>(c);
+        const PreparedQuery<float> prepared(frame, 0, every_product());
         const Asked<float> asked(c.ladder, 50);
         Values together, single;
-        together.resize(all_products(), 50);
-        single.resize(all_products(), 50);
+        together.resize(every_product(), 50);
+        single.resize(every_product(), 50);
         prepared.evaluate(asked.points(0, 50), together.results());
         for (const ProductRow& row : kProductTable) {
             Values alone;
@@ -175,13 +175,13 @@ TEST(PreparedQuery, GivesEachProductAloneAsAmongAll) {
 
 TEST(PreparedQuery, AnswersSeveralThreadsAtOnce) {
     constexpr std::size_t kCount = 2000, kThreads = 4;
-    for (const Case& c : kCases) {
-        const Frame<float> frame = frame_of<float>(c);
-        const PreparedQuery<float> prepared(frame, 0, all_products());
+    for (const PreparedCase& c : kCases) {
+        const Frame<float> frame = prepared_frame<float>(c);
+        const PreparedQuery<float> prepared(frame, 0, every_product());
         const Asked<float> asked(c.ladder, kCount);
         Values whole, pieces;
-        whole.resize(all_products(), kCount);
-        pieces.resize(all_products(), kCount);
+        whole.resize(every_product(), kCount);
+        pieces.resize(every_product(), kCount);
         evaluate(frame, 0, asked.points(0, kCount), whole.results());
         const Results<float> results = pieces.results();
         std::vector<std::thread> threads;
@@ -196,13 +196,13 @@ TEST(PreparedQuery, AnswersSeveralThreadsAtOnce) {
 }
 
 TEST(PreparedQuery, IsRefusedAfterSetUntilItIsRefreshed) {
-    for (const Case& c : kCases) {
-        Frame<float> frame = frame_of<float>(c);
-        PreparedQuery<float> prepared(frame, 0, all_products());
+    for (const PreparedCase& c : kCases) {
+        Frame<float> frame = prepared_frame<float>(c);
+        PreparedQuery<float> prepared(frame, 0, every_product());
         const Asked<float> asked(c.ladder, 20);
         Values values, expected;
-        values.resize(all_products(), 20);
-        expected.resize(all_products(), 20);
+        values.resize(every_product(), 20);
+        expected.resize(every_product(), 20);
         EXPECT_NO_THROW(prepared.evaluate(asked.points(0, 20), values.results()));
         frame.set(11.0);
         EXPECT_FALSE(prepared.is_current());
@@ -215,7 +215,7 @@ TEST(PreparedQuery, IsRefusedAfterSetUntilItIsRefreshed) {
 }
 
 TEST(PreparedQuery, RefusesWhatItWasNotPreparedFor) {
-    const Frame<float> frame = frame_of<float>(kCases[0]);
+    const Frame<float> frame = prepared_frame<float>(kCases[0]);
     const PreparedQuery<float> prepared(frame, 0, products(Product::Position));
     const Asked<float> asked(false, 3);
     for (const ProductRow& row : kProductTable) {
@@ -228,7 +228,7 @@ TEST(PreparedQuery, RefusesWhatItWasNotPreparedFor) {
     scene.waves.cascades = {{40.0, 32}};
     const Query positions = unfiltered(products(Product::Position));
     const Frame<float> holds_one = test::frame_of<float>(scene, {positions});
-    EXPECT_THROW(PreparedQuery<float>(holds_one, 0, all_products()), std::invalid_argument);
+    EXPECT_THROW(PreparedQuery<float>(holds_one, 0, every_product()), std::invalid_argument);
     const Frame<float> unset(std::make_shared<const Sea<float>>(make_plan(scene, {positions})));
     EXPECT_THROW(PreparedQuery<float>(unset, 0, products(Product::Position)), std::invalid_argument);
 }

@@ -25,7 +25,7 @@ namespace {
 using namespace test;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kCell_m = 0.6;
+constexpr double kTracedCell_m = 0.6;
 
 Scene sea(int trains) {
     Scene scene;
@@ -226,7 +226,7 @@ Count compare(const Kind& kind, const Batch& batch, const SphereTracing& tracing
 
 TEST(SphereTracing, FindsWhatAMarchFinds) {
     const Frame<float> frame = frame_of_trains(sea(40));
-    for (const double cell_m : {0.0, kCell_m}) {
+    for (const double cell_m : {0.0, kTracedCell_m}) {
         const SphereTracing tracing(frame, cell_m);
         const Plain plain(frame, cell_m);
         std::mt19937 random(7);
@@ -308,8 +308,8 @@ TEST(SphereTracing, IsTheSurfaceOfTheQueryAlsoFarAwayAndLate) {
     for (const double time_s : {12.25, 1e7 + 1.0 / 24.0})
         for (const glm::dvec3 origin_m : {glm::dvec3(0.0), glm::dvec3(1e6 + 0.3, -1e6 + 0.07, 0.0)}) {
             const Frame<float> frame =
-                frame_of<float>(sea(60), {filtered(products(Position), kCell_m)}, time_s);
-            const SphereTracing tracing(frame, kCell_m);
+                frame_of<float>(sea(60), {filtered(products(Position), kTracedCell_m)}, time_s);
+            const SphereTracing tracing(frame, kTracedCell_m);
             for (int i = 0; i < 100; ++i) {
                 const glm::dvec3 from_m = origin_m + glm::dvec3(13.0 * i, -7.0 * i, 20.0);
                 double distance = 0.0;

@@ -10,7 +10,7 @@
 namespace pelagic::optics {
 namespace {
 
-constexpr double kRadius = 0.00465;
+constexpr double kFoamRadius = 0.00465;
 constexpr double kBumps = 0.1;  // slope variance of the foam's own roughness
 
 dvec3 rough(dvec3 s) {
@@ -41,8 +41,8 @@ double foam(dvec3 v, dvec3 l, dvec3 waves) {
                           spread * std::exp(-0.5 * x * x) / std::sqrt(2.0 * oracle::kPi);
     const double up = 1.0 / std::sqrt(1.0 + dot(mean, mean) + dot(across, across) + dot(along, along));
     const double w = v.z - mean.x * v.x - mean.y * v.y;
-    const double sun = oracle::kPi * kRadius * kRadius * facing * up * oracle::lit(w, facing, v, l, s) /
-                       oracle::visible(w, v, s);
+    const double sun = oracle::kPi * kFoamRadius * kFoamRadius * facing * up *
+                       oracle::lit(w, facing, v, l, s) / oracle::visible(w, v, s);
     return (1e5 * sun + 0.5 + 0.5 * up) / oracle::kPi;
 }
 
@@ -56,7 +56,7 @@ TEST(Foam, SingleIsDouble) {
         const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), s);
         const double expected = foam(normalize(dvec3(v)), normalize(dvec3(l)), dvec3(s));
         const vec3 found =
-            optics.foam_radiance(v, l, frame, vec3(1e5f), float(kRadius), vec3(1.0f), vec3(1.0f));
+            optics.foam_radiance(v, l, frame, vec3(1e5f), float(kFoamRadius), vec3(1.0f), vec3(1.0f));
         ASSERT_NEAR(found.x, expected, 1e-4 * expected) << i;
     }
 }
@@ -79,10 +79,10 @@ TEST(Foam, ReflectsNoMoreThanItGets) {
                     const double z = (i + 0.5) / kSteps, a = 2.0 * oracle::kPi * (j + 0.5) / kSteps,
                                  q = std::sqrt(1.0 - z * z);
                     const vec3 l(dvec3(q * std::cos(a), q * std::sin(a), z));
-                    const vec3 found =
-                        optics.foam_radiance(v, l, frame, vec3(1.0f), float(kRadius), vec3(0.0f), vec3(1.0f));
+                    const vec3 found = optics.foam_radiance(v, l, frame, vec3(1.0f), float(kFoamRadius),
+                                                            vec3(0.0f), vec3(1.0f));
                     sum += static_cast<double>(found.x) /
-                           (oracle::kPi * kRadius * kRadius);  // per solid angle of the sun
+                           (oracle::kPi * kFoamRadius * kFoamRadius);  // per solid angle of the sun
                 }
             sum *= 2.0 * oracle::kPi / (kSteps * kSteps);
             EXPECT_LE(sum, 1.01) << sigma << ' ' << degrees;

@@ -19,17 +19,17 @@
 namespace pelagic {
 namespace {
 
-constexpr double kDegree = kPi / 180.0;
+constexpr double kDegreeOfPicture = kPi / 180.0;
 
-glm::dvec3 towards(double elevation_deg, double azimuth_deg) {
-    const double e = elevation_deg * kDegree, a = azimuth_deg * kDegree;
+glm::dvec3 towards_deg(double elevation_deg, double azimuth_deg) {
+    const double e = elevation_deg * kDegreeOfPicture, a = azimuth_deg * kDegreeOfPicture;
     return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
 }
 
 // The direction of a point of a picture, in pixels from the upper left corner, as LatLong
 // (core/lighting/sky.h) has it.
 glm::dvec3 direction_at(const LatLong& picture, double x, double y) {
-    return towards(90.0 - 180.0 * y / picture.height, 180.0 - 360.0 * x / picture.width);
+    return towards_deg(90.0 - 180.0 * y / picture.height, 180.0 - 360.0 * x / picture.width);
 }
 
 // A picture of a radiance. Each pixel is the mean over parts(direction of its centre)² points, weighted by
@@ -101,7 +101,7 @@ TEST(PictureSky, TheMiddleColumnIsXAndAzimuthGrowsToTheLeft) {
     const Sky sky = picture_sky(painted(512, 256, plain_sky), 256);
     for (const double azimuth : {0.0, 45.0, 90.0, 135.0, 179.9, -179.9, -90.0})
         for (const double elevation : {1.0, 30.0, 80.0, 89.9, 90.0}) {
-            const glm::dvec3 d = towards(elevation, azimuth);
+            const glm::dvec3 d = towards_deg(elevation, azimuth);
             const glm::vec3 seen = sky.map.radiance(sky_map_place(glm::vec3(d)), 0.0f);
             expect_close(seen, plain_sky(d), 3e-3);
         }
@@ -129,7 +129,7 @@ TEST(PictureSky, ColumnsThatConvergeAtTheZenithAreAveraged) {
     const Sky sky = picture_sky(picture, 128);
     for (int j = 0; j < 128; ++j)
         for (int i = 0; i < 128; ++i)
-            if (std::hypot(i - 63.5, j - 63.5) * 2.5 / 128.0 < std::tan(5.0 * kDegree)) {
+            if (std::hypot(i - 63.5, j - 63.5) * 2.5 / 128.0 < std::tan(5.0 * kDegreeOfPicture)) {
                 EXPECT_NEAR(sky.map.level(0)[static_cast<std::size_t>(j * 128 + i)].x, 1.0f, 0.1f)
                     << i << " " << j;
             }
@@ -140,10 +140,10 @@ TEST(PictureSky, TheSunIsFoundAndCountedOnce) {
     for (const glm::dvec2 place :
          {glm::dvec2(35.0, 60.0), glm::dvec2(8.0, 179.9), glm::dvec2(75.0, -120.0), glm::dvec2(89.8, 30.0)})
         for (const int height : {512, 128}) {
-            const glm::dvec3 sun = towards(place.x, place.y);
+            const glm::dvec3 sun = towards_deg(place.x, place.y);
             const double pixel_deg = 180.0 / height;
             const auto parts = [&](glm::dvec3 d) {
-                return std::acos(std::min(1.0, glm::dot(d, sun))) < 3.0 * kDegree ? 24 : 1;
+                return std::acos(std::min(1.0, glm::dot(d, sun))) < 3.0 * kDegreeOfPicture ? 24 : 1;
             };
             const LatLong picture = painted(
                 2 * height, height, [&](glm::dvec3 d) { return sunny_sky(d, sun); }, parts);
@@ -152,13 +152,14 @@ TEST(PictureSky, TheSunIsFoundAndCountedOnce) {
             const double apart =
                 std::acos(std::min(1.0, glm::dot(glm::normalize(glm::dvec3(sky.sun_direction)), sun)));
             const double off_deg = pixel_deg < 0.53 ? 0.1 : 0.71 * pixel_deg;
-            EXPECT_LT(apart / kDegree, off_deg) << place.x << " " << height;
+            EXPECT_LT(apart / kDegreeOfPicture, off_deg) << place.x << " " << height;
             expect_close(glm::dvec3(sky.sun_irradiance) + glm::dvec3(sky.sky_irradiance), irradiance(picture),
                          1e-3);
             // The disc has the light that was painted, up to the error of its elevation and of painting with
             // 24² points per pixel: a few per mille. (The sky's own light and the glow stay in the sky.)
             const double solid_angle = kTwoPi * (1.0 - std::cos(0.00465));
-            const double tolerance = 0.01 + off_deg * kDegree * std::sqrt(1.0 - sun.z * sun.z) / sun.z;
+            const double tolerance =
+                0.01 + off_deg * kDegreeOfPicture * std::sqrt(1.0 - sun.z * sun.z) / sun.z;
             EXPECT_NEAR(static_cast<double>(sky.sun_irradiance.x) / (3e5 * solid_angle * sun.z), 1.0,
                         tolerance)
                 << place.x << " " << height;
@@ -173,7 +174,7 @@ TEST(PictureSky, TheSunIsFoundAndCountedOnce) {
 }
 
 TEST(PictureSky, ABrightCloudIsNoSun) {
-    const glm::dvec3 middle = towards(40.0, 10.0);
+    const glm::dvec3 middle = towards_deg(40.0, 10.0);
     const auto clouds = [&](glm::dvec3 d) {
         const double apart = std::acos(std::min(1.0, glm::dot(d, middle)));
         return glm::vec3(static_cast<float>(1.0 + 20.0 * std::exp(-apart * apart / 0.03)));

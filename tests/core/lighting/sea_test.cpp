@@ -16,18 +16,18 @@ namespace {
 
 // A sky with a sun and a varied map.
 Sky test_sky() {
-    constexpr int kSize = 64;
-    std::vector<vec3> texels(kSize * kSize);
-    for (int j = 0; j < kSize; ++j)
-        for (int i = 0; i < kSize; ++i) {
-            const float x = (static_cast<float>(i) + 0.5f) / kSize - 0.5f,
-                        y = (static_cast<float>(j) + 0.5f) / kSize - 0.5f;
+    constexpr int kSide = 64;
+    std::vector<vec3> texels(kSide * kSide);
+    for (int j = 0; j < kSide; ++j)
+        for (int i = 0; i < kSide; ++i) {
+            const float x = (static_cast<float>(i) + 0.5f) / kSide - 0.5f,
+                        y = (static_cast<float>(j) + 0.5f) / kSide - 0.5f;
             const bool above = x * x + y * y < 0.16f;
-            texels[static_cast<std::size_t>(j * kSize + i)] =
+            texels[static_cast<std::size_t>(j * kSide + i)] =
                 above ? vec3(2.0f + x, 3.0f + y, 4.0f - x) : vec3(0.2f, 0.25f, 0.3f);
         }
     Sky sky;
-    sky.map = SkyMap(kSize, texels);
+    sky.map = SkyMap(kSide, texels);
     sky.sun_direction = normalize(vec3(0.3f, 0.8f, 0.4f));
     sky.sun_radiance = vec3(1.6e6f, 1.5e6f, 1.3e6f);
     sky.sun_irradiance = vec3(46.0f, 43.0f, 37.0f);

@@ -10,13 +10,13 @@
 namespace pelagic::optics {
 namespace {
 
-constexpr int kInputs = 100000;
+constexpr int kSlopeInputs = 100000;
 constexpr double kSlack = 1e-4;  // required of single precision
 
 TEST(SpecialFunctions, ErrorFunctionsScaledTail) {
     Optics optics;
     Inputs inputs(2);
-    for (int i = 0; i < kInputs; ++i) {
+    for (int i = 0; i < kSlopeInputs; ++i) {
         const float a = static_cast<float>(inputs.logarithmic(1e-8, 5.0));
         const double x = static_cast<double>(a), tail = std::exp(x * x) * std::erfc(x);
         ASSERT_NEAR(optics.erfcx(a), tail, 2e-6 * tail) << a;
@@ -60,7 +60,7 @@ dvec3 turned_variance(dvec3 n, dvec3 s) {
 TEST(Slopes, FrameCarriesTheTensor) {
     Optics optics;
     Inputs inputs(3);
-    for (int i = 0; i < kInputs; ++i) {
+    for (int i = 0; i < kSlopeInputs; ++i) {
         const vec3 n = inputs.direction(0.1), s = inputs.variance(1e-3, 1.0, 0.9);
         const auto frame = optics.slope_frame(n, s);
         const dvec3 expected = turned_variance(normalize(dvec3(n)), dvec3(s));
@@ -99,7 +99,7 @@ TEST(Slopes, FacingNormalFacesTheEyeAndTheSky) {
     Optics optics;
     Inputs inputs(4);
     int away = 0, down = 0, folded = 0, kept = 0;
-    for (int i = 0; i < kInputs; ++i) {
+    for (int i = 0; i < kSlopeInputs; ++i) {
         const vec3 v = inputs.direction(1e-6);
         const vec3 n = (i % 2 == 0 ? 1.0f : -1.0f) * inputs.direction(1e-6);
         const dvec3 eye(normalize(dvec3(v))), normal(normalize(dvec3(n)));
@@ -124,7 +124,7 @@ TEST(Slopes, FacingNormalFacesTheEyeAndTheSky) {
 TEST(Slopes, FacingNormalSeenFromBelowIsThePapers) {
     Optics optics;
     Inputs inputs(7);
-    for (int i = 0; i < kInputs; ++i) {
+    for (int i = 0; i < kSlopeInputs; ++i) {
         vec3 v = inputs.direction(1e-6);
         v.z = i % 100 == 0 ? 0.0f : -v.z;
         v = normalize(v);
@@ -171,7 +171,7 @@ TEST(Slopes, VisibleNormalsHaveTheMeanSquareOfThoseThatNeverFaceAway) {
 TEST(Slopes, DensityIsTheGaussian) {
     Optics optics;
     Inputs inputs(5);
-    for (int i = 0; i < kInputs; ++i) {
+    for (int i = 0; i < kSlopeInputs; ++i) {
         const vec3 s = inputs.variance(1e-4, 1.0, 0.9);
         const oracle::Factor factor{dvec3(s)};
         const double r = 5.0 * std::sqrt(inputs.uniform(0.0, 1.0)), a = inputs.uniform(0.0, 6.3);
@@ -188,7 +188,7 @@ TEST(Slopes, DensityIsTheGaussian) {
 TEST(Slopes, MaskingIsTheMixture) {
     Optics optics;
     Inputs inputs(6);
-    for (int i = 0; i < kInputs; ++i) {
+    for (int i = 0; i < kSlopeInputs; ++i) {
         const vec3 d = inputs.direction(1e-6), s = inputs.variance(1e-4, 1.0, 0.9),
                    l = inputs.direction(1e-6);
         const double expected = oracle::lambda(dvec3(d), dvec3(s));

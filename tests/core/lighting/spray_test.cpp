@@ -49,7 +49,7 @@ const Sea kWaves = [](double distance_m) {
     return glm::dvec2(4.0 * std::cos(phase), 0.2 * crest * crest * crest);
 };
 
-glm::dvec3 towards(double elevation, double azimuth = 0.3) {
+glm::dvec3 spray_towards(double elevation, double azimuth = 0.3) {
     return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
             std::sin(elevation)};
 }
@@ -86,7 +86,7 @@ double thickness(double eye_m, const Sea& sea, double elevation, double distance
 
 double seen_thickness(const Spray& spray, double elevation, double distance_m, bool on_sea = false) {
     return -std::log(static_cast<double>(
-        spray_before(spray, glm::vec3(towards(elevation)), static_cast<float>(distance_m), on_sea)
+        spray_before(spray, glm::vec3(spray_towards(elevation)), static_cast<float>(distance_m), on_sea)
             .transmittance));
 }
 
@@ -117,7 +117,7 @@ TEST(SprayBefore, ALayerHasItsOwnThickness) {
         }
     // From its bottom up, to the sky.
     for (const double elevation : {0.5 * kPi, 1.0, 0.2, 0.02}) {
-        const auto up = spray_before(spray_of(0.0, kFlat), glm::vec3(towards(elevation)), {}, false);
+        const auto up = spray_before(spray_of(0.0, kFlat), glm::vec3(spray_towards(elevation)), {}, false);
         EXPECT_NEAR(-std::log(up.transmittance) / (0.05 * kScale_m / std::sin(elevation)), 1.0, 2e-3)
             << elevation;
     }
@@ -149,13 +149,13 @@ TEST(SprayBefore, AWhiteFurnaceStaysWhite) {
     double least = 1.0;
     for (const double elevation : {-0.3, -0.02, 0.0, 0.02, 0.7}) {
         for (const double distance_m : {1.0, 100.0, 1e4}) {
-            const auto seen =
-                spray_before(spray, glm::vec3(towards(elevation)), static_cast<float>(distance_m), false);
+            const auto seen = spray_before(spray, glm::vec3(spray_towards(elevation)),
+                                           static_cast<float>(distance_m), false);
             EXPECT_NEAR(seen.scattered.y + seen.transmittance, 1.0f, 2e-5f);
             least = std::min(least, static_cast<double>(seen.transmittance));
         }
         SeaRadiance sky{.sky = glm::vec3(1.0f)};
-        see_through_spray(spray, glm::vec3(towards(elevation)), {}, sky);
+        see_through_spray(spray, glm::vec3(spray_towards(elevation)), {}, sky);
         EXPECT_NEAR(sky.sky.y + sky.air.y, 1.0f, 2e-5f);
     }
     EXPECT_LT(least, 1e-3);  // through thick spray as well
@@ -169,7 +169,7 @@ TEST(SprayBefore, ThinSprayIsLinearAndThickSprayIsItsOwnLight) {
         spray.sun = glm::vec3(100.0f);
         spray.above = glm::vec3(5.0f);
         spray.below = glm::vec3(1.0f);
-        return spray_before(spray, glm::vec3(towards(-0.02)), 100.0f, true);
+        return spray_before(spray, glm::vec3(spray_towards(-0.02)), 100.0f, true);
     };
     const auto thin = times(1e-4), twice = times(2e-4);
     EXPECT_NEAR(twice.scattered.y / thin.scattered.y, 2.0, 1e-3);
@@ -185,11 +185,11 @@ TEST(SprayBefore, ThinSprayIsLinearAndThickSprayIsItsOwnLight) {
 // The sun's light goes on nearly straight: spray before the sun shines, spray behind the viewer doesn't.
 TEST(SprayBefore, ScattersAhead) {
     Spray spray = spray_of(3.0, kFlat);
-    spray.to_sun = glm::vec3(towards(0.1, 0.0));
+    spray.to_sun = glm::vec3(spray_towards(0.1, 0.0));
     spray.sun = glm::vec3(1.0f);
     for (glm::vec2& texel : spray.texels) texel.y = 1e-6f;
     const auto light = [&](double azimuth) {
-        return spray_before(spray, glm::vec3(towards(0.0, azimuth)), 100.0f, false).scattered.y;
+        return spray_before(spray, glm::vec3(spray_towards(0.0, azimuth)), 100.0f, false).scattered.y;
     };
     EXPECT_GT(light(0.0), 20.0f * light(0.5 * kPi));
     EXPECT_GT(light(0.5 * kPi), 1.5f * light(kPi));
@@ -202,7 +202,7 @@ TEST(SprayBefore, IsFiniteEverywhere) {
         for (const double factor : {0.0, 1e-6, 1.0, 1e6}) {
             Spray spray = spray_of(eye_m, kWaves);
             for (glm::vec2& texel : spray.texels) texel.y *= static_cast<float>(factor);
-            spray.to_sun = glm::vec3(towards(-0.01));
+            spray.to_sun = glm::vec3(spray_towards(-0.01));
             spray.sun = spray.above = spray.below = glm::vec3(100.0f);
             const auto check = [&](glm::vec3 direction, std::optional<float> distance_m) {
                 for (const bool on_sea : {false, true}) {
@@ -216,10 +216,11 @@ TEST(SprayBefore, IsFiniteEverywhere) {
                 check({0.0f, 0.0f, 1.0f}, distance_m);
                 check({1.0f, 0.0f, 0.0f}, distance_m);
                 for (int i = 0; i < 50; ++i)
-                    check(glm::vec3(towards((unit(random) - 0.5) * kPi, kTwoPi * unit(random))), distance_m);
+                    check(glm::vec3(spray_towards((unit(random) - 0.5) * kPi, kTwoPi * unit(random))),
+                          distance_m);
             }
             for (int i = 0; i < 50; ++i)
-                check(glm::vec3(towards((unit(random) - 0.5) * 0.1, kTwoPi * unit(random))), {});
+                check(glm::vec3(spray_towards((unit(random) - 0.5) * 0.1, kTwoPi * unit(random))), {});
             check({0.0f, 0.0f, 1.0f}, {});
             check({0.0f, 0.0f, -1.0f}, {});
         }
@@ -233,7 +234,7 @@ TEST(SprayBefore, GoesRoundTheCircleWithoutASeam) {
             spray.texels[static_cast<std::size_t>(row * kColumns + column)].y =
                 0.05f * (1.0f + 0.5f * std::sin(static_cast<float>(kTwoPi * column / (kColumns - 1))));
     const auto left = [&](double azimuth) {
-        return spray_before(spray, glm::vec3(towards(-0.02, azimuth)), 100.0f, false).transmittance;
+        return spray_before(spray, glm::vec3(spray_towards(-0.02, azimuth)), 100.0f, false).transmittance;
     };
     for (int i = 0; i < 1000; ++i)
         EXPECT_NEAR(left(kTwoPi * i / 1000.0), left(kTwoPi * (i + 1) / 1000.0), 0.02f) << i;

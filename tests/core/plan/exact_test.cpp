@@ -82,8 +82,8 @@ Scene scene() {
 }
 
 const FieldSet kPosition = fields(Field::Height, Field::Dx, Field::Dy);
-const FieldSet kSlopes = fields(Field::SlopeX, Field::SlopeY);
-const FieldSet kStrain = fields(Field::Dxx, Field::Dyy, Field::Dxy);
+const FieldSet kExactSlopes = fields(Field::SlopeX, Field::SlopeY);
+const FieldSet kExactStrain = fields(Field::Dxx, Field::Dyy, Field::Dxy);
 const FieldSet kMotion = fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ);
 
 using Attributes = std::vector<MeshAttribute>;
@@ -121,53 +121,58 @@ std::vector<Case> cases() {
     const auto one = [](FieldSet fields) { return std::vector<std::vector<GridByHand>>{{{64, 32, fields}}}; };
     return {
         {"MeshPositions", mesh({}), one(kPosition), kMesh * (8 + 12)},
-        {"MeshNormals", mesh({Normal}), one(kPosition | kSlopes | kStrain), kMesh * (8 + 24)},
+        {"MeshNormals", mesh({Normal}), one(kPosition | kExactSlopes | kExactStrain), kMesh * (8 + 24)},
         {"MeshVelocities", mesh({Velocity}), one(kPosition | kMotion), kMesh * (8 + 24)},
-        {"MeshSlopeVariance", mesh({SlopeVariance}), one(kPosition | kStrain), kMesh * (8 + 24)},
-        {"MeshWhitecaps", mesh({Whitecaps}), one(kPosition | kStrain), kMesh * (8 + 16)},
-        {"MeshEverything", mesh(kAll), one(kPosition | kSlopes | kStrain | kMotion), kMesh * (8 + 52)},
+        {"MeshSlopeVariance", mesh({SlopeVariance}), one(kPosition | kExactStrain), kMesh * (8 + 24)},
+        {"MeshWhitecaps", mesh({Whitecaps}), one(kPosition | kExactStrain), kMesh * (8 + 16)},
+        {"MeshEverything", mesh(kAll), one(kPosition | kExactSlopes | kExactStrain | kMotion),
+         kMesh * (8 + 52)},
         {"WhitecapsOff",
          [](Scene& s) {
              s.output.attributes = {Whitecaps, SlopeVariance};
              s.effects.whitecaps = false;
          },
-         one(kPosition | kStrain), kMesh * (8 + 24)},
+         one(kPosition | kExactStrain), kMesh * (8 + 24)},
         // Heights, their slopes and their velocity; the strain that foam is told from.
         {"ChoppinessZero",
          [](Scene& s) {
              s.output.attributes = kAll;
              s.waves.choppiness = 0.0;
          },
-         one(fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ) | kStrain),
+         one(fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ) | kExactStrain),
          kMesh * (8 + 52)},
         {"DisplacementMap", maps({MapKind::Displacement}), one(kPosition), kMap * (8 + 12)},
-        {"NormalMap", maps({MapKind::Normal}), one(kSlopes | kStrain), kMap * (8 + 12)},
+        {"NormalMap", maps({MapKind::Normal}), one(kExactSlopes | kExactStrain), kMap * (8 + 12)},
         // What carries them, at each mip level.
         {"SlopeVarianceMap",
          maps({MapKind::SlopeVariance}),
-         {{{64, 32, kStrain}, {64, 16, kStrain}, {30, 8, kStrain}, {14, 4, kStrain}, {6, 2, kStrain}}},
+         {{{64, 32, kExactStrain},
+           {64, 16, kExactStrain},
+           {30, 8, kExactStrain},
+           {14, 4, kExactStrain},
+           {6, 2, kExactStrain}}},
          kMap * (8 + 12)},
-        {"WhitecapsMap", maps({MapKind::Whitecaps}), one(kStrain), kMap * (8 + 16)},
+        {"WhitecapsMap", maps({MapKind::Whitecaps}), one(kExactStrain), kMap * (8 + 16)},
         {"WhitecapsMapChoppinessZero",
          [](Scene& s) {
              maps({MapKind::Whitecaps})(s);
              s.waves.choppiness = 0.0;
          },
-         one(kStrain), kMap * (8 + 16)},
+         one(kExactStrain), kMap * (8 + 16)},
         // The same cells at the same nodes: the mesh's own grid, and the maps share their points.
         {"MapsAsFineAsTheMesh",
          [](Scene& s) {
              s.output.attributes = {Velocity};
              s.output.maps = {MapKind::Displacement, MapKind::Whitecaps};
          },
-         one(kPosition | kMotion | kStrain), kMesh * (8 + 24) + kMap * (8 + 12 + 16)},
+         one(kPosition | kMotion | kExactStrain), kMesh * (8 + 24) + kMap * (8 + 12 + 16)},
         // 6.25 m texels: 16 modes, every second node.
         {"MapCoarserThanTheMesh",
          [](Scene& s) {
              s.output.maps = {MapKind::Normal};
              s.output.map_resolution = 32;
          },
-         {{{64, 32, kPosition}, {32, 16, kSlopes | kStrain}}},
+         {{{64, 32, kPosition}, {32, 16, kExactSlopes | kExactStrain}}},
          kMesh * (8 + 12) + 32 * 32 * (8 + 12)},
         // 1.5625 m texels: 64 modes, of which the cascade has 32, at every node of 128.
         {"MapFinerThanTheMesh",
@@ -219,7 +224,7 @@ std::vector<Case> cases() {
         // Positions by their cell, normals by their pixel, each grid with its own fields only.
         {"PixelsCoarserThanCells",
          nothing,
-         {{{126, 32, kPosition}, {64, 16, kSlopes | kStrain}}},
+         {{{126, 32, kPosition}, {64, 16, kExactSlopes | kExactStrain}}},
          kMap * (8 + 24),
          {query(products(Product::Position, Product::Normal), 3.125, 6.25, false)}},
         {"VariancesAtRestOnly",

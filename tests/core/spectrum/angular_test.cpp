@@ -11,7 +11,6 @@
 namespace pelagic {
 namespace {
 
-using oracle::kPi;
 using oracle::simpson;
 
 template <class Shape>
@@ -21,21 +20,22 @@ void expect_consistent(const Shape& shape, const char* name, double parameter) {
     // for the narrowest here (half width 0.02). The worst is the cusp |π − θ|^0.6 of s = 0.3: h^1.6/60 =
     // 6e-7.
     constexpr int kHalf = 2000;
-    EXPECT_NEAR(simpson(-kPi, kPi, kHalf, [&](double t) { return shape.density(t); }), 1.0, 1e-6);
-    EXPECT_NEAR(shape.cumulative(kPi) - shape.cumulative(-kPi), 1.0, 1e-12);
+    EXPECT_NEAR(simpson(-oracle::kPi, oracle::kPi, kHalf, [&](double t) { return shape.density(t); }), 1.0,
+                1e-6);
+    EXPECT_NEAR(shape.cumulative(oracle::kPi) - shape.cumulative(-oracle::kPi), 1.0, 1e-12);
     for (double from : {-3.0, -0.7, 0.0, 0.02, 1.3}) {
         for (double to : {-2.0, 0.01, 0.5, 3.1}) {
             const double arc = simpson(from, to, kHalf, [&](double t) { return shape.density(t); });
             EXPECT_NEAR(shape.cumulative(to) - shape.cumulative(from), arc, 1e-6) << from << " to " << to;
-            EXPECT_NEAR(shape.cumulative(to + 2 * kPi) - shape.cumulative(to), 1.0, 1e-12);
-            EXPECT_NEAR(shape.cumulative(to - 14 * kPi) - shape.cumulative(to), -7.0, 1e-12);
+            EXPECT_NEAR(shape.cumulative(to + 2 * oracle::kPi) - shape.cumulative(to), 1.0, 1e-12);
+            EXPECT_NEAR(shape.cumulative(to - 14 * oracle::kPi) - shape.cumulative(to), -7.0, 1e-12);
         }
     }
     for (int n = 0; n <= 5; ++n) {
-        const double re =
-            simpson(-kPi, kPi, kHalf, [&](double t) { return shape.density(t) * std::cos(n * t); });
-        const double im =
-            simpson(-kPi, kPi, kHalf, [&](double t) { return shape.density(t) * std::sin(n * t); });
+        const double re = simpson(-oracle::kPi, oracle::kPi, kHalf,
+                                  [&](double t) { return shape.density(t) * std::cos(n * t); });
+        const double im = simpson(-oracle::kPi, oracle::kPi, kHalf,
+                                  [&](double t) { return shape.density(t) * std::sin(n * t); });
         EXPECT_NEAR(shape.harmonic(n).real(), re, 1e-6) << n;
         EXPECT_NEAR(shape.harmonic(n).imag(), im, 1e-6) << n;
     }
@@ -52,7 +52,7 @@ TEST(Angular, CosinePowerOfAHugeExponentIsANeedle) {
     // 1e-16, its power to s times that, 1e-6.
     const double s = 1e10, sigma = std::sqrt(2.0 / s);
     const CosinePower needle(s);
-    EXPECT_NEAR(needle.density(0.0) * std::sqrt(2.0 * kPi) * sigma, 1.0, 1e-9);
+    EXPECT_NEAR(needle.density(0.0) * std::sqrt(2.0 * oracle::kPi) * sigma, 1.0, 1e-9);
     EXPECT_NEAR(needle.cumulative(sigma), 0.5 * std::erf(std::sqrt(0.5)), 1e-6);
     EXPECT_NEAR(needle.cumulative(3.0), 0.5, 1e-14);
     EXPECT_EQ(needle.density(3.0), 0.0);
@@ -60,7 +60,8 @@ TEST(Angular, CosinePowerOfAHugeExponentIsANeedle) {
 
 TEST(Angular, CosinePowerNormMatchesTheGammaFunction) {
     for (double s : {0.1, 2.5, 9.0, 60.0}) {
-        const double exact = std::exp(std::lgamma(s + 1.0) - std::lgamma(s + 0.5)) / (2.0 * std::sqrt(kPi));
+        const double exact =
+            std::exp(std::lgamma(s + 1.0) - std::lgamma(s + 0.5)) / (2.0 * std::sqrt(oracle::kPi));
         EXPECT_NEAR(CosinePower(s).density(0.0) / exact, 1.0, 1e-11) << s;
     }
 }
@@ -80,9 +81,10 @@ TEST(Angular, SecondHarmonicIsADensity) {
 TEST(Angular, SecondHarmonicIsThePapersForBothSensesTogether) {
     const SecondHarmonic shape(0.4);
     for (double t = 0.0; t < 6.3; t += 0.1) {
-        EXPECT_NEAR(shape.density(t) + shape.density(t + kPi), (1.0 + 0.4 * std::cos(2 * t)) / kPi, 1e-14);
+        EXPECT_NEAR(shape.density(t) + shape.density(t + oracle::kPi),
+                    (1.0 + 0.4 * std::cos(2 * t)) / oracle::kPi, 1e-14);
     }
-    EXPECT_NEAR(shape.density(kPi), 0.0, 1e-15);
+    EXPECT_NEAR(shape.density(oracle::kPi), 0.0, 1e-15);
 }
 
 TEST(Angular, MaximumEntropyHasTheGivenCoefficients) {
@@ -115,7 +117,7 @@ TEST(Angular, MaximumEntropyMovesImpossibleCoefficientsToTheEdge) {
         const C got1 = shape.harmonic(1), got2 = shape.harmonic(2);
         EXPECT_LE(std::abs(got1), MaximumEntropy::kMaxFirst + 1e-12);
         EXPECT_LE(std::abs(got2 - got1 * got1), MaximumEntropy::kMaxSecond * (1.0 - std::norm(got1)) + 1e-12);
-        EXPECT_NEAR(shape.cumulative(kPi) - shape.cumulative(-kPi), 1.0, 1e-9);
+        EXPECT_NEAR(shape.cumulative(oracle::kPi) - shape.cumulative(-oracle::kPi), 1.0, 1e-9);
         for (double t = 0.0; t < 6.3; t += 1e-3) {
             EXPECT_TRUE(std::isfinite(shape.density(t)));
             EXPECT_GE(shape.density(t), 0.0);

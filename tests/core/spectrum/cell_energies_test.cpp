@@ -16,7 +16,6 @@ namespace pelagic {
 namespace {
 
 using oracle::kInfinity;
-using oracle::kPi;
 
 struct Column {
     explicit Column(const CellEnergies& cells, int mx, int height)
@@ -38,7 +37,7 @@ void expect_reference(const SeaState& state, const Band& band) {
     const DirectionalSpectrum sea(state);
     const SpectrumTable table(sea);
     const CellEnergies cells(table, band.size_m, band.k_lower, band.k_upper);
-    const double step = 2.0 * kPi / band.size_m;
+    const double step = 2.0 * oracle::kPi / band.size_m;
     struct Sums {
         SpectralMoments ours, reference;
         double worst = 0.0;
@@ -91,7 +90,7 @@ void expect_reference(const SeaState& state, const Band& band) {
 
 // Bands as cascades have them: the one that holds the peak, and shorter waves between two edges.
 std::vector<Band> bands_about(double peak_wavenumber) {
-    const double size_m = 2.0 * kPi / peak_wavenumber * 10.0, step = 2.0 * kPi / size_m;
+    const double size_m = 2.0 * oracle::kPi / peak_wavenumber * 10.0, step = 2.0 * oracle::kPi / size_m;
     const double short_step = 4.2 * step;
     return {{size_m, 0.0, 20.3 * step, 22},
             {size_m / 4.2, 5.0 * short_step, 16.7 * short_step, 18},
@@ -159,7 +158,8 @@ TEST(CellEnergies, AreTheReferencesFarOut) {
     state.swell = {{1.0, 9.0, 60.0}};
     const DirectionalSpectrum sea(state);
     const SpectrumTable table(sea);
-    const double size_m = 12000.0, step = 2.0 * kPi / size_m;  // the swell at mode 95, the wind's peak at 137
+    const double size_m = 12000.0,
+                 step = 2.0 * oracle::kPi / size_m;  // the swell at mode 95, the wind's peak at 137
     const CellEnergies cells(table, size_m, 0.0, kInfinity);
     double sum = 0.0, reference = 0.0, off = 0.0;
     for (int mx = 1; mx < 400; mx += 9) {

@@ -14,15 +14,13 @@
 namespace pelagic {
 namespace {
 
-using oracle::kPi;
-
 // Σ over all cells of a grid for a tile of this size, n modes to each side, within a band. The cell of the
 // origin is no wave: the reference adds it.
 double grid_energy(const DirectionalSpectrum& sea, double size_m, int n, double k_lo, double k_hi) {
     const SpectrumTable table(sea);
     const CellEnergies cells(table, size_m, k_lo, k_hi);
     std::vector<std::vector<double>> rows(4, std::vector<double>(n + 1 + kDensitySlack));
-    const double half = kPi / size_m;
+    const double half = oracle::kPi / size_m;
     double sum = oracle::cell_energy(sea, {-half, half, -half, half, k_lo, k_hi});
     for (int mx = 0; mx <= n; ++mx) {
         cells.column(mx, n, {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data()});
@@ -60,7 +58,7 @@ TEST(CellEnergy, CellsOfAGridAddUpToTheBandForEverySpectrum) {
             state.depth_m = kind == SpectrumKind::Tma ? 8.0 : oracle::kInfinity;
             const DirectionalSpectrum sea(state);
             for (double lo : {0.0, 0.04}) {
-                const double hi = 45 * 2 * kPi / 300.0;  // inside the grid's 47.5
+                const double hi = 45 * 2 * oracle::kPi / 300.0;  // inside the grid's 47.5
                 // The contract is 1e-3; the rules here promise 1e-4 and reach 1e-5.
                 EXPECT_NEAR(grid_energy(sea, 300.0, 47, lo, hi) / band_energy(sea, lo, hi), 1.0, 2e-5)
                     << "spectrum " << static_cast<int>(kind) << ", spreading " << static_cast<int>(spreading)
@@ -78,8 +76,8 @@ TEST(CellEnergy, SwellsOnTilesOfEverySizeAreWhole) {
                 state.wind_speed_mps = 0.0;
                 state.swell = {{1.5, period, direction}};
                 const DirectionalSpectrum sea(state);
-                const double hi = std::max(2.5 * sea.peak_wavenumber(), 2 * kPi / size * 4);
-                const int n = static_cast<int>(std::ceil(hi * size / (2 * kPi))) + 1;
+                const double hi = std::max(2.5 * sea.peak_wavenumber(), 2 * oracle::kPi / size * 4);
+                const int n = static_cast<int>(std::ceil(hi * size / (2 * oracle::kPi))) + 1;
                 // All of the swell is below 2.5 kp: ω = 1.58 ωp is 8 σ away.
                 EXPECT_NEAR(grid_energy(sea, size, n, 0.0, hi) / sea.m0(), 1.0, 2e-5)
                     << period << " s on " << size << " m towards " << direction;
@@ -94,7 +92,7 @@ TEST(CellEnergy, MeasuredSeasAreWhole) {
     state.measured = oracle::made_up_buoy();
     const DirectionalSpectrum sea(state);
     for (double size : {150.0, 600.0}) {
-        const double hi = 60 * 2 * kPi / size;
+        const double hi = 60 * 2 * oracle::kPi / size;
         EXPECT_NEAR(grid_energy(sea, size, 63, 0.0, hi) / band_energy(sea, 0.0, hi), 1.0, 1e-4) << size;
     }
 }

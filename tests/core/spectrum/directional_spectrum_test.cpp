@@ -12,8 +12,6 @@
 namespace pelagic {
 namespace {
 
-using oracle::kPi;
-
 TEST(DirectionalSpectrum, WavenumberSpectrumIsTheFrequencySpectrumAtAnyDepth) {
     // S_k dk = S dω, whatever the depth: the densities at matching k and ω.
     for (double depth : {3.0, 30.0, oracle::kInfinity}) {
@@ -45,13 +43,14 @@ TEST(DirectionalSpectrum, ArcIsTheIntegralOfPolar) {
         const DirectionalSpectrum sea(state);
         for (double k : {0.01, 0.033, 0.1, 1.0, 100.0}) {
             const double all = sea.omnidirectional(k);
-            EXPECT_NEAR(sea.arc(k, -1.0, -1.0 + 2 * kPi) / all, 1.0, 1e-10);
+            EXPECT_NEAR(sea.arc(k, -1.0, -1.0 + 2 * oracle::kPi) / all, 1.0, 1e-10);
             // Simpson with 2e-4 rad steps; the cusp |π − θ|^2s of a flat Hasselmann (s = 0.1) costs h^1.2/60:
             // 6e-7.
             const double sum = oracle::simpson(0.3, 4.0, 10000, [&](double t) { return sea.polar(k, t); });
             EXPECT_NEAR(sea.arc(k, 0.3, 4.0) / all, sum / all, 1e-6);
             EXPECT_NEAR(sea.arc(k, 4.0, 0.3), -sea.arc(k, 0.3, 4.0), 1e-14 * all);
-            EXPECT_NEAR(sea.arc(k, 0.3 - 6 * kPi, 4.0 - 6 * kPi) / all, sea.arc(k, 0.3, 4.0) / all, 1e-12);
+            EXPECT_NEAR(sea.arc(k, 0.3 - 6 * oracle::kPi, 4.0 - 6 * oracle::kPi) / all,
+                        sea.arc(k, 0.3, 4.0) / all, 1e-12);
         }
     }
 }

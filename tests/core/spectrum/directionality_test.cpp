@@ -15,7 +15,6 @@
 namespace pelagic {
 namespace {
 
-using oracle::kPi;
 constexpr double kEverything = std::numeric_limits<double>::infinity();
 
 // A sea of each spreading, measured and swell among them.
@@ -44,14 +43,15 @@ TEST(Directionality, KeepsEveryDensityADensity) {
                 for (const double times : {0.9, 1.0, 2.0, 8.0, 100.0}) {
                     const double k = times * system.peak_wavenumber();
                     const WavePoint point = wave_point(sea.dispersion(), k);
-                    EXPECT_NEAR(system.share(point, -2.0, 2.0 * kPi - 2.0), 1.0, 1e-9);
+                    EXPECT_NEAR(system.share(point, -2.0, 2.0 * oracle::kPi - 2.0), 1.0, 1e-9);
                     // The share is the density's integral, and the harmonics are its coefficients.
                     constexpr int kSteps =
                         8192;  // a cusp at the back of almost isotropic waves costs some 1e-5
                     double part = 0.0;
                     Harmonics found;
                     for (int i = 0; i < kSteps; ++i) {
-                        const double theta = -kPi + 2.0 * kPi * (i + 0.5) / kSteps, step = 2.0 * kPi / kSteps;
+                        const double theta = -oracle::kPi + 2.0 * oracle::kPi * (i + 0.5) / kSteps,
+                                     step = 2.0 * oracle::kPi / kSteps;
                         const double density = system.density(point, theta);
                         ASSERT_GE(density, 0.0);
                         if (theta > -1.0 && theta < 2.0) part += density * step;
@@ -61,7 +61,7 @@ TEST(Directionality, KeepsEveryDensityADensity) {
                     }
                     // Half a step at either end may be in or out, which counts where a needle lies there.
                     const double ends =
-                        kPi / kSteps * (system.density(point, -1.0) + system.density(point, 2.0));
+                        oracle::kPi / kSteps * (system.density(point, -1.0) + system.density(point, 2.0));
                     EXPECT_NEAR(system.share(point, -1.0, 2.0), part, 3e-3 + ends);
                     const Harmonics own = system.harmonics(point);
                     EXPECT_NEAR(std::abs(own.first - found.first), 0.0, 5e-5) << directionality;
@@ -116,7 +116,7 @@ TEST(BandGains, CountWholeWithinAndNotAtAllOutside) {
     const std::vector<BandGain> bands = two_bands();
     const DirectionalSpectrum plain{SeaState{}}, gained(SeaState{}, bands);
     const auto gain_at = [&](double wavelength_m) {
-        const double k = 2.0 * kPi / wavelength_m;
+        const double k = 2.0 * oracle::kPi / wavelength_m;
         return std::sqrt(gained.omnidirectional(k) / plain.omnidirectional(k));
     };
     for (const double wavelength_m : {0.01, 1.0, 1.7, 47.0, 90.0})

@@ -15,8 +15,6 @@
 namespace pelagic {
 namespace {
 
-using oracle::kPi;
-
 // Σ over the bins as NDBC sums them.
 struct Binned {
     double m0 = 0.0;
@@ -47,12 +45,12 @@ DirectionalSpectrum sea_of(const MeasuredSpectrum& hour) {
 }
 
 double degrees_apart(double a, double b) {
-    return std::abs(std::remainder(a - b, 2 * kPi)) * 180.0 / kPi;
+    return std::abs(std::remainder(a - b, 2 * oracle::kPi)) * 180.0 / oracle::kPi;
 }
 
 SpectralMoments buoy_band(const DirectionalSpectrum& sea, const MeasuredSpectrum& hour) {
     const std::vector<double> edges = bin_edges(hour);
-    const auto k = [&](double hz) { return sea.dispersion().wavenumber(2 * kPi * hz); };
+    const auto k = [&](double hz) { return sea.dispersion().wavenumber(2 * oracle::kPi * hz); };
     return moments(sea, k(edges.front()), k(edges.back()));
 }
 
@@ -88,7 +86,7 @@ TEST(Measured, EnergyOfEveryReliableBinIsItsOwn) {
     const std::vector<double> edges = bin_edges(hour);
     for (std::size_t i = 0; i < hour.bins.size(); ++i) {
         if (hour.bins[i].density_m2_per_hz < 0.05) continue;
-        const double a = 2 * kPi * edges[i], b = 2 * kPi * edges[i + 1];
+        const double a = 2 * oracle::kPi * edges[i], b = 2 * oracle::kPi * edges[i + 1];
         // Just inside, because a density may jump at an edge; Simpson is exact for parabolas.
         const double in_band =
             oracle::simpson(a + 1e-12, b - 1e-12, 10, [&](double w) { return law.density(w); });
@@ -136,8 +134,8 @@ TEST(Measured, ARealBuoysHoursComeBack) {
         for (std::size_t i = 0; i < hz.size(); ++i) {
             const auto value = [&](std::size_t kind) { return tables[kind][h][i + 5]; };
             const bool known = value(1) < 999 && value(2) < 999 && value(3) < 999 && value(4) < 999;
-            const auto c1 = std::polar(value(3) / 100, (270 - value(1)) * kPi / 180);
-            const auto c2 = std::polar(value(4) / 100, 2 * (270 - value(2)) * kPi / 180);
+            const auto c1 = std::polar(value(3) / 100, (270 - value(1)) * oracle::kPi / 180);
+            const auto c2 = std::polar(value(4) / 100, 2 * (270 - value(2)) * oracle::kPi / 180);
             hour.bins.push_back({hz[i], value(0), c1.real(), c1.imag(), c2.real(), c2.imag(), known});
         }
         SCOPED_TRACE(testing::Message() << "hour " << h);
@@ -162,7 +160,7 @@ TEST(Measured, MissingDirectionsAreFilledFromNeighbours) {
     MeasuredSpectrum hour;
     for (int i = 0; i < 5; ++i) hour.bins.push_back({0.1 + 0.01 * i, 1.0, 0.0, 0.0, 0.0, 0.0, false});
     const auto at = [&](double hz, double wind) {
-        return MeasuredSpreading(hour, wind).at(2 * kPi * hz).harmonic(1);
+        return MeasuredSpreading(hour, wind).at(2 * oracle::kPi * hz).harmonic(1);
     };
     EXPECT_NEAR(std::arg(at(0.12, 0.7)), 0.7, 1e-12);  // no direction at all: the wind's
 

@@ -11,8 +11,6 @@
 namespace pelagic {
 namespace {
 
-using oracle::kPi;
-
 double height_m(const SeaState& state) {
     return 4.0 * std::sqrt(DirectionalSpectrum(state).m0());
 }
@@ -49,7 +47,7 @@ double share_against_the_wind(const SeaState& state) {
     const DirectionalSpectrum sea(state);
     double against = 0.0, all = 0.0;
     for (double k = 0.01; k < 1e4; k *= 1.05) {
-        against += k * k * k * sea.arc(k, 0.5 * kPi, 1.5 * kPi);
+        against += k * k * k * sea.arc(k, 0.5 * oracle::kPi, 1.5 * oracle::kPi);
         all += k * k * k * sea.omnidirectional(k);
     }
     return against / all;

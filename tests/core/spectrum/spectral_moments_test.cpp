@@ -9,8 +9,6 @@
 namespace pelagic {
 namespace {
 
-using oracle::kPi;
-
 TEST(SpectralMoments, AreThePlainIntegrals) {
     for (SpreadingKind spreading : oracle::kSpreadings) {
         for (double depth : {4.0, oracle::kInfinity}) {
@@ -30,8 +28,8 @@ TEST(SpectralMoments, AreThePlainIntegrals) {
                 const double dlog = std::log(hi / lo) / rings, k = lo * std::exp((i + 0.5) * dlog);
                 const double ratio = sea.dispersion().horizontal_ratio(k);
                 for (int j = 0; j < rays; ++j) {
-                    const double t = 2 * kPi * (j + 0.5) / rays, c = std::cos(t), s = std::sin(t);
-                    const double e = sea.polar(k, t) * k * dlog * 2 * kPi / rays;
+                    const double t = 2 * oracle::kPi * (j + 0.5) / rays, c = std::cos(t), s = std::sin(t);
+                    const double e = sea.polar(k, t) * k * dlog * 2 * oracle::kPi / rays;
                     const double slope = k * k * e, jacobian = slope * ratio * ratio;
                     plain.m0 += e;
                     plain.m_minus1 += e / sea.dispersion().omega(k);
@@ -100,7 +98,8 @@ TEST(SpectralMoments, EnergyPeriodOfPiersonMoskowitz) {
     state.short_waves = ShortWaves::None;
     const SpectralMoments all = moments(DirectionalSpectrum(state), 0.0, oracle::kInfinity);
     const double w0 = 9.81 / (1.026 * 10.0);
-    EXPECT_NEAR(all.energy_period_s(), 2 * kPi * std::tgamma(1.25) / (std::pow(0.74, 0.25) * w0), 1e-5);
+    EXPECT_NEAR(all.energy_period_s(), 2 * oracle::kPi * std::tgamma(1.25) / (std::pow(0.74, 0.25) * w0),
+                1e-5);
     EXPECT_NEAR(all.significant_height_m(), 4 * std::sqrt(all.m0), 1e-14);
 }
 

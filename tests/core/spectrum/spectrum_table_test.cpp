@@ -13,8 +13,6 @@
 namespace pelagic {
 namespace {
 
-using oracle::kPi;
-
 // S_k D at random wavevectors against DirectionalSpectrum's, to this part of it.
 void expect_same_density(const SeaState& state, double tolerance = 3e-6) {
     const DirectionalSpectrum sea(state);
@@ -31,7 +29,7 @@ void expect_same_density(const SeaState& state, double tolerance = 3e-6) {
         std::vector<std::vector<double>> sums(4, std::vector<double>(kCount + kDensitySlack));
         for (std::size_t i = 0; i < kCount; ++i) {
             k[i] = panel.k_lo + unit(generator) * (panel.k_hi - panel.k_lo);
-            const double theta = 2.0 * kPi * unit(generator);
+            const double theta = 2.0 * oracle::kPi * unit(generator);
             x[i] = std::cos(theta);
             y[i] = std::sin(theta);
         }
@@ -44,7 +42,7 @@ void expect_same_density(const SeaState& state, double tolerance = 3e-6) {
             const double content = all * k[i] / largest;
             if (content < 1e-6) continue;
             const double theta = std::atan2(y[i], x[i]);
-            const double ways[] = {theta, theta + kPi, -theta, kPi - theta};
+            const double ways[] = {theta, theta + oracle::kPi, -theta, oracle::kPi - theta};
             for (int way = 0; way < 4; ++way) {
                 const double expected = sea.polar(k[i], ways[way]);
                 ASSERT_NEAR(sums[way][i] * k[i], expected, 1e-3 * expected + 1e-6 * all)

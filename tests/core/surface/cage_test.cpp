@@ -323,12 +323,12 @@ Scene cage_scene(CageMesh mesh) {
     return scene;
 }
 
-constexpr Extent kExtent{.height_m = 1.0, .reach_m = 1.0, .significant_height_m = 0.5, .hidden = {}};
+constexpr Extent kCageExtent{.height_m = 1.0, .reach_m = 1.0, .significant_height_m = 0.5, .hidden = {}};
 
 TEST(CageSurface, AUniformOneIsTheSameAtEveryFrame) {
     Scene scene = cage_scene(cube());
     scene.surface.cage_level = {.splits = 3};
-    const auto surface = make_surface(scene, kExtent);
+    const auto surface = make_surface(scene, kCageExtent);
     EXPECT_TRUE(surface->is_constant());
     EXPECT_FALSE(surface->has_origin() || surface->origin_follows_camera() || surface->is_even());
     EXPECT_FALSE(surface->shaped_by(7));
@@ -355,7 +355,7 @@ TEST(CageSurface, AnAdaptiveOneFollowsTheCamera) {
     scene.camera.resolution = {640, 360};
     scene.camera.keys = {{.frame = 1, .position_m = {4.0, -3.0, 2.0}, .look_at_m = {4.0, 4.0, 0.0}},
                          {.frame = 11, .position_m = {4.0, -300.0, 80.0}, .look_at_m = {4.0, 4.0, 0.0}}};
-    const auto surface = make_surface(scene, kExtent);
+    const auto surface = make_surface(scene, kCageExtent);
     EXPECT_FALSE(surface->is_constant());
     EXPECT_TRUE(surface->has_origin() && !surface->origin_follows_camera());
     const int all[] = {1, 11, 20};
@@ -491,7 +491,7 @@ TEST(CageSurface, APointOfNoFaceMovesNothing) {
     CageMesh mesh = grid_cage(2, 2, [](int, int) { return 0.0; });
     for (glm::dvec3& point : mesh.points_m) point *= 0.1;
     mesh.points_m.emplace_back(1e6, 0.0, 0.0);
-    const auto surface = make_surface(cage_scene(std::move(mesh)), kExtent);
+    const auto surface = make_surface(cage_scene(std::move(mesh)), kCageExtent);
     RestPoints<float> points;
     surface->points_at(1, points);
     EXPECT_EQ(points.origin_m, glm::dvec2(0.0));
@@ -505,7 +505,7 @@ TEST(CageSurface, APointOfNoFaceMovesNothing) {
 TEST(CageSurface, FarFromTheOriginItHasItsOwn) {
     CageMesh mesh = grid_cage(2, 2, [](int, int) { return 0.0; });
     for (glm::dvec3& point : mesh.points_m) point += glm::dvec3(9e5, -9e5, 0.0);
-    const auto surface = make_surface(cage_scene(std::move(mesh)), kExtent);
+    const auto surface = make_surface(cage_scene(std::move(mesh)), kCageExtent);
     EXPECT_TRUE(surface->is_constant() && surface->has_origin() && !surface->origin_follows_camera());
     RestPoints<float> points;
     surface->points_at(1, points);
@@ -516,7 +516,7 @@ TEST(CageSurface, FarFromTheOriginItHasItsOwn) {
 TEST(CageSurface, ACollapsedCageIsFinite) {
     CageMesh mesh = cube();
     for (glm::dvec3& point : mesh.points_m) point = {1.0, 2.0, 3.0};
-    const auto surface = make_surface(cage_scene(std::move(mesh)), kExtent);
+    const auto surface = make_surface(cage_scene(std::move(mesh)), kCageExtent);
     RestPoints<double> points;
     surface->points_at(1, points);
     for (std::size_t i = 0; i < points.rest_m.size(); ++i) {

@@ -21,7 +21,7 @@
 namespace pelagic {
 namespace {
 
-constexpr Extent kExtent{.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0};
+constexpr Extent kNearFarExtent{.height_m = 3.0, .reach_m = 2.0, .significant_height_m = 2.0};
 
 Scene near_far_scene(double size_m, int resolution, bool is_round = false) {
     Scene scene;
@@ -154,7 +154,7 @@ TEST(NearFar, CoversItsDiscOnceFromEveryHeightAndPlace) {
                                  ", round: " + std::to_string(is_round));
                     const Scene scene =
                         seen_from(near_far_scene(size_m, resolution, is_round), glm::dvec3(at_m, height_m));
-                    const NearFar surface(scene, kExtent);
+                    const NearFar surface(scene, kNearFarExtent);
                     RestPoints<float> points;
                     surface.points_at(1, points);
                     ASSERT_EQ(points.rest_m.size(), surface.mesh().points());
@@ -170,7 +170,8 @@ TEST(NearFar, CoversItsDiscOnceFromEveryHeightAndPlace) {
                                          b = places[mesh.far_point(last, (i + 1) % mesh.columns())] - at_m;
                         nearest_m = std::min(nearest_m, cross(a, b) / glm::length(b - a));
                     }
-                    const EarthView earth(height_m, is_round ? kEarthCurvature_per_m : 0.0, kExtent.height_m);
+                    const EarthView earth(height_m, is_round ? kEarthCurvature_per_m : 0.0,
+                                          kNearFarExtent.height_m);
                     const double horizon_m =
                         is_round ? earth.farthest_m() : std::min(std::abs(height_m) * 0x1p20, 1e15);
                     EXPECT_GT(nearest_m, 0.999 * horizon_m);
@@ -201,7 +202,7 @@ TEST(NearFar, PlacesStayWhenTheCameraMoves) {
                  .position_m = {1e6 + way_m, -2e6 - 0.7 * way_m, 3.0 + 1.5 * size_m},
                  .look_at_m = {1e6 + 2.0 * way_m, -2e6, 0.0}}};
             ASSERT_TRUE(validate(scene).empty());
-            const NearFar surface(scene, kExtent);
+            const NearFar surface(scene, kNearFarExtent);
             std::map<std::pair<double, double>, std::array<double, 3>> before;
             std::size_t kept = 0, of = 0, steps = 0;
             std::set<double> cells_m;
@@ -240,7 +241,7 @@ TEST(NearFar, PlacesStayWhenTheCameraMoves) {
 // Footprints belong to cells: one rung for each, the finest those of the needs; far away the long way between rows.
 TEST(NearFar, FootprintsAreThoseOfTheCells) {
     const Scene scene = seen_from(near_far_scene(200.0, 64), {3.0, 5.0, 4.0});
-    const NearFar surface(scene, kExtent);
+    const NearFar surface(scene, kNearFarExtent);
     RestPoints<double> points;
     surface.points_at(1, points);
     const std::array frames{1};
@@ -275,7 +276,9 @@ TEST(NearFar, FootprintsAreThoseOfTheCells) {
 // Rings grow with the distance: an angle in all of them.
 TEST(NearFar, DetailFollowsTheHeightInOctaves) {
     const auto cell_m = [](double height_m, bool is_round) {
-        return NearFar(near_far_scene(200.0, 100, is_round), kExtent).place_of({0.0, 0.0, height_m}).cell_m;
+        return NearFar(near_far_scene(200.0, 100, is_round), kNearFarExtent)
+            .place_of({0.0, 0.0, height_m})
+            .cell_m;
     };
     for (const double height_m : {0.0, 4.0, 99.0, 199.9}) EXPECT_EQ(cell_m(height_m, false), 2.0);
     EXPECT_EQ(cell_m(200.0, false), 4.0);
@@ -296,7 +299,7 @@ TEST(NearFar, DependsOnThePlaceAlone) {
     other.camera.resolution = {17, 1001};
     other.shot.last_frame = 900;
     other.camera.position_m += glm::dvec3(0.01, 0.01, 0.1);
-    const NearFar a(scene, kExtent), b(other, kExtent);
+    const NearFar a(scene, kNearFarExtent), b(other, kNearFarExtent);
     EXPECT_EQ(a.shaped_by(1), b.shaped_by(1));
     RestPoints<float> ours, theirs;
     a.points_at(1, ours);
@@ -316,7 +319,7 @@ TEST(NearFar, TheEarthIsNoLowerBelowTheCamera) {
                 const Scene scene =
                     seen_from(near_far_scene(size_m, resolution, true), {x_m, -3e5 - 2.0 * x_m, height_m});
                 RestPoints<float> points;
-                NearFar(scene, kExtent).points_at(1, points);
+                NearFar(scene, kNearFarExtent).points_at(1, points);
                 const glm::dvec2 from_m = glm::dvec2(scene.camera.position_m) - points.touches_at_m;
                 EXPECT_GT(on_earth(glm::dvec3(from_m, 0.0), kEarthCurvature_per_m).z, -7e-4);
             }

@@ -78,11 +78,12 @@ std::complex<double> coefficient(const std::vector<double>& map, int n, int mx, 
 TEST(Swell, TravelsWhereItWasSentAtTheDispersionRelationsSpeed) {
     for (double depth_m : {kDeep, 5.0})
         for (double direction_deg : {0.0, 80.0, 200.0}) {
-            constexpr double kLength = 40.0, kSize = 8.0 * kLength, kStep_s = 0.25;
-            constexpr int kNodes = 64;
+            constexpr double kLength = 40.0, kPatch_m = 8.0 * kLength, kStep_s = 0.25;
+            constexpr int kPatchNodes = 64;
             Scene scene = swell_alone(kLength, depth_m, direction_deg);
-            scene.waves.cascades = {{kSize, 32}};
-            auto frame = frame_of<double>(scene, {tile(products(Product::Displacement), 0, kSize, kNodes)});
+            scene.waves.cascades = {{kPatch_m, 32}};
+            auto frame =
+                frame_of<double>(scene, {tile(products(Product::Displacement), 0, kPatch_m, kPatchNodes)});
             const auto before = field_at_nodes(frame, 0, Field::Height);
             frame.set(kStep_s);
             const auto after = field_at_nodes(frame, 0, Field::Height);
@@ -95,10 +96,10 @@ TEST(Swell, TravelsWhereItWasSentAtTheDispersionRelationsSpeed) {
                     const double length = std::hypot(mx, my);
                     // Modes within 60° of the swell's direction and its band; −k has the conjugate.
                     if (length < 4.0 || length > 13.0 || mx * sent.x + my * sent.y < 0.5 * length) continue;
-                    const auto h0 = coefficient(before, kNodes, mx, my),
-                               h1 = coefficient(after, kNodes, mx, my);
+                    const auto h0 = coefficient(before, kPatchNodes, mx, my),
+                               h1 = coefficient(after, kPatchNodes, mx, my);
                     if (std::norm(h0) < 1e-5) continue;
-                    const double omega = omega_of(2.0 * kPi * length / kSize, depth_m);
+                    const double omega = omega_of(2.0 * kPi * length / kPatch_m, depth_m);
                     // Up to the energy that spreading sends backwards, cos¹⁵⁰ of 60° and more.
                     EXPECT_NEAR(std::abs(h1 / h0 - std::polar(1.0, -omega * kStep_s)), 0.0, 1e-6)
                         << mx << ' ' << my;

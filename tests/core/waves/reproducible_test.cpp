@@ -15,7 +15,7 @@ namespace {
 using namespace test;
 
 template <class V>
-bool same_bits(const std::vector<V>& a, const std::vector<V>& b) {
+bool same_bytes(const std::vector<V>& a, const std::vector<V>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(V)) == 0;
 }
 void expect_same_bits(const ProductArrays<float>& a, const ProductArrays<float>& b, const char* what) {
@@ -23,15 +23,15 @@ void expect_same_bits(const ProductArrays<float>& a, const ProductArrays<float>&
         ASSERT_GT(a.size(row.product), 0u) << row.name;
         if (row.components == 1) {
             const auto product = NumberProduct::checked(row.product);
-            EXPECT_TRUE(same_bits(a.numbers(product), b.numbers(product))) << what << ": " << row.name;
+            EXPECT_TRUE(same_bytes(a.numbers(product), b.numbers(product))) << what << ": " << row.name;
         } else {
             const auto product = VectorProduct::checked(row.product);
-            EXPECT_TRUE(same_bits(a.vectors(product), b.vectors(product))) << what << ": " << row.name;
+            EXPECT_TRUE(same_bytes(a.vectors(product), b.vectors(product))) << what << ": " << row.name;
         }
     }
 }
 
-Scene windy() {
+Scene windy_sea() {
     Scene scene;
     scene.sea.wind_speed_mps = 14.0;
     scene.sea.swell = {{.height_m = 1.0, .period_s = 11.0, .direction_deg = 80.0}};
@@ -45,7 +45,7 @@ Query everything() {
 
 // Who gives a field's samples back has read them for the last time.
 TEST(Frame, ThatGaveSamplesBackTakesNoTime) {
-    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy(), {everything()}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy_sea(), {everything()}));
     Frame<float> frame(sea);
     frame.set(1.0);
     ASSERT_NE(frame.samples(0, 0, Field::Height), nullptr);
@@ -59,7 +59,7 @@ TEST(Threads, ChangeNoBit) {
     const auto points = random_points<float>(300.0, 5000);
     const auto run = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return sample(frame_of<float>(windy(), {everything()}, 0.25), 0,
+        return sample(frame_of<float>(windy_sea(), {everything()}, 0.25), 0,
                       points);  // Sea, Frame and query on the same threads
     };
     const auto alone = run(1);
@@ -67,7 +67,7 @@ TEST(Threads, ChangeNoBit) {
 }
 
 TEST(Frames, HaveNoTimeOnceCancelled) {
-    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy(), {everything()}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy_sea(), {everything()}));
     const auto points = random_points<float>(300.0, 2000);
     Frame<float> alone(sea), stopped(sea);
     std::atomic<bool> cancel = true;
@@ -81,7 +81,7 @@ TEST(Frames, HaveNoTimeOnceCancelled) {
 }
 
 TEST(Frames, DependOnTheirTimeAlone) {
-    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy(), {everything()}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(windy_sea(), {everything()}));
     const auto points = random_points<float>(300.0, 2000);
     Frame<float> alone(sea), run(sea), backwards(sea);
     alone.set(6 / 24.0);
@@ -97,14 +97,14 @@ TEST(Frames, DependOnTheirTimeAlone) {
 }
 
 TEST(Seeds, GiveOtherSeas) {
-    Scene scene = windy();
+    Scene scene = windy_sea();
     const auto points = random_points<float>(300.0, 200);
     const auto one = sample(frame_of<float>(scene, {everything()}), 0, points);
     scene.shot.seed = 2;
     const auto two = sample(frame_of<float>(scene, {everything()}), 0, points);
-    EXPECT_FALSE(same_bits(one.vectors(Position), two.vectors(Position)));
-    EXPECT_TRUE(same_bits(one.vectors(SlopeVarianceAtRest),
-                          two.vectors(SlopeVarianceAtRest)));  // an expectation, not of one seed
+    EXPECT_FALSE(same_bytes(one.vectors(Position), two.vectors(Position)));
+    EXPECT_TRUE(same_bytes(one.vectors(SlopeVarianceAtRest),
+                           two.vectors(SlopeVarianceAtRest)));  // an expectation, not of one seed
 }
 
 // The transforms of a shot, counted by hand for one cascade. The mesh alone has one grid, and two real fields

@@ -39,34 +39,34 @@ TEST(DoubledResolution, KeepsEveryAmplitudeToTheBit) {
 
 // The difference of one tile's surfaces, projected onto the modes of the coarser one.
 TEST(DoubledResolution, ChangesNothingBelowTheOldBandLimit) {
-    constexpr int kNodes = 144;
+    constexpr int kSideNodes = 144;
     for (int c = 0; c < 3; ++c) {
         const double size_m = scene_with(1).waves.cascades[c].size_m;
-        const auto query = tile(products(Product::Displacement), c, size_m, kNodes);
+        const auto query = tile(products(Product::Displacement), c, size_m, kSideNodes);
         const auto coarse = frame_of<float>(scene_with(1), {query}, 1.5),
                    fine = frame_of<float>(scene_with(2), {query}, 1.5);
         const auto a = field_at_nodes(coarse, c, Field::Height), b = field_at_nodes(fine, c, Field::Height);
         const int radius = coarse.sea().cascades()[c].radius - 1;
         // The coefficient (mx, my) of b − a, by rows, then by columns.
-        std::vector<std::complex<double>> rows(static_cast<std::size_t>(kNodes) * (2 * radius + 1));
-        for (int y = 0; y < kNodes; ++y)
+        std::vector<std::complex<double>> rows(static_cast<std::size_t>(kSideNodes) * (2 * radius + 1));
+        for (int y = 0; y < kSideNodes; ++y)
             for (int mx = -radius; mx <= radius; ++mx)
-                for (int x = 0; x < kNodes; ++x) {
-                    const std::size_t i = static_cast<std::size_t>(y) * kNodes + x;
+                for (int x = 0; x < kSideNodes; ++x) {
+                    const std::size_t i = static_cast<std::size_t>(y) * kSideNodes + x;
                     rows[static_cast<std::size_t>(y) * (2 * radius + 1) + mx + radius] +=
-                        (b[i] - a[i]) * std::polar(1.0, -2.0 * kPi * mx * x / kNodes);
+                        (b[i] - a[i]) * std::polar(1.0, -2.0 * kPi * mx * x / kSideNodes);
                 }
         double projected = 0.0, whole = 0.0;
         for (std::size_t i = 0; i < a.size(); ++i)
-            whole += (b[i] - a[i]) * (b[i] - a[i]) / (1.0 * kNodes * kNodes);
+            whole += (b[i] - a[i]) * (b[i] - a[i]) / (1.0 * kSideNodes * kSideNodes);
         for (int my = -radius; my <= radius; ++my)
             for (int mx = -radius; mx <= radius; ++mx) {
                 if (mx * mx + my * my >= (radius + 1) * (radius + 1)) continue;
                 std::complex<double> sum = 0.0;
-                for (int y = 0; y < kNodes; ++y)
+                for (int y = 0; y < kSideNodes; ++y)
                     sum += rows[static_cast<std::size_t>(y) * (2 * radius + 1) + mx + radius] *
-                           std::polar(1.0, -2.0 * kPi * my * y / kNodes);
-                projected += std::norm(sum / (1.0 * kNodes * kNodes));
+                           std::polar(1.0, -2.0 * kPi * my * y / kSideNodes);
+                projected += std::norm(sum / (1.0 * kSideNodes * kSideNodes));
             }
         const double hs = 4.0 * std::sqrt(coarse.realisation(0).m0);
         EXPECT_LT(std::sqrt(projected), 1e-6 * hs) << "cascade " << c;  // rounding; the requirement is 1e-4

@@ -25,7 +25,9 @@
 
 namespace pelagic::test {
 
-using enum Product;  // samples.vectors(Displacement)
+// samples.vectors(Displacement). JacobianMoments is a type as well, so not that one.
+using Product::Coverage, Product::Displacement, Product::Normal, Product::Position, Product::SlopeVariance,
+    Product::SlopeVarianceAtRest, Product::Velocity;
 
 template <class T>
 Frame<T> frame_of(const Scene& scene, const Plan& plan, double t_s = 0.0) {

@@ -14,7 +14,7 @@
 namespace pelagic {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kForever = std::numeric_limits<double>::infinity();
 
 Scene trochoid() {
     Scene scene;
@@ -46,7 +46,7 @@ std::vector<Scene> many_seas() {
     for (const SpectrumKind kind : {SpectrumKind::PiersonMoskowitz, SpectrumKind::Jonswap, SpectrumKind::Tma,
                                     SpectrumKind::Elfouhaily, SpectrumKind::Omega2, SpectrumKind::Phillips})
         for (const double wind_mps : {1.0, 10.0, 40.0})
-            for (const double depth_m : {3.0, kInfinity}) {
+            for (const double depth_m : {3.0, kForever}) {
                 Scene scene = trochoid();
                 scene.sea.spectrum = kind;
                 scene.sea.wind_speed_mps = wind_mps;
@@ -257,14 +257,14 @@ TEST(TrainVariance, OutsideTheRangeIsTheRestOfTheSpectrum) {
     const DirectionalSpectrum spectrum(scene.sea);
     SpectralMoments rest = moments(spectrum, 0.0, kTwoPi / 30.0);
     EXPECT_GT(rest.m0, 0.5 * spectrum.m0());
-    rest += moments(spectrum, kTwoPi / 0.02, kInfinity);
+    rest += moments(spectrum, kTwoPi / 0.02, kForever);
     rest.scale_strain(0.25);
     // And what the bins have and their trains lack: slopes and strains, never energy.
     for (const auto m : {&SpectralMoments::m0, &SpectralMoments::m_minus1, &SpectralMoments::east})
         EXPECT_EQ(trains.outside.*m, rest.*m);
     for (const auto m : {&SpectralMoments::xx, &SpectralMoments::yy, &SpectralMoments::xxxx}) {
         EXPECT_GT(trains.outside.*m, rest.*m);
-        EXPECT_LT(trains.outside.*m, rest.*m + 0.005 * moments(spectrum, 0.0, kInfinity).*m);
+        EXPECT_LT(trains.outside.*m, rest.*m + 0.005 * moments(spectrum, 0.0, kForever).*m);
     }
     EXPECT_NEAR(total(trains).m0, spectrum.m0(), 1e-6 * spectrum.m0());
 }
@@ -278,7 +278,7 @@ TEST(TrainVariance, OfAllTrainsIsTheSpectrums) {
         scene.waves.choppiness = choppiness;
         scene.effects.breaking_from_m = 0.0;
         const SpectralMoments all = total(trains_of(scene));
-        SpectralMoments wanted = moments(DirectionalSpectrum(scene.sea), 0.0, kInfinity);
+        SpectralMoments wanted = moments(DirectionalSpectrum(scene.sea), 0.0, kForever);
         wanted.scale_strain(choppiness * choppiness);
         EXPECT_NEAR(all.m0, wanted.m0, 1e-6 * wanted.m0);
         EXPECT_NEAR(all.mss(), wanted.mss(), 0.01 * wanted.mss());
@@ -313,7 +313,7 @@ TEST(TrainVariance, OfFewTrainsIsTheSpectrumsToo) {
 TEST(Trains, DirectionsFollowTheSpectrum) {
     Scene scene = trochoid();
     scene.sea.wind_direction_deg = 130.0;
-    const SpectralMoments wanted = moments(DirectionalSpectrum(scene.sea), 0.0, kInfinity);
+    const SpectralMoments wanted = moments(DirectionalSpectrum(scene.sea), 0.0, kForever);
     SpectralMoments mean;
     constexpr int kSeeds = 400;
     for (int seed = 1; seed <= kSeeds; ++seed) {

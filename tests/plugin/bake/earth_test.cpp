@@ -38,7 +38,7 @@ Scene scene_from(SurfaceKind kind, glm::dvec2 place_m, double height_m, double d
 }
 
 constexpr std::array kRound{SurfaceKind::ProjectedGrid, SurfaceKind::Planet};
-const std::vector<glm::dvec2> kPlaces_m{{0.0, 0.0}, {3000.0, -200.0}, {-0.8e6, 0.6e6}};
+const std::vector<glm::dvec2> kPlacesOnEarth_m{{0.0, 0.0}, {3000.0, -200.0}, {-0.8e6, 0.6e6}};
 
 double dip_of(double height_m) {
     return std::acos(kEarthRadius_m / (kEarthRadius_m + height_m));
@@ -53,7 +53,7 @@ glm::dvec3 centre_of(const Scene& scene, glm::dvec2 place_m) {
 // A calm sea is the sphere itself, its normals are the verticals, and seen from the camera it ends at the horizon's dip.
 TEST_F(OnTheEarth, ACalmSeaIsTheSphereUpToItsHorizon) {
     for (const SurfaceKind kind : kRound)
-        for (const glm::dvec2 place_m : kPlaces_m)
+        for (const glm::dvec2 place_m : kPlacesOnEarth_m)
             for (const double height_m : {2.0, 100.0, 8e3, 100e3, 400e3}) {
                 SCOPED_TRACE(std::string(word_of(kind)) + " from " + std::to_string(height_m) + " m over " +
                              std::to_string(place_m.x));
@@ -85,7 +85,7 @@ TEST_F(OnTheEarth, ACalmSeaIsTheSphereUpToItsHorizon) {
 // Positions, normals and velocities of waves: the flat sea's, laid on the sphere by angles; down, to the limb and past it.
 TEST_F(OnTheEarth, WavesAreTheFlatSeasRelativeToTheVertical) {
     for (const SurfaceKind kind : kRound)
-        for (const glm::dvec2 place_m : kPlaces_m)
+        for (const glm::dvec2 place_m : kPlacesOnEarth_m)
             for (const double height_m : {4.0, 100e3, 400e3})
                 for (const double down_deg : {90.0, dip_of(height_m) / kDegree, -5.0}) {
                     SCOPED_TRACE(std::string(word_of(kind)) + " from " + std::to_string(height_m) +

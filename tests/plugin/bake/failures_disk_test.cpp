@@ -12,10 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 // Root may write anywhere: what stops everybody is a file where a folder should be.
 TEST(BakeDisk, AFileInTheWayOfTheFolderIsSaid) {
     const TempFolder folder;

@@ -19,10 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 // Waits until `condition` holds; whether it did before the program ended or a minute was over.
 template <class Condition>
 bool wait_until(Running& running, Condition condition) {

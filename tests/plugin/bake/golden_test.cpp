@@ -42,7 +42,7 @@ using namespace pelagic;
 using namespace pelagic::test;
 namespace fs = std::filesystem;
 
-std::string bytes_of(const fs::path& file) {
+std::string bytes_of_file(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -60,7 +60,7 @@ int revision_of(OutputKind kind) {
 
 // A mesh's file: its bytes, but for what it says about itself.
 std::string mesh_hash(const fs::path& file, const std::string& fingerprint) {
-    std::string bytes = bytes_of(file);
+    std::string bytes = bytes_of_file(file);
     for (const std::string& text : {fingerprint, std::string(PELAGIC_VERSION)})
         for (std::size_t at = bytes.find(text); at != std::string::npos; at = bytes.find(text, at))
             bytes.erase(at, text.size());

@@ -24,10 +24,6 @@ class Budget : public ::testing::Test {
         return run({.arguments = options, .folder = folder_.path()});
     }
     std::string record() const { return read_file(folder_.path() / "s" / "s.json"); }
-    static bool has(const std::string& text, const std::string& part) {
-        return text.find(part) != std::string::npos;
-    }
-
     TempFolder folder_;
 };
 

@@ -20,10 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 class Cli : public ::testing::Test {
   protected:
     // Of tiles that repeat: copies of so small a tile would be remarked on.

@@ -12,10 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 class Endings : public ::testing::Test {
   protected:
     void SetUp() override { write_file(folder() / "small.toml", text_of({.frames = 3})); }

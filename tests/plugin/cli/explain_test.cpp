@@ -17,10 +17,6 @@
 namespace pelagic::test {
 namespace {
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 struct Price {
     std::string name;
     long transforms = 0, lines = 0;

@@ -15,10 +15,6 @@
 namespace pelagic::test {
 namespace {
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 class Memory : public testing::Test {
   protected:
     const std::filesystem::path& folder() const { return folder_.path(); }

@@ -26,10 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 // A shot whose pictures take a moment only.
 std::string small_shot(const std::string& quality = "draft") {
     return "[shot]\nname = \"small\"\nframes = [1, 4]\n"

@@ -25,6 +25,10 @@ class TempFolder {
     std::filesystem::path path_;
 };
 
+inline bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
 struct Launch {
     std::vector<std::string> arguments{};
     std::filesystem::path folder = "/";  // the working folder

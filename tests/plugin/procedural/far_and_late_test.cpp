@@ -48,11 +48,11 @@ std::vector<glm::vec2> places() {
     return places;
 }
 
-struct Answers {
+struct FarAnswers {
     std::vector<glm::vec3> position = std::vector<glm::vec3>(kCount), normal = std::vector<glm::vec3>(kCount);
 };
-Answers answers_of(const FrameHandle& frame, glm::dvec2 origin_m, const std::vector<glm::vec2>& rest_m) {
-    Answers answers;
+FarAnswers answers_of(const FrameHandle& frame, glm::dvec2 origin_m, const std::vector<glm::vec2>& rest_m) {
+    FarAnswers answers;
     pelagic_points points = PELAGIC_INIT(pelagic_points);
     points.origin_m[0] = origin_m.x;
     points.origin_m[1] = origin_m.y;
@@ -96,7 +96,7 @@ TEST(FarAndLate, PointsAreThoseOfDoublePrecision) {
         for (const glm::dvec2 origin_m : {glm::dvec2(0.0), glm::dvec2(1e6 + 0.3, -1e6 + 0.07)})
             for (const double time_s : {0.0, 1e7 + 1.0 / 24.0, -1e7}) {
                 const FrameHandle frame = frame_of(sea, time_s, time_s);
-                const Answers answers = answers_of(frame, origin_m, rest_m);
+                const FarAnswers answers = answers_of(frame, origin_m, rest_m);
                 exact.set(time_s);
                 std::vector<glm::dvec3> position(kCount);
                 Results<double> results;

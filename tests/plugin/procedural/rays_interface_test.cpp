@@ -22,7 +22,7 @@ namespace {
 using namespace test;
 
 constexpr float kForever = std::numeric_limits<float>::infinity();
-const std::string kShot = "[camera]\nresolution = [160, 90]\n";
+const std::string kRaysShot = "[camera]\nresolution = [160, 90]\n";
 
 struct Hits {
     std::vector<float> distance, footprint_m, coverage;
@@ -93,7 +93,7 @@ Hits hits_of(const FrameHandle& frame, const pelagic_rays& rays) {
 }
 
 TEST(ProceduralRays, HitsHaveTheQuerysValues) {
-    const FrameHandle frame = frame_of(open_text(kShot), 3.0, 3.0);
+    const FrameHandle frame = frame_of(open_text(kRaysShot), 3.0, 3.0);
     for (const glm::dvec2 place : {glm::dvec2(0.0), glm::dvec2(2e6, -7e5)}) {
         Fan fan = fan_of(600);
         fan.origin_m = glm::dvec3(place, 8.0);
@@ -138,8 +138,8 @@ TEST(ProceduralRays, HitsHaveTheQuerysValues) {
 TEST(ProceduralRays, DontDependOnWhatIsKeptNorOnOthers) {
     pelagic_open_options little = PELAGIC_INIT(pelagic_open_options);
     little.ray_cache_bytes = 1;
-    const FrameHandle kept = frame_of(open_text(kShot), 3.0, 3.02),
-                      forgotten = frame_of(open_text(kShot, &little), 3.0, 3.02);
+    const FrameHandle kept = frame_of(open_text(kRaysShot), 3.0, 3.02),
+                      forgotten = frame_of(open_text(kRaysShot, &little), 3.0, 3.02);
     Fan fan = fan_of(400);
     for (std::size_t i = 0; i < fan.direction.size(); ++i)
         fan.time_s.push_back(0.0001f * static_cast<float>(i % 200));
@@ -147,7 +147,7 @@ TEST(ProceduralRays, DontDependOnWhatIsKeptNorOnOthers) {
     EXPECT_TRUE(all == hits_of(kept, fan.rays()));
     EXPECT_TRUE(all == hits_of(forgotten, fan.rays()));
     std::vector<std::thread> threads;
-    const FrameHandle shared = frame_of(open_text(kShot), 3.0, 3.02);
+    const FrameHandle shared = frame_of(open_text(kRaysShot), 3.0, 3.02);
     for (int thread = 0; thread < 4; ++thread)
         threads.emplace_back([&] { EXPECT_TRUE(all == hits_of(shared, fan.rays())); });
     for (std::thread& thread : threads) thread.join();
@@ -166,7 +166,7 @@ TEST(ProceduralRays, DontDependOnWhatIsKeptNorOnOthers) {
 }
 
 TEST(ProceduralRays, FollowTheFrame) {
-    const SeaHandle sea = open_text(kShot);
+    const SeaHandle sea = open_text(kRaysShot);
     const FrameHandle frame = frame_of(sea, 3.0, 3.0), later = frame_of(sea, 4.0, 4.0);
     const Fan fan = fan_of(300);
     const Hits before = hits_of(frame, fan.rays());
@@ -177,7 +177,7 @@ TEST(ProceduralRays, FollowTheFrame) {
 }
 
 TEST(ProceduralRays, OnTheEarthPlacesAreTheBentSeas) {
-    const FrameHandle frame = frame_of(open_text(kShot), 3.0, 3.0);
+    const FrameHandle frame = frame_of(open_text(kRaysShot), 3.0, 3.0);
     Fan fan = fan_of(2000);
     fan.on_earth = true;
     fan.origin_m.z = 30.0;
@@ -211,7 +211,7 @@ TEST(ProceduralRays, OnTheEarthPlacesAreTheBentSeas) {
 }
 
 TEST(ProceduralRays, OnTheEarthEndWhereTheyAreUnderAllWaves) {
-    const FrameHandle frame = frame_of(open_text(kShot), 3.0, 3.0);
+    const FrameHandle frame = frame_of(open_text(kRaysShot), 3.0, 3.0);
     const auto distance = [&](double z, glm::vec3 direction) {
         Fan fan;
         fan.on_earth = true;
@@ -262,9 +262,9 @@ TEST(ProceduralRays, OfTrainsTakeAnyFinestCell) {
 TEST(ProceduralRays, ShareALittleRoom) {
     pelagic_open_options little = PELAGIC_INIT(pelagic_open_options);
     little.ray_cache_bytes = 200000;
-    const FrameHandle frame = frame_of(open_text(kShot, &little), 3.0, 3.0);
+    const FrameHandle frame = frame_of(open_text(kRaysShot, &little), 3.0, 3.0);
     const Fan fan = fan_of(1000);
-    const Hits alone = hits_of(frame_of(open_text(kShot), 3.0, 3.0), fan.rays());
+    const Hits alone = hits_of(frame_of(open_text(kRaysShot), 3.0, 3.0), fan.rays());
     std::vector<std::thread> threads;
     for (int thread = 0; thread < 4; ++thread)
         threads.emplace_back([&] { EXPECT_TRUE(alone == hits_of(frame, fan.rays())); });
@@ -275,7 +275,7 @@ TEST(ProceduralRays, OfProgramsThatKnowLess) {
     pelagic_open_options options = PELAGIC_INIT(pelagic_open_options);
     options.size = offsetof(pelagic_open_options, ray_cache_bytes);
     options.ray_cache_bytes = ~std::size_t{0};  // isn't theirs
-    const SeaHandle sea = open_text(kShot, &options);
+    const SeaHandle sea = open_text(kRaysShot, &options);
     const FrameHandle frame = frame_of(sea, 1.0, 1.0);
     pelagic_camera camera = PELAGIC_INIT(pelagic_camera);
     ASSERT_EQ(pelagic_shot_camera(sea.get(), 1.0, &camera, nullptr), PELAGIC_OK);
@@ -299,7 +299,7 @@ TEST(ProceduralRays, OfACalmSeaMeetThePlane) {
 }
 
 TEST(ProceduralRays, DirectionsHaveLengths) {
-    const FrameHandle frame = frame_of(open_text(kShot), 3.0, 3.0);
+    const FrameHandle frame = frame_of(open_text(kRaysShot), 3.0, 3.0);
     float first = 0.0f;
     for (const float length : {1.0f, 0.125f, 64.0f, 1e-20f, 1e20f}) {
         Fan fan;
@@ -319,7 +319,7 @@ TEST(ProceduralRays, DirectionsHaveLengths) {
 }
 
 TEST(ProceduralRays, WhateverComesInIsFiniteOrNothing) {
-    const FrameHandle frame = frame_of(open_text(kShot), 3.0, 3.02);
+    const FrameHandle frame = frame_of(open_text(kRaysShot), 3.0, 3.02);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float odd[] = {nan, kForever, -kForever, 0.0f, -1.0f, 3e38f, 1e30f, -1e30f, 1e-38f, 1.0f};
     Fan fan;
@@ -358,7 +358,7 @@ TEST(ProceduralRays, WhateverComesInIsFiniteOrNothing) {
 }
 
 TEST(ProceduralRays, RefuseWhatTheyCantTake) {
-    const FrameHandle frame = frame_of(open_text(kShot), 3.0, 3.0);
+    const FrameHandle frame = frame_of(open_text(kRaysShot), 3.0, 3.0);
     const Fan fan = fan_of(4);
     float distance[4] = {1.0f, 2.0f, 3.0f, 4.0f};
     unsigned char occluded[4] = {7, 7, 7, 7};

@@ -34,7 +34,7 @@ Scene moving_scene() {
     return scene;
 }
 
-Picture picture_of(const Scene& scene, const RenderOptions& options, int frame = 5) {
+Picture layers_of(const Scene& scene, const RenderOptions& options, int frame = 5) {
     Renderer renderer(scene, options, uniform_sky(), std::array{frame});
     Picture picture;
     EXPECT_TRUE(renderer.render(frame, picture));
@@ -84,7 +84,7 @@ TEST(PictureLayers, EachIsAskedForByItsName) {
 // The light is the same whatever else is asked for, and what nobody asks for isn't there.
 TEST(PictureLayers, ChangeNoLight) {
     const Scene scene = moving_scene();
-    const Picture plain = picture_of(scene, render_options(scene)), full = picture_of(scene, with_all(scene));
+    const Picture plain = layers_of(scene, render_options(scene)), full = layers_of(scene, with_all(scene));
     ASSERT_EQ(plain.layers.size(), full.layers.size());
     EXPECT_EQ(std::memcmp(plain.layers.data(), full.layers.data(), plain.layers.size() * sizeof(SeaRadiance)),
               0);
@@ -103,7 +103,7 @@ TEST(PictureLayers, PositionAndDepthAreWhatThePixelShows) {
         const Scene scene = moving_scene();
         RenderOptions options = with_all(scene);
         options.samples = samples;
-        const Picture picture = picture_of(scene, options);
+        const Picture picture = layers_of(scene, options);
         const View view = view_at(scene.camera, 5);
         const auto& data = picture.data;
         const double offset = (samples / 2 + 0.5) / samples;  // of the sample in its pixel
@@ -136,7 +136,7 @@ TEST(PictureLayers, PositionAndDepthAreWhatThePixelShows) {
 TEST(PictureLayers, MotionIsTheCameras) {
     Scene scene = moving_scene();
     scene.shot.time_scale = 1e-9;
-    const Picture picture = picture_of(scene, with_all(scene));
+    const Picture picture = layers_of(scene, with_all(scene));
     const View now = view_at(scene.camera, 5), next = view_at(scene.camera, 6),
                before = view_at(scene.camera, 4);
     const std::vector<float>&motion = picture.data[index(PictureLayer::Motion)],
@@ -227,9 +227,9 @@ TEST(PictureLayers, AlphaIsTheSeasShare) {
         RenderOptions options = render_options(scene);
         options.samples = 3;
         options.shutter_frames = shutter;
-        const Picture opaque = picture_of(scene, options);
+        const Picture opaque = layers_of(scene, options);
         options.alpha = true;
-        const Picture clear = picture_of(scene, options);
+        const Picture clear = layers_of(scene, options);
         ASSERT_EQ(clear.alpha.size(), opaque.layers.size());
         int edges = 0;
         for (std::size_t i = 0; i < clear.alpha.size(); ++i) {
@@ -294,9 +294,9 @@ TEST(PictureLayers, ShutterAccumulates) {
     const Picture mean = accumulated(scene, 5, 0.5);
     RenderOptions options = with_all(scene);
     options.samples = kShutterSamples;
-    const Picture sharp = picture_of(scene, options);
+    const Picture sharp = layers_of(scene, options);
     options.shutter_frames = 0.5;
-    const Picture blurred = picture_of(scene, options);
+    const Picture blurred = layers_of(scene, options);
     // Each sample is of one moment: what is left is the noise of 36 sharp ones.
     EXPECT_LT(difference(blurred, mean), 0.5 * difference(sharp, mean))
         << difference(blurred, mean) << " against " << difference(sharp, mean);
@@ -315,9 +315,9 @@ TEST(PictureLayers, ShutterOfAStillWorldIsSharp) {
     scene.shot.time_scale = 1e-9;
     RenderOptions options = render_options(scene);
     options.samples = 2;
-    const Picture sharp = picture_of(scene, options);
+    const Picture sharp = layers_of(scene, options);
     options.shutter_frames = 1.0;
-    EXPECT_LT(difference(picture_of(scene, options), sharp), 1e-3 * kSkyRadiance);
+    EXPECT_LT(difference(layers_of(scene, options), sharp), 1e-3 * kSkyRadiance);
     for (const double wrong : {-0.5, 4.5, std::nan("")}) {
         options.shutter_frames = wrong;
         EXPECT_THROW(check_render(scene, options), std::invalid_argument);

@@ -65,27 +65,28 @@ TEST(Rims, AreNoMoreThanInThePictureOfManySamples) {
     RecordProperty("silhouette", of_one.silhouette);
 }
 
-using Footprint = PixelFootprint<double>;
+using RimFootprint = PixelFootprint<double>;
 
 // Seen at an angle, a level sea gives back the ellipse that it has: 1/cos longer than wide, away from the eye.
 TEST(Rims, FootprintOfALevelTriangleIsTheSeasAtRest) {
     // A camera that looks along +y and down by this angle, and the pixel in its middle.
     const double down = 0.3, sine = std::sin(down), cosine = std::cos(down);
-    const Footprint at_rest{.width = 2.0, .axis_x = 0.0, .axis_y = 2.0 / sine};
+    const RimFootprint at_rest{.width = 2.0, .axis_x = 0.0, .axis_y = 2.0 / sine};
     // 1/w on a level sea is in proportion to the ray's depth below the eye, sin(down) − cos(down)·up.
-    const Footprint level = footprint_on_mesh(at_rest, 1.0, 0.0, 0.0, sine, 0.0, cosine, 0.0, -cosine / sine);
+    const RimFootprint level =
+        footprint_on_mesh(at_rest, 1.0, 0.0, 0.0, sine, 0.0, cosine, 0.0, -cosine / sine);
     EXPECT_NEAR(level.width, at_rest.width, 1e-12);
     EXPECT_NEAR(level.axis_x, 0.0, 1e-12);
     EXPECT_NEAR(std::abs(level.axis_y), at_rest.axis_y, 1e-12);
     // A slope that faces the eye is shown finer, one that turns away coarser, and none without end.
     for (const double slope : {-0.2, -0.1, 0.1, 0.5}) {
         const double nearer = -(cosine - slope * sine) / (sine + slope * cosine);
-        const Footprint tilted = footprint_on_mesh(at_rest, 1.0, 0.0, 0.0, sine, 0.0, cosine, 0.0, nearer);
+        const RimFootprint tilted = footprint_on_mesh(at_rest, 1.0, 0.0, 0.0, sine, 0.0, cosine, 0.0, nearer);
         EXPECT_NEAR(std::abs(tilted.axis_y), 2.0 / (sine + slope * cosine), 1e-9) << slope;
         EXPECT_NEAR(tilted.width, 2.0, 1e-9) << slope;
     }
     for (const double edge : {1e3, -1e9, std::numeric_limits<double>::infinity()}) {
-        const Footprint tilted = footprint_on_mesh(at_rest, 1.0, 0.0, 0.0, sine, 0.0, cosine, 0.0, edge);
+        const RimFootprint tilted = footprint_on_mesh(at_rest, 1.0, 0.0, 0.0, sine, 0.0, cosine, 0.0, edge);
         EXPECT_NEAR(std::hypot(tilted.axis_x, tilted.axis_y), 4.0 * at_rest.axis_y, 1e-9);
     }
 }
@@ -94,10 +95,10 @@ TEST(Rims, FootprintOfALevelTriangleIsTheSeasAtRest) {
 TEST(Rims, EllipseHasTheArea) {
     for (double turn = 0.0; turn < 6.3; turn += 0.37) {
         const double c = std::cos(turn), s = std::sin(turn);
-        const Footprint ellipse = pixel_footprint(3.0 * c, 3.0 * s, 2.0 * c - s, 2.0 * s + c, 100.0);
+        const RimFootprint ellipse = pixel_footprint(3.0 * c, 3.0 * s, 2.0 * c - s, 2.0 * s + c, 100.0);
         EXPECT_NEAR(ellipse.width * std::hypot(ellipse.axis_x, ellipse.axis_y), 3.0, 1e-12) << turn;
     }
-    const Footprint round = pixel_footprint(0.0, 2.0, -2.0, 0.0, 100.0);
+    const RimFootprint round = pixel_footprint(0.0, 2.0, -2.0, 0.0, 100.0);
     EXPECT_NEAR(round.width, 2.0, 1e-12);
     EXPECT_NEAR(std::hypot(round.axis_x, round.axis_y), 2.0, 1e-12);
 }

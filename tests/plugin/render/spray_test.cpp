@@ -35,22 +35,22 @@ Scene storm(double gain) {
     return scene;
 }
 
-RenderOptions options_of(const Scene& scene) {
+RenderOptions spray_options(const Scene& scene) {
     RenderOptions options = render_options(scene);
     options.samples = 1;
     return options;
 }
 
-Picture picture_of(const Scene& scene, const RenderOptions& options, const Sky& sky = uniform_sky()) {
+Picture spray_picture(const Scene& scene, const RenderOptions& options, const Sky& sky = uniform_sky()) {
     Picture picture;
     EXPECT_TRUE(Renderer(scene, options, sky, std::array{1}).render(1, picture));
     return picture;
 }
-Picture picture_of(const Scene& scene) {
-    return picture_of(scene, options_of(scene));
+Picture spray_picture(const Scene& scene) {
+    return spray_picture(scene, spray_options(scene));
 }
 
-bool same_bits(const Picture& a, const Picture& b) {
+bool same_spray_bits(const Picture& a, const Picture& b) {
     return a.sea == b.sea && a.alpha == b.alpha && a.layers.size() == b.layers.size() &&
            std::memcmp(a.layers.data(), b.layers.data(), a.layers.size() * sizeof(SeaRadiance)) == 0;
 }
@@ -71,10 +71,10 @@ TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {
         Scene scene = storm(gain);
         scene.camera.position_m.z = height_m;
         scene.camera.look_at_m = {0.0, 10.0 * height_m, 0.0};
-        RenderOptions options = options_of(scene);
+        RenderOptions options = spray_options(scene);
         options.layers = light_layers();
         options.layers.set(index(PictureLayer::Position));
-        const Picture picture = picture_of(scene, options);
+        const Picture picture = spray_picture(scene, options);
         const View view = view_at(scene.camera, 1);
         Frame<float> frame(std::make_shared<const Sea<float>>(picture_plan(scene, std::array{1}, options)));
         frame.set(scene.shot.time_s(1));
@@ -110,35 +110,35 @@ TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {
 
 TEST(RenderedSpray, IsNoneWithoutTheKeyAndWithoutWind) {
     const Scene without = storm(0.0);
-    const Picture expected = picture_of(without);
-    EXPECT_FALSE(options_of(without).lighting.spray);
+    const Picture expected = spray_picture(without);
+    EXPECT_FALSE(spray_options(without).lighting.spray);
     // A scene without spray has none, whatever the options say; and none of its light.
-    RenderOptions options = options_of(without);
+    RenderOptions options = spray_options(without);
     options.lighting.spray = true;
-    EXPECT_TRUE(same_bits(picture_of(without, options), expected));
+    EXPECT_TRUE(same_spray_bits(spray_picture(without, options), expected));
     Scene with = storm(10.0);
-    options = options_of(with);
+    options = spray_options(with);
     EXPECT_TRUE(options.lighting.spray);
     options.lighting.spray = false;
-    EXPECT_TRUE(same_bits(picture_of(with, options), expected));
-    EXPECT_FALSE(same_bits(picture_of(with), expected));
+    EXPECT_TRUE(same_spray_bits(spray_picture(with, options), expected));
+    EXPECT_FALSE(same_spray_bits(spray_picture(with), expected));
     with.sea.wind_speed_mps = 0.0;
-    EXPECT_FALSE(options_of(with).lighting.spray);
+    EXPECT_FALSE(spray_options(with).lighting.spray);
     with = storm(10.0);
     with.effects.whitecaps = false;
-    EXPECT_FALSE(options_of(with).lighting.spray);
+    EXPECT_FALSE(spray_options(with).lighting.spray);
 }
 
 // The plan, and so the transforms and bytes of a picture without spray, know nothing of it.
 TEST(RenderedSpray, CostsNoTransform) {
     const Scene with = storm(10.0), without = storm(0.0);
-    const Plan more = picture_plan(with, std::array{1}, options_of(with)),
-               less = picture_plan(without, std::array{1}, options_of(without));
+    const Plan more = picture_plan(with, std::array{1}, spray_options(with)),
+               less = picture_plan(without, std::array{1}, spray_options(without));
     EXPECT_EQ(more.transforms_per_frame(), less.transforms_per_frame());
     EXPECT_EQ(more.frame_bytes(), less.frame_bytes());
     EXPECT_EQ(less.queries[0].query.products, picture_plan(without, std::array{1}).queries[0].query.products);
     const auto bytes = [](const Scene& scene) {
-        return render_memory(scene, options_of(scene), std::array{1}, {}, 2).bytes();
+        return render_memory(scene, spray_options(scene), std::array{1}, {}, 2).bytes();
     };
     EXPECT_EQ(bytes(with), bytes(without) + spray_map_bytes(spray_map_size(storm(1.0).camera.resolution.x)));
 }
@@ -146,12 +146,12 @@ TEST(RenderedSpray, CostsNoTransform) {
 // Under one radiance everywhere nothing gets brighter than that: the furnace, with a sea that reflects less.
 TEST(RenderedSpray, AddsNoMoreThanItTakes) {
     for (const double gain : {1.0, 30.0, 1e4}) {
-        const Picture picture = picture_of(storm(gain));
+        const Picture picture = spray_picture(storm(gain));
         for (std::size_t i = 0; i < picture.layers.size(); ++i)
             ASSERT_LE(radiance_at(picture, i), static_cast<double>(kSkyRadiance) * (1.0 + 2e-5)) << gain;
     }
     // Nature's own is far too thin to be seen.
-    const Picture natural = picture_of(storm(1.0)), none = picture_of(storm(0.0));
+    const Picture natural = spray_picture(storm(1.0)), none = spray_picture(storm(0.0));
     double least = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < none.layers.size(); ++i) {
         least += std::abs(radiance_at(natural, i) - radiance_at(none, i));
@@ -163,9 +163,9 @@ TEST(RenderedSpray, AddsNoMoreThanItTakes) {
 
 TEST(RenderedSpray, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyRun) {
     const Scene scene = storm(20.0);
-    const Picture expected = picture_of(scene);
+    const Picture expected = spray_picture(scene);
     oneapi::tbb::task_arena alone(1);
-    EXPECT_TRUE(same_bits(alone.execute([&] { return picture_of(scene); }), expected));
+    EXPECT_TRUE(same_spray_bits(alone.execute([&] { return spray_picture(scene); }), expected));
     // The last of many frames, whose camera comes nearer.
     Scene moves = scene;
     moves.shot.last_frame = 3;
@@ -173,19 +173,19 @@ TEST(RenderedSpray, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyRun) {
         {.frame = 1, .position_m = scene.camera.position_m, .look_at_m = scene.camera.look_at_m},
         {.frame = 3, .position_m = {0.0, 0.0, 9.0}, .look_at_m = {0.0, 60.0, 5.0}}};
     Picture first, alone_first;
-    Renderer run(moves, options_of(moves), uniform_sky(), std::array{1, 2, 3});
+    Renderer run(moves, spray_options(moves), uniform_sky(), std::array{1, 2, 3});
     run.render(3, first);
     run.render(1, first);
-    Renderer(moves, options_of(moves), uniform_sky(), std::array{1}).render(1, alone_first);
-    EXPECT_TRUE(same_bits(first, alone_first));
+    Renderer(moves, spray_options(moves), uniform_sky(), std::array{1}).render(1, alone_first);
+    EXPECT_TRUE(same_spray_bits(first, alone_first));
 }
 
 TEST(RenderedSpray, HidesWhatATransparentSkyWouldShow) {
     const Scene scene = storm(30.0);
-    RenderOptions options = options_of(scene);
-    const Picture opaque = picture_of(scene, options);
+    RenderOptions options = spray_options(scene);
+    const Picture opaque = spray_picture(scene, options);
     options.alpha = true;
-    const Picture picture = picture_of(scene, options);
+    const Picture picture = spray_picture(scene, options);
     double most = 0.0;
     for (std::size_t i = 0; i < picture.sea.size(); ++i) {
         const double alpha = static_cast<double>(picture.alpha[i]);
@@ -209,9 +209,9 @@ TEST(RenderedSpray, IsFiniteFromAnywhere) {
     const auto check = [&](glm::dvec3 from, glm::dvec3 to) {
         scene.camera.position_m = from;
         scene.camera.look_at_m = to;
-        RenderOptions options = options_of(scene);
+        RenderOptions options = spray_options(scene);
         options.shutter_frames = from.z < 100.0 ? 1.0 : 0.0;
-        const Picture picture = picture_of(scene, options, sky);
+        const Picture picture = spray_picture(scene, options, sky);
         for (const SeaRadiance& light : picture.layers)
             for (const glm::vec3& layer : {light.sun, light.sky, light.sea, light.foam, light.air})
                 ASSERT_TRUE(std::isfinite(layer.x) && layer.x >= 0.0f) << from.z;
@@ -229,8 +229,10 @@ TEST(RenderedSpray, IsFiniteFromAnywhere) {
 
 TEST(RenderedSpray, MakesOtherPicturesAndIsInTheirFingerprint) {
     const auto made_of = [](const Scene& scene) {
-        return PictureFingerprint(
-                   {.scene = scene, .options = options_of(scene), .sky_content = "", .exposure_stops = 0.0})
+        return PictureFingerprint({.scene = scene,
+                                   .options = spray_options(scene),
+                                   .sky_content = "",
+                                   .exposure_stops = 0.0})
             .of(1);
     };
     EXPECT_NE(made_of(storm(0.0)), made_of(storm(1.0)));

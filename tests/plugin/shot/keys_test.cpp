@@ -17,7 +17,7 @@
 namespace pelagic {
 namespace {
 
-const std::filesystem::path kMadeUp = std::filesystem::path(PELAGIC_SOURCE_DIR) / "tests/plugin/shot/data";
+const std::filesystem::path kKeysData = std::filesystem::path(PELAGIC_SOURCE_DIR) / "tests/plugin/shot/data";
 
 // Keys of wave trains mean nothing without them.
 std::string shot_with(const Key& key, const std::string& value) {
@@ -30,9 +30,9 @@ std::string shot_with(const Key& key, const std::string& value) {
            '\n';
 }
 
-std::string refusal(const std::string& text) {
+std::string key_refusal(const std::string& text) {
     try {
-        parse_shot(text, kMadeUp / "s.toml", no_check);
+        parse_shot(text, kKeysData / "s.toml", no_check);
     } catch (const ShotError& error) {
         return error.what();
     }
@@ -47,11 +47,12 @@ TEST(ShotKeys, AreReadAtTheEndsOfTheirRangesAndRefusedBeyond) {
         ++checked;
         SCOPED_TRACE(path);
         const auto [low, high] = *key.range;
-        for (const double end : {low, high}) EXPECT_EQ(refusal(text_of_value(test::value_at(key, end))), "");
+        for (const double end : {low, high})
+            EXPECT_EQ(key_refusal(text_of_value(test::value_at(key, end))), "");
         const bool is_whole = key.type == KeyType::Integer || key.type == KeyType::Pair;
         for (const double bad : {is_whole ? low - 1 : std::nextafter(low, -kInfinity),
                                  is_whole ? high + 1 : std::nextafter(high, kInfinity)}) {
-            const std::string message = refusal(text_of_value(test::value_at(key, bad)));
+            const std::string message = key_refusal(text_of_value(test::value_at(key, bad)));
             EXPECT_NE(message.find(": " + path + " = "), std::string::npos) << message;
             EXPECT_NE(message.find("is outside the range; accepted: "), std::string::npos) << message;
         }
@@ -70,7 +71,7 @@ TEST(ShotKeys, AreReadAtTheEndsOfTheirRangesAndRefusedBeyond) {
 
 TEST(ShotKeys, OfEveryKeyAValueThatIsNoneOfItsTypeIsRefusedWithWhatIsAccepted) {
     for (const Key& key : keys()) {
-        const std::string message = refusal(shot_with(key, "12:30:00"));  // no key is a time of day
+        const std::string message = key_refusal(shot_with(key, "12:30:00"));  // no key is a time of day
         EXPECT_NE(message.find(key.path + " = 12:30:00: is a time of day; accepted: " + key.accepted),
                   std::string::npos)
             << message;
@@ -175,7 +176,7 @@ TEST(ShotKeys, AMeasuredSpectrumIsNamedByItsFileAndTime) {
     const Scene scene = parse_shot(
         "[sea]\nspectrum = \"file\"\nspectrum_file = \"made-99001w2021.txt\"\nspectrum_time = "
         "2021-03-01T02:50:00+02:00\n",
-        kMadeUp / "s.toml", no_check);
+        kKeysData / "s.toml", no_check);
     const std::string text = shot_text(scene);
     EXPECT_NE(text.find("spectrum_time = 2021-03-01T00:50:00Z\n"), std::string::npos) << text;
     EXPECT_EQ(canonical(parse_shot(text, "elsewhere.toml", no_check)), canonical(scene)) << text;

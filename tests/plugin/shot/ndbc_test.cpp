@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::sys_seconds;
 
-const std::filesystem::path kMadeUp = std::filesystem::path(PELAGIC_SOURCE_DIR) / "tests/plugin/shot/data";
+const std::filesystem::path kBuoys = std::filesystem::path(PELAGIC_SOURCE_DIR) / "tests/plugin/shot/data";
 
 sys_seconds at(int year, unsigned month, unsigned day, int hour, int minute) {
     return std::chrono::sys_days{std::chrono::year(year) / std::chrono::month(month) /
@@ -24,7 +24,7 @@ sys_seconds at(int year, unsigned month, unsigned day, int hour, int minute) {
            std::chrono::hours(hour) + std::chrono::minutes(minute);
 }
 
-std::string refusal(const std::filesystem::path& file, sys_seconds time) {
+std::string buoy_refusal(const std::filesystem::path& file, sys_seconds time) {
     try {
         load_ndbc(file, time);
     } catch (const NdbcError& error) {
@@ -43,7 +43,7 @@ constexpr double kRounding = 1e-14;
 // α = 90° is from the east: towards the west, −x; α = 180° from the south: towards +y; α = 270° from the
 // west: towards +x. Second harmonic of α2 = 225°: θ = 45°, e^{2iθ} = i.
 TEST(Ndbc, DirectionsBecomeTowardsCounterClockwiseFromEast) {
-    const MeasuredSpectrum sea = load_ndbc(kMadeUp / "made-99001w2021.txt", at(2021, 3, 1, 0, 50));
+    const MeasuredSpectrum sea = load_ndbc(kBuoys / "made-99001w2021.txt", at(2021, 3, 1, 0, 50));
     EXPECT_EQ(sea.station, "99001");
     EXPECT_EQ(sea.time, "2021-03-01T00:50:00Z");
     ASSERT_EQ(sea.bins.size(), 4u);
@@ -74,26 +74,26 @@ TEST(Ndbc, DirectionsBecomeTowardsCounterClockwiseFromEast) {
 }
 
 TEST(Ndbc, BinsWithoutDensityAreLeftOut) {
-    const MeasuredSpectrum sea = load_ndbc(kMadeUp / "made-99001w2021.txt", at(2021, 3, 1, 1, 50));
+    const MeasuredSpectrum sea = load_ndbc(kBuoys / "made-99001w2021.txt", at(2021, 3, 1, 1, 50));
     ASSERT_EQ(sea.bins.size(), 3u);
     EXPECT_EQ(sea.bins[1].frequency_hz, 0.1);
     EXPECT_EQ(sea.bins[2].frequency_hz, 0.4);
     EXPECT_FALSE(sea.bins[2].has_direction);
     // All but one missing (999.00, 99.00, MM): no spectrum, and the hours that have one are named.
-    const std::string text = refusal(kMadeUp / "made-99001w2021.txt", at(2021, 3, 1, 2, 50));
+    const std::string text = buoy_refusal(kBuoys / "made-99001w2021.txt", at(2021, 3, 1, 2, 50));
     EXPECT_TRUE(has(text, "w2021.txt:4: fewer than two densities")) << text;
     EXPECT_TRUE(has(text, "nearest: 2021-03-01T01:50:00Z")) << text;
 }
 
 TEST(Ndbc, ATimeThatIsNotThere) {
-    const std::string text = refusal(kMadeUp / "made-99001w2021.txt", at(2021, 3, 1, 1, 0));
+    const std::string text = buoy_refusal(kBuoys / "made-99001w2021.txt", at(2021, 3, 1, 1, 0));
     EXPECT_TRUE(has(text, "has no row of that time")) << text;
     EXPECT_TRUE(has(text,
                     "one of its 3 times, 2021-03-01T00:50:00Z … 2021-03-01T02:50:00Z; nearest: "
                     "2021-03-01T00:50:00Z and 2021-03-01T01:50:00Z"))
         << text;
     try {
-        load_ndbc(kMadeUp / "made-99001w2021.txt", at(1970, 1, 1, 0, 0));
+        load_ndbc(kBuoys / "made-99001w2021.txt", at(1970, 1, 1, 0, 0));
         FAIL();
     } catch (const NdbcError& error) {
         EXPECT_TRUE(error.parts().about_time);
@@ -130,7 +130,7 @@ TEST(Ndbc, MalformedFilesNameFileAndLine) {
     const auto refused = [&](const std::string& a_header, const std::string& date,
                              const std::string& densities) {
         const Files files(a_header, date, densities);
-        return refusal(files.w, time);
+        return buoy_refusal(files.w, time);
     };
     const std::string date = "2007 01 01 00 00";
     EXPECT_EQ(refused(header, date, "1 2"), "");
@@ -170,23 +170,23 @@ TEST(Ndbc, AllFiveFilesAreNeeded) {
         const Files files(header, date);
         const std::string name = std::string("12345") + letter + "1998.txt";
         std::filesystem::remove(files.folder.path() / name);
-        EXPECT_TRUE(has(refusal(files.w, time), name + " does not exist; accepted: NDBC's five files"))
+        EXPECT_TRUE(has(buoy_refusal(files.w, time), name + " does not exist; accepted: NDBC's five files"))
             << letter;
     }
     const Files files(header, date);
     files.folder.write("12345j1998.txt", header + "\n2007 01 01 01 00 10 20\n");
-    EXPECT_TRUE(has(refusal(files.w, time), "12345j1998.txt has no row of that time"));
+    EXPECT_TRUE(has(buoy_refusal(files.w, time), "12345j1998.txt has no row of that time"));
     files.folder.write("12345j1998.txt", "#YY MM DD hh mm .03 .05\n" + date + " 10 20\n");
-    EXPECT_TRUE(has(refusal(files.w, time), "12345j1998.txt has other frequencies than"));
+    EXPECT_TRUE(has(buoy_refusal(files.w, time), "12345j1998.txt has other frequencies than"));
     files.folder.write("12345j1998.txt", header + '\n' + date + " 10 101\n");
-    EXPECT_TRUE(
-        has(refusal(files.w, time), "12345j1998.txt:2: \"101\" at 0.04 Hz is no directional coefficient"));
+    EXPECT_TRUE(has(buoy_refusal(files.w, time),
+                    "12345j1998.txt:2: \"101\" at 0.04 Hz is no directional coefficient"));
     files.folder.write("12345j1998.txt", header + '\n' + date + " 10 20\n");
     files.folder.write("12345d1998.txt", header + '\n' + date + " 10 361\n");
     EXPECT_TRUE(
-        has(refusal(files.w, time), "12345d1998.txt:2: \"361\" at 0.04 Hz is no direction in degrees"));
-    EXPECT_TRUE(has(refusal(files.folder.path() / "12345d1998.txt", time), "is not named like"));
-    EXPECT_TRUE(has(refusal(files.folder.path(), time), "is not named like"));
+        has(buoy_refusal(files.w, time), "12345d1998.txt:2: \"361\" at 0.04 Hz is no direction in degrees"));
+    EXPECT_TRUE(has(buoy_refusal(files.folder.path() / "12345d1998.txt", time), "is not named like"));
+    EXPECT_TRUE(has(buoy_refusal(files.folder.path(), time), "is not named like"));
 }
 
 // Independent of the parser: the archive's columns have fixed places in a row. The 99 hours of the real buoy

@@ -15,11 +15,11 @@
 namespace pelagic::usd {
 namespace {
 
-struct Frame {
+struct CrateFrame {
     std::vector<glm::vec3> points, normals, velocities, slope_variance;
     std::vector<float> whitecap_coverage;
 
-    explicit Frame(std::size_t n)
+    explicit CrateFrame(std::size_t n)
         : points(n), normals(n), velocities(n), slope_variance(n), whitecap_coverage(n) {
         for (std::size_t i = 0; i < n; ++i) {
             const auto x = static_cast<float>(i);
@@ -79,7 +79,7 @@ T number_at(const std::string& bytes, std::size_t offset) {
 constexpr std::size_t kMostBesidesArrays = 4096;
 
 TEST(UsdCrate, ArraysGoFromTheCallersMemoryToTheFileAlignedAndInOnePiece) {
-    const Frame frame(1001);  // odd, so that nothing is aligned by itself
+    const CrateFrame frame(1001);  // odd, so that nothing is aligned by itself
     Written written;
     write_frame_crate(frame.sample(), written.sink());
     const auto expect_array = [&](const void* memory, std::size_t count, std::size_t element_bytes) {
@@ -104,7 +104,7 @@ TEST(UsdCrate, ArraysGoFromTheCallersMemoryToTheFileAlignedAndInOnePiece) {
     EXPECT_GT(topology.offset_of(faces.st.data(), 16 * 8), 0u);
 
     // Faces that vary are arrays of the frame.
-    const Frame vertices(16);
+    const CrateFrame vertices(16);
     MeshSample sample = vertices.sample();
     sample.faces = Faces{.counts = faces.counts, .indices = faces.indices, .st = faces.st};
     written = {};
@@ -117,7 +117,7 @@ TEST(UsdCrate, ArraysGoFromTheCallersMemoryToTheFileAlignedAndInOnePiece) {
 TEST(UsdCrate, IsAsLongAsItsArraysAndAPage) {
     for (const std::size_t vertices :
          {std::size_t{0}, std::size_t{4}, std::size_t{1001}, std::size_t{513 * 513}}) {
-        const Frame frame(vertices);
+        const CrateFrame frame(vertices);
         const std::string bytes = frame_crate(frame.sample());
         const std::size_t arrays = vertices * (4 * sizeof(glm::vec3) + sizeof(float));
         EXPECT_GT(bytes.size(), arrays);
@@ -136,7 +136,7 @@ TEST(UsdCrate, IsAsLongAsItsArraysAndAPage) {
 }
 
 TEST(UsdCrate, BeginsAsACrateAndEndsWithItsContents) {
-    const Frame frame(4);
+    const CrateFrame frame(4);
     const std::string bytes = frame_crate(frame.sample());
     EXPECT_TRUE(bytes.starts_with("PXR-USDC"));
     EXPECT_EQ(bytes.substr(8, 8), std::string("\0\10\0\0\0\0\0\0", 8));
@@ -189,7 +189,7 @@ TEST(UsdCrate, TokensOfAnyLengthReadBack) {
 }
 
 TEST(UsdCrate, FingerprintStandsInTheLastPageAsItIs) {
-    const Frame frame(100000);
+    const CrateFrame frame(100000);
     const std::string bytes = frame_crate(frame.sample());
     const std::size_t at = bytes.rfind("0123456789abcdef");
     ASSERT_NE(at, std::string::npos);
@@ -200,7 +200,7 @@ TEST(UsdCrate, FingerprintStandsInTheLastPageAsItIs) {
 }
 
 TEST(UsdCrate, BothWaysOfWritingGiveTheSameBytesEveryTime) {
-    const Frame frame(1001), same(1001);
+    const CrateFrame frame(1001), same(1001);
     Written written;
     write_frame_crate(frame.sample(), written.sink());
     EXPECT_EQ(frame_crate(same.sample()), written.bytes);
@@ -215,7 +215,7 @@ TEST(UsdCrate, BothWaysOfWritingGiveTheSameBytesEveryTime) {
 }
 
 // What a call throws, in words.
-std::string refusal(const auto& call) {
+std::string crate_refusal(const auto& call) {
     try {
         call();
     } catch (const std::invalid_argument& error) {
@@ -228,21 +228,21 @@ TEST(UsdCrate, RefusesWhatTheTextRefusesBeforeAnythingIsWritten) {
     bool called = false;
     const Sink sink = [&](std::string_view) { called = true; };
     const auto expect_same = [&](const auto& crate, const auto& text) {
-        const std::string said = refusal(crate);
+        const std::string said = crate_refusal(crate);
         EXPECT_NE(said, "nothing was refused");
-        EXPECT_EQ(said, refusal(text));
+        EXPECT_EQ(said, crate_refusal(text));
         EXPECT_FALSE(called);
     };
     const auto frames_alike = [&](const MeshSample& sample) {
         expect_same([&] { write_frame_crate(sample, sink); }, [&] { frame_text(sample); });
     };
-    Frame frame(1001);
+    CrateFrame frame(1001);
     frame.points.back().y = std::numeric_limits<float>::quiet_NaN();
     frames_alike(frame.sample());
-    frame = Frame(1001);
+    frame = CrateFrame(1001);
     frame.whitecap_coverage.front() = std::numeric_limits<float>::infinity();
     frames_alike(frame.sample());
-    frame = Frame(1001);
+    frame = CrateFrame(1001);
     frame.velocities.pop_back();
     frames_alike(frame.sample());
     frames_alike({.fps = 0.0});

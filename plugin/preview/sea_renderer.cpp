@@ -28,7 +28,7 @@ namespace pelagic {
 namespace {
 
 // Texture units. SeaTextures has the first ones.
-enum Unit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kSprayMap, kDither, kPictures };
+enum OtherUnit : int { kSkyMap = SeaTextures::kUnits, kAirTable, kSprayMapUnit, kDither, kPictures };
 
 constexpr int kTerms = 5;  // sea, sun, sky, foam, air: sea_outputs.glsl
 constexpr std::array<const char*, kTerms> kPictureNames{"sea_picture", "sun_picture", "sky_picture",
@@ -144,7 +144,7 @@ const ShaderProgram& SeaRenderer::Implementation::program_of(const ShaderVariant
     program.use();
     glUniform1i(program.uniform("sky_map"), kSkyMap);
     glUniform1i(program.uniform("air_table"), kAirTable);
-    glUniform1i(program.uniform("spray_map"), kSprayMap);
+    glUniform1i(program.uniform("spray_map"), kSprayMapUnit);
     glUniform1i(program.uniform("dither"), kDither);
     for (int i = 0; i < kTerms; ++i) glUniform1i(program.uniform(kPictureNames[i]), kPictures + i);
     // No program reads both kinds.
@@ -250,7 +250,7 @@ void SeaRenderer::Implementation::set_common(const ShaderProgram& program, const
     bind_texture(kSkyMap, sky_map);
     set_uniforms(program, light);
     if (spray.empty()) return;
-    bind_texture(kSprayMap, spray_map);
+    bind_texture(kSprayMapUnit, spray_map);
     set_uniforms(program, spray);
 }
 

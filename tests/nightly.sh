@@ -21,6 +21,11 @@ random_scenes() {
     install_packages && build release test_random_scenes &&
         PELAGIC_SCENES=10000 "$PELAGIC_ROOT/build/release/tests/test_random_scenes"
 }
+at_night() { "$here/run.sh" release --label nightly && "$here/run.sh" release --label openusd; }
+# What a unity build would hide: a file that doesn't include what it needs.
+each_source() {
+    install_packages && build each-source
+}
 benches() {
     install_packages && build release benches
 }
@@ -36,6 +41,8 @@ part() {
     minutes[$1]=$2
 }
 part release 60 "$here/run.sh release"
+part at-night 60 at_night
+part each-source 30 each_source
 for share in 1 2 3 4; do part "sanitize-$share" 75 "$here/run.sh sanitize --share $share/4"; done
 for share in 1 2; do part "tsan-$share" 75 "$here/run.sh tsan --share $share/2"; done
 part benches 10 benches

@@ -3,14 +3,15 @@
 #   tests/run.sh [PRESET] [--label LABEL] [--share K/N]
 #   tests/run.sh --nightly [OPTION…]
 # PRESET: release (default), debug, sanitize (addresses and undefined behaviour) or tsan (threads: the tests of what has some).
-# LABEL: unit (three minutes on two cores, once built), slow, gl (OpenGL) or external (with Blender, OpenUSD, node, clang-format);
-# default: all. --share K/N: each Nth test, beginning with the Kth.
+# LABEL: unit (three minutes on two cores, once built), slow, gl (OpenGL) or external (with Blender, node, clang-format); default:
+# all of these. Those that run at night are left out, unless LABEL is theirs: nightly, or openusd, which installs Chromium.
+# --share K/N: each Nth test, beginning with the Kth.
 # --nightly takes hours, and goes on where the last night stopped: tests/nightly.sh --help.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 [ "${1:-}" != --nightly ] || exec "$here/nightly.sh" "${@:2}"
 preset=release label="" share=""
-usage() { sed -n '2,8s/^# //p' "$0"; }
+usage() { sed -n '2,9s/^# //p' "$0"; }
 while [ $# -gt 0 ]; do
     case $1 in
     release | debug | sanitize | tsan) preset=$1 ;;
@@ -18,9 +19,9 @@ while [ $# -gt 0 ]; do
         label=${2:-}
         shift
         case $label in
-        unit | slow | gl | external) ;;
+        unit | slow | gl | external | nightly | openusd) ;;
         *)
-            echo "run.sh: label \"$label\"; accepted: unit, slow, gl, external" >&2
+            echo "run.sh: label \"$label\"; accepted: unit, slow, gl, external, nightly, openusd" >&2
             exit 2
             ;;
         esac
@@ -48,7 +49,8 @@ done
 # shellcheck source=../examples/setup.sh
 source "$here/../examples/setup.sh"
 
-install_packages
+install_packages program preview python blender tests
+[ "$label" != openusd ] || install_packages openusd
 "$here/plugin/usd/openusd/install.sh"
 [ "$preset" != tsan ] || "$here/sanitizers/onetbb.sh"
 build "$preset"
@@ -56,6 +58,12 @@ cd "$PELAGIC_ROOT"
 # None of the tests minds another beside it; each uses all cores itself, and takes up to 2 GiB.
 cores=$(nproc)
 options=(--parallel $((cores < 4 ? cores : 4)))
-[ -z "$label" ] || options+=(--label-regex "^$label\$")
+case $label in
+nightly | openusd) options+=(--label-regex "^$label\$") ;;
+*)
+    options+=(--label-exclude '^(nightly|openusd)$')
+    [ -z "$label" ] || options+=(--label-regex "^$label\$")
+    ;;
+esac
 [ -z "$share" ] || options+=(--tests-information "${share%/*},,${share#*/}")
 ctest --preset "$preset" --no-tests=error "${options[@]}"

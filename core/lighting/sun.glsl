@@ -110,6 +110,17 @@ vec3 sun_reflection(vec3 to_eye, vec3 to_sun, SlopeFrame frame, vec3 sun_radianc
     return sun_seen_from(into_frame(frame, to_eye), to_sun, frame, sun_radiance, angular_radius);
 }
 
+// Eq. 15 as printed: the sun a point, Schlick's Fresnel term, Smith's masking. Pictures have sun_reflection(); this one is to
+// compare with (tests/core/lighting/sun_test.cpp). v, l: to the eye and the sun, in the frame; a flat sea has no glint here.
+vec3 sun_reflection_paper(vec3 v, vec3 l, vec3 variance, vec3 sun_radiance, float angular_radius) {
+    if (v.z <= 0.0f || l.z <= 0.0f) return vec3(0.0f);
+    vec3 h = normalize(v + l);
+    float density = slope_density(vec2(h.x, h.y) / -h.z, variance);
+    float masking = 1.0f + smith_lambda(smith_argument(v, variance)) + smith_lambda(smith_argument(l, variance));
+    float solid_angle = kPi * square(angular_radius);
+    return sun_radiance * (solid_angle * density * fresnel_schlick(dot(v, h)) / (4.0f * square(square(h.z)) * v.z * masking));
+}
+
 // The same for the second reflection, which adds a twentieth: the disc is a Gaussian in the slopes.
 vec3 sun_seen_again(vec3 v, vec3 to_sun, SlopeFrame frame, vec3 sun_radiance, float angular_radius) {
     vec3 l = into_frame(frame, to_sun);

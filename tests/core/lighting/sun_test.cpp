@@ -132,6 +132,35 @@ TEST(Sun, WideWavesSeeTheAverageOverTheDisc) {
             }
 }
 
+// Eq. 15 as printed, beside the same in double precision; and what it is worth: on waves wider than the disc, the eye and the
+// sun 20° above the horizon or higher, ours differs from it by Schlick's error (23 % at 45°) and by the masking.
+TEST(Sun, AsThePaperPrintsIt) {
+    Optics optics;
+    Inputs inputs(14);
+    int seen = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const vec3 v = inputs.direction(0.05), l = inputs.direction(0.05),
+                   s = inputs.variance(0.05, 0.5, 0.8);
+        const float found = optics.sun_reflection_paper(v, l, s, vec3(1.0f), float(kRadius)).x;
+        const dvec3 h = normalize(dvec3(v) + dvec3(l));
+        const oracle::Factor factor{dvec3(s)};
+        const double density = std::exp(-0.5 * factor.distance(half_slope(dvec3(v), dvec3(l)))) /
+                               (2.0 * oracle::kPi * factor.root_of_determinant());
+        const double masking = 1.0 + oracle::lambda(dvec3(v), dvec3(s)) + oracle::lambda(dvec3(l), dvec3(s));
+        const double expected = kSolidAngle * density * oracle::schlick(dot(dvec3(v), h)) /
+                                (4.0 * std::pow(h.z, 4) * static_cast<double>(v.z) * masking);
+        if (expected < 1e-9) continue;  // tails: the exponent's rounding
+        ++seen;
+        ASSERT_NEAR(static_cast<double>(found), expected, 2e-3 * expected) << i;
+        if (std::min(v.z, l.z) < 0.34f || expected < 1e-6) continue;
+        const auto frame = optics.slope_frame(vec3(0.0f, 0.0f, 1.0f), s);
+        const double ours =
+            static_cast<double>(optics.sun_reflection(v, l, frame, vec3(1.0f), float(kRadius)).x);
+        ASSERT_NEAR(ours, expected, 0.6 * expected) << i;
+    }
+    EXPECT_GT(seen, 5000);
+}
+
 // A mirror: the disc's image has the disc's light, L F times its solid angle; it is nowhere brighter than L
 // F, and black beyond its rim. 3 %: the rim is a thirtieth of the radius wide, and F varies across the disc.
 TEST(Sun, MirrorShowsTheDisc) {

@@ -22,9 +22,9 @@ random_scenes() {
         PELAGIC_SCENES=10000 "$PELAGIC_ROOT/build/release/tests/test_random_scenes"
 }
 at_night() { "$here/run.sh" release --label nightly && "$here/run.sh" release --label openusd; }
-# What a unity build would hide: a file that doesn't include what it needs.
+# What a unity build would hide: a file that doesn't include what it needs, or that gets another's function of the same name.
 each_source() {
-    install_packages && build each-source
+    install_packages && build each-source && ctest --test-dir "$PELAGIC_ROOT/build/each-source" --label-regex '^unit$' --parallel "$(nproc)"
 }
 benches() {
     install_packages && build release benches
@@ -42,7 +42,7 @@ part() {
 }
 part release 60 "$here/run.sh release"
 part at-night 60 at_night
-part each-source 30 each_source
+part each-source 45 each_source
 for share in 1 2 3 4; do part "sanitize-$share" 75 "$here/run.sh sanitize --share $share/4"; done
 for share in 1 2; do part "tsan-$share" 75 "$here/run.sh tsan --share $share/2"; done
 part benches 10 benches

@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-std::shared_ptr<const Sea<float>> sea_of(const Scene& scene) {
+std::shared_ptr<const Sea<float>> spray_sea(const Scene& scene) {
     return std::make_shared<const Sea<float>>(
         make_plan(scene, {filtered(products(Product::Coverage, Product::JacobianMoments), 1.0)},
                   {.living_foam = true}));
@@ -51,7 +51,7 @@ double seen_over_area(const std::shared_ptr<const Sea<float>>& sea) {
 
 TEST(Spray, TheMeanOfWhatBreaksIsTheSeasOwn) {
     for (const double decay_s : {0.0, 4.0}) {
-        const auto sea = sea_of(spray_scene(15.0, decay_s));
+        const auto sea = spray_sea(spray_scene(15.0, decay_s));
         // Four patches of 2 km: they hold some 4 % more or less than the whole sea.
         EXPECT_NEAR(seen_over_area(sea) / mean_breaking(*sea), 1.0, 0.08) << decay_s;
     }
@@ -59,20 +59,20 @@ TEST(Spray, TheMeanOfWhatBreaksIsTheSeasOwn) {
 
 TEST(Spray, FoamThatStaysIsNoneThatBreaks) {
     const Scene scene = spray_scene(15.0);
-    EXPECT_NEAR(mean_breaking(*sea_of(scene)) / law_coverage(scene), 1.0, 1e-6);
-    EXPECT_LT(mean_breaking(*sea_of(spray_scene(15.0, 4.0))), 0.6 * law_coverage(scene));
+    EXPECT_NEAR(mean_breaking(*spray_sea(scene)) / law_coverage(scene), 1.0, 1e-6);
+    EXPECT_LT(mean_breaking(*spray_sea(spray_scene(15.0, 4.0))), 0.6 * law_coverage(scene));
 }
 
 TEST(Spray, ThereIsNoneWhereNoWaveBreaks) {
     Scene scene = spray_scene(0.0);
-    EXPECT_EQ(mean_breaking(*sea_of(scene)), 0.0);
-    EXPECT_EQ(spray_extinction_per_coverage(*sea_of(scene)), 0.0);
+    EXPECT_EQ(mean_breaking(*spray_sea(scene)), 0.0);
+    EXPECT_EQ(spray_extinction_per_coverage(*spray_sea(scene)), 0.0);
     scene = spray_scene(15.0);
-    const auto sea = sea_of(scene);
+    const auto sea = spray_sea(scene);
     EXPECT_NEAR(spray_extinction_per_coverage(*sea) * mean_breaking(*sea), spray_law(15.0).extinction_per_m,
                 1e-12);
     scene.effects.spray = false;
-    EXPECT_EQ(spray_extinction_per_coverage(*sea_of(scene)), 0.0);
+    EXPECT_EQ(spray_extinction_per_coverage(*spray_sea(scene)), 0.0);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ using namespace test;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // Two tiles, of waves of 9 m and more and of shorter ones, that both matter to heights and strains.
-Scene scene_of(std::optional<double> large, std::optional<double> small, double shots = 1.0) {
+Scene choppy_scene(std::optional<double> large, std::optional<double> small, double shots = 1.0) {
     Scene scene;
     scene.sea.wind_speed_mps = 9.0;
     scene.sea.fetch_m = 20e3;
@@ -51,8 +51,8 @@ TEST(ChoppinessOfCascades, OfEqualOnesIsTheShotsToTheBit) {
     for (const Tiling tiling : {Tiling::Periodic, Tiling::Random})
         for (const double choppiness : {0.0, 1e-5, 0.7, 10.0}) {
             SCOPED_TRACE(choppiness);
-            Scene whole = scene_of({}, {}, choppiness), part = scene_of({}, choppiness, choppiness),
-                  each = scene_of(choppiness, choppiness, 1.3);
+            Scene whole = choppy_scene({}, {}, choppiness), part = choppy_scene({}, choppiness, choppiness),
+                  each = choppy_scene(choppiness, choppiness, 1.3);
             std::vector<ProductArrays<float>> answers;
             std::vector<std::shared_ptr<const PreparedScene>> prepared;
             std::vector<double> thresholds, errors;
@@ -139,8 +139,8 @@ class Sum {
 TEST(ChoppinessOfCascades, MovesEachOnesOwnWaves) {
     constexpr double kTime_s = 7.3;
     const auto points = random_points<double>(300.0, 60);
-    for (Scene scene :
-         {scene_of(0.3, {}, 1.2), scene_of({}, 0.0, 1.2), scene_of(0.0, 10.0), scene_of(10.0, 0.0)}) {
+    for (Scene scene : {choppy_scene(0.3, {}, 1.2), choppy_scene({}, 0.0, 1.2), choppy_scene(0.0, 10.0),
+                        choppy_scene(10.0, 0.0)}) {
         SCOPED_TRACE(choppiness_of(scene, 1));
         scene.effects.breaking_from_m = 0.0;
         scene.quality.level = QualityLevel::Reference;
@@ -174,7 +174,8 @@ TEST(ChoppinessOfCascades, CostsNothingWhereItIsZero) {
         return fields;
     };
     const std::vector<Query> queries{unfiltered(kAll)};
-    const Plan mixed = make_plan(scene_of({}, 0.0), queries), none = make_plan(scene_of(0.0, 0.0), queries);
+    const Plan mixed = make_plan(choppy_scene({}, 0.0), queries),
+               none = make_plan(choppy_scene(0.0, 0.0), queries);
     EXPECT_EQ(fields_of_tile(mixed, 0) & horizontal_fields(), horizontal_fields());
     EXPECT_EQ(fields_of_tile(mixed, 1),
               fields(Field::Height, Field::SlopeX, Field::SlopeY, Field::VelocityZ));
@@ -192,7 +193,7 @@ TEST(ChoppinessOfCascades, IsNotReadWhereItIsZero) {
             SCOPED_TRACE(is_large);
             std::vector<ProductArrays<float>> answers;
             for (const double choppiness : {0.0, Choppiness::kLeastShown}) {
-                Scene scene = is_large ? scene_of(choppiness, 1.0) : scene_of(1.0, choppiness);
+                Scene scene = is_large ? choppy_scene(choppiness, 1.0) : choppy_scene(1.0, choppiness);
                 scene.waves.tiling = tiling;
                 Query query = filtered(kAll, 0.0);
                 query.cell_m = query.pixel_m = {0.25, 0.5, 1.0, 2.0, 4.0, 8.0};
@@ -234,7 +235,7 @@ TEST(ChoppinessOfCascades, JacobianAndFoamAreThoseOfPoints) {
     const auto points = random_points<double>(4000.0, 10000);
     for (const auto& [large, small] : {std::pair(0.4, 1.3), std::pair(1.6, 0.5), std::pair(1.5, 0.0)}) {
         SCOPED_TRACE(large);
-        Scene scene = scene_of(large, small);
+        Scene scene = choppy_scene(large, small);
         scene.sea.wind_speed_mps = 12.0;
         scene.effects.breaking_from_m = 0.0;
         scene.waves.band_gains = {{1e-3, 1.5, 0.0}};  // what no tile shows
@@ -275,7 +276,7 @@ TEST(ChoppinessOfCascades, JacobianAndFoamAreThoseOfPoints) {
 // Where short waves are the more choppy, J changes faster.
 TEST(ChoppinessOfCascades, WeighsHowFastTheJacobianChanges) {
     const auto rate_of = [](double large, double small) {
-        const auto prepared = prepare(scene_of(large, small));
+        const auto prepared = prepare(choppy_scene(large, small));
         return breaking_rate(prepared->spectrum, breaking_of(prepared->scene, {}));
     };
     EXPECT_GT(rate_of(0.6, 1.7), 1.02 * rate_of(1.0, 1.0));
@@ -295,23 +296,23 @@ TEST(ChoppinessOfCascades, AddsUpBandByBand) {
         }
     };
     expect_sum("reach", [](double large, double small) {
-        return std::pow(prepare(scene_of(large, small))->extent.reach_m, 2.0);
+        return std::pow(prepare(choppy_scene(large, small))->extent.reach_m, 2.0);
     });
     expect_sum("distance of a mesh", [](double large, double small) {
-        const MeshErrorModel model(*prepare(scene_of(large, small)));
+        const MeshErrorModel model(*prepare(choppy_scene(large, small)));
         return std::pow(model.error(8.0, 0.0, Drawn::Triangles), 2.0);
     });
     expect_sum("carried slopes", [](double large, double small) {
-        const auto prepared = prepare(scene_of(large, small));
+        const auto prepared = prepare(choppy_scene(large, small));
         return hidden_slope_gain(prepared->spectrum, {}, 0.5, Choppiness::asked(prepared->scene)) - 1.0;
     });
     // Of the waves that break.
     expect_sum("mean choppiness", [](double large, double small) {
-        const auto prepared = prepare(scene_of(large, small));
+        const auto prepared = prepare(choppy_scene(large, small));
         return std::pow(mean_choppiness(prepared->spectrum, breaking_of(prepared->scene, {})), 2.0);
     });
     expect_sum("variance of dJ/dt", [](double large, double small) {
-        const auto prepared = prepare(scene_of(large, small));
+        const auto prepared = prepare(choppy_scene(large, small));
         const Breaking breaking = breaking_of(prepared->scene, {});
         return std::pow(
             breaking_rate(prepared->spectrum, breaking) * mean_choppiness(prepared->spectrum, breaking), 2.0);
@@ -320,7 +321,7 @@ TEST(ChoppinessOfCascades, AddsUpBandByBand) {
 
 TEST(ChoppinessOfCascades, BoundsAndReachHoldIt) {
     const auto points = random_points<double>(2000.0, 2000);
-    for (const Scene& scene : {scene_of(0.2, 2.0), scene_of(2.0, 0.0)}) {
+    for (const Scene& scene : {choppy_scene(0.2, 2.0), choppy_scene(2.0, 0.0)}) {
         const auto frame = frame_of<double>(scene, {unfiltered(products(Displacement))}, 3.0);
         const DisplacementBounds bounds = FrameBounds<double>(frame, 0).everywhere();
         const auto found = sample(frame, 0, points);
@@ -337,8 +338,8 @@ TEST(ChoppinessOfCascades, BoundsAndReachHoldIt) {
 }
 
 TEST(ChoppinessOfCascades, FoldingIsToldOfWithWhatHelps) {
-    EXPECT_TRUE(sea_warnings(*prepare(scene_of(1.0, 0.5))).empty());
-    const Scene steep = scene_of(1.0, 6.0);
+    EXPECT_TRUE(sea_warnings(*prepare(choppy_scene(1.0, 0.5))).empty());
+    const Scene steep = choppy_scene(1.0, 6.0);
     std::string told;
     for (const std::string& warning : sea_warnings(*prepare(steep)))
         if (warning.find("folds over") != std::string::npos) told = warning;
@@ -347,13 +348,13 @@ TEST(ChoppinessOfCascades, FoldingIsToldOfWithWhatHelps) {
     ASSERT_NE(at, std::string::npos) << told;
     const double factor = std::stod(told.substr(at + says.size()));
     const auto share = [&](double by) {
-        const auto less = prepare(scene_of(by * 1.0, by * 6.0));
+        const auto less = prepare(choppy_scene(by * 1.0, by * 6.0));
         return folded_share(less->spectrum, Choppiness::asked(less->scene));
     };
     EXPECT_LE(share(factor), 0.05);
     EXPECT_GT(share(factor + 0.02), 0.05);
     // And the share is that of points.
-    Scene counted = scene_of(10.0, 5.0);
+    Scene counted = choppy_scene(10.0, 5.0);
     counted.waves.band_gains = {{1e-3, 1.5, 0.0}};  // what no tile shows
     const auto frame = frame_of<double>(counted, {unfiltered(products(Displacement))});
     const Sum sum(frame.sea(), counted, 0.0);

@@ -15,7 +15,7 @@ using namespace test;
 
 const ProductSet kGusty = products(Product::SlopeVariance, Product::Coverage);
 
-Scene scene_of(double strength, double wind_mps = 14.0) {
+Scene gusty_scene(double strength, double wind_mps = 14.0) {
     Scene scene;
     scene.sea.wind_speed_mps = wind_mps;
     scene.sea.gust_strength = strength;
@@ -42,7 +42,7 @@ TEST(Gusts, ChangeNoMean) {
     for (const double footprint_m : footprints_m) queries.push_back(filtered(kGusty, footprint_m));
     for (const double wind_mps : {5.0, 14.0, 30.0})
         for (const WhitecapLaw law : {WhitecapLaw::Monahan1980, WhitecapLaw::Callaghan2008}) {
-            Scene calm = scene_of(0.0, wind_mps);
+            Scene calm = gusty_scene(0.0, wind_mps);
             calm.effects.whitecap_law = law;
             const auto even = frame_of<float>(calm, queries, 3.0);
             for (const double strength : {0.6, 1.0}) {
@@ -81,9 +81,9 @@ TEST(Gusts, BreakMoreWavesAndNoLessFoamOnEach) {
     const auto points = random_points<float>(20000.0, 200000);
     for (const double footprint_m : {0.5, 4.0}) {
         const auto even =
-            sample(frame_of<float>(scene_of(0.0), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
+            sample(frame_of<float>(gusty_scene(0.0), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
         const auto gusty =
-            sample(frame_of<float>(scene_of(0.8), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
+            sample(frame_of<float>(gusty_scene(0.8), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
         EXPECT_NEAR(mean_foam(gusty) / mean_foam(even), 1.0, 0.05) << footprint_m;
         EXPECT_NEAR(std::ranges::max(gusty.numbers(Coverage)), std::ranges::max(even.numbers(Coverage)),
                     0.1f);
@@ -99,7 +99,7 @@ TEST(Gusts, WhitecapsFollowTheShotsLaw) {
     const auto points = random_points<float>(200000.0, 200000);
     for (const WhitecapLaw law :
          {WhitecapLaw::Monahan1980, WhitecapLaw::Monahan1986, WhitecapLaw::Callaghan2008}) {
-        Scene scene = scene_of(0.6, kWind_mps);
+        Scene scene = gusty_scene(0.6, kWind_mps);
         scene.effects.whitecap_law = law;
         // 3 · 14 / 15.98 of the third.
         const double exponent = law == WhitecapLaw::Monahan1980   ? 3.52
@@ -132,7 +132,7 @@ TEST(Gusts, WhitecapsFollowTheShotsLaw) {
 }
 
 TEST(Gusts, DriftWithTheWind) {
-    Scene scene = scene_of(1.0, 10.0);
+    Scene scene = gusty_scene(1.0, 10.0);
     scene.sea.wind_direction_deg = 60.0;
     const Query query = filtered(products(Product::SlopeVariance), 40.0);
     auto frame = frame_of<double>(scene, {query}, 100.0);
@@ -154,7 +154,7 @@ TEST(Gusts, DriftWithTheWind) {
 }
 
 TEST(Gusts, LoopWithTheShotToTheBit) {
-    Scene scene = scene_of(1.0, 20.0);
+    Scene scene = gusty_scene(1.0, 20.0);
     scene.shot.loop_s = 48.0;
     scene.sea.gust_size_m = 60.0;
     auto frame = frame_of<float>(scene, {filtered(kGusty, 1.0)}, 5.0);
@@ -172,7 +172,8 @@ TEST(Gusts, LoopWithTheShotToTheBit) {
 // Far out and late the pattern is as smooth as here.
 TEST(Gusts, AreSmoothAnywhereAndAtAnyTime) {
     for (const auto& [far_m, t_s] : {std::pair(0.0, 0.0), std::pair(1e8, 1e9), std::pair(-3e8, -1e9)}) {
-        auto frame = frame_of<float>(scene_of(1.0), {filtered(kGusty, 200.0), filtered(kGusty, 20.0)}, t_s);
+        auto frame =
+            frame_of<float>(gusty_scene(1.0), {filtered(kGusty, 200.0), filtered(kGusty, 20.0)}, t_s);
         std::vector<glm::vec2> line;
         for (int i = 0; i < 3000; ++i)
             line.emplace_back(static_cast<float>(i), 0.25f * static_cast<float>(i));
@@ -196,7 +197,7 @@ TEST(Gusts, AreSmoothAnywhereAndAtAnyTime) {
 TEST(Gusts, DependOnNothingButThePoint) {
     Query query = filtered(kGusty | products(Position, Normal), 0.0);
     query.pixel_m = {0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
-    const auto frame = frame_of<float>(scene_of(1.0), {query}, 4.0);
+    const auto frame = frame_of<float>(gusty_scene(1.0), {query}, 4.0);
     const auto points = random_points<float>(400.0, 300);
     Where<float> where;
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -227,15 +228,15 @@ TEST(Gusts, DependOnNothingButThePoint) {
 
 // Without strength, without wind, and in a cascade's own tile there are none.
 TEST(Gusts, AreNotWhereNobodyAsksForThem) {
-    Scene scene = scene_of(0.0);
+    Scene scene = gusty_scene(0.0);
     scene.sea.gust_size_m = 17.0;
     EXPECT_FALSE(frame_of<float>(scene, {filtered(kGusty, 1.0)}, 0.0).sea().gusts());
-    EXPECT_FALSE(frame_of<float>(scene_of(1.0, 0.0), {filtered(kGusty, 1.0)}, 0.0).sea().gusts());
+    EXPECT_FALSE(frame_of<float>(gusty_scene(1.0, 0.0), {filtered(kGusty, 1.0)}, 0.0).sea().gusts());
     Query tile = filtered(kGusty, 1.0);
     tile.only_cascade = 1;
     const auto points = random_points<float>(400.0, 300);
-    const auto gusty = sample(frame_of<float>(scene_of(1.0), {tile}, 2.0), 0, points),
-               even = sample(frame_of<float>(scene_of(0.0), {tile}, 2.0), 0, points);
+    const auto gusty = sample(frame_of<float>(gusty_scene(1.0), {tile}, 2.0), 0, points),
+               even = sample(frame_of<float>(gusty_scene(0.0), {tile}, 2.0), 0, points);
     EXPECT_EQ(gusty.vectors(SlopeVariance), even.vectors(SlopeVariance));
     EXPECT_EQ(gusty.numbers(Coverage), even.numbers(Coverage));
 }

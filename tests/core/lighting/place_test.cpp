@@ -17,7 +17,7 @@ using namespace pelagic;
 constexpr double kDegree = kPi / 180.0;
 const WaterBody kWaterBody{glm::vec3(0.001f, 0.012f, 0.05f)};
 
-Sky sky_at(double sun_elevation_deg) {
+Sky low_sky(double sun_elevation_deg) {
     return daylight_sky({.sun_elevation_deg = sun_elevation_deg, .sun_azimuth_deg = 90.0, .turbidity = 3.0},
                         64);
 }
@@ -44,12 +44,12 @@ void expect_near(const glm::vec3& a, const glm::vec3& b, float share, float leas
 // there is less than a thousandth of a low sun's.
 TEST(LightByPlace, IsThatOfThePlacesOwnSun) {
     for (const double below_deg : {35.0, 3.0, -6.0}) {
-        const Sky sky = sky_at(below_deg);
+        const Sky sky = low_sky(below_deg);
         const Air air = sky.air->seen_from(400e3);
         for (const double towards_deg : {-9.0, -3.5, 4.0, 19.0}) {
             SCOPED_TRACE(std::to_string(below_deg) + " below, " + std::to_string(towards_deg) + " towards");
             const SeaRadiance here = lit(sky, point_at(towards_deg), &air);
-            const SeaRadiance own = lit(sky_at(below_deg + towards_deg), point_at(0.0), nullptr);
+            const SeaRadiance own = lit(low_sky(below_deg + towards_deg), point_at(0.0), nullptr);
             expect_near(here.sun, own.sun, 0.04f, 1e-5f, "sun");
             expect_near(here.sea, own.sea, 0.04f, 1e-5f, "sea");
             expect_near(here.foam, own.foam, 0.04f, 2e-4f, "foam");
@@ -66,7 +66,7 @@ TEST(LightByPlace, IsThatOfThePlacesOwnSun) {
 
 // Nothing changes for low eyes, on a flat earth and below the eye; and the change comes by and by as the eye rises.
 TEST(LightByPlace, NearTheSeaIsThatBelowTheEye) {
-    const Sky sky = sky_at(1.5);
+    const Sky sky = low_sky(1.5);
     const Air low = sky.air->seen_from(2.0), high = sky.air->seen_from(400e3),
               some = sky.air->seen_from(520.0);
     EXPECT_EQ(low.by_place, 0.0f);

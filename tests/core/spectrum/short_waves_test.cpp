@@ -21,7 +21,7 @@ std::vector<SpectrumKind> every_spectrum() {
     return kinds;
 }
 
-SeaState sea_of(SpectrumKind kind) {
+SeaState short_sea(SpectrumKind kind) {
     SeaState state;
     state.spectrum = kind;
     if (kind == SpectrumKind::File) state.measured = oracle::made_up_buoy();
@@ -32,7 +32,7 @@ TEST(ShortWaves, SlopesAreThoseOfTheSunsGlitter) {
     // Every spectrum, with every spreading of its long waves: beyond a few peak wavenumbers they are one sea.
     for (const SpectrumKind kind : oracle::kAnalytic)
         for (double wind = 5.0; wind <= 20.0; wind += 2.5) {
-            SeaState state = sea_of(kind);
+            SeaState state = short_sea(kind);
             state.wind_speed_mps = wind;
             const SpectralMoments sea = moments(DirectionalSpectrum(state), 0.0, oracle::kInfinity);
             const CoxMunk glitter = CoxMunk::at_wind(wind);
@@ -62,7 +62,7 @@ TEST(ShortWaves, RunWithTheWind) {
 
 TEST(ShortWaves, LeaveTheLongOnesAsTheyAre) {
     for (const SpectrumKind kind : every_spectrum()) {
-        SeaState with = sea_of(kind), without = with;
+        SeaState with = short_sea(kind), without = with;
         without.short_waves = ShortWaves::None;
         const DirectionalSpectrum joined(with), own(without);
         EXPECT_EQ(joined.peak_wavenumber(), own.peak_wavenumber());
@@ -80,7 +80,7 @@ TEST(ShortWaves, LeaveTheLongOnesAsTheyAre) {
 
 TEST(ShortWaves, JoinWithoutAStep) {
     for (const SpectrumKind kind : every_spectrum()) {
-        const DirectionalSpectrum sea(sea_of(kind));
+        const DirectionalSpectrum sea(short_sea(kind));
         // k³ S_k is nearly constant up there: from 1.5 to 100 peaks no step of 2 % of k changes it by more than 12 %.
         const double peak = sea.peak_wavenumber();
         for (double k = (kind == SpectrumKind::File ? 40.0 : 1.5) * peak; k < 100.0 * peak; k *= 1.02) {
@@ -92,7 +92,7 @@ TEST(ShortWaves, JoinWithoutAStep) {
 }
 
 TEST(ShortWaves, AreElfouhailysOwnWhereTheSeaIs) {
-    SeaState state = sea_of(SpectrumKind::Elfouhaily), without = state;
+    SeaState state = short_sea(SpectrumKind::Elfouhaily), without = state;
     without.short_waves = ShortWaves::None;
     for (double fetch : {1.0, 1e4, 1e7}) {
         state.fetch_m = without.fetch_m = fetch;
@@ -107,7 +107,7 @@ TEST(Height, IsTheOneAskedForWhateverTheSpectrum) {
     for (const SpectrumKind kind : every_spectrum())
         for (const ShortWaves short_waves : {ShortWaves::Elfouhaily, ShortWaves::None})
             for (double height : {0.0, 1e-3, 0.2, 3.0}) {
-                SeaState state = sea_of(kind);
+                SeaState state = short_sea(kind);
                 state.short_waves = short_waves;
                 state.significant_height_m = height;
                 EXPECT_NEAR(height_m(state), height, 1e-6 * height) << static_cast<int>(kind);
@@ -130,7 +130,7 @@ TEST(Height, ChangesTheLongWavesAndNotTheWindsShortOnes) {
 TEST(Height, IsLimitedByDepth) {
     for (const SpectrumKind kind : every_spectrum())
         for (double depth : {0.01, 0.5, 3.0}) {
-            SeaState state = sea_of(kind);
+            SeaState state = short_sea(kind);
             state.wind_speed_mps = 20.0;
             state.depth_m = depth;
             EXPECT_LE(height_m(state), 0.6 * depth * (1.0 + 1e-6)) << static_cast<int>(kind);

@@ -48,7 +48,7 @@ std::string bytes_of_file(const fs::path& file) {
 }
 
 template <class Value>
-std::string_view bytes_of(const std::vector<Value>& values) {
+std::string_view raw_bytes(const std::vector<Value>& values) {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
@@ -77,7 +77,7 @@ std::string exr_hash(const fs::path& file) {
             buffer.insert(channel.name(), Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()),
                                                      sizeof(float), sizeof(float) * width));
             take(buffer);
-            hash.add(channel.name()).add(bytes_of(values));
+            hash.add(channel.name()).add(raw_bytes(values));
         }
     };
     if (Imf::isTiledOpenExrFile(file.c_str())) {
@@ -106,7 +106,7 @@ std::string png_hash(const fs::path& file) {
     image.format = PNG_FORMAT_RGB;
     std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(image));
     EXPECT_NE(png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr), 0) << file;
-    return Fingerprint().add(bytes_of(pixels)).text();
+    return Fingerprint().add(raw_bytes(pixels)).text();
 }
 
 struct Golden {

@@ -11,7 +11,7 @@
 namespace pelagic {
 namespace {
 
-std::string bytes_of(const std::filesystem::path& file) {
+std::string bytes_of_header(const std::filesystem::path& file) {
     std::ostringstream bytes;
     bytes << std::ifstream(file, std::ios::binary).rdbuf();
     return bytes.str();
@@ -28,10 +28,10 @@ TEST(Headers, NameTheKeysThatTheFilesDependOn) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("pelagic-headers-" + std::to_string(getpid()));
     bake(scene, {.out = folder, .frames = {}, .progress = {}, .cancel = nullptr});
-    const std::string stage = bytes_of(folder / "sea.usda");
+    const std::string stage = bytes_of_header(folder / "sea.usda");
     std::string map;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "maps"))
-        map = bytes_of(entry.path());
+        map = bytes_of_header(entry.path());
     std::filesystem::remove_all(folder);
 
     for (const Key& key : keys()) {

@@ -9,7 +9,7 @@
 namespace pelagic {
 namespace {
 
-std::size_t bytes_of(const Values& values) {
+std::size_t size_of_values(const Values& values) {
     std::size_t bytes = 0;
     for (const ProductRow& row : kProductTable)
         bytes += values.size(row.product) * row.components * sizeof(float);
@@ -35,7 +35,7 @@ TEST(Measure, PromisesTheBytesThatAFrameHolds) {
     FrameSlot slot;
     make_sequence(plan)->compute(1, slot);
     std::size_t results = 0;
-    for (const auto& output : slot.outputs) results += bytes_of(output->values);
+    for (const auto& output : slot.outputs) results += size_of_values(output->values);
     const std::size_t vertices = 33 * 33, texels = 16 * 16;
     EXPECT_EQ(results, 4 * (vertices * 13 + texels * (3 + 4)));
     EXPECT_EQ(plan.output_bytes(), results + 4 * 2 * (vertices + texels));

@@ -16,7 +16,7 @@ using namespace pelagic::test;
 
 class NearFarBake : public BakedMeshes {};
 
-Scene scene_at(glm::dvec3 position_m, bool is_round) {
+Scene near_far_scene(glm::dvec3 position_m, bool is_round) {
     Scene scene;
     scene.shot.last_frame = 3;
     scene.sea.wind_speed_mps = 12.0;
@@ -50,14 +50,14 @@ Vertices vertices_of(const Scene& scene, int frame) {
 TEST_F(NearFarBake, TheSeaStaysWhereItIsWhenTheCameraMoves) {
     for (const bool is_round : {false, true}) {
         // None of the ways below crosses one of the earth's own steps.
-        const Scene scene = scene_at({1040.0, -2044.0, 4.0}, is_round);
+        const Scene scene = near_far_scene({1040.0, -2044.0, 4.0}, is_round);
         const Vertices before = vertices_of(scene, 3);
         const Mesh mesh = baked(scene, 3);
         ASSERT_EQ(mesh.points.size(), before.size());
         const std::string faces = bytes_of(folder_ / usd::topology_file(scene.shot.name, "usdc"));
         for (const glm::dvec3 way_m : {glm::dvec3(0.4, -0.3, 0.1), {5.3, -9.1, 3.0}, {-17.9, 11.0, 60.0}}) {
             SCOPED_TRACE(std::to_string(way_m.x) + (is_round ? ", round" : ", flat"));
-            const Scene other = scene_at(scene.camera.position_m + way_m, is_round);
+            const Scene other = near_far_scene(scene.camera.position_m + way_m, is_round);
             const Vertices after = vertices_of(other, 3);
             const Mesh moved = baked(other, 3);
             EXPECT_TRUE(bytes_of(folder_ / usd::topology_file(scene.shot.name, "usdc")) == faces);
@@ -79,7 +79,7 @@ TEST_F(NearFarBake, TheSeaStaysWhereItIsWhenTheCameraMoves) {
 // Faces stand once in the topology's layer; frames have points and an origin alone.
 TEST_F(NearFarBake, FramesHoldNoFaces) {
     for (const MeshFormat format : {MeshFormat::Usda, MeshFormat::Usdc}) {
-        Scene scene = scene_at({1e6, 2e6, 4.0}, true);
+        Scene scene = near_far_scene({1e6, 2e6, 4.0}, true);
         scene.output.mesh = format;
         scene.camera.keys = {
             {.frame = 1, .position_m = {1e6, 2e6, 4.0}, .look_at_m = {1e6, 2e6 + 50.0, 0.0}},

@@ -25,7 +25,7 @@
 namespace pelagic {
 namespace {
 
-Scene scene_of(WaveModel model) {
+Scene scene_of_model(WaveModel model) {
     Scene scene;
     scene.sea.wind_speed_mps = 12.0;
     scene.waves.model = model;
@@ -172,15 +172,16 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
 }
 
 TEST(QueryOnTheGpu, OfCascadesIsEvaluates) {
-    compare(scene_of(WaveModel::Fft), picture_query(), {});
+    compare(scene_of_model(WaveModel::Fft), picture_query(), {});
 }
 TEST(QueryOnTheGpu, OfCascadesIsEvaluatesAMillionMetresAway) {
-    compare(scene_of(WaveModel::Fft), picture_query(), {.origin_m = {1e6 + 0.3, -1e6 + 0.7}, .time_s = 1e7});
+    compare(scene_of_model(WaveModel::Fft), picture_query(),
+            {.origin_m = {1e6 + 0.3, -1e6 + 0.7}, .time_s = 1e7});
 }
 // Copies at random offsets: inside their cells, where two blend, and in corners, near and far, with and without what else
 // makes a difference.
 Scene copied(WaveModel model) {
-    Scene scene = scene_of(model);
+    Scene scene = scene_of_model(model);
     scene.waves.cascades = {{60.0, 128}, {11.3, 48}};  // the points lie in thousands of cells
     scene.waves.tiling = Tiling::Random;
     return scene;
@@ -217,24 +218,24 @@ TEST(QueryOnTheGpu, OfCopiesOfOtherWavesThatBreakIsEvaluates) {
     }
 }
 TEST(QueryOnTheGpu, OfTrainsIsEvaluates) {
-    compare(scene_of(WaveModel::Trochoid), picture_query(), {});
+    compare(scene_of_model(WaveModel::Trochoid), picture_query(), {});
 }
 TEST(QueryOnTheGpu, OfTrainsIsEvaluatesAMillionMetresAway) {
-    compare(scene_of(WaveModel::Trochoid), picture_query(),
+    compare(scene_of_model(WaveModel::Trochoid), picture_query(),
             {.origin_m = {1e6 + 0.3, -1e6 + 0.7}, .time_s = 1e7});
 }
 TEST(QueryOnTheGpu, OfTrainsAndCascadesTogetherIsEvaluates) {
-    Scene scene = scene_of(WaveModel::Trochoid);
+    Scene scene = scene_of_model(WaveModel::Trochoid);
     scene.waves.cascades = {{20.0, 128}};
     compare(scene, picture_query(), {});
 }
 TEST(QueryOnTheGpu, OfFourTapsAndTwoMomentsIsEvaluates) {
-    Scene scene = scene_of(WaveModel::Fft);
+    Scene scene = scene_of_model(WaveModel::Fft);
     scene.quality.level = QualityLevel::Draft;
     compare(scene, picture_query(), {});
 }
 TEST(QueryOnTheGpu, WithoutChoppinessIsEvaluates) {
-    Scene scene = scene_of(WaveModel::Fft);
+    Scene scene = scene_of_model(WaveModel::Fft);
     scene.waves.choppiness = 0.0;
     compare(scene, picture_query(), {});
     scene.waves.model = WaveModel::Trochoid;
@@ -247,7 +248,7 @@ TEST(QueryOnTheGpu, WithoutChoppinessIsEvaluates) {
 }
 // A tile of its own choppiness, and one without any, whose displacements have no planes.
 TEST(QueryOnTheGpu, OfCascadesOfDifferentChoppinessIsEvaluates) {
-    for (const Scene& sea : {scene_of(WaveModel::Fft), copied(WaveModel::Fft)})
+    for (const Scene& sea : {scene_of_model(WaveModel::Fft), copied(WaveModel::Fft)})
         for (const std::size_t zero : {0, 1}) {
             Scene scene = sea;
             scene.waves.cascades[zero].choppiness = 0.0;
@@ -259,7 +260,7 @@ TEST(QueryOnTheGpu, OfCascadesOfDifferentChoppinessIsEvaluates) {
 TEST(QueryOnTheGpu, OfOtherWavesThatBreakIsEvaluates) {
     for (const double breaking_from_m : {0.3, 7.0})
         for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
-            Scene scene = scene_of(model);
+            Scene scene = scene_of_model(model);
             scene.effects.breaking_from_m = breaking_from_m;
             compare(scene, picture_query(), {}, 5000);
         }
@@ -268,7 +269,7 @@ TEST(QueryOnTheGpu, OfOtherWavesThatBreakIsEvaluates) {
 TEST(QueryOnTheGpu, OfGustsIsEvaluates) {
     for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid})
         for (const double far_m : {0.0, 1e8}) {
-            Scene scene = scene_of(model);
+            Scene scene = scene_of_model(model);
             scene.sea.gust_strength = 1.0;
             compare(scene, picture_query(),
                     {.origin_m = {far_m, -far_m}, .time_s = far_m > 0.0 ? 1e5 : 12.5, .hidden_mss = 2e-4f});
@@ -277,7 +278,7 @@ TEST(QueryOnTheGpu, OfGustsIsEvaluates) {
 TEST(QueryOnTheGpu, WithOneFootprintForAllIsEvaluates) {
     Query query = picture_query();
     query.cell_m = query.pixel_m = {0.8};
-    compare(scene_of(WaveModel::Fft), query, {});
+    compare(scene_of_model(WaveModel::Fft), query, {});
 }
 
 // OpenGL 3.3 promises 16 KiB of uniforms in a block.

@@ -33,7 +33,7 @@ Scene storm() {
     return scene;
 }
 
-Picture picture_of(const Scene& scene, const Sky& sky, int frame, int samples) {
+Picture rims_picture(const Scene& scene, const Sky& sky, int frame, int samples) {
     RenderOptions options = render_options(scene);
     options.samples = samples;
     options.layers = parse_picture_layers("depth");
@@ -51,7 +51,7 @@ TEST(Rims, AreNoMoreThanInThePictureOfManySamples) {
     const double tangent = view_at(scene.camera, 1).pixel_tangent();
     Rims of_one, of_many;
     for (const int frame : {1, 13}) {
-        const Picture one = picture_of(scene, sky, frame, 1), many = picture_of(scene, sky, frame, 4);
+        const Picture one = rims_picture(scene, sky, frame, 1), many = rims_picture(scene, sky, frame, 4);
         const std::vector<float>& depth_m = one.data[index(PictureLayer::Depth)];
         of_one += rims(one, depth_m, height_m, tangent);
         of_many += rims(many, depth_m, height_m, tangent);

@@ -21,8 +21,8 @@
 namespace pelagic {
 namespace {
 
-// A storm, from among its crests.
-Scene storm(double gain) {
+// A spray_storm, from among its crests.
+Scene spray_storm(double gain) {
     Scene scene;
     scene.sea.wind_speed_mps = 22.0;
     scene.waves.cascades = {{1200.0, 256}, {180.0, 128}, {31.0, 128}};
@@ -68,7 +68,7 @@ TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {
     };
     for (const auto [height_m, most_error, most_rms] :
          {Case{12.0, 0.06, 0.06}, Case{40.0, 0.2, 0.12}, Case{400.0, 0.4, 0.25}}) {
-        Scene scene = storm(gain);
+        Scene scene = spray_storm(gain);
         scene.camera.position_m.z = height_m;
         scene.camera.look_at_m = {0.0, 10.0 * height_m, 0.0};
         RenderOptions options = spray_options(scene);
@@ -109,14 +109,14 @@ TEST(RenderedSpray, DimsAsMuchAsTheSeaItselfSays) {
 }
 
 TEST(RenderedSpray, IsNoneWithoutTheKeyAndWithoutWind) {
-    const Scene without = storm(0.0);
+    const Scene without = spray_storm(0.0);
     const Picture expected = spray_picture(without);
     EXPECT_FALSE(spray_options(without).lighting.spray);
     // A scene without spray has none, whatever the options say; and none of its light.
     RenderOptions options = spray_options(without);
     options.lighting.spray = true;
     EXPECT_TRUE(same_spray_bits(spray_picture(without, options), expected));
-    Scene with = storm(10.0);
+    Scene with = spray_storm(10.0);
     options = spray_options(with);
     EXPECT_TRUE(options.lighting.spray);
     options.lighting.spray = false;
@@ -124,14 +124,14 @@ TEST(RenderedSpray, IsNoneWithoutTheKeyAndWithoutWind) {
     EXPECT_FALSE(same_spray_bits(spray_picture(with), expected));
     with.sea.wind_speed_mps = 0.0;
     EXPECT_FALSE(spray_options(with).lighting.spray);
-    with = storm(10.0);
+    with = spray_storm(10.0);
     with.effects.whitecaps = false;
     EXPECT_FALSE(spray_options(with).lighting.spray);
 }
 
 // The plan, and so the transforms and bytes of a picture without spray, know nothing of it.
 TEST(RenderedSpray, CostsNoTransform) {
-    const Scene with = storm(10.0), without = storm(0.0);
+    const Scene with = spray_storm(10.0), without = spray_storm(0.0);
     const Plan more = picture_plan(with, std::array{1}, spray_options(with)),
                less = picture_plan(without, std::array{1}, spray_options(without));
     EXPECT_EQ(more.transforms_per_frame(), less.transforms_per_frame());
@@ -140,18 +140,19 @@ TEST(RenderedSpray, CostsNoTransform) {
     const auto bytes = [](const Scene& scene) {
         return render_memory(scene, spray_options(scene), std::array{1}, {}, 2).bytes();
     };
-    EXPECT_EQ(bytes(with), bytes(without) + spray_map_bytes(spray_map_size(storm(1.0).camera.resolution.x)));
+    EXPECT_EQ(bytes(with),
+              bytes(without) + spray_map_bytes(spray_map_size(spray_storm(1.0).camera.resolution.x)));
 }
 
 // Under one radiance everywhere nothing gets brighter than that: the furnace, with a sea that reflects less.
 TEST(RenderedSpray, AddsNoMoreThanItTakes) {
     for (const double gain : {1.0, 30.0, 1e4}) {
-        const Picture picture = spray_picture(storm(gain));
+        const Picture picture = spray_picture(spray_storm(gain));
         for (std::size_t i = 0; i < picture.layers.size(); ++i)
             ASSERT_LE(radiance_at(picture, i), static_cast<double>(kSkyRadiance) * (1.0 + 2e-5)) << gain;
     }
     // Nature's own is far too thin to be seen.
-    const Picture natural = spray_picture(storm(1.0)), none = spray_picture(storm(0.0));
+    const Picture natural = spray_picture(spray_storm(1.0)), none = spray_picture(spray_storm(0.0));
     double least = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < none.layers.size(); ++i) {
         least += std::abs(radiance_at(natural, i) - radiance_at(none, i));
@@ -162,7 +163,7 @@ TEST(RenderedSpray, AddsNoMoreThanItTakes) {
 }
 
 TEST(RenderedSpray, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyRun) {
-    const Scene scene = storm(20.0);
+    const Scene scene = spray_storm(20.0);
     const Picture expected = spray_picture(scene);
     oneapi::tbb::task_arena alone(1);
     EXPECT_TRUE(same_spray_bits(alone.execute([&] { return spray_picture(scene); }), expected));
@@ -181,7 +182,7 @@ TEST(RenderedSpray, HasTheSameBitsOnAnyNumberOfThreadsAndInAnyRun) {
 }
 
 TEST(RenderedSpray, HidesWhatATransparentSkyWouldShow) {
-    const Scene scene = storm(30.0);
+    const Scene scene = spray_storm(30.0);
     RenderOptions options = spray_options(scene);
     const Picture opaque = spray_picture(scene, options);
     options.alpha = true;
@@ -203,7 +204,7 @@ TEST(RenderedSpray, HidesWhatATransparentSkyWouldShow) {
 }
 
 TEST(RenderedSpray, IsFiniteFromAnywhere) {
-    Scene scene = storm(100.0);
+    Scene scene = spray_storm(100.0);
     scene.camera.resolution = {24, 16};
     const Sky sky = make_sky(scene);
     const auto check = [&](glm::dvec3 from, glm::dvec3 to) {
@@ -235,8 +236,8 @@ TEST(RenderedSpray, MakesOtherPicturesAndIsInTheirFingerprint) {
                                    .exposure_stops = 0.0})
             .of(1);
     };
-    EXPECT_NE(made_of(storm(0.0)), made_of(storm(1.0)));
-    EXPECT_NE(made_of(storm(1.0)), made_of(storm(2.0)));
+    EXPECT_NE(made_of(spray_storm(0.0)), made_of(spray_storm(1.0)));
+    EXPECT_NE(made_of(spray_storm(1.0)), made_of(spray_storm(2.0)));
 }
 
 }  // namespace

@@ -345,7 +345,7 @@ TEST(UsdText, MaterialReadsTheMeshsPrimvarsOnlyWhereTheyAre) {
 }
 
 // USD's rotateXYZ: about x first, then y, then z.
-glm::dvec3 rotated(const std::vector<float>& angles_deg, glm::dvec3 v) {
+glm::dvec3 rotated_by_text(const std::vector<float>& angles_deg, glm::dvec3 v) {
     for (int axis = 0; axis < 3; ++axis) {
         const double angle = angles_deg.at(static_cast<std::size_t>(axis)) * std::numbers::pi / 180.0;
         const int i = (axis + 1) % 3, j = (axis + 2) % 3;
@@ -363,7 +363,7 @@ TEST(UsdText, SunShinesFromItsDirection) {
                 root_text({.sun = Sun{.elevation_deg = elevation_deg, .azimuth_deg = azimuth_deg}});
             // A distant light shines along −z: its +z points to where the light comes from.
             const glm::dvec3 towards =
-                rotated(floats_after(text, "float3 xformOp:rotateXYZ = "), glm::dvec3(0, 0, 1));
+                rotated_by_text(floats_after(text, "float3 xformOp:rotateXYZ = "), glm::dvec3(0, 0, 1));
             const double e = elevation_deg * std::numbers::pi / 180.0;
             const double a = azimuth_deg * std::numbers::pi / 180.0;
             const glm::dvec3 sun(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
@@ -378,9 +378,9 @@ TEST(UsdText, SkysMiddleIsXAndItsTopTheZenith) {
     const std::string text = root_text({.sky = Sky{.lat_long_file = "./a sky@dusk.exr"}});
     const std::vector<float> angles = floats_after(text, "float3 xformOp:rotateXYZ = ");
     // Of a lat-long image the middle is a dome's +z, a quarter to the left +x, the top +y.
-    EXPECT_LT(glm::distance(rotated(angles, {0, 0, 1}), glm::dvec3(1, 0, 0)), 1e-15);
-    EXPECT_LT(glm::distance(rotated(angles, {1, 0, 0}), glm::dvec3(0, 1, 0)), 1e-15);
-    EXPECT_LT(glm::distance(rotated(angles, {0, 1, 0}), glm::dvec3(0, 0, 1)), 1e-15);
+    EXPECT_LT(glm::distance(rotated_by_text(angles, {0, 0, 1}), glm::dvec3(1, 0, 0)), 1e-15);
+    EXPECT_LT(glm::distance(rotated_by_text(angles, {1, 0, 0}), glm::dvec3(0, 1, 0)), 1e-15);
+    EXPECT_LT(glm::distance(rotated_by_text(angles, {0, 1, 0}), glm::dvec3(0, 0, 1)), 1e-15);
     EXPECT_NE(text.find("asset inputs:texture:file = @@@./a sky@dusk.exr@@@\n"), std::string::npos);
     EXPECT_THROW(root_text({.sky = Sky{.lat_long_file = "a@@@b.exr"}}), std::invalid_argument);
 }

@@ -23,13 +23,13 @@
 #include "core/plan/plan.h"
 #include "core/waves/frame.h"
 #include "plugin/bake/output_part.h"
-#include "plugin/bake/verify.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/outputs.h"
 #include "plugin/python/task.h"
 #include "plugin/python/values.h"
 #include "plugin/python/watch.h"
+#include "plugin/run/verify.h"
 
 namespace pelagic::python {
 namespace {
@@ -38,21 +38,8 @@ namespace py = pybind11;
 
 // ---- Files
 
-const char* word_of(BakeStage stage) {
-    switch (stage) {
-        case BakeStage::Planning:
-            return "planning";
-        case BakeStage::Checking:
-            return "checking";
-        case BakeStage::Building:
-            return "building";
-        case BakeStage::Frames:
-            return "frames";
-        case BakeStage::Waiting:
-            return "waiting";
-    }
-    throw std::logic_error("a bake in no stage");
-}
+// In the order of RunStage.
+constexpr std::array kStages{"planning", "checking", "building", "looking", "frames", "waiting"};
 
 using FramesAsked = std::variant<int, std::string, std::vector<int>>;
 
@@ -71,7 +58,7 @@ std::vector<int> frames_of(const std::optional<FramesAsked>& asked, const Shot& 
 // A bake that was asked for; what is wrong with it is said before any work.
 struct BakeOrder {
     Scene scene;  // a copy: other threads may change the caller's meanwhile
-    BakeOptions options;
+    RunOptions options;
 };
 
 BakeOrder order_of(const Scene& scene, const std::optional<std::filesystem::path>& out,
@@ -86,28 +73,23 @@ BakeOrder order_of(const Scene& scene, const std::optional<std::filesystem::path
     return order;
 }
 
-// How much of what the stage goes through is done, where that is known.
-double share_of(const BakeProgress& now) {
-    if (now.stage == BakeStage::Checking) return now.checked;
-    return now.stage == BakeStage::Frames ? now.foam_past : now.built;
-}
-
 // Without the interpreter. watch: a Watch or a Task.
 template <class Watching>
-BakeReport baked(BakeOrder order, Watching& watch) {
-    order.options.progress = [&](const BakeProgress& now) {
-        watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total, share_of(now));
+RunReport baked(BakeOrder order, Watching& watch) {
+    order.options.progress = [&](const RunProgress& now) {
+        watch.tell(kStages[static_cast<std::size_t>(now.stage)], now.frame, now.done, now.kept, now.total,
+                   now.share);
     };
     order.options.cancel = watch.flag();
     return bake(order.scene, order.options);
 }
 
-BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
-                    const std::optional<FramesAsked>& frames, const py::object& progress,
-                    const py::object& cancel, bool trust_times, std::optional<std::size_t> max_memory_bytes) {
+RunReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
+                   const std::optional<FramesAsked>& frames, const py::object& progress,
+                   const py::object& cancel, bool trust_times, std::optional<std::size_t> max_memory_bytes) {
     const BakeOrder order = order_of(scene, out, frames, trust_times, max_memory_bytes);
     const auto watch = shared_watch(progress, cancel);
-    const auto report = std::make_shared<BakeReport>();
+    const auto report = std::make_shared<RunReport>();
     beside_others(watch, [=] { *report = baked(order, *watch); });
     watch->rethrow();
     return *report;
@@ -127,34 +109,34 @@ std::optional<std::filesystem::path> path_or_none(const std::filesystem::path& p
 }
 
 void add_bake_report(py::module_& module) {
-    py::class_<BakeReport>(module, "BakeReport", "What a bake did.")
+    py::class_<RunReport>(module, "RunReport", "What a bake did.")
         .def_property_readonly(
-            "root", [](const BakeReport& self) { return path_or_none(self.root); },
+            "root", [](const RunReport& self) { return path_or_none(self.root); },
             "The stage, DIR/NAME.usda; None without a mesh.")
         .def_property_readonly(
-            "maps", [](const BakeReport& self) { return path_or_none(self.maps); },
+            "maps", [](const RunReport& self) { return path_or_none(self.maps); },
             "The folder of the maps; None without maps.")
         .def_property_readonly(
-            "volumes", [](const BakeReport& self) { return path_or_none(self.volumes); },
+            "volumes", [](const RunReport& self) { return path_or_none(self.volumes); },
             "The folder of the volumes; None without volumes.")
-        .def_readonly("record", &BakeReport::record, "DIR/NAME.json.")
-        .def_readonly("done", &BakeReport::done, "Frames that were baked.")
-        .def_readonly("kept", &BakeReport::kept, "Frames that were whole already.")
-        .def_readonly("total", &BakeReport::total, "Frames that were asked for.")
-        .def_readonly("cancelled", &BakeReport::cancelled,
+        .def_readonly("record", &RunReport::record, "DIR/NAME.json.")
+        .def_readonly("done", &RunReport::done, "Frames that were baked.")
+        .def_readonly("kept", &RunReport::kept, "Frames that were whole already.")
+        .def_readonly("total", &RunReport::total, "Frames that were asked for.")
+        .def_readonly("cancelled", &RunReport::cancelled,
                       "Whether it was cancelled; what is in the files is whole, and the next bake goes on.")
-        .def_readonly("seconds", &BakeReport::seconds, "From the call to its end.")
+        .def_readonly("seconds", &RunReport::seconds, "From the call to its end.")
         .def_readonly(
-            "stale", &BakeReport::stale,
+            "stale", &RunReport::stale,
             "Frames of the shot that lie there and belong to another version of it, or whose entry in the record was "
             "altered, not asked for.")
-        .def_readonly("foreign", &BakeReport::foreign,
+        .def_readonly("foreign", &RunReport::foreign,
                       "Files that lie there and aren't the shot's, a line each.")
         .def_readonly(
-            "unlocked", &BakeReport::unlocked,
+            "unlocked", &RunReport::unlocked,
             "Why the folder can't be locked against other bakes into it; empty where it can, as far as the "
             "system says.")
-        .def_readonly("damaged", &BakeReport::damaged,
+        .def_readonly("damaged", &RunReport::damaged,
                       "What wasn't as it was recorded, and was made again, a line each.")
         .def_property_readonly("times", &time_text,
                                "Where the time went, a line; empty where nothing was baked.");
@@ -171,9 +153,9 @@ std::vector<Finding> run_verify(const std::filesystem::path& folder, const py::o
         });
         watch.rethrow();
         return found.findings;
-    } catch (const CheckCancelled& cancelled) {
+    } catch (const BuildCancelled&) {
         watch.rethrow();
-        throw Cancelled(cancelled.what());
+        throw Cancelled("the check was cancelled");
     }
 }
 
@@ -346,7 +328,7 @@ void add_bake(py::module_& module) {
         "begin_bake", &begin_bake, py::arg("scene"), py::arg("out") = py::none(),
         py::arg("frames") = py::none(), py::kw_only(), py::arg("trust_times") = false,
         py::arg("max_memory_bytes") = py::none(),
-        "Begins what bake() does: a Task whose result is the BakeReport, and whose progress is what bake() "
+        "Begins what bake() does: a Task whose result is the RunReport, and whose progress is what bake() "
         "calls progress with.");
     py::class_<Maps, std::shared_ptr<Maps>>(
         module, "Maps",

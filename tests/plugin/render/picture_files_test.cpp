@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "core/scene/keys.h"
-#include "plugin/bake/pictures.h"
+#include "plugin/run/seals.h"
 
 namespace pelagic {
 namespace {
@@ -222,7 +222,7 @@ TEST(PictureFiles, ShowEveryDamage) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("pelagic-damaged-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
-    const CheckWatch watch;
+    const BuildWatch watch;
     for (const auto& [extension, bytes, other] :
          {std::tuple{"exr", encode_exr(context, picture, 1), encode_exr(context, picture, 2)},
           {"png", encode_png(context, picture, 1), encode_png(context, picture, 2)}}) {

@@ -1,4 +1,4 @@
-#include "plugin/bake/check.h"
+#include "plugin/run/check.h"
 
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -20,7 +20,7 @@ std::string size_problem(std::uintmax_t bytes, std::uintmax_t recorded) {
 }  // namespace
 
 void CheckProgress::add(std::size_t bytes) {
-    if (watch_.cancel && watch_.cancel->load(std::memory_order_relaxed)) throw CheckCancelled();
+    stop_if(watch_.cancel);
     if (!watch_.progress) return;
     constexpr std::chrono::milliseconds kTellEvery{50};
     const std::lock_guard lock(mutex_);
@@ -60,7 +60,7 @@ void check_file(const std::filesystem::path& folder, FileCheck& check, CheckProg
         check.problem = "holds other bytes than were written (its checksum differs)";
 }
 
-void check_files(const std::filesystem::path& folder, std::span<FileCheck> checks, const CheckWatch& watch) {
+void check_files(const std::filesystem::path& folder, std::span<FileCheck> checks, const BuildWatch& watch) {
     std::uintmax_t total = 0;
     for (const FileCheck& file : checks) total += file.recorded.bytes;
     CheckProgress progress(watch, total);

@@ -1,8 +1,9 @@
-#include "plugin/bake/verify.h"
+#include "plugin/run/verify.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -10,10 +11,10 @@
 #include <utility>
 
 #include "core/scene/text.h"
-#include "plugin/bake/bake.h"
-#include "plugin/bake/foreign.h"
-#include "plugin/bake/pictures.h"
-#include "plugin/bake/record.h"
+#include "plugin/run/foreign.h"
+#include "plugin/run/record.h"
+#include "plugin/run/run.h"
+#include "plugin/run/seals.h"
 
 namespace pelagic {
 namespace {
@@ -52,8 +53,8 @@ std::string gaps_text(const Known::Baked& baked) {
     return text;
 }
 
-void read_shot(const fs::path& folder, const std::string& record, const RecordWatch& watch, Known& known,
-               Verification& found) {
+void read_shot(const fs::path& folder, const std::string& record, const std::atomic<bool>* cancel,
+               Known& known, Verification& found) {
     const std::string name = record.substr(0, record.size() - std::string_view(".json").size());
     const auto tell = [&](Flaw flaw, std::string what) {
         found.findings.push_back({record, flaw, std::move(what)});
@@ -77,7 +78,7 @@ void read_shot(const fs::path& folder, const std::string& record, const RecordWa
                     add(path, std::move(file));
             }
         },
-        watch);
+        cancel);
     known.paths.insert(record);
     ++found.shots;
     if (!reading.problem.empty()) tell(Flaw::Damaged, reading.problem);
@@ -128,22 +129,11 @@ bool is_picture(const std::string& name) {
 }  // namespace
 
 const char* word_of(Flaw flaw) {
-    switch (flaw) {
-        case Flaw::Missing:
-            return "missing";
-        case Flaw::Damaged:
-            return "damaged";
-        case Flaw::Stale:
-            return "stale";
-        case Flaw::Foreign:
-            return "foreign";
-        case Flaw::Interrupted:
-            return "interrupted";
-    }
-    return "";
+    constexpr std::array kWords{"missing", "damaged", "stale", "foreign", "interrupted"};
+    return kWords[static_cast<std::size_t>(flaw)];
 }
 
-Verification verify(const fs::path& folder, const CheckWatch& watch) {
+Verification verify(const fs::path& folder, const BuildWatch& watch) {
     std::set<std::string> names;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
@@ -155,16 +145,13 @@ Verification verify(const fs::path& folder, const CheckWatch& watch) {
 
     Verification found;
     Known known;
-    const auto go_on = [&] {
-        if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) throw CheckCancelled();
-    };
     struct PictureCheck {
         std::string name, problem;
     };
     std::vector<PictureCheck> pictures;
     for (const std::string& name : names) {
         if (name.starts_with('.')) continue;
-        if (name.ends_with(".json")) read_shot(folder, name, go_on, known, found);
+        if (name.ends_with(".json")) read_shot(folder, name, watch.cancel, known, found);
         if (is_picture(name)) pictures.push_back({name, {}});
     }
 

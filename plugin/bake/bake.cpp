@@ -11,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "core/spectrum/possible.h"
 #include "plugin/bake/output_part.h"
 #include "plugin/bake/sequence.h"
 #include "plugin/bake/stage.h"

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct AccuracyArguments {
     std::string shot, out, threads;
     std::vector<std::string> rows;
     bool list = false, pictures = false;
@@ -102,7 +102,7 @@ void write(const fs::path& folder, const std::vector<MeasuredRow>& rows, const S
             files::write_atomically(folder / (row.name + ".svg"), plot);
 }
 
-int run(const Arguments& arguments) {
+int run(const AccuracyArguments& arguments) {
     if (arguments.list) {
         list_rows();
         return kDone;
@@ -156,7 +156,7 @@ Verb add_accuracy(CLI::App& program) {
     CLI::App* command = program.add_subcommand("accuracy", help::kAccuracy);
     command->group(help::kVerbs);
     command->footer(help::kAccuracyFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<AccuracyArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kAccuracyShot)->type_name("");
     command->add_option("--out", arguments->out, help::kAccuracyOut)->type_name("DIR");
     command->add_option("--rows", arguments->rows, help::kAccuracyRows)->delimiter(',')->type_name("NAMES");

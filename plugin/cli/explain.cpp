@@ -34,7 +34,7 @@
 namespace pelagic::cli {
 namespace {
 
-struct Arguments {
+struct ExplainArguments {
     std::string shot;
     bool measure = false;
     std::string threads;
@@ -75,7 +75,7 @@ std::string too_large(std::size_t needed, const std::string& there) {
            "without --measure";
 }
 
-int print_prices(const Scene& scene, const Arguments& arguments) {
+int print_prices(const Scene& scene, const ExplainArguments& arguments) {
     std::size_t needed = 0;
     const auto out_of_memory = [&](int) { return too_large(needed, ", which this process doesn't get"); };
     const auto print = [&](Session& session) {
@@ -152,7 +152,7 @@ Verb add_explain(CLI::App& program) {
     CLI::App* command = program.add_subcommand("explain", help::kExplain);
     command->group(help::kVerbs);
     command->footer(help::kExplainFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<ExplainArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     CLI::Option* measure = command->add_flag("--measure", arguments->measure, help::kMeasure);
     add_threads(*command, arguments->threads, help::kMeasureThreads)->needs(measure);

@@ -40,17 +40,9 @@ int guarded_run(const Guard& guard, const std::function<int(Session&)>& work) {
     }
 }
 
-std::vector<int> frames_asked(const std::string& text, const Shot& shot) {
-    try {
-        return parse_frames(text, shot);
-    } catch (const std::invalid_argument& error) {
-        throw WrongUsage(error.what());
-    }
-}
-
 RunOptions run_options(const RunArguments& arguments, const Shot& shot) {
     RunOptions options;
-    if (arguments.frames) options.frames = frames_asked(*arguments.frames, shot);
+    if (arguments.frames) options.frames = asked([&] { return parse_frames(*arguments.frames, shot); });
     if (arguments.out && arguments.out->empty())
         throw WrongUsage("--out \"\": that is no folder; accepted: a path, or no --out for ./" + shot.name);
     options.out = arguments.out.value_or(shot.name);

@@ -5,7 +5,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "plugin/cli/progress.h"
 #include "plugin/cli/stop.h"
@@ -18,6 +17,15 @@ namespace pelagic::cli {
 struct WrongUsage : std::runtime_error {
     using runtime_error::runtime_error;
 };
+// What `parse` returns; WrongUsage for its std::invalid_argument.
+template <class Parse>
+auto asked(const Parse& parse) {
+    try {
+        return parse();
+    } catch (const std::invalid_argument& error) {
+        throw WrongUsage(error.what());
+    }
+}
 
 // What work is done with.
 struct Session {
@@ -46,9 +54,8 @@ struct RunArguments {
     std::string threads, max_memory;
     bool trust_times = false;
 };
-// Throws WrongUsage, as frames_asked(), for what are no frames of the shot.
+// Throws WrongUsage.
 RunOptions run_options(const RunArguments& arguments, const Shot& shot);
-std::vector<int> frames_asked(const std::string& text, const Shot& shot);
 
 // What such a verb does, beside that.
 struct FrameVerb {

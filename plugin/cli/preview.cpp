@@ -36,7 +36,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct PreviewArguments {
     std::string shot;
     std::optional<std::string> offscreen, screenshot, quality;
     std::optional<int> frame;
@@ -54,7 +54,8 @@ void refuse_file(const std::string& option, const fs::path& file,
                          listed(extensions));
 }
 
-int draw_offscreen(const Scene& shot, const fs::path& file, const Arguments& arguments, Progress& progress) {
+int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArguments& arguments,
+                   Progress& progress) {
     Scene scene = without_budget(shot);  // of bakes and renders
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
@@ -105,7 +106,7 @@ void save_shot(const fs::path& file, const Scene& scene, const Scene& shot) {
     files::write_atomically(file, text);
 }
 
-int run(const Arguments& arguments) {
+int run(const PreviewArguments& arguments) {
     Scene scene = load_shot(arguments.shot, check_scene);
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
@@ -114,7 +115,7 @@ int run(const Arguments& arguments) {
                              "\"; accepted: " + listed(all_words<QualityLevel>()));
         scene.quality.level = *level;
     }
-    if (arguments.frame) frames_asked(std::to_string(*arguments.frame), scene.shot);
+    if (arguments.frame) asked([&] { return parse_frames(std::to_string(*arguments.frame), scene.shot); });
     if (arguments.offscreen) {
         refuse_file("--offscreen", *arguments.offscreen, {".png", ".exr"});
         // Signals end it at once: no file is begun.
@@ -147,7 +148,7 @@ Verb add_preview(CLI::App& program) {
     CLI::App* command = program.add_subcommand("preview", help::kPreview);
     command->group(help::kVerbs);
     command->footer(help::kPreviewFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<PreviewArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     CLI::Option* offscreen =
         command->add_option("--offscreen", arguments->offscreen, help::kOffscreen)->type_name("FILE");

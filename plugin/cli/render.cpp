@@ -29,9 +29,7 @@
 namespace pelagic::cli {
 namespace {
 
-constexpr double kMostStops = 30.0;
-
-struct Arguments : RunArguments {
+struct RenderArguments : RunArguments {
     std::optional<std::string> terms, sky_quality, layers;
     std::optional<int> samples;
     double exposure_stops = 0.0, shutter_frames = 0.0;
@@ -70,13 +68,12 @@ SkyQuality parse_sky_quality(const std::string& text) {
     throw WrongUsage("sky quality \"" + text + "\"; accepted: one, nine, integral");
 }
 
-PictureOrder order_of(const Arguments& arguments) {
+PictureOrder order_of(const RenderArguments& arguments) {
     PictureOrder order{.scene = load_shot(arguments.shot, check_scene), .options = {}};
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) order.scene.camera.resolution = size;
     RenderOptions& options = order.options = render_options(order.scene);
-    order.has_samples = arguments.samples.has_value();
-    order.has_sky_quality = arguments.sky_quality.has_value();
-    options.samples = arguments.samples.value_or(options.samples);
+    order.samples = arguments.samples;
+    options.samples = order.samples.value_or(options.samples);
     if (options.samples < 1 || options.samples > kMostSamples)
         throw WrongUsage("samples " + std::to_string(options.samples) + "; accepted: 1 to " +
                          std::to_string(kMostSamples));
@@ -86,14 +83,9 @@ PictureOrder order_of(const Arguments& arguments) {
                          number_text(kLongestShutter_frames));
     options.shutter_frames = arguments.shutter_frames;
     options.alpha = arguments.alpha;
-    if (arguments.layers) {
-        try {
-            options.layers = parse_picture_layers(*arguments.layers);
-        } catch (const std::invalid_argument& error) {
-            throw WrongUsage(error.what());
-        }
-    }
-    if (arguments.sky_quality) options.lighting.sky_quality = parse_sky_quality(*arguments.sky_quality);
+    if (arguments.layers) options.layers = asked([&] { return parse_picture_layers(*arguments.layers); });
+    if (arguments.sky_quality) order.sky_quality = parse_sky_quality(*arguments.sky_quality);
+    options.lighting.sky_quality = order.sky_quality.value_or(options.lighting.sky_quality);
     if (!(std::abs(arguments.exposure_stops) <= kMostStops))
         throw WrongUsage("exposure " + number_text(arguments.exposure_stops) + "; accepted: stops, " +
                          number_text(-kMostStops) + " to " + number_text(kMostStops));
@@ -102,7 +94,7 @@ PictureOrder order_of(const Arguments& arguments) {
 }
 
 // Pictures take long: each says how far it is.
-void show(const RunProgress& now, Progress& progress) {
+void show_pictures(const RunProgress& now, Progress& progress) {
     if (now.stage != RunStage::Frames || (now.share == 0.0 && now.done > 0)) return progress.show(now);
     if (now.share > 0.0)
         progress.show("frame " + std::to_string(now.at) + ": " +
@@ -110,8 +102,8 @@ void show(const RunProgress& now, Progress& progress) {
                       " of " + std::to_string(now.total - now.kept) + " whole");
 }
 
-void print_done(const RunReport& report, const PictureOrder& order, const RunOptions& options,
-                const std::string& out) {
+void print_rendered(const RunReport& report, const PictureOrder& order, const RunOptions& options,
+                    const std::string& out) {
     const Shot& shot = order.scene.shot;
     const int first = options.frames.empty() ? shot.first_frame : options.frames.front();
     std::cout << "pictures: " << line_text((options.out / picture_file(shot, first, "exr")).string())
@@ -128,7 +120,7 @@ void print_done(const RunReport& report, const PictureOrder& order, const RunOpt
         std::cerr << "pelagic: in " << out << " lies " << line << "; nothing was deleted\n";
 }
 
-int run(const Arguments& arguments) {
+int run(const RenderArguments& arguments) {
     PictureOrder order = order_of(arguments);
     const RunOptions options = run_options(arguments, order.scene.shot);
     const auto out_of_memory = [&](int) {
@@ -152,8 +144,8 @@ int run(const Arguments& arguments) {
                       {.out_of_memory = out_of_memory,
                        .work = work,
                        .report = [&](const RunReport& report,
-                                     const std::string& out) { print_done(report, order, options, out); },
-                       .show = show});
+                                     const std::string& out) { print_rendered(report, order, options, out); },
+                       .show = show_pictures});
 }
 
 }  // namespace
@@ -162,7 +154,7 @@ Verb add_render(CLI::App& program) {
     CLI::App* command = program.add_subcommand("render", help::kRender);
     command->group(help::kVerbs);
     command->footer(help::kRenderFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<RenderArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");

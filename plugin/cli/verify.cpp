@@ -19,7 +19,7 @@
 namespace pelagic::cli {
 namespace {
 
-struct Arguments {
+struct VerifyArguments {
     std::vector<std::string> folders;
     std::string threads;
 };
@@ -38,7 +38,7 @@ std::string summary(const Verification& found) {
     return text + (flaws.empty() ? "no bake and no pictures are here" : flaws);
 }
 
-int run(const Arguments& arguments) {
+int run(const VerifyArguments& arguments) {
     std::string at;  // the folder that is read
     const auto check_all = [&](Session& session) {
         session.stop->files_begin();  // a check ends soon, and with a word
@@ -80,7 +80,7 @@ Verb add_verify(CLI::App& program) {
     CLI::App* command = program.add_subcommand("verify", help::kVerify);
     command->group(help::kVerbs);
     command->footer(help::kVerifyFooter);
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<VerifyArguments>();
     command->add_option("DIR", arguments->folders, help::kFolders)->required()->type_name("");
     add_threads(*command, arguments->threads, help::kVerifyThreads);
     return {command, [arguments] { return run(*arguments); }};

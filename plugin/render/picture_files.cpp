@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <glm/common.hpp>
 #include <utility>
 
@@ -18,11 +17,10 @@
 #include "core/scene/text.h"
 #include "core/surface/view.h"
 #include "plugin/exr/exr.h"
-#include "plugin/exr/read.h"
-#include "plugin/files/files.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/png/png.h"
+#include "plugin/run/part.h"
 #include "plugin/run/seals.h"
 
 namespace pelagic {
@@ -128,9 +126,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
 }  // namespace
 
 std::string picture_file(const Shot& shot, int frame, const char* extension) {
-    std::array<char, 16> number{};
-    std::snprintf(number.data(), number.size(), "%04d", frame);
-    return shot.name + "." + number.data() + "." + extension;
+    return FilePattern{shot.name + '.', std::string(".") + extension}.file(frame);
 }
 
 PictureFingerprint::PictureFingerprint(const PictureSource& source)

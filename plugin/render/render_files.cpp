@@ -3,11 +3,11 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "core/plan/budget.h"
@@ -24,21 +24,20 @@ namespace {
 
 struct PictureSlot : RunSlot {
     Picture picture;
-    std::string png, exr;
+    std::array<std::string, 2> files;  // by part
 };
+constexpr std::array kExtensions{"png", "exr"};
 
 class Pictures final : public Sequence {
   public:
     Pictures(const PictureOrder& order, const PictureFingerprint& made_of, std::span<const int> frames,
-             const BuildWatch& building)
+             const std::function<BuildWatch(RunStage)>& watch)
         : order_(order),
           made_of_(made_of),
-          renderer_(order.scene, order.options, make_sky(order.scene), frames, building),
-          exposure_(shot_exposure(order.scene, renderer_.sky(), order.exposure_stops)),
-          cancel_(building.cancel) {}
-
-    void check_cameras(std::span<const int> frames, const BuildWatch& watch) {
-        renderer_.check_cameras(frames, watch);
+          cancel_(watch(RunStage::Building).cancel),
+          renderer_(order.scene, order.options, make_sky(order.scene), frames, watch(RunStage::Building)),
+          exposure_(shot_exposure(order.scene, renderer_.sky(), order.exposure_stops)) {
+        renderer_.check_cameras(frames, watch(RunStage::Looking));
     }
 
     std::unique_ptr<RunSlot> make_slot() const override { return std::make_unique<PictureSlot>(); }
@@ -56,24 +55,24 @@ class Pictures final : public Sequence {
                                      .sky = renderer_.sky(),
                                      .made_of = made_of_.of(slot.frame),
                                      .exposure = exposure_};
-        slot.png = encode_png(context, slot.picture, slot.frame);
-        slot.exr = encode_exr(context, slot.picture, slot.frame);
+        if (slot.wants(0)) slot.files[0] = encode_png(context, slot.picture, slot.frame);
+        if (slot.wants(1)) slot.files[1] = encode_exr(context, slot.picture, slot.frame);
     }
 
     void write(RunSlot& any, const FileSink& sink) const override {
         const PictureSlot& slot = static_cast<const PictureSlot&>(any);
-        for (const auto& [extension, bytes] : {std::pair("png", &slot.png), std::pair("exr", &slot.exr)})
-            sink({.path = picture_file(order_.scene.shot, slot.frame, extension),
-                  .fingerprint = {},
-                  .content = [&file = *bytes](const auto& take) { take(file); }});
+        for (std::size_t p = 0; p < kExtensions.size(); ++p)
+            if (slot.wants(p))
+                sink({picture_file(order_.scene.shot, slot.frame, kExtensions[p]),
+                      [&](const auto& take) { take(slot.files[p]); }});
     }
 
   private:
     const PictureOrder& order_;
     const PictureFingerprint& made_of_;
+    const std::atomic<bool>* cancel_;
     Renderer renderer_;
     float exposure_;
-    const std::atomic<bool>* cancel_;
 };
 
 }  // namespace
@@ -82,9 +81,7 @@ std::string spend_budget(PictureOrder& order, std::size_t max_memory_bytes, cons
                          const BuildWatch& watch) {
     if (!has_budget(order.scene.quality)) return {};
     RenderOptions& options = order.options;
-    FixedSettings fixed{.shutter_frames = options.shutter_frames, .layers = options.layers};
-    if (order.has_samples) fixed.samples = options.samples;
-    if (order.has_sky_quality) fixed.sky_quality = options.lighting.sky_quality;
+    const FixedSettings fixed{order.samples, order.sky_quality, options.shutter_frames, options.layers};
     const PictureBudget budget = picture_budget(order.scene, fixed, max_memory_bytes, watch);
     if (!budget.holds)
         throw std::invalid_argument(budget.text + "; raise the budget, or give " + by_name +
@@ -120,9 +117,7 @@ RunReport render_files(const PictureOrder& order, const RunOptions& options) {
                                                  tbb::this_task_arena::max_concurrency()),
                                    machine::memory_limit_or(options.max_memory_bytes), "this picture");
                     files::check_folder(options.out);
-                    auto pictures =
-                        std::make_unique<Pictures>(order, *made_of, frames, watch(RunStage::Building));
-                    pictures->check_cameras(frames, watch(RunStage::Looking));
+                    auto pictures = std::make_unique<Pictures>(order, *made_of, frames, watch);
                     prepare_folders(options.out, parts);  // whatever is refused has left none behind
                     return pictures;
                 }},

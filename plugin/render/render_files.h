@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "core/base/build_watch.h"
@@ -12,12 +13,16 @@
 
 namespace pelagic {
 
+inline constexpr double kMostStops = 30.0;
+
 // What is asked of the pictures. The scene must be valid.
 struct PictureOrder {
     Scene scene;  // its resolution is the pictures'
     RenderOptions options;
-    double exposure_stops = 0.0;
-    bool has_samples = false, has_sky_quality = false;  // asked for by name: no budget decides them
+    double exposure_stops = 0.0;  // -kMostStops … kMostStops
+    // Those of the options that are asked for by name: no budget decides them.
+    std::optional<int> samples{};
+    std::optional<SkyQuality> sky_quality{};
 };
 
 // Turns the scene's budget, if it has one, into settings of the scene and the options. Returns what was chosen, and why, for

@@ -9,6 +9,7 @@
 
 #include "plugin/files/checksum.h"
 #include "plugin/files/read.h"
+#include "plugin/run/seals.h"
 
 namespace pelagic {
 namespace {
@@ -36,6 +37,10 @@ void CheckProgress::add(std::size_t bytes) {
 
 void check_file(const std::filesystem::path& folder, FileCheck& check, CheckProgress& progress) {
     const std::filesystem::path file = folder / check.path;
+    if (check.is_sealed()) {
+        check.problem = picture_problem(file, progress);
+        return;
+    }
     const std::optional<std::uintmax_t> size = files::file_size(file);
     progress.add(0);
     if (size && *size != check.recorded.bytes) {  // no need to read it
@@ -74,6 +79,7 @@ void check_times(const std::filesystem::path& folder, std::span<FileCheck> check
     const auto saved = std::filesystem::last_write_time(record, error);
     for (FileCheck& file : checks) {
         const std::filesystem::path path = folder / file.path;
+        if (file.is_sealed()) continue;
         const std::optional<std::uintmax_t> size = files::file_size(path);
         file.is_missing = !size;
         if (!size) {

@@ -36,6 +36,8 @@ class CheckProgress {
 struct FileCheck {
     std::string path;  // below the folder, with /
     FileRecord recorded{};
+    // A picture, which has no record and says itself what it is (plugin/run/seals.h).
+    bool is_sealed() const { return recorded.checksum.empty(); }
     // The end of a sentence that begins with the path; empty: the file is as it was written.
     std::string problem{};
     bool is_missing = false;
@@ -49,7 +51,7 @@ void check_files(const std::filesystem::path& folder, std::span<FileCheck> check
                  const BuildWatch& watch = {});
 
 // Looks at sizes and times alone: a file is as it was written if it has its size and is no newer than the record,
-// which is saved after the files that it tells of.
+// which is saved after the files that it tells of. Not at pictures.
 void check_times(const std::filesystem::path& folder, std::span<FileCheck> checks,
                  const std::filesystem::path& record);
 

@@ -108,7 +108,7 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
         if (name == shot.name) reason = "of an output that the shot doesn't have";
         bool is_ours = false;
         for (const RunPart& part : parts)
-            if (const auto frame = frame_of(path, part.files)) {
+            if (const auto frame = frame_of(path, part)) {
                 is_ours = *frame >= shot.first_frame && *frame <= shot.last_frame;
                 reason = "outside the shot's frames";
             }
@@ -134,7 +134,7 @@ std::vector<std::string> foreign_pictures(const fs::path& folder, const Shot& sh
                                           std::span<const RunPart> parts) {
     Groups groups;
     for (const RunPart& part : parts)
-        for (const int frame : frames_in(folder, part.files))
+        for (const int frame : frames_in(folder, part))
             if (frame < shot.first_frame || frame > shot.last_frame)
                 add(groups, part.file(frame), "outside the shot's frames");
     return lines_of(groups);

@@ -10,10 +10,9 @@ namespace pelagic {
 // Hands the bytes of a file over, piece after piece.
 using FileContent = std::function<void(const std::function<void(std::string_view)>&)>;
 
-// A file that is to be written: its path below DIR, with /, its bytes, and what they were made of.
+// A file that is to be written: its path below DIR, with /, and its bytes.
 struct FileJob {
     std::string path;
-    std::string fingerprint;  // that the file carries; empty: none
     FileContent content;
 };
 // Takes a finished file. Files come in the order in which they are to be written.
@@ -25,12 +24,9 @@ struct FilePattern {
     std::string file(int frame) const;
 };
 
-// A part of a run: the files that it makes of each frame, and what those of a frame are made of. A file that was made of
-// the same is kept.
-struct RunPart {
-    FilePattern files;
+// A part of a run: the file that it makes of each frame, and what that is made of. A file that was made of the same is kept.
+struct RunPart : FilePattern {
     std::function<std::string(int frame)> fingerprint;
-    std::string file(int frame) const { return files.file(frame); }
 };
 
 }  // namespace pelagic

@@ -50,14 +50,12 @@ std::vector<int> frames_of(const Shot& shot, std::vector<int> frames) {
 // What is to be done of one frame.
 struct FrameJob {
     int frame = 0;
-    std::vector<bool> wanted;  // by part: whose files are made; empty: all
+    std::vector<bool> wanted;  // by part: whose files are made
     FrameRecord kept;          // the files of the other parts
     // Every file is as it would be made, but the record lists files that the shot no longer has.
     bool is_whole = false;
 
-    bool makes_files() const {
-        return wanted.empty() || std::find(wanted.begin(), wanted.end(), true) != wanted.end();
-    }
+    bool makes_files() const { return std::find(wanted.begin(), wanted.end(), true) != wanted.end(); }
 };
 
 // Whether one of the frame's files was made of something else than it would be now.
@@ -111,6 +109,25 @@ std::vector<FileCheck> files_to_check(std::span<const int> frames, const std::ma
         }
     }
     return checks;
+}
+
+// What a record would say of the shot's pictures, which say themselves what they were made of. Throws BuildCancelled.
+std::map<int, FrameRecord> sealed_frames(const std::filesystem::path& folder, const Shot& shot, Parts parts,
+                                         const std::atomic<bool>* cancel) {
+    std::map<int, FrameRecord> frames;
+    for (const int frame : frames_in(folder, parts.front())) {
+        stop_if(cancel);
+        if (!is_in(shot, frame)) continue;
+        FrameRecord& entry = frames[frame];
+        entry.fingerprint = parts.front().fingerprint(frame);
+        for (const RunPart& part : parts) {
+            const std::filesystem::path file = folder / part.file(frame);
+            if (seems_whole(file, entry.fingerprint))
+                entry.files[part.file(frame)] = {.bytes = files::file_size(file).value_or(0),
+                                                 .fingerprint = entry.fingerprint};
+        }
+    }
+    return frames;
 }
 
 // The frames that files of no frame name: all of the shot, or of a very long one those that are asked for or recorded.
@@ -174,11 +191,7 @@ class Run {
         try {
             tell(RunStage::Planning);
             parts_ = work_.plan(frames_);
-            if (work_.has_record)
-                find_by_record();
-            else
-                find_by_seals();
-            progress_.kept = report_.kept = static_cast<int>(frames_.size() - jobs_.size());
+            find();
             if (work_.has_record || !jobs_.empty()) make();
             report_.foreign = work_.has_record
                                   ? foreign_files(options_.out, work_.shot, parts_, static_files_)
@@ -202,12 +215,13 @@ class Run {
     BuildWatch watch(RunStage stage) {
         return {.progress = [this, stage](double share) { tell(stage, share); }, .cancel = options_.cancel};
     }
-    bool is_asked(int frame) const { return std::binary_search(frames_.begin(), frames_.end(), frame); }
 
-    void find_by_record() {
+    void find() {
+        const Shot& shot = work_.shot;
         const std::map<int, FrameRecord> recorded =
-            recorded_frames(report_, work_.shot, frames_, options_.cancel);
-        named_ = named_frames(work_.shot, frames_, recorded);
+            work_.has_record ? recorded_frames(report_, shot, frames_, options_.cancel)
+                             : sealed_frames(options_.out, shot, parts_, options_.cancel);
+        named_ = named_frames(shot, frames_, recorded);
         std::vector<FileCheck> checks = files_to_check(frames_, recorded, parts_);
         if (options_.trust_times)
             check_times(options_.out, checks, report_.record);
@@ -216,7 +230,7 @@ class Run {
         std::map<std::string, bool> whole;
         for (const FileCheck& check : checks) {
             whole[check.path] = check.problem.empty();
-            if (!check.problem.empty() && !check.is_missing)
+            if (!check.problem.empty() && !check.is_missing && !check.is_sealed())
                 report_.damaged.push_back(check.path + ' ' + check.problem);
         }
         for (const int frame : frames_) {
@@ -225,20 +239,11 @@ class Run {
                 (job->is_whole ? mended_ : jobs_).push_back(std::move(*job));
         }
         for (const auto& [frame, entry] : recorded)
-            if (is_in(work_.shot, frame) && !is_asked(frame) && is_stale(frame, entry, parts_))
+            if (is_in(shot, frame) && !std::binary_search(frames_.begin(), frames_.end(), frame) &&
+                is_stale(frame, entry, parts_))
                 report_.stale.push_back(frame);
         std::sort(report_.stale.begin(), report_.stale.end());
-    }
-
-    void find_by_seals() {
-        for (const int frame : unfinished_frames(options_.out, parts_, frames_, options_.trust_times,
-                                                 watch(RunStage::Checking)))
-            jobs_.push_back({.frame = frame, .wanted = {}, .kept = {}});
-        const RunPart& first = parts_.front();
-        for (const int frame : frames_in(options_.out, first.files))
-            if (is_in(work_.shot, frame) && !is_asked(frame) &&
-                !is_whole_picture(options_.out / first.file(frame), first.fingerprint(frame), true))
-                report_.stale.push_back(frame);
+        progress_.kept = report_.kept = static_cast<int>(frames_.size() - jobs_.size());
     }
 
     void make() {
@@ -366,7 +371,7 @@ RunReport run(const RunWork& work, const RunOptions& options) {
 
 void prepare_folders(const std::filesystem::path& out, std::span<const RunPart> parts) {
     std::set<std::filesystem::path> folders{out};
-    for (const RunPart& part : parts) folders.insert((out / part.files.prefix).parent_path());
+    for (const RunPart& part : parts) folders.insert((out / part.prefix).parent_path());
     for (const auto& folder : folders) {
         files::ensure_folder(folder);
         files::remove_stale_temporaries(folder);

@@ -1,7 +1,5 @@
 #include "plugin/run/seals.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <stdexcept>
 #include <string_view>
@@ -80,15 +78,6 @@ std::string png_problem(const std::filesystem::path& path, CheckProgress& progre
     return at <= bytes.size() && bytes.compare(at, name.size(), name) == 0 ? "" : another_name(name);
 }
 
-bool is_whole_of(const std::filesystem::path& file, const std::string& made_of, bool trust,
-                 CheckProgress& progress) {
-    progress.add(0);
-    if (!files::carries(file, made_of)) return false;
-    if (!trust) return picture_problem(file, progress).empty();
-    // A PNG ends with an empty chunk called IEND and its checksum.
-    return file.extension() == ".exr" ? exr::ends_whole(file) : files::carries(file, "IEND\xae\x42\x60\x82");
-}
-
 }  // namespace
 
 std::vector<exr::Attribute> seal_attributes(const std::string& name) {
@@ -109,28 +98,10 @@ std::string picture_problem(const std::filesystem::path& file, CheckProgress& pr
     return file.extension() == ".png" ? png_problem(file, progress) : exr_problem(file, progress);
 }
 
-bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of, bool trust,
-                      const BuildWatch& watch) {
-    CheckProgress progress(watch, files::file_size(file).value_or(0));
-    return is_whole_of(file, made_of, trust, progress);
-}
-
-std::vector<int> unfinished_frames(const std::filesystem::path& folder, std::span<const RunPart> parts,
-                                   std::span<const int> frames, bool trust, const BuildWatch& watch) {
-    std::uintmax_t total = 0;
-    for (const int frame : frames)
-        for (const RunPart& part : parts) total += files::file_size(folder / part.file(frame)).value_or(0);
-    CheckProgress progress(watch, total);
-    std::vector<char> whole(frames.size());
-    tbb::parallel_for(std::size_t(0), frames.size(), [&](std::size_t i) {
-        whole[i] = std::all_of(parts.begin(), parts.end(), [&](const RunPart& part) {
-            return is_whole_of(folder / part.file(frames[i]), part.fingerprint(frames[i]), trust, progress);
-        });
-    });
-    std::vector<int> unfinished;
-    for (std::size_t i = 0; i < frames.size(); ++i)
-        if (!whole[i]) unfinished.push_back(frames[i]);
-    return unfinished;
+bool seems_whole(const std::filesystem::path& file, const std::string& made_of) {
+    if (!files::carries(file, made_of)) return false;
+    // A PNG ends with an empty chunk called IEND and its checksum.
+    return file.extension() == ".exr" ? exr::ends_whole(file) : files::carries(file, "IEND\xae\x42\x60\x82");
 }
 
 }  // namespace pelagic

@@ -1,7 +1,5 @@
 #include "plugin/run/verify.h"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -14,7 +12,6 @@
 #include "plugin/run/foreign.h"
 #include "plugin/run/record.h"
 #include "plugin/run/run.h"
-#include "plugin/run/seals.h"
 
 namespace pelagic {
 namespace {
@@ -145,39 +142,25 @@ Verification verify(const fs::path& folder, const BuildWatch& watch) {
 
     Verification found;
     Known known;
-    struct PictureCheck {
-        std::string name, problem;
-    };
-    std::vector<PictureCheck> pictures;
     for (const std::string& name : names) {
         if (name.starts_with('.')) continue;
         if (name.ends_with(".json")) read_shot(folder, name, watch.cancel, known, found);
-        if (is_picture(name)) pictures.push_back({name, {}});
+        if (is_picture(name))
+            known.files.push_back(
+                {.path = name, .recorded = {.bytes = files::file_size(folder / name).value_or(0)}});
     }
-
-    std::uintmax_t& total = found.bytes;
-    for (const FileCheck& file : known.files) total += file.recorded.bytes;
-    for (const PictureCheck& picture : pictures) total += files::file_size(folder / picture.name).value_or(0);
-    CheckProgress progress(watch, total);
-    const std::size_t of_bakes = known.files.size();
-    tbb::parallel_for(std::size_t(0), of_bakes + pictures.size(), [&](std::size_t i) {
-        if (i < of_bakes) return check_file(folder, known.files[i], progress);
-        PictureCheck& picture = pictures[i - of_bakes];
-        picture.problem = picture_problem(folder / picture.name, progress);
-    });
-    found.files = static_cast<int>(of_bakes + pictures.size());
-    for (const FileCheck& file : known.files)
+    for (const FileCheck& file : known.files) found.bytes += file.recorded.bytes;
+    check_files(folder, known.files, watch);
+    found.files = static_cast<int>(known.files.size());
+    for (const FileCheck& file : known.files) {
         if (!file.problem.empty())
             found.findings.push_back(
                 {file.path, file.is_missing ? Flaw::Missing : Flaw::Damaged, file.problem});
-    for (const PictureCheck& picture : pictures) {
-        if (!picture.problem.empty())
-            found.findings.push_back({picture.name, Flaw::Damaged, picture.problem});
-        const std::string other = fs::path(picture.name)
-                                      .replace_extension(picture.name.ends_with(".png") ? ".exr" : ".png")
-                                      .string();
+        if (!file.is_sealed()) continue;
+        const std::string other =
+            fs::path(file.path).replace_extension(file.path.ends_with(".png") ? ".exr" : ".png").string();
         if (!names.contains(other))
-            found.findings.push_back({other, Flaw::Missing, "is missing beside " + picture.name});
+            found.findings.push_back({other, Flaw::Missing, "is missing beside " + file.path});
     }
     std::map<std::string, std::vector<std::string>> unrecorded;  // paths, by shot
     for_each_bake_file(folder, [&](const std::string& path) {

@@ -45,8 +45,7 @@ class Sequence {
 
 struct RunWork {
     Shot shot;
-    // Whether a record says which files are whole, DIR/NAME.json, or each file itself (plugin/run/seals.h): then those of a
-    // frame are made together.
+    // Whether a record says which files are whole, DIR/NAME.json, or each file itself (plugin/run/seals.h).
     bool has_record = false;
     int in_flight = 1;  // frames
     // Refuses what can't be made of these frames, and names the parts. The statistics of a frame's record are of the first.

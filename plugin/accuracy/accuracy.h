@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/build_watch.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {

@@ -27,7 +27,7 @@ Means means_of(const Scene& scene) {
     Results<float> results;
     results.set(Product::Normal, {normal.data()});
     results.set(Product::SlopeVariance, {variance.data()});
-    results.set(Product::Coverage, {whitecaps.data()});
+    results.set(Product::Breaking, {whitecaps.data()});
     evaluate(frame, 0, Points<float>{.count = points.size(), .rest_m = {points.data()}}, results);
     Means means;
     means.spectrum_mss = frame.sea().total().mss();

@@ -148,7 +148,7 @@ Errors errors_of(int quads, MeshScheme scheme, double choppiness, const std::vec
                            .normals = values.vectors(Product::Normal),
                            .velocities = values.vectors(Product::Velocity),
                            .slope_variance = values.vectors(Product::SlopeVariance),
-                           .whitecap_coverage = values.numbers(Product::Coverage)};
+                           .whitecap_coverage = values.numbers(Product::Breaking)};
     Errors errors;
     if (const auto cage = plan.surface->fitted()) {
         std::vector<glm::vec3> vertices, velocities, variance;
@@ -158,7 +158,7 @@ Errors errors_of(int quads, MeshScheme scheme, double choppiness, const std::vec
         errors.fit_ms = fit[0].median();
         velocities = vertices;  // as many bytes
         cage->crop<glm::vec3>(values.vectors(Product::SlopeVariance), FittedCage::kReach, variance);
-        cage->crop<float>(values.numbers(Product::Coverage), FittedCage::kReach, coverage);
+        cage->crop<float>(values.numbers(Product::Breaking), FittedCage::kReach, coverage);
         sample.points = vertices;
         sample.velocities = velocities;
         sample.slope_variance = variance;

@@ -311,7 +311,7 @@ TEST(Ellipses, HardOnesAreFinite) {
         for (std::size_t i = 0; i < rest.size(); ++i) {
             EXPECT_TRUE(std::isfinite(answers.vectors(Position)[i].z) &&
                         std::isfinite(answers.vectors(Normal)[i].z) &&
-                        std::isfinite(answers.numbers(Coverage)[i]))
+                        std::isfinite(answers.numbers(Product::Breaking)[i]))
                 << i;
             for (const glm::vec3 v :
                  {answers.vectors(SlopeVariance)[i], answers.vectors(SlopeVarianceAtRest)[i]}) {

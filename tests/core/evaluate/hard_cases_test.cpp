@@ -36,7 +36,7 @@ void expect_sound(const ProductArrays<T>& samples, const std::string& what) {
     all(
         samples.vectors(JacobianMoments), [&](auto j) { return finite(j) && j.y >= T(0); }, "Jacobian");
     all(
-        samples.numbers(Coverage), [](T w) { return w >= T(0) && w <= T(1); }, "coverage");
+        samples.numbers(Product::Breaking), [](T w) { return w >= T(0) && w <= T(1); }, "coverage");
 }
 
 struct HardCase {
@@ -145,7 +145,7 @@ TEST(Calm, IsExactlyFlat) {
         EXPECT_EQ(samples.vectors(Normal)[i], glm::vec3(0.0f, 0.0f, 1.0f));
         EXPECT_EQ(samples.vectors(SlopeVariance)[i], glm::vec3(0.0f));
         EXPECT_EQ(samples.vectors(JacobianMoments)[i], glm::vec3(1.0f, 0.0f, 0.0f));
-        EXPECT_EQ(samples.numbers(Coverage)[i], 0.0f);
+        EXPECT_EQ(samples.numbers(Product::Breaking)[i], 0.0f);
     }
 }
 

@@ -38,7 +38,7 @@ TEST(SinglePrecision, IsWithinARoundingOfDouble) {
                 larger(velocity, a.vectors(Velocity)[i][axis], b.vectors(Velocity)[i][axis]);
                 larger(jacobian, a.vectors(JacobianMoments)[i][axis], b.vectors(JacobianMoments)[i][axis]);
             }
-            coverage = std::max(coverage, std::abs(double(a.numbers(Coverage)[i]) - b.numbers(Coverage)[i]));
+            coverage = std::max(coverage, std::abs(double(a.numbers(Product::Breaking)[i]) - b.numbers(Product::Breaking)[i]));
         }
         RecordProperty("displacement_over_hs", std::to_string(displacement / hs * 1e6) + "e-6");
         EXPECT_LT(displacement, 1e-6 * hs);

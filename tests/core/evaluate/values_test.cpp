@@ -49,7 +49,7 @@ TEST(Values, HaveOneArrayAProductAndNoneForTheOthers) {
 
 TEST(Values, HaveTheTypeThatTheTableSays) {
     EXPECT_THROW(NumberProduct::checked(Product::Normal), std::logic_error);
-    EXPECT_THROW(VectorProduct::checked(Product::Coverage), std::logic_error);
+    EXPECT_THROW(VectorProduct::checked(Product::Breaking), std::logic_error);
     EXPECT_EQ(Product(VectorProduct(Product::Normal)), Product::Normal);
 }
 

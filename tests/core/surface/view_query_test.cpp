@@ -167,7 +167,7 @@ TEST(ViewQuery, FarFromTheOriginTheSeaIsAsGood) {
                             n = answers->vectors(Product::Normal)[i],
                             s = answers->vectors(Product::SlopeVariance)[i];
             ASSERT_TRUE(std::isfinite(p.x + p.y + p.z + n.x + n.y + n.z + s.x + s.y + s.z +
-                                      answers->numbers(Product::Coverage)[i]));
+                                      answers->numbers(Product::Breaking)[i]));
         }
 }
 

@@ -88,7 +88,7 @@ TEST(Procedural, PointsAreTheQuerys) {
     const Query query = view_query(
         *prepared,
         {.products = all, .finest_cell_m = info.finest_cell_m, .finest_pixel_m = info.finest_pixel_m});
-    Frame<float> own(std::make_shared<const Sea<float>>(make_plan(std::move(prepared), {query})));
+    SeaAtTime<float> own(std::make_shared<const Sea<float>>(make_plan(std::move(prepared), {query})));
     own.set(2.25);
 
     const std::vector<glm::vec2> rests = random_rests(1000, 300.0f);
@@ -104,13 +104,13 @@ TEST(Procedural, PointsAreTheQuerys) {
         results.set(Product::Velocity, {expected.velocity.data()});
         results.set(Product::SlopeVariance, {expected.slope_variance.data()});
         results.set(Product::Coverage, {expected.coverage.data()});
-        evaluate(own, 0,
-                 Points<float>{.origin_m = origin_m,
-                               .count = rests.size(),
-                               .rest_m = {rests.data()},
-                               .cell_m = {footprints_m.data()},
-                               .pixel_m = {footprints_m.data()}},
-                 results);
+        own.evaluate(0,
+                     {.origin_m = origin_m,
+                      .count = rests.size(),
+                      .rest_m = {rests.data()},
+                      .cell_m = {footprints_m.data()},
+                      .pixel_m = {footprints_m.data()}},
+                     results);
         EXPECT_TRUE(answers == expected);
     }
 }

@@ -299,7 +299,7 @@ TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
     Scene scene = scene_of(2.0);
     scene.shot.loop_s = 12.0;
     const auto rest_m = square(40, 0.9);
-    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.7);
     query.points = 3 * rest_m.size();
     const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
     FoamHistory<float> history(sea);
@@ -334,7 +334,7 @@ TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
 // Cancelled on the way through the past of new water and of what is round it: only what was asked for goes on.
 TEST(LivingFoam, WhatNobodyAskedForDoesNotGoOnAfterACancel) {
     const auto rest_m = square(40, 0.9);
-    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.7);
     query.points = 9 * rest_m.size();
     const auto sea = std::make_shared<const Sea<float>>(make_plan(scene_of(2.0), {query}));
     const Points<float> old{.count = rest_m.size(), .rest_m = {rest_m.data()}};
@@ -363,7 +363,7 @@ TEST(LivingFoam, WhatNobodyAskedForDoesNotGoOnAfterACancel) {
 // A wave hides some of the sea from a camera, and shows it again: it needn't begin anew, as long as there is room.
 TEST(LivingFoam, OfPicturesIsKeptWhileItIsHidden) {
     const auto rest_m = square(50, 0.9);
-    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.7);
     query.points = 2 * rest_m.size();
     const auto sea = std::make_shared<const Sea<float>>(make_plan(scene_of(2.0), {query}));
     const Points<float> all{.count = rest_m.size(), .rest_m = {rest_m.data()}},
@@ -545,7 +545,7 @@ TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {
     Scene scene = scene_of(4.0);
     scene.effects.foam_drift = 0.1;
     scene.sea.wind_direction_deg = 30.0;
-    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.5);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.5);
     query.points = 120 * 120;
     query.lattice = Lattice{0.0, 0.5};
     const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));

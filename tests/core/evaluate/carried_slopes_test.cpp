@@ -150,7 +150,7 @@ TEST(CarriedSlopes, GainOverAreaAsExpected) {
         const auto samples = sample(frame, 0, random_points<float>(3000.0, 40000));
         double carried = 0.0, area = 0.0;
         for (std::size_t i = 0; i < 40000; ++i) {
-            const double j = samples.vectors(JacobianMoments)[i].x;
+            const double j = samples.vectors(Product::JacobianMoments)[i].x;
             const glm::dvec3 v(samples.vectors(SlopeVariance)[i]);
             carried += j * (v.x + v.y);
             area += j;

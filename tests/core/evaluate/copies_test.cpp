@@ -100,8 +100,8 @@ TEST(CopiesOfTiles, AddUpToTheSeaByTheRule) {
 // Positions go over borders without a step, and normals and J are theirs: by differences of positions, in ramps and corners
 // and where a ramp begins.
 TEST(CopiesOfTiles, HaveTheNormalsAndTheJacobianOfTheirPositions) {
-    const auto frame =
-        frame_of<double>(copied_sea(), {unfiltered(products(Position, Normal, JacobianMoments))}, 2.5);
+    const auto frame = frame_of<double>(
+        copied_sea(), {unfiltered(products(Position, Normal, Product::JacobianMoments))}, 2.5);
     auto rest = places<double>(300);
     for (double along : {kPlainHalf * 64.0, 0.5 * 64.0, 64.0 - kPlainHalf * 64.0, kPlainHalf * 18.0, 9.0})
         for (double across : {0.0, 3.0, kPlainHalf * 64.0, 32.0, 9.0})
@@ -126,7 +126,7 @@ TEST(CopiesOfTiles, HaveTheNormalsAndTheJacobianOfTheirPositions) {
                              ty = (north[i] - south[i]) / (2.0 * kStep);
             const glm::dvec3 across = glm::cross(tx, ty);
             ASSERT_NEAR(glm::length(answers.vectors(Normal)[i] - glm::normalize(across)), 0.0, 2e-5) << i;
-            ASSERT_NEAR(answers.vectors(JacobianMoments)[i].x, across.z, 2e-5) << i;
+            ASSERT_NEAR(answers.vectors(Product::JacobianMoments)[i].x, across.z, 2e-5) << i;
             turned = std::max(turned, std::abs(tx.y - ty.x));
         }
         EXPECT_GT(turned, 1e-3);  // Dxy and Dyx do differ somewhere
@@ -136,13 +136,14 @@ TEST(CopiesOfTiles, HaveTheNormalsAndTheJacobianOfTheirPositions) {
 // A normal doesn't need the cell's positions to be asked for.
 TEST(CopiesOfTiles, HaveTheSameNormalsWithoutPositions) {
     const Scene scene = copied_sea();
-    const auto alone = frame_of<double>(scene, {filtered(products(Normal, JacobianMoments), 0.5)}, 2.5);
+    const auto alone =
+        frame_of<double>(scene, {filtered(products(Normal, Product::JacobianMoments), 0.5)}, 2.5);
     const auto together =
-        frame_of<double>(scene, {filtered(products(Position, Normal, JacobianMoments), 0.5)}, 2.5);
+        frame_of<double>(scene, {filtered(products(Position, Normal, Product::JacobianMoments), 0.5)}, 2.5);
     const auto rest = places<double>(300);
     const auto a = sample(alone, 0, rest), b = sample(together, 0, rest);
     EXPECT_EQ(a.vectors(Normal), b.vectors(Normal));
-    EXPECT_EQ(a.vectors(JacobianMoments), b.vectors(JacobianMoments));
+    EXPECT_EQ(a.vectors(Product::JacobianMoments), b.vectors(Product::JacobianMoments));
 }
 
 // Single precision is that of one tile, wherever.
@@ -205,7 +206,8 @@ TEST(CopiesOfTiles, AnswerEachPointAloneToTheBit) {
 // What a row of a patch keeps for the row above (RowPlaces, CopyPlaces) changes nothing: not where copies blend along either axis, nor
 // where a row lies elsewhere.
 TEST(CopiesOfTiles, GiveAPatchTheBitsOfItsPointsAlone) {
-    const auto frame = frame_of<float>(copied_sea(), {unfiltered(products(Position, Normal, Product::Breaking))}, 2.5);
+    const auto frame =
+        frame_of<float>(copied_sea(), {unfiltered(products(Position, Normal, Product::Breaking))}, 2.5);
     constexpr std::size_t kRow = 300, kRows = 70;
     std::vector<glm::vec2> rest;
     for (std::size_t j = 0; j < kRows; ++j)

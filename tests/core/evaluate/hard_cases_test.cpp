@@ -34,7 +34,8 @@ void expect_sound(const ProductArrays<T>& samples, const std::string& what) {
         },
         "slope variance");
     all(
-        samples.vectors(JacobianMoments), [&](auto j) { return finite(j) && j.y >= T(0); }, "Jacobian");
+        samples.vectors(Product::JacobianMoments), [&](auto j) { return finite(j) && j.y >= T(0); },
+        "Jacobian");
     all(
         samples.numbers(Product::Breaking), [](T w) { return w >= T(0) && w <= T(1); }, "coverage");
 }
@@ -144,7 +145,7 @@ TEST(Calm, IsExactlyFlat) {
         EXPECT_EQ(samples.vectors(Velocity)[i], glm::vec3(0.0f));
         EXPECT_EQ(samples.vectors(Normal)[i], glm::vec3(0.0f, 0.0f, 1.0f));
         EXPECT_EQ(samples.vectors(SlopeVariance)[i], glm::vec3(0.0f));
-        EXPECT_EQ(samples.vectors(JacobianMoments)[i], glm::vec3(1.0f, 0.0f, 0.0f));
+        EXPECT_EQ(samples.vectors(Product::JacobianMoments)[i], glm::vec3(1.0f, 0.0f, 0.0f));
         EXPECT_EQ(samples.numbers(Product::Breaking)[i], 0.0f);
     }
 }
@@ -162,8 +163,8 @@ TEST(NoChoppiness, HasFoamButNoHorizontalMotion) {
         EXPECT_EQ(samples.vectors(Displacement)[i].y, 0.0f);
         EXPECT_NE(samples.vectors(Displacement)[i].z, 0.0f);
         EXPECT_EQ(samples.vectors(Velocity)[i].x, 0.0f);
-        EXPECT_NEAR(samples.vectors(JacobianMoments)[i].x, 1.0f, 0.02f);
-        EXPECT_NE(samples.vectors(JacobianMoments)[i].x, 1.0f);
+        EXPECT_NEAR(samples.vectors(Product::JacobianMoments)[i].x, 1.0f, 0.02f);
+        EXPECT_NE(samples.vectors(Product::JacobianMoments)[i].x, 1.0f);
     }
 }
 

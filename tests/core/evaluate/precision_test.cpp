@@ -36,9 +36,11 @@ TEST(SinglePrecision, IsWithinARoundingOfDouble) {
                 larger(displacement, a.vectors(Displacement)[i][axis], b.vectors(Displacement)[i][axis]);
                 larger(normal, a.vectors(Normal)[i][axis], b.vectors(Normal)[i][axis]);
                 larger(velocity, a.vectors(Velocity)[i][axis], b.vectors(Velocity)[i][axis]);
-                larger(jacobian, a.vectors(JacobianMoments)[i][axis], b.vectors(JacobianMoments)[i][axis]);
+                larger(jacobian, a.vectors(Product::JacobianMoments)[i][axis],
+                       b.vectors(Product::JacobianMoments)[i][axis]);
             }
-            coverage = std::max(coverage, std::abs(double(a.numbers(Product::Breaking)[i]) - b.numbers(Product::Breaking)[i]));
+            coverage = std::max(coverage, std::abs(double(a.numbers(Product::Breaking)[i]) -
+                                                   b.numbers(Product::Breaking)[i]));
         }
         RecordProperty("displacement_over_hs", std::to_string(displacement / hs * 1e6) + "e-6");
         EXPECT_LT(displacement, 1e-6 * hs);

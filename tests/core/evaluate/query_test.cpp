@@ -145,11 +145,12 @@ TEST(Ladder, IsTheUniformQueryOnItsRungs) {
                 EXPECT_NEAR(blended.vectors(SlopeVariance)[i][axis], uniform.vectors(SlopeVariance)[i][axis],
                             1e-7)
                     << c.footprint;
-                EXPECT_NEAR(blended.vectors(JacobianMoments)[i][axis],
-                            uniform.vectors(JacobianMoments)[i][axis], 1e-5)
+                EXPECT_NEAR(blended.vectors(Product::JacobianMoments)[i][axis],
+                            uniform.vectors(Product::JacobianMoments)[i][axis], 1e-5)
                     << c.footprint;
             }
-            EXPECT_NEAR(blended.numbers(Product::Breaking)[i], uniform.numbers(Product::Breaking)[i], 1e-4) << c.footprint;
+            EXPECT_NEAR(blended.numbers(Product::Breaking)[i], uniform.numbers(Product::Breaking)[i], 1e-4)
+                << c.footprint;
         }
     }
     // Across a rung: no step. The blend's slope is bounded by the rungs' own difference, some 0.5 per

@@ -126,7 +126,7 @@ TEST_P(Derivatives, GiveNormalsAndJacobianOfTheDisplacedSurface) {
         const double length = std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z);
         for (int axis = 0; axis < 3; ++axis)
             ASSERT_NEAR(samples.vectors(Normal)[i][axis], n[axis] / length, tolerance);
-        ASSERT_NEAR(samples.vectors(JacobianMoments)[i].x, n.z, tolerance);
+        ASSERT_NEAR(samples.vectors(Product::JacobianMoments)[i].x, n.z, tolerance);
         least_j = std::min(least_j, n.z);
     }
     EXPECT_LT(least_j, 0.8);  // the cross terms are large enough to matter

@@ -26,7 +26,7 @@ TEST(HeightTimesJacobian, IsMinusChoppinessTimesSumOfWavenumberTimesEnergy) {
             double sum = 0.0, expected = 0.0;
             for (std::size_t i = 0; i < map.vectors(Displacement).size(); ++i)
                 sum += double(map.vectors(Displacement)[i].z) *
-                       (double(map.vectors(JacobianMoments)[i].x) - 1.0);
+                       (double(map.vectors(Product::JacobianMoments)[i].x) - 1.0);
             for (const Mode& mode : modes_of(frame.sea(), 0, 0.0))
                 expected -= choppiness * 2.0 * mode.k * std::norm(mode.height);
             relative.push_back(sum / static_cast<double>(map.vectors(Displacement).size()) / expected);

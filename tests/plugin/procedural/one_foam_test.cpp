@@ -11,6 +11,7 @@
 
 #include "core/effects/sea_at_time.h"
 #include "plugin/bake/sequence.h"
+#include "plugin/light/light.h"
 #include "plugin/render/render.h"
 #include "plugin/shot/shot.h"
 #include "tests/plugin/procedural/first_version.h"

@@ -17,10 +17,10 @@
 #include <thread>
 #include <vector>
 
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/evaluate.h"
 #include "core/plan/plan.h"
 #include "core/surface/view.h"
-#include "core/waves/frame.h"
 #include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 #include "tests/plugin/procedural/opened.h"
@@ -30,7 +30,8 @@ namespace {
 
 using namespace test;
 
-const std::string kShot = "[camera]\nresolution = [160, 90]\n";
+// Foam with a short past.
+const std::string kShot = "[camera]\nresolution = [160, 90]\n[effects]\nfoam_decay_s = 0.5\n";
 
 struct Answers {
     std::vector<glm::vec3> position, normal, velocity, slope_variance;

@@ -141,8 +141,10 @@ Errors errors_of(int quads, MeshScheme scheme, double choppiness, const std::vec
     plan.surface->points_at(1, rest);
     Values values;
     QueryRunner<float> runner;
-    runner.run(frame, plan.outputs.front().query,
-               {.count = rest.rest_m.size(), .rest_m = {rest.rest_m.data()}}, values);
+    const int query = plan.outputs.front().query;
+    const ProductSet held = plan.queries[query].query.products | products(Product::Breaking);
+    runner.run(frame, query, {.count = rest.rest_m.size(), .rest_m = {rest.rest_m.data()}},
+               held & ~lasting_products(), values);
     const auto& position = values.vectors(Product::Position);
     usd::MeshSample sample{.points = position,
                            .normals = values.vectors(Product::Normal),

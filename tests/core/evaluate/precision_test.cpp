@@ -15,8 +15,7 @@ TEST(SinglePrecision, IsWithinARoundingOfDouble) {
     Scene scene;
     scene.sea.wind_speed_mps = 14.0;
     scene.sea.swell = {{.height_m = 2.0, .period_s = 11.0, .direction_deg = 80.0}};
-    ProductSet all;
-    all.set();
+    const ProductSet all = ~lasting_products();
     for (double t : {0.0, 1234.5}) {
         const Plan plan = make_plan(scene, {filtered(all, 0.5)});
         const auto single = frame_of<float>(scene, plan, t);

@@ -20,7 +20,7 @@ Scene small_sea() {
     return scene;
 }
 ProductSet all_products() {
-    return ProductSet().set();
+    return ~lasting_products();
 }
 
 TEST(Query, WritesWhereTheCallerWantsItAndNowhereElse) {

@@ -313,7 +313,7 @@ TEST(ChoppinessOfCascades, AddsUpBandByBand) {
     });
     expect_sum("variance of dJ/dt", [](double large, double small) {
         const auto prepared = prepare(scene_of(large, small));
-        const Breaking breaking = breaking_of(prepared->scene, {});
+        const pelagic::Breaking breaking = breaking_of(prepared->scene, {});
         return std::pow(
             breaking_rate(prepared->spectrum, breaking) * mean_choppiness(prepared->spectrum, breaking), 2.0);
     });

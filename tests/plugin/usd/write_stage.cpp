@@ -56,7 +56,7 @@ class Numbers {
 
 struct Mesh {
     std::vector<glm::vec3> points, normals, velocities, slope_variance;
-    std::vector<float> whitecap_coverage, foam_active, foam_age_s;
+    std::vector<float> whitecap_coverage, breaking, age_s;
 };
 
 std::vector<glm::vec3> random_vectors(Numbers& numbers, float scale) {
@@ -482,7 +482,7 @@ void write_stage(const std::filesystem::path& dir, const std::string& extension)
                                      .velocities = mesh.velocities,
                                      .slope_variance = mesh.slope_variance,
                                      .whitecap_coverage = mesh.whitecap_coverage,
-                                     .breaking = mesh.foam_active,
+                                     .breaking = mesh.breaking,
                                      .age_s = mesh.age_s};
         attributes = sample.attributes();
         layers.frame(without_extension(usd::frame_file(name, frame, extension)), sample);

@@ -27,6 +27,7 @@ std::vector<glm::vec2> scattered(int count, unsigned seed) {
 
 Scene sea(SpectrumKind spectrum, double wind_mps, int seed) {
     Scene scene;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.shot.seed = static_cast<std::uint64_t>(seed);
     scene.sea.spectrum = spectrum;
     scene.sea.wind_speed_mps = wind_mps;

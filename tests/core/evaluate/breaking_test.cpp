@@ -72,7 +72,8 @@ TEST(Breaking, FinerPixelsSeeTheSameFoam) {
                                  b = found.vectors(Product::JacobianMoments)[i];
                 ASSERT_NEAR(a.x, b.x, 2e-5) << i;  // each level's grid has a spline of its own
                 ASSERT_NEAR(a.y, b.y, 1e-7) << i;
-                ASSERT_NEAR(wanted.numbers(Product::Breaking)[i], found.numbers(Product::Breaking)[i], 2e-3) << i;
+                ASSERT_NEAR(wanted.numbers(Product::Breaking)[i], found.numbers(Product::Breaking)[i], 2e-3)
+                    << i;
                 most = std::max(most, wanted.numbers(Product::Breaking)[i]);
             }
         };
@@ -220,14 +221,15 @@ TEST(Breaking, RipplesMakeNoFoam) {
             scene.waves.model = model;
             const auto frame = frame_of<float>(scene, {filtered(kFoam, 0.01), filtered(kFoam, 10.0)});
             for (int q = 0; q < 2; ++q)
-                for (const float w : sample(frame, q, random_points<float>(5.0, 300)).numbers(Product::Breaking))
+                for (const float w :
+                     sample(frame, q, random_points<float>(5.0, 300)).numbers(Product::Breaking))
                     EXPECT_LT(w, 1e-4f) << fetch_m;  // a hundredth of the law's
         }
         scene.waves.model = WaveModel::Fft;
         scene.effects.breaking_from_m = 0.0;  // as they would, if they broke
         const auto frame = frame_of<float>(scene, {filtered(kFoam, 10.0)});
-        EXPECT_NEAR(sample(frame, 0, random_points<float>(5.0, 3)).numbers(Product::Breaking)[0], law_coverage(scene),
-                    0.1 * law_coverage(scene));
+        EXPECT_NEAR(sample(frame, 0, random_points<float>(5.0, 3)).numbers(Product::Breaking)[0],
+                    law_coverage(scene), 0.1 * law_coverage(scene));
     }
 }
 

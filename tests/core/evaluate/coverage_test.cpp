@@ -68,8 +68,9 @@ TEST(WhitecapCoverage, OfOtherSpectraIsTheObservedOneToo) {
         scene.sea.spectrum = kind;
         scene.sea.wind_speed_mps = 12.0;
         const auto frame = frame_of<float>(scene, {filtered(products(Product::Breaking), 2.0)});
-        const double baked = mean_of(sample(frame, 0, tile_points<float>(1000.0, 300)).numbers(Product::Breaking),
-                                     [](float w) { return w; });
+        const double baked =
+            mean_of(sample(frame, 0, tile_points<float>(1000.0, 300)).numbers(Product::Breaking),
+                    [](float w) { return w; });
         const double observed = 2.95e-6 * std::pow(12.0, 3.52);
         EXPECT_GT(baked, 0.5 * observed);
         EXPECT_LT(baked, 2.0 * observed);
@@ -86,7 +87,8 @@ TEST(WhitecapCoverage, FallsWithTheJacobian) {
     const auto samples = sample(frame, 0, random_points<float>(500.0, 20000));
     double weighted = 0.0, coverage = 0.0;
     for (std::size_t i = 0; i < samples.numbers(Product::Breaking).size(); ++i) {
-        weighted += double(samples.numbers(Product::Breaking)[i]) * samples.vectors(Product::JacobianMoments)[i].x;
+        weighted +=
+            double(samples.numbers(Product::Breaking)[i]) * samples.vectors(Product::JacobianMoments)[i].x;
         coverage += samples.numbers(Product::Breaking)[i];
     }
     ASSERT_GT(coverage, 0.0);

@@ -86,8 +86,8 @@ TEST(Gusts, BreakMoreWavesAndNoLessFoamOnEach) {
         const auto gusty =
             sample(frame_of<float>(scene_of(0.8), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
         EXPECT_NEAR(mean_foam(gusty) / mean_foam(even), 1.0, 0.05) << footprint_m;
-        EXPECT_NEAR(std::ranges::max(gusty.numbers(Product::Breaking)), std::ranges::max(even.numbers(Product::Breaking)),
-                    0.1f);
+        EXPECT_NEAR(std::ranges::max(gusty.numbers(Product::Breaking)),
+                    std::ranges::max(even.numbers(Product::Breaking)), 0.1f);
     }
 }
 

@@ -6,7 +6,7 @@
 
 namespace pelagic::test {
 
-// A seas's numbers as that host gets them, of a shot's text at a time.
+// A sea's numbers as that host gets them, of a shot's text at a time.
 struct FirstVersion {
     std::vector<float> coverage;  // at points
     std::vector<float> of_hits,

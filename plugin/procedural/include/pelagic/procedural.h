@@ -218,8 +218,8 @@ typedef struct pelagic_values {
     /* All foam, 0 … 1: what breaks now, and where the shot has persistent foam (effects.foam_decay_s) what earlier breaking has left.
      * To a program whose structure ends here, as version 0.1.0 had it: what breaks now, as if no foam were persistent. */
     float* coverage;
-    float* breaking;   /* what of the coverage breaks now, 0 … 1 */
-    float* age_s; /* the mean age of the foam that is there, what breaks now counting as 0 */
+    float* breaking; /* what of the coverage breaks now, 0 … 1 */
+    float* age_s;    /* the mean age of the foam that is there, what breaks now counting as 0 */
 } pelagic_values;
 
 /* Before coverage or age_s is asked for at many places, in one call or in many: goes through the past of their foam once, with

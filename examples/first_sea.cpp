@@ -1,10 +1,9 @@
-// The sea as C++ has it: a scene, a query, a frame, and the height of the water at a buoy for three seconds.
+// The sea as C++ has it: a scene, a query, the sea at a time, and the height of the water at a buoy for three seconds.
 #include <cstdio>
 #include <memory>
 
-#include "core/evaluate/prepared_query.h"
+#include "core/effects/sea_at_time.h"
 #include "core/plan/plan.h"
-#include "core/waves/frame.h"
 
 int main() {
     using namespace pelagic;
@@ -17,9 +16,7 @@ int main() {
     query.cell_m = query.pixel_m = {0.5};  // half a metre: waves below two cells are left out
     const Plan plan = make_plan(scene, {query}, {.double_precision = false});
 
-    Frame<float> frame(std::make_shared<const Sea<float>>(plan));
-    frame.set(0.0);
-    PreparedQuery<float> sea(frame, 0, query.products);
+    SeaAtTime<float> sea(std::make_shared<const Sea<float>>(plan));
 
     const glm::vec2 rest(3.0f, -8.0f);  // where the buoy is at rest [m]: x east, y north
     glm::vec3 position, normal;
@@ -27,9 +24,8 @@ int main() {
     results.set(Product::Position, {&position});
     results.set(Product::Normal, {&normal});
     for (double t_s = 0.0; t_s <= 3.0; t_s += 0.5) {
-        frame.set(t_s);
-        sea.refresh();
-        sea.evaluate({.count = 1, .rest_m = {&rest}}, results);
+        sea.set(t_s);
+        sea.evaluate(0, {.count = 1, .rest_m = {&rest}}, results);
         std::printf("%.1f s: at (%.2f, %.2f) m, %+.2f m high, tilted by %.2f\n", t_s,
                     static_cast<double>(position.x), static_cast<double>(position.y),
                     static_cast<double>(position.z), static_cast<double>(1.0f - normal.z));

@@ -52,10 +52,11 @@ void keep_each_once(std::vector<FoamPlace>& places) {
 template <class T>
 struct FoamHistory<T>::Level {
     // Throws BuildCancelled.
-    Level(const Plan& plan, double cell, const std::atomic<bool>* cancel)
+    Level(const Sea<T>& sea, double cell, const std::atomic<bool>* cancel)
         : cell_m(cell),
-          frame(std::make_shared<const Sea<T>>(plan_of_foam_level(plan, cell),
-                                               BuildWatch{.progress = {}, .cancel = cancel})) {
+          frame(std::make_shared<const Sea<T>>(plan_of_foam_level(sea.plan(), cell),
+                                               BuildWatch{.progress = {}, .cancel = cancel},
+                                               sea.spectrum_table())) {
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x)
                 rest_m.emplace_back(static_cast<T>(x * cell), static_cast<T>(y * cell));
@@ -232,11 +233,7 @@ void FoamHistory<T>::set(double t_s) {
     time_s_ = time_within_loop_s(t_s, sea_->loop_s());
     last_ = static_cast<std::int64_t>(std::floor(time_s_ / foam_.step_s));
     first_ = last_ + 1 - foam_.intervals();
-    std::erase_if(tiles_, [&](const auto& entry) {
-        return !entry.second->continues_at(first_) ||
-               (is_unprepared_ && entry.second->used.load() + 1 < round_);
-    });
-    is_unprepared_ = false;
+    std::erase_if(tiles_, [&](const auto& entry) { return !entry.second->continues_at(first_); });
     weights_.clear();
     for (std::int64_t n = first_; n <= last_; ++n) {
         const double since_s = time_s_ - static_cast<double>(n) * foam_.step_s;
@@ -249,19 +246,19 @@ void FoamHistory<T>::set(double t_s) {
 template <class T>
 typename FoamHistory<T>::Level& FoamHistory<T>::level(int index, const std::atomic<bool>* cancel) {
     std::unique_ptr<Level>& level = levels_[static_cast<std::size_t>(index)];
-    if (!level) level = std::make_unique<Level>(sea_->plan(), foam_.cell_of(index), cancel);
+    if (!level) level = std::make_unique<Level>(*sea_, foam_.cell_of(index), cancel);
     return *level;
 }
 
 // The residual foam at points from `first` on, and foam times its age; false where a tile is missing, which is noted.
 template <class T>
 bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<float> foam,
-                          std::span<float> foam_age, std::vector<Place>& missing) const {
+                          std::span<float> aged, std::vector<Place>& missing) const {
     const std::size_t missed = missing.size();
     typename Locator::Part part;
     alignas(64) std::array<float, kPart> next, next_age;
     for (const std::span<float> of : {foam, std::span<float>(next)}) std::fill(of.begin(), of.end(), mean_);
-    for (const std::span<float> of : {foam_age, std::span<float>(next_age)})
+    for (const std::span<float> of : {aged, std::span<float>(next_age)})
         std::fill(of.begin(), of.end(), mean_ * mean_age_s_);
     locate(first, foam.size(), part, [&](int which, const Place& place, std::size_t begin, std::size_t end) {
         const auto found = tiles_.find(place);
@@ -269,18 +266,17 @@ bool FoamHistory<T>::read(const Locator& locate, std::size_t first, std::span<fl
         if (found == tiles_.end() || !found->second->is_of(time_s_)) return missing.push_back(place);
         const float* values = found->second->foam.data();
         kernels_.between({values, values + kStride}, part.x, part.y, begin, end,
-                         which == 0 ? foam.data() : next.data(),
-                         which == 0 ? foam_age.data() : next_age.data());
+                         which == 0 ? foam.data() : next.data(), which == 0 ? aged.data() : next_age.data());
     });
     const bool blends = !Locator::is_on_level(part, foam.size());
     for (std::size_t i = 0; blends && i < foam.size(); ++i) {
         foam[i] += part.t[i] * (next[i] - foam[i]);
-        foam_age[i] += part.t[i] * (next_age[i] - foam_age[i]);
+        aged[i] += part.t[i] * (next_age[i] - aged[i]);
     }
     return missing.size() == missed;
 }
 
-// Calls use(first, foam, foam_age) for parts of the points. Most tiles are there from the time before; parts that lack
+// Calls use(first, foam, aged) for parts of the points. Most tiles are there from the time before; parts that lack
 // some are read again when those are made.
 template <class T>
 template <class Use>
@@ -294,12 +290,12 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWa
     tbb::enumerable_thread_specific<std::vector<std::size_t>> undone;
     while (!parts.empty()) {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, parts.size(), 8), [&](const auto& range) {
-            alignas(64) std::array<float, kPart> foam, foam_age;
+            alignas(64) std::array<float, kPart> foam, aged;
             for (std::size_t p = range.begin(); p < range.end(); ++p) {
                 const std::size_t first = parts[p], count = std::min(kPart, points.count - first);
-                if (read(locate, first, {foam.data(), count}, {foam_age.data(), count}, missing.local()))
+                if (read(locate, first, {foam.data(), count}, {aged.data(), count}, missing.local()))
                     use(first, std::span<const float>(foam.data(), count),
-                        std::span<const float>(foam_age.data(), count));
+                        std::span<const float>(aged.data(), count));
                 else
                     undone.local().push_back(first);
             }
@@ -310,6 +306,9 @@ void FoamHistory<T>::for_parts(const Points<T>& points, int query, const BuildWa
             places.insert(places.end(), own.begin(), own.end()), own.clear();
         for (std::vector<std::size_t>& own : undone)
             parts.insert(parts.end(), own.begin(), own.end()), own.clear();
+        keep_each_once(places);
+        make_room(places.size(),
+                  round_ - 1);  // who doesn't prepare asks for those of the time before bit by bit
         make(places, watch);
     }
 }
@@ -345,7 +344,6 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
     if (round_ == 0) throw std::invalid_argument("the foam has no time yet: call set() first");
     keep_each_once(places);
     is_renewed_ = true;
-    is_unprepared_ = false;
     const std::vector<FoamPlace> beside = surroundings_of(places);
     std::vector<FoamPlace> made = places;
     made.insert(made.end(), beside.begin(), beside.end());
@@ -357,7 +355,7 @@ void FoamHistory<T>::prepare(std::vector<FoamPlace> places, const BuildWatch& wa
         else
             ++missing;
     }
-    make_room(missing);
+    make_room(missing, round_);
     const auto mark = [&](const std::vector<FoamPlace>& of, long round) {
         for (const FoamPlace& place : of)
             if (const auto found = tiles_.find(place); found != tiles_.end())
@@ -431,13 +429,13 @@ std::vector<FoamNodes> FoamHistory<T>::nodes() const {
     return nodes;
 }
 
-// For so many more tiles: lets those go that nobody has read for longest, but none that this time has asked for.
+// For so many more tiles: lets those go that nobody has read for longest, of those that were read before this round.
 template <class T>
-void FoamHistory<T>::make_room(std::size_t count) {
+void FoamHistory<T>::make_room(std::size_t count, long round) {
     if (tiles_.size() + count <= most_tiles_) return;
     std::vector<std::pair<long, Place>> unused;
     for (const auto& [place, tile] : tiles_)
-        if (const long used = tile->used.load(); used != round_) unused.emplace_back(used, place);
+        if (const long used = tile->used.load(); used < round) unused.emplace_back(used, place);
     std::sort(unused.begin(), unused.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     const std::size_t too_many = tiles_.size() + count - most_tiles_;
     for (std::size_t i = 0; i < std::min(too_many, unused.size()); ++i) tiles_.erase(unused[i].second);
@@ -447,7 +445,7 @@ void FoamHistory<T>::make_room(std::size_t count) {
 template <class T>
 void FoamHistory<T>::renew(const BuildWatch& watch) {
     if (is_renewed_) return;
-    is_renewed_ = is_unprepared_ = true;
+    is_renewed_ = true;
     std::vector<Place> places;
     for (const auto& [place, tile] : tiles_)
         if (tile->used.load() + 1 >= round_) places.push_back(place);
@@ -567,27 +565,28 @@ void FoamHistory<T>::sample(Tile& tile, std::int64_t n) const {
 }
 
 template <class T>
-void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults& results,
+void FoamHistory<T>::add(const Points<T>& points, int query, const FoamResults<T>& results,
                          const BuildWatch& watch) {
     if (leaves_nothing()) {
         for (std::size_t i = 0; i < points.count; ++i) {
-            if (results.active) results.active[i] = results.coverage[i];
-            if (results.age_s) results.age_s[i] = 0.0f;
+            if (results.coverage) results.coverage[i] = results.breaking[i];
+            if (results.age_s) results.age_s[i] = T(0);
         }
         return;
     }
-    for_parts(
-        points, query, watch,
-        [&](std::size_t first, std::span<const float> foam, std::span<const float> foam_age) {
-            const std::size_t count = foam.size();
-            alignas(64) std::array<float, kPart> active, all, age_s;
-            for (std::size_t i = 0; i < count; ++i) active[i] = results.coverage[first + i];
-            std::fill(active.begin() + count, active.end(), 0.0f);
-            kernels_.add({foam.data(), foam_age.data()}, active.data(), count, all.data(), age_s.data());
-            for (std::size_t i = 0; i < count; ++i) results.coverage[first + i] = all[i];
-            for (std::size_t i = 0; results.active && i < count; ++i) results.active[first + i] = active[i];
-            for (std::size_t i = 0; results.age_s && i < count; ++i) results.age_s[first + i] = age_s[i];
-        });
+    for_parts(points, query, watch,
+              [&](std::size_t first, std::span<const float> foam, std::span<const float> aged) {
+                  const std::size_t count = foam.size();
+                  alignas(64) std::array<float, kPart> breaking, all, age_s;
+                  for (std::size_t i = 0; i < count; ++i)
+                      breaking[i] = static_cast<float>(results.breaking[first + i]);
+                  std::fill(breaking.begin() + count, breaking.end(), 0.0f);
+                  kernels_.add({foam.data(), aged.data()}, breaking.data(), count, all.data(), age_s.data());
+                  for (std::size_t i = 0; results.coverage && i < count; ++i)
+                      results.coverage[first + i] = static_cast<T>(all[i]);
+                  for (std::size_t i = 0; results.age_s && i < count; ++i)
+                      results.age_s[first + i] = static_cast<T>(age_s[i]);
+              });
 }
 
 template <class T>

@@ -28,13 +28,11 @@
 
 namespace pelagic {
 
-// Where add() writes, a value a point.
+// What add() reads and writes, a value a point. A view may be another one's: what breaks is read first.
+template <class T>
 struct FoamResults {
-    // In: what breaks now, evaluate()'s coverage. Out: all foam, 0 … 1.
-    Strided<float> coverage{};
-    Strided<float> active{};  // what breaks now, or no view
-    Strided<float>
-        age_s{};  // the mean age of the foam that is there, what breaks counting as 0 [s], or no view
+    Strided<T> breaking{};           // what breaks now
+    Strided<T> coverage{}, age_s{};  // Product::Coverage and FoamAge, or no view
 };
 
 // A tile of a level's cells: its first node is kTileCells · (x, y) cells from the drifting water's origin.
@@ -50,7 +48,7 @@ void keep_each_once(std::vector<FoamPlace>& places);
 // What a tile has at its nodes, in rows of kTileCells + 1, as add() reads it.
 struct FoamNodes {
     FoamPlace place;
-    const float *foam, *foam_age;  // residual foam, not limited to 1, and that times its age [s]
+    const float *foam, *aged;  // residual foam, not limited to 1, and that times its age [s]
 };
 
 template <class T>
@@ -87,9 +85,10 @@ class FoamHistory {
     float mean() const { return mean_; }
     float mean_times_age_s() const { return mean_ * mean_age_s_; }
 
-    // Adds to answers of evaluate() what earlier breaking has left. On all threads of the calling arena, one call at a time.
+    // Adds to what breaks now what earlier breaking has left. Tiles that were read at the time before and haven't been
+    // made for this one are made first, all at once. On all threads of the calling arena, one call at a time.
     // `watch`: as prepare()'s; of a call that was cancelled the results are worthless.
-    void add(const Points<T>& points, int query, const FoamResults& results, const BuildWatch& watch = {});
+    void add(const Points<T>& points, int query, const FoamResults<T>& results, const BuildWatch& watch = {});
 
     // Bytes of all tiles, and of the seas that they are sampled from. The plan's foam_history_bytes() expects as many: for squares
     // and views all round a camera no more are needed, in a picture's frame waves may show more tiles than a plan can know.
@@ -107,12 +106,12 @@ class FoamHistory {
     bool leaves_nothing() const { return !(sea_->foam_left_per_s() > 0.0); }  // where no wave breaks
     template <class Use>
     void for_parts(const Points<T>& points, int query, const BuildWatch& watch, const Use& use);
-    bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> foam_age,
+    bool read(const Locator& locate, std::size_t first, std::span<float> foam, std::span<float> aged,
               std::vector<Place>& missing) const;
     void make(std::vector<Place>& places, const BuildWatch& watch);
     void renew(const BuildWatch& watch);
     std::vector<Place> surroundings_of(const std::vector<Place>& places) const;
-    void make_room(std::size_t count);
+    void make_room(std::size_t count, long round);
     void advance(const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample_from(std::int64_t from, const std::vector<Tile*>& tiles, const BuildWatch& watch);
     void sample(Tile& tile, std::int64_t n) const;
@@ -121,8 +120,7 @@ class FoamHistory {
     std::shared_ptr<const Sea<T>> sea_;
     FoamPlan foam_;
     FoamKernels kernels_;
-    std::size_t most_tiles_ = 0;  // that the plan has room for
-    bool is_unprepared_ = false;  // what is read at this time was found out by add(), not by prepare()
+    std::size_t most_tiles_ = 0;                                    // that the plan has room for
     std::array<std::unique_ptr<Level>, FoamPlan::kLevels> levels_;  // made where tiles are
     std::unordered_map<Place, std::unique_ptr<Tile>, HashOf> tiles_;
     float mean_ = 0.0f, mean_age_s_ = 0.0f;  // of the residual over the whole sea

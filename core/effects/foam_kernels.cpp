@@ -41,7 +41,7 @@ void Place(const FoamAxisArgs& args, std::size_t first, std::size_t end, FoamAxi
 }
 
 void Between(const ResidualFoam& tile, const FoamAxis& x, const FoamAxis& y, std::size_t first,
-             std::size_t end, float* foam, float* foam_age) {
+             std::size_t end, float* foam, float* aged) {
     const D d;
     const hn::RebindToSigned<D> di;
     constexpr int kSide = FoamPlan::kTileCells + 1;
@@ -63,7 +63,7 @@ void Between(const ResidualFoam& tile, const FoamAxis& x, const FoamAxis& y, std
                 return low + to_y * (high - low);
             };
             hn::BlendedStore(between(tile.foam).v, there, d, foam + i);
-            hn::BlendedStore(between(tile.foam_age).v, there, d, foam_age + i);
+            hn::BlendedStore(between(tile.aged).v, there, d, aged + i);
         };
         // Corners that lie close together, as those of a patch's row do, are looked up in one vector of them.
         const std::int32_t least = hn::GetLane(hn::MinOfLanes(di, corner));
@@ -84,7 +84,7 @@ void Add(const ResidualFoam& left, const float* breaking, std::size_t count, flo
         const N residual = residual_foam(foam, active), total = active + residual;
         const auto is_left = residual > N(0);
         const N age = residual / select<D>(is_left, total, N(1)) *
-                      (N(hn::LoadU(d, left.foam_age + i)) / select<D>(is_left, foam, N(1)));
+                      (N(hn::LoadU(d, left.aged + i)) / select<D>(is_left, foam, N(1)));
         hn::StoreU(total.v, d, all + i);
         hn::StoreU(hn::IfThenElseZero(is_left, age.v), d, age_s + i);
     }

@@ -31,7 +31,7 @@ struct FoamAxisArgs {
 
 // What earlier breaking has left: foam, and foam times its age [s], by node or by point.
 struct ResidualFoam {
-    const float *foam, *foam_age;
+    const float *foam, *aged;
 };
 
 struct FoamKernels {
@@ -40,7 +40,7 @@ struct FoamKernels {
     // Between the nodes of the tile that points first … end − 1 lie in, and of these alone. A tile has rows of kTileCells + 1 nodes;
     // the 15 numbers behind the last one may be read.
     void (*between)(const ResidualFoam&, const FoamAxis& x, const FoamAxis& y, std::size_t first,
-                    std::size_t end, float* foam, float* foam_age);
+                    std::size_t end, float* foam, float* aged);
     // Combines foam that is left with foam that breaks: all foam, 0 … 1, and its mean age, breaking foam counting as
     // 0 [s]. All five arrays hold `count` numbers rounded up to a whole 16.
     void (*add)(const ResidualFoam&, const float* breaking, std::size_t count, float* all, float* age_s);

@@ -32,7 +32,7 @@ struct Points {
 // `query`: index into the plan's queries; decides what is computed and how finely. Sums the components, then
 // derives once what isn't linear (normals, J, coverage). Runs on all threads of the calling arena; a point's
 // result depends on nothing but the point, and is finite if rest_m is. Throws std::invalid_argument when
-// something is asked that the query doesn't hold.
+// something is asked that the query doesn't hold, or that a frame alone doesn't know (PreparedQuery).
 template <class T>
 void evaluate(const Frame<T>& frame, int query, const Points<T>& points, const Results<T>& results);
 

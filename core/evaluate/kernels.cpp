@@ -161,7 +161,7 @@ void DeriveWhitecaps(const DeriveArgs<T>& args) {
     const Chunk<T>& chunk = *args.chunk;
     const Hidden<T> hidden(args);
     const auto moments = args.results.vectors(Product::JacobianMoments);
-    const auto foam = args.results.numbers(Product::Coverage);
+    const auto foam = args.results.numbers(Product::Breaking);
     alignas(64) typename Chunk<T>::Values mean, variance, third;
     for (std::size_t i = 0; i < chunk.count; i += hn::Lanes(d)) {
         const auto at = [&](Field field) HWY_ATTR {
@@ -266,7 +266,7 @@ void Derive(const DeriveArgs<T>& args) {
         const SlopeVariances<N> rest = at_rest(i);
         return Vector{rest.xx, rest.yy, rest.xy};
     });
-    if (results.holds(Product::JacobianMoments) || results.holds(Product::Coverage)) DeriveWhitecaps(args);
+    if (results.holds(Product::JacobianMoments) || results.holds(Product::Breaking)) DeriveWhitecaps(args);
 }
 
 EvaluateKernels<float> TableOfFloat() {

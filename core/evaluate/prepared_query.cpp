@@ -111,27 +111,33 @@ typename PreparedQuery<T>::Cut PreparedQuery<T>::cut(const Call& call) const {
 
 template <class T>
 PreparedQuery<T>::PreparedQuery(const Frame<T>& frame, int query_index, ProductSet wanted,
-                                glm::dvec2 origin_m)
+                                glm::dvec2 origin_m, const Whitecaps* whitecaps)
     : frame_(&frame),
+      query_(query_index),
       planned_(&frame.sea().plan().queries.at(query_index)),
       statistics_(&frame.sea().statistics(query_index)),
       ellipses_(&frame.sea().ellipses(query_index)),
       wanted_(wanted),
-      kernels_(evaluate_kernels<T>()) {
+      kernels_(evaluate_kernels<T>()),
+      whitecaps_(whitecaps ? whitecaps : &frame.sea().whitecaps()) {
     const Plan& plan = frame.sea().plan();
     const Query& query = planned_->query;
+    ProductSet held = query.products & ~lasting_products();
+    if ((query.products & lasting_products()).any()) held.set(index(Product::Breaking));
     for (const ProductRow& row : kProductTable)
-        if (wanted[index(row.product)] && !query.products[index(row.product)])
+        if (wanted[index(row.product)] && !held[index(row.product)])
             throw std::invalid_argument("query \"" + query.name + "\" does not hold \"" + row.name +
-                                        "\": ask for it when the plan is made");
+                                        (query.products[index(row.product)]
+                                             ? "\" at one time alone: ask a SeaAtTime"
+                                             : "\": ask for it when the plan is made"));
     has_trains_ = plan.trains && !query.only_cascade;
     has_copies_ =
         !query.only_cascade && std::any_of(plan.cascades.begin(), plan.cascades.end(),
                                            [](const CascadePlan& cascade) { return cascade.has_copies; });
     breaks_ = (wanted & breaking_products()).any();
     // A cascade's own tile is periodic and only a part of the sea: it has no gusts.
-    if (frame.sea().gusts() && !query.only_cascade && (wanted & gusty_products()).any())
-        gusts_ = &*frame.sea().gusts();
+    if (whitecaps_->gusts && !query.only_cascade && (wanted & gusty_products()).any())
+        gusts_ = &*whitecaps_->gusts;
     if ((wanted & hidden_products()).any())
         hidden_ = hidden_at<T>(*statistics_, {0, T(0)},
                                hidden_moments<double>(has_trains_ ? hidden(frame.sea().trains(), plan.filter,
@@ -342,7 +348,7 @@ void PreparedQuery<T>::run(const Call& call, PointRange of, Work& work) const {
                      .results = call.results.from_point(first),
                      .hidden = hidden_,
                      .hidden_of = call.wants_hidden && call.differ_in_hidden ? &work.hidden_of : nullptr,
-                     .whitecap_threshold = static_cast<T>(frame_->sea().whitecap_threshold()),
+                     .whitecap_threshold = static_cast<T>(whitecaps_->threshold),
                      .whitecap_threshold_of = has_gusts ? work.gusts.whitecap_threshold.data() : nullptr,
                      .third_moment = plan.knobs.third_moment,
                      .rest_normal = call.points.rest_normal ? from_point(call.points.rest_normal, first)

@@ -19,12 +19,15 @@ class PreparedQuery {
   public:
     // `query`: index into the plan's queries. `wanted`: the products that results may hold. `origin_m`: that
     // of the points that will be asked for; others are answered as well, but their phases are reduced anew at
-    // each call. Throws std::invalid_argument when the query doesn't hold a product, or the frame has no
-    // time, std::out_of_range when there is no such query.
-    PreparedQuery(const Frame<T>& frame, int query, ProductSet wanted, glm::dvec2 origin_m = glm::dvec2(0.0));
+    // each call. `whitecaps`: null for the sea's own; otherwise it must outlive this. Throws std::invalid_argument when
+    // the query doesn't hold a product, or the frame has no time, or what earlier breaking has left is wanted, which
+    // a frame alone doesn't know (core/effects/sea_at_time.h); std::out_of_range when there is no such query.
+    PreparedQuery(const Frame<T>& frame, int query, ProductSet wanted, glm::dvec2 origin_m = glm::dvec2(0.0),
+                  const Whitecaps* whitecaps = nullptr);
 
     // After the frame's set(). Throws std::invalid_argument when the frame has no time.
     void refresh();
+    int query() const { return query_; }
     bool is_current() const { return frame_->times_set() == times_set_; }
 
     // As evaluate(), to the bit, from any number of threads at once. A chunk of points or less is done by the
@@ -91,6 +94,7 @@ class PreparedQuery {
     HiddenMoments<double> beside_round(const Footprint<T>& pixel) const;
 
     const Frame<T>* frame_;
+    int query_;
     const PlannedQuery* planned_;
     const QueryStatistics* statistics_;
     const EllipseMoments* ellipses_;
@@ -98,6 +102,7 @@ class PreparedQuery {
     ProductSet wanted_;
     EvaluateKernels<T> kernels_;
     bool has_trains_ = false, has_copies_ = false, breaks_ = false;
+    const Whitecaps* whitecaps_;
     const Gusts* gusts_ = nullptr;  // none, or nothing that they change is wanted
     HiddenMoments<T> hidden_{};     // of pixels that are all the query's first
     std::vector<LevelGrids> levels_;

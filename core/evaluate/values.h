@@ -66,22 +66,31 @@ class ProductArrays {
 };
 using Values = ProductArrays<float>;
 
-// Evaluates queries into single-precision arrays: in single precision straight into them, in double by way of
-// arrays of its own, which are kept from call to call.
+// Evaluates queries of a frame or a SeaAtTime into single-precision arrays: in single precision straight into them, in
+// double by way of arrays of its own, which are kept from call to call.
 template <class T>
 class QueryRunner {
   public:
     // All products that the query holds, or those of them that are `wanted`.
-    void run(const Frame<T>& frame, int query, const Points<T>& points, Values& out) {
-        run(frame, query, points, frame.sea().plan().queries.at(query).query.products, out);
+    template <class State, class... Watch>
+    void run(const State& of, int query, const Points<T>& points, Values& out, const Watch&... watch) {
+        run(of, query, points, of.sea().plan().queries.at(query).query.products, out, watch...);
     }
-    void run(const Frame<T>& frame, int query, const Points<T>& points, ProductSet wanted, Values& out) {
+    template <class State, class... Watch>
+    void run(const State& of, int query, const Points<T>& points, ProductSet wanted, Values& out,
+             const Watch&... watch) {
+        const auto ask = [&](const Results<T>& results) {
+            if constexpr (std::is_same_v<State, Frame<T>>)
+                evaluate(of, query, points, results);
+            else
+                of.evaluate(query, points, results, watch...);
+        };
         out.resize(wanted, points.count);
         if constexpr (std::is_same_v<T, float>) {
-            evaluate(frame, query, points, out.results());
+            ask(out.results());
         } else {
             wide_.resize(wanted, points.count);
-            evaluate(frame, query, points, wide_.results());
+            ask(wide_.results());
             for (std::size_t p = 0; p < kProductCount; ++p) {
                 narrow(wide_.vectors_[p], out.vectors_[p]);
                 narrow(wide_.numbers_[p], out.numbers_[p]);

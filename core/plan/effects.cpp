@@ -25,11 +25,9 @@ const std::array kEffectTable = std::to_array<EffectRow>({
          std::erase(scene.output.maps, MapKind::Whitecaps);  // would be a contradiction
          std::erase(scene.output.volumes, VolumeKind::Spray);
      },
-     [] { return FieldSet(); }, [] { return products(Product::JacobianMoments, Product::Coverage); },
+     [] { return FieldSet(); }, [] { return foam_products() | products(Product::JacobianMoments); },
      kNothing},
-    {"living foam",
-     [](const Scene& scene) { return scene.effects.whitecaps && scene.effects.foam_decay_s > 0.0; },
-     "effects.foam_decay_s is 0, or there are no whitecaps",
+    {"living foam", has_persistent_foam, "effects.foam_decay_s is 0, or there are no whitecaps",
      [](Scene& scene) { scene.effects.foam_decay_s = 0.0; }, [] { return FieldSet(); },
      [] { return ProductSet(); }, kNothing},
     {"foam structure",

@@ -131,7 +131,7 @@ std::string explain(const Plan& plan) {
     for (const Reason& reason : plan.closure) page += "  " + reason.what + ": " + reason.why + "\n";
     bool has_coverage = false;
     for (const PlannedQuery& planned : plan.queries)
-        has_coverage |= planned.query.products[index(Product::Coverage)];
+        has_coverage |= (planned.query.products & foam_products()).any();
     if (has_coverage)
         page += format("  whitecaps: coverage from %d moments of the Jacobian, of waves above %g m%s\n",
                        plan.knobs.third_moment ? 3 : 2, plan.breaking.from_m,

@@ -22,18 +22,21 @@ Fingerprint& Fingerprint::add(std::string_view text) {
 std::string plan_text(const Plan& plan, int query_index) {
     const PlannedQuery& planned = plan.queries.at(query_index);
     const Query& query = planned.query;
+    // What breaks now and the foam's age were no products of their own: files that have them have coverage.
+    const bool has_foam = (query.products & foam_products()).any();
+    ProductSet shown = query.products & ~foam_products();
+    shown[index(Product::Coverage)] = has_foam;
+    constexpr std::size_t kLater = kProductCount - index(Product::Coverage) - 1;
     std::string text = "precision " + std::string(plan.knobs.double_precision ? "double" : "single") +
                        " filter " + number_text(plan.filter.n_min) + ' ' + number_text(plan.filter.n_max) +
-                       "\nproducts " + query.products.to_string() + " dropped " + plan.dropped.to_string() +
-                       '\n';
-    if (query.products[index(Product::Coverage)])
-        text += "third " + std::to_string(plan.knobs.third_moment) + '\n';
+                       "\nproducts " + shown.to_string().substr(kLater) + " dropped " +
+                       plan.dropped.to_string() + '\n';
+    if (has_foam) text += "third " + std::to_string(plan.knobs.third_moment) + '\n';
     // The history has grids of its own, which aren't in this plan.
-    if (query.products[index(Product::Coverage)] && plan.foam && !query.only_cascade && !query.breaking_alone)
+    if (plan.foam && query.asks_for_past())
         text += "history, oversampling " + number_text(plan.knobs.oversampling) + '\n';
     // Until the law did, the cube of the wind said how much each place has.
-    if (query.products[index(Product::Coverage)] && plan.gusts && !query.only_cascade)
-        text += "gusts by the law\n";
+    if (has_foam && plan.gusts && !query.only_cascade) text += "gusts by the law\n";
     const std::string spline = " spline of " + std::to_string(plan.knobs.spline_taps) + '\n';
     if (plan.trains && !query.only_cascade)
         text += "trains " + std::to_string(plan.trains->count) + ' ' + number_text(plan.trains->longest_m) +

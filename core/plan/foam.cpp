@@ -39,9 +39,13 @@ FoamPlan::Weight FoamPlan::weight(double from_s, double to_s) const {
     return {decay_s * (at_a - at_b), decay_s * ((a + decay_s) * at_a - (b + decay_s) * at_b)};
 }
 
+bool has_persistent_foam(const Scene& scene) {
+    return scene.effects.whitecaps && scene.effects.foam_decay_s > 0.0;
+}
+
 std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m, double steps_a_period) {
+    if (!has_persistent_foam(scene)) return {};
     const Effects& effects = scene.effects;
-    if (!effects.whitecaps || !(effects.foam_decay_s > 0.0)) return {};
     constexpr double kFinestCell_m = 0.25;
     constexpr double kCell =
         1.4;  // of the finest that breaking resolves: a half as many cells, and none of the foam is lost
@@ -203,8 +207,7 @@ std::array<double, FoamPlan::kLevels> foam_tiles(const FoamPlan& foam, const Sce
     std::array<double, FoamPlan::kLevels> tiles{};
     const double mean_square = 0.5 * CoxMunk::at_wind(scene.sea.wind_speed_mps).total;  // along one direction
     for (const Query& query : queries) {
-        if (!query.products[index(Product::Coverage)] || query.only_cascade || query.breaking_alone)
-            continue;  // a cascade's tile has no history
+        if (!query.asks_for_past()) continue;
         const bool is_view = query.is_view && !query.lattice;
         // Pictures and meshes that a camera lays out know their points. Who looks round, as a preview's window does, doesn't, and a
         // cage lies where it was made.

@@ -50,6 +50,9 @@ struct FoamPlan {
     Weight weight(double from_s, double to_s) const;
 };
 
+// Whether earlier breaking leaves foam.
+bool has_persistent_foam(const Scene& scene);
+
 // steps_a_period: Knobs::foam_steps_a_period. Nothing without persistent foam. `finest_m`: no breaking is resolved
 // below it.
 std::optional<FoamPlan> plan_foam(const Scene& scene, double finest_m, double steps_a_period);

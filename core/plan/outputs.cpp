@@ -35,7 +35,7 @@ void add_mesh(const OutputRow& row, const OutputContext& context, std::vector<Ou
             if (at.attribute == attribute) query.products.set(index(at.product));
     if (context.surface.fitted())
         query.products.reset(index(Product::Normal));  // a limit surface has its own
-    query.products &= ~context.gone;
+    query.products = with_past(context.prepared.scene, query.products & ~context.gone);
     const SurfaceNeeds needs = context.surface.needs(context.frames);
     if (needs.own_footprints) {
         query = view_query(context.prepared, {.products = query.products,
@@ -76,6 +76,7 @@ void add_maps(const OutputRow& row, const OutputContext& context, const Square& 
             query.name = (cascade ? "tile " + std::to_string(*cascade) + " " : std::string("map ")) +
                          std::string(word_of(map));
             query.products = at.needs() & ~context.gone;
+            if (!cascade) query.products = with_past(context.prepared.scene, query.products);
             // A tile's unresolved slopes are carried by the whole sea, not by the tile alone: so they are taken at
             // rest.
             if (cascade && query.products[index(Product::SlopeVariance)])
@@ -112,7 +113,7 @@ void add_tiles(const OutputRow& row, const OutputContext& context, std::vector<O
 }
 
 const std::array kVolumeTable = std::to_array<VolumeRow>({
-    {VolumeKind::Spray, [] { return products(Product::Displacement, Product::Coverage); }, feeds(Feed::Spray),
+    {VolumeKind::Spray, [] { return products(Product::Displacement, Product::Breaking); }, feeds(Feed::Spray),
      true},
     {VolumeKind::LevelSet, [] { return products(Product::Displacement); }, FeedSet(), false},
 });
@@ -130,7 +131,6 @@ void add_volumes(const OutputRow& row, const OutputContext& context, std::vector
             query.cell_m = query.pixel_m = {scene.output.voxel_m};
             const std::size_t points = at.is_of_columns ? voxels : voxels + 1;
             query.points = points * points;
-            query.breaking_alone = true;
             requests.push_back({.row = &row, .volume = volume, .query = std::move(query)});
         }
 }

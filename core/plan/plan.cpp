@@ -246,6 +246,10 @@ std::vector<CascadeSize> resolve_cascades(const PreparedScene& prepared, double 
     return cascades;
 }
 
+ProductSet with_past(const Scene& scene, ProductSet wanted) {
+    return wanted[index(Product::Coverage)] && has_persistent_foam(scene) ? wanted | foam_products() : wanted;
+}
+
 Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options) {
     Query query;
     query.name = "view";
@@ -253,9 +257,9 @@ Query view_query(const PreparedScene& prepared, const ViewQueryOptions& options)
     query.is_picture = options.products.none();
     query.products = options.products;
     if (query.products.none())
-        query.products =
-            products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage) &
-            ~products_gone(prepared.scene);
+        query.products = with_past(prepared.scene, products(Product::Position, Product::Normal,
+                                                            Product::SlopeVariance, Product::Coverage)) &
+                         ~products_gone(prepared.scene);
     query.points = options.points;
     const FootprintFilter& filter = options.filter;
     const double finest_m = options.finest_pixel_m > 0.0 ? first_rung_m(options.finest_pixel_m) : 0.0;
@@ -357,10 +361,8 @@ Plan make_plan(std::shared_ptr<const PreparedScene> from, const std::vector<Quer
     for (const Query& query : queries) add_query(plan, query);
     add_effects(plan, options.effects);
     plan.gusts = plan_gusts(scene);
-    const bool has_coverage = std::any_of(queries.begin(), queries.end(), [](const Query& query) {
-        return query.products[index(Product::Coverage)];
-    });
-    if (options.living_foam && has_coverage)
+    if (std::any_of(queries.begin(), queries.end(),
+                    [](const Query& query) { return (query.products & foam_products()).any(); }))
         plan.foam = plan_foam(scene, plan.breaking.footprint_m, plan.knobs.foam_steps_a_period);
 
     double finest_m = std::numeric_limits<double>::infinity(), trains_finest_m = finest_m;
@@ -436,14 +438,13 @@ Plan plan_bake(std::shared_ptr<const PreparedScene> prepared, std::span<const in
         if (output.has_surface) output.feeds |= surface->feeds();
         for (const VolumeRow& row : volume_table())
             if (output.volume == row.volume) output.feeds |= row.feeds;
-        if ((request.query.products & products(Product::JacobianMoments, Product::Coverage)).any())
-            output.feeds |= feeds(Feed::Foam);
+        if ((request.query.products & breaking_products()).any()) output.feeds |= feeds(Feed::Foam);
         if (!request.cascade && (request.query.products & gusty_products()).any())
             output.feeds |= feeds(Feed::Gusts);
         outputs.push_back(std::move(output));
         queries.push_back(request.query);
     }
-    Plan plan = make_plan(std::move(prepared), queries, {.living_foam = true});
+    Plan plan = make_plan(std::move(prepared), queries);
     plan.outputs = std::move(outputs);
     plan.surface = surface;
     return plan;

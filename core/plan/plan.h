@@ -123,7 +123,7 @@ struct Plan {
     std::vector<Level> levels;
     std::vector<CascadePlan> cascades;
     std::optional<TrainsPlan> trains;  // the second wave model; cascades then begin where its waves end
-    std::optional<FoamPlan> foam;      // with persistent foam, where a query asks for coverage
+    std::optional<FoamPlan> foam;      // with persistent foam, where a query asks for any of it
     std::optional<GustsPlan> gusts;    // where the wind varies over the surface
     FieldSet dropped;                  // fields that are zero in this scene, whoever asks: never computed
     std::vector<Reason> closure;
@@ -145,6 +145,9 @@ struct Plan {
     // frame or a mesh for a camera decides which tiles are read.
     std::size_t foam_history_bytes() const;
 };
+
+// What has coverage, as files and pictures do: with persistent foam also what of it breaks now, and its age.
+ProductSet with_past(const Scene& scene, ProductSet wanted);
 
 struct ViewQueryOptions {
     // None: what a picture's light needs, that is positions, normals, what pixels hide of the slopes, and
@@ -173,8 +176,6 @@ struct PlanOptions {
     std::optional<Knobs> knobs{};
     FootprintFilter filter{};  // to measure what another one would cost
     std::optional<bool> double_precision{};
-    // Whoever asks keeps the foam's history (core/effects/foam_history.h). Without, all foam is where waves break now.
-    bool living_foam = false;
     std::span<const EffectRow> effects = effect_table();
 };
 Plan make_plan(std::shared_ptr<const PreparedScene>, const std::vector<Query>&, const PlanOptions& = {});

@@ -19,13 +19,16 @@ enum class Product {
     SlopeVariance,
     SlopeVarianceAtRest,
     JacobianMoments,
-    Coverage
+    Coverage,
+    Breaking,
+    FoamAge
 };
 
 struct ProductRow {
     Product product;
     const char* identifier;  // in Python and in messages to programs: "slope_variance"
     const char* name;        // for people: "slope variance"
+    const char* in_meshes;   // the attribute of meshes' files; null: they have none
     std::size_t components;  // of a point's value: 3, or 1
     FieldSet needs;          // the sums that it is derived from
     bool counts_what_hides;  // whether it depends on what a footprint leaves unresolved
@@ -36,28 +39,33 @@ struct ProductRow {
 };
 
 inline constexpr auto kProductTable = std::to_array<ProductRow>({
-    {Product::Position, "position", "position", 3, fields(Field::Height, Field::Dx, Field::Dy), false, false,
-     "the displaced point", "relative to the points' origin, z up [m]"},
-    {Product::Displacement, "displacement", "displacement", 3, fields(Field::Height, Field::Dx, Field::Dy),
-     false, false, "the displaced point less the point at rest", "position less rest [m]"},
-    {Product::Normal, "normal", "normal", 3,
+    {Product::Position, "position", "position", "points", 3, fields(Field::Height, Field::Dx, Field::Dy),
+     false, false, "the displaced point", "relative to the points' origin, z up [m]"},
+    {Product::Displacement, "displacement", "displacement", nullptr, 3,
+     fields(Field::Height, Field::Dx, Field::Dy), false, false, "the displaced point less the point at rest",
+     "position less rest [m]"},
+    {Product::Normal, "normal", "normal", "normals", 3,
      fields(Field::SlopeX, Field::SlopeY, Field::Dxx, Field::Dyy, Field::Dxy), false, false,
      "the cross product of the displaced tangents",
      "unit; its z is negative where the surface has folded over"},
-    {Product::Velocity, "velocity", "velocity", 3,
+    {Product::Velocity, "velocity", "velocity", "velocities", 3,
      fields(Field::VelocityX, Field::VelocityY, Field::VelocityZ), false, false, "the sums' time derivative",
      "of the water that rests at the point [m/s]"},
-    {Product::SlopeVariance, "slope_variance", "slope variance", 3, strain_fields(), true, false,
-     "a remainder of the spectrum, carried by the waves that are shown",
+    {Product::SlopeVariance, "slope_variance", "slope variance", "primvars:slopeVariance", 3, strain_fields(),
+     true, false, "a remainder of the spectrum, carried by the waves that are shown",
      "xx, yy, xy of the slopes that the pixel footprint hides: larger on crests, smaller in troughs"},
-    {Product::SlopeVarianceAtRest, "slope_variance_at_rest", "slope variance at rest", 3, FieldSet(), true,
-     false, "a remainder of the spectrum: no transform",
+    {Product::SlopeVarianceAtRest, "slope_variance_at_rest", "slope variance at rest", nullptr, 3, FieldSet(),
+     true, false, "a remainder of the spectrum: no transform",
      "the same before the waves that are shown compress and stretch it: shown and hidden add up to the spectrum's"},
-    {Product::JacobianMoments, "jacobian", "Jacobian moments", 3, strain_fields(), true, true,
+    {Product::JacobianMoments, "jacobian", "Jacobian moments", nullptr, 3, strain_fields(), true, true,
      "J of the waves that break, and the variance that the footprint hides",
      "mean, variance (not negative) and third cumulant of J in the pixel footprint, of the waves that break"},
-    {Product::Coverage, "coverage", "whitecap coverage", 1, strain_fields(), true, true,
-     "where J falls below the threshold of breaking", "whitecaps, 0 … 1"},
+    {Product::Coverage, "coverage", "whitecap coverage", "primvars:whitecapCoverage", 1, strain_fields(),
+     true, true, "where J falls below the threshold of breaking", "whitecaps, 0 … 1"},
+    {Product::Breaking, "foam_active", "breaking", "primvars:foamActive", 1, strain_fields(), true, true,
+     "where J falls below the threshold of breaking", "what of the coverage breaks now, 0 … 1"},
+    {Product::FoamAge, "foam_age", "foam age", "primvars:foamAge", 1, strain_fields(), true, true,
+     "what breaks now is new", "the mean age of the foam that is there, what breaks now counting as 0 [s]"},
 });
 
 inline constexpr std::size_t kProductCount = kProductTable.size();
@@ -105,9 +113,18 @@ inline ProductSet hidden_products() {
     return hidden;
 }
 
+// The products of foam: what breaks now, and what counts as well what earlier breaking has left. A frame alone has
+// none of the latter (core/effects/sea_at_time.h).
+inline constexpr ProductSet lasting_products() {
+    return products(Product::Coverage, Product::FoamAge);
+}
+inline constexpr ProductSet foam_products() {
+    return products(Product::Breaking, Product::Coverage, Product::FoamAge);
+}
+
 // The products that gusts change.
 inline constexpr ProductSet gusty_products() {
-    return products(Product::SlopeVariance, Product::Coverage);
+    return products(Product::SlopeVariance, Product::Breaking, Product::Coverage, Product::FoamAge);
 }
 
 // A product whose values have this many components. Of a constant, the compiler checks it.

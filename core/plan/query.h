@@ -29,8 +29,10 @@ struct Query {
     // What comes from derivatives is for light alone, which a spline's error changes less than other things do
     // (`pelagic accuracy --rows picture-interpolation`): Knobs::light_oversampling.
     bool is_picture = false;
-    // With persistent foam, its coverage is what breaks now alone: nobody adds what earlier breaking has left.
-    bool breaking_alone = false;
+
+    // Whether it asks for what earlier breaking has left. A cascade's own tile is a part of the sea: all its foam
+    // breaks now.
+    bool asks_for_past() const { return (products & lasting_products()).any() && !only_cascade; }
 };
 
 }  // namespace pelagic

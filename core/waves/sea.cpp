@@ -78,9 +78,10 @@ class Sea<T>::Progress {
 };
 
 template <class T>
-Sea<T>::Sea(Plan plan, const BuildWatch& watch)
-    : plan_(std::move(plan)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
+Sea<T>::Sea(Plan plan, const BuildWatch& watch, std::shared_ptr<const SpectrumTable> table)
+    : plan_(std::move(plan)), table_(std::move(table)), loop_s_(plan_.from->scene.shot.sea_loop_s()) {
     const DirectionalSpectrum& spectrum = plan_.from->spectrum;
+    if (!table_) table_ = std::make_shared<const SpectrumTable>(spectrum);
     if (plan_.trains) {
         trains_ = make_trains<T>(*plan_.from, *plan_.trains, plan_.filter);
         total_ = pelagic::total(trains_);
@@ -88,7 +89,7 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
         total_ =
             moments_with_breaking(spectrum, 0.0, std::numeric_limits<double>::infinity(), plan_.breaking);
     }
-    calibrate_whitecaps();
+    whitecaps_ = whitecaps(foam_life(plan_));
 
     for (const PlannedQuery& planned : plan_.queries) {
         const std::size_t levels = planned.pixel_levels.size();
@@ -103,11 +104,10 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
                                                                     : EllipseMoments());
     }
 
-    const SpectrumTable table(spectrum);
     Progress progress(watch, plan_);
     std::vector<QueryStatistics> breaking = statistics_;  // through the breaking levels
     for (int c = 0; c < static_cast<int>(plan_.cascades.size()); ++c)
-        cascades_.push_back(build(c, table, breaking, progress));
+        cascades_.push_back(build(c, breaking, progress));
     for (std::size_t q = 0; q < statistics_.size(); ++q) {
         if (plan_.queries[q].breaking_levels.empty()) continue;
         QueryStatistics& to = statistics_[q];
@@ -119,31 +119,30 @@ Sea<T>::Sea(Plan plan, const BuildWatch& watch)
 }
 
 template <class T>
-void Sea<T>::calibrate_whitecaps() {
+Whitecaps Sea<T>::whitecaps(const FoamLife& life) const {
     const bool third = plan_.knobs.third_moment;
-    const FoamLife life = foam_life(plan_);
     const double law = law_coverage(plan_.from->scene),
                  choppiness = mean_choppiness(plan_.from->spectrum, plan_.breaking);
-    whitecap_threshold_ = calibrated_threshold(total_, law, choppiness, third, life);
+    Whitecaps found{.threshold = calibrated_threshold(total_, law, choppiness, third, life)};
     const auto j = jacobian_moments<double>(
         0.0, 0.0, 0.0, 0.0, {total_.xxxx, total_.xxxy, total_.xxyy, total_.xyyy, total_.yyyy});
     double left = 0.0;
-    if (plan_.foam && std::isfinite(whitecap_threshold_)) {
-        const double deviate = breaking_deviate(j, whitecap_threshold_, third);
-        foam_left_per_s_ = life.left_per_s(deviate);
-        left = foam_left_per_s_ * life.lasting_s;
-        left_coverage_ = pelagic::left_coverage(deviate, left);
-        residual_coverage_ = residual_foam(left_coverage_, coverage(j, whitecap_threshold_, third));
+    if (life.lasting_s > 0.0 && std::isfinite(found.threshold)) {
+        const double deviate = breaking_deviate(j, found.threshold, third);
+        found.left_per_s = life.left_per_s(deviate);
+        left = found.left_per_s * life.lasting_s;
+        found.left_coverage = pelagic::left_coverage(deviate, left);
+        found.residual_coverage = residual_foam(found.left_coverage, coverage(j, found.threshold, third));
     }
     if (plan_.gusts)
-        gusts_ =
+        found.gusts =
             make_gusts(*plan_.gusts, {.j = j, .left = left, .third_moment = third, .choppiness = choppiness},
-                       whitecap_threshold_, law_exponent(plan_.from->scene));
+                       found.threshold, law_exponent(plan_.from->scene));
+    return found;
 }
 
 template <class T>
-Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, std::vector<QueryStatistics>& breaking,
-                         Progress& progress) {
+Cascade<T> Sea<T>::build(int c, std::vector<QueryStatistics>& breaking, Progress& progress) {
     const Scene& scene = plan_.from->scene;
     const Dispersion& dispersion = plan_.from->spectrum.dispersion();
     const CascadePlan& planned = plan_.cascades[c];
@@ -181,7 +180,7 @@ Cascade<T> Sea<T>::build(int c, const SpectrumTable& table, std::vector<QuerySta
         add(plan_.queries[q].breaking_levels, breaking[q]);
     }
     const LevelSums levels(planned.size_m, planned.mode_radius, plan_.filter, std::move(pairs));
-    const CellEnergies energies(table, planned.size_m, planned.k_lower, planned.k_upper);
+    const CellEnergies energies(*table_, planned.size_m, planned.k_lower, planned.k_upper);
     const ModeKernels<T> kernels = mode_kernels<T>();
     const double step = kTwoPi / planned.size_m;
 

@@ -2,6 +2,7 @@
 // frames.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "core/waves/ellipse_moments.h"
 #include "core/waves/gusts.h"
 #include "core/waves/trains.h"
+#include "core/waves/whitecaps.h"
 
 namespace pelagic {
 
@@ -51,15 +53,26 @@ struct QueryStatistics {
     std::vector<SpectralMoments> resolved, resolved_next;
 };
 
+// Which water is foam, and how much of it there is, in expectation.
+struct Whitecaps {
+    double threshold = 0.0;  // J below this breaks (core/waves/whitecaps.h), in the mean wind
+    // With persistent foam: the coverage that breaking leaves per second that it lasts. Means over the sea: the
+    // coverage left by earlier breaking, before it is limited to 1, and the part of it that present breaking doesn't
+    // cover, which is the coverage of residual foam.
+    double left_per_s = 0.0, left_coverage = 0.0, residual_coverage = 0.0;
+    std::optional<Gusts> gusts{};  // none unless Plan::gusts
+};
+
 template <class T>
 class Sea {
   public:
     // On all threads of the calling arena; the same bits whatever their number. A mode's amplitude depends on
     // the spectrum, the cascade's size and band, and the seed: not on resolutions, nor on what is asked of
-    // the sea. Throws BuildCancelled.
-    explicit Sea(Plan, const BuildWatch& watch = {});
+    // the sea. Throws BuildCancelled. `table`: of the plan's spectrum, from another sea of the same scene; null: made.
+    explicit Sea(Plan, const BuildWatch& watch = {}, std::shared_ptr<const SpectrumTable> table = nullptr);
 
     const Plan& plan() const { return plan_; }
+    const std::shared_ptr<const SpectrumTable>& spectrum_table() const { return table_; }
     std::span<const Cascade<T>> cascades() const { return cascades_; }
     const Trains<T>& trains() const { return trains_; }  // none unless plan().trains
     double loop_s() const { return loop_s_; }
@@ -73,30 +86,27 @@ class Sea {
     const Extent& extent() const { return plan_.from->extent; }
     // What a query's finest pixels resolve of total(), cascades and trains.
     SpectralMoments shown(int query) const;
-    // J below this is foam (core/waves/whitecaps.h), in the mean wind.
-    double whitecap_threshold() const { return whitecap_threshold_; }
-    // The effect of gusts; none unless plan().gusts.
-    const std::optional<Gusts>& gusts() const { return gusts_; }
-    // Coverage that breaking leaves per second that it lasts; 0 unless plan().foam.
-    double foam_left_per_s() const { return foam_left_per_s_; }
-    // Means over the sea: the coverage left by earlier breaking, before it is limited to 1, and the part of it that
-    // present breaking doesn't cover, which is the coverage of residual foam.
-    double left_coverage() const { return left_coverage_; }
-    double residual_coverage() const { return residual_coverage_; }
+    const Whitecaps& whitecaps() const { return whitecaps_; }
+    // As they were if foam came and went like this; {}: if none were persistent.
+    Whitecaps whitecaps(const FoamLife& life) const;
+    double whitecap_threshold() const { return whitecaps_.threshold; }
+    const std::optional<Gusts>& gusts() const { return whitecaps_.gusts; }
+    double foam_left_per_s() const { return whitecaps_.left_per_s; }
+    double left_coverage() const { return whitecaps_.left_coverage; }
+    double residual_coverage() const { return whitecaps_.residual_coverage; }
     // Σ over this cascade's modes within the plan's mode_radius of E|h|² [m²]: its band's m0 where that
     // reaches the band's end.
     double expected_m0(int cascade) const { return expected_m0_.at(cascade); }
 
   private:
     class Progress;
-    void calibrate_whitecaps();
-    Cascade<T> build(int cascade, const SpectrumTable&, std::vector<QueryStatistics>& breaking, Progress&);
+    Cascade<T> build(int cascade, std::vector<QueryStatistics>& breaking, Progress&);
 
     Plan plan_;
+    std::shared_ptr<const SpectrumTable> table_;
     double loop_s_;
     SpectralMoments total_;
-    double whitecap_threshold_, foam_left_per_s_ = 0.0, left_coverage_ = 0.0, residual_coverage_ = 0.0;
-    std::optional<Gusts> gusts_;
+    Whitecaps whitecaps_;
     std::vector<Cascade<T>> cascades_;
     Trains<T> trains_;
     std::vector<QueryStatistics> statistics_;

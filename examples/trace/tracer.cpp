@@ -68,13 +68,12 @@ Tracer::Impl::Impl(const Scene& scene, const TraceOptions& options, Sky sky, int
     refuse_under_water(light_.frame(), scene_, frame, grid_options_);
     if (light_.foam_lives()) {  // where about the rays will look
         const ProjectedGrid grid = projected_grid(view_, grid_options_);
-        light_.begin_foam(time_s);
-        light_.ask_foam({.origin_m = grid.origin_m,
-                         .count = grid.rest_m.size(),
-                         .rest_m = {grid.rest_m.data()},
-                         .pixel_m = {grid.pixel_m.data()},
-                         .pixel_axis_m = {grid.pixel_axis_m.data()}});
-        light_.prepare_foam({});
+        light_.say({.origin_m = grid.origin_m,
+                    .count = grid.rest_m.size(),
+                    .rest_m = {grid.rest_m.data()},
+                    .pixel_m = {grid.pixel_m.data()},
+                    .pixel_axis_m = {grid.pixel_axis_m.data()}});
+        light_.prepare({});
     }
     air_ = light_.air_before(view_.position_m.z);
     air_below_ = light_.air_before(0.0);

@@ -194,6 +194,7 @@ Trials mesh_variance(const Scene& shot) {
     const ProductSet wanted = products(Product::Normal, Product::SlopeVariance);
     const auto patch = std::make_shared<const SeenPatch>(shot);
     Scene square = shot;
+    square.effects.foam_decay_s = 0.0;  // an effect of its own
     square.surface.resolution = kCells * kParts;
     const SweepPoints fine = sweep_points(square, kCells * kParts);
     SeaAnswers parts(square, wanted, fine.spacing_m, fine);
@@ -319,9 +320,9 @@ Trials whitecap_moments(const Scene& shot) {
     Scene square = shot;
     square.surface.resolution = kCells * kParts;
     const SweepPoints fine = sweep_points(square, kCells * kParts);
-    SeaAnswers parts(square, products(Product::Coverage), fine.spacing_m, fine);
+    SeaAnswers parts(square, products(Product::Breaking), fine.spacing_m, fine);
     parts.run();
-    const std::vector<double> whitecaps = parts.numbers(Product::Coverage);
+    const std::vector<double> whitecaps = parts.numbers(Product::Breaking);
     const auto mean = std::make_shared<std::vector<double>>(static_cast<std::size_t>(kCells) * kCells, 0.0);
     SweepPoints at = fine;
     at.per_side = kCells;
@@ -343,7 +344,7 @@ Trials whitecap_moments(const Scene& shot) {
     for (const bool third : {true, false}) {
         Knobs knobs = own;
         knobs.third_moment = third;
-        const auto sea = std::make_shared<SeaAnswers>(square, products(Product::Coverage), at.spacing_m, at,
+        const auto sea = std::make_shared<SeaAnswers>(square, products(Product::Breaking), at.spacing_m, at,
                                                       PlanOptions{.knobs = knobs});
         trials.trials.push_back(
             {.setting = third ? "three moments" : "two moments",
@@ -351,7 +352,7 @@ Trials whitecap_moments(const Scene& shot) {
              .run = [sea] { sea->run(); },
              .errors =
                  [=] {
-                     const std::vector<double> coverage = sea->numbers(Product::Coverage);
+                     const std::vector<double> coverage = sea->numbers(Product::Breaking);
                      double bias = 0.0;
                      for (std::size_t c = 0; c < coverage.size(); ++c)
                          bias += (coverage[c] - (*mean)[c]) / static_cast<double>(coverage.size());

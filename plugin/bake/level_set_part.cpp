@@ -21,13 +21,11 @@ class LevelSetPart final : public VolumePart {
 
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<LevelSetSlot>(); }
 
-    void compute(const Frame<float>& sea, FoamHistory<float>*, int, OutputSlot& slot,
-                 const BuildWatch& watch) override {
-        compute_as(sea, static_cast<LevelSetSlot&>(slot), watch);
+    void compute(const SeaAtTime<float>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(sea.frame(), static_cast<LevelSetSlot&>(slot), watch);
     }
-    void compute(const Frame<double>& sea, FoamHistory<double>*, int, OutputSlot& slot,
-                 const BuildWatch& watch) override {
-        compute_as(sea, static_cast<LevelSetSlot&>(slot), watch);
+    void compute(const SeaAtTime<double>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(sea.frame(), static_cast<LevelSetSlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {

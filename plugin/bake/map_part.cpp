@@ -47,13 +47,11 @@ class MapPart final : public OutputPart {
     }
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MapSlot>(); }
 
-    void compute(const Frame<float>& sea, FoamHistory<float>* foam, int, OutputSlot& slot,
-                 const BuildWatch& watch) override {
-        compute_as(single_, sea, foam, static_cast<MapSlot&>(slot), watch);
+    void compute(const SeaAtTime<float>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(single_, sea, static_cast<MapSlot&>(slot), watch);
     }
-    void compute(const Frame<double>& sea, FoamHistory<double>* foam, int, OutputSlot& slot,
-                 const BuildWatch& watch) override {
-        compute_as(wide_, sea, foam, static_cast<MapSlot&>(slot), watch);
+    void compute(const SeaAtTime<double>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(wide_, sea, static_cast<MapSlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
@@ -80,8 +78,7 @@ class MapPart final : public OutputPart {
             throw std::logic_error("a map of no kind");
         }();
         return {.once = texels * 2 * scalar,
-                .slot = texels * (file + levels + (has_foam_history() ? 2 * sizeof(float) : 0) +
-                                  (has_gusts() ? sizeof(float) * 4 / 3 : 0)),
+                .slot = texels * (file + levels + (has_gusts() ? sizeof(float) * 4 / 3 : 0)),
                 .encoding = texels * (file + work),  // the file once more, in blocks
                 .remedy = output_.cascade
                               ? "lower the resolutions in waves.cascades, or leave cascade_tiles out"
@@ -121,18 +118,16 @@ class MapPart final : public OutputPart {
     };
 
     template <class T>
-    void compute_as(State<T>& state, const Frame<T>& sea, FoamHistory<T>* foam, MapSlot& slot,
-                    const BuildWatch& watch) {
+    void compute_as(State<T>& state, const SeaAtTime<T>& sea, MapSlot& slot, const BuildWatch& watch) {
         if (!state.rest)
             state.rest = squares_->points<T>({.per_side = n_,
                                               .spacing_m = query().lattice->spacing_m,
                                               .first_m = query().lattice->first_m});
         const Points<T> points{.count = state.rest->size(), .rest_m = {state.rest->data()}};
-        state.runner.run(sea, output_.query, points, slot.values);
-        add_foam(foam, points, slot, watch);
+        state.runner.run(sea, output_.query, points, slot.values, watch);
         slot.whitecap_threshold = static_cast<float>(sea.sea().whitecap_threshold());
-        if (kind_ == MapKind::SlopeVariance) find_hidden(state, sea, slot);
-        if (has_gusts()) find_thresholds(state, sea, slot);
+        if (kind_ == MapKind::SlopeVariance) find_hidden(state, sea.frame(), slot);
+        if (has_gusts()) find_thresholds(state, sea.frame(), slot);
     }
 
     bool has_gusts() const { return plan_.gusts && !output_.cascade && kind_ == MapKind::Whitecaps; }
@@ -313,14 +308,15 @@ class MapPart final : public OutputPart {
     // `texels` becomes all of it. What is left is a mean already: its levels are means of it, and ages count by it.
     std::vector<std::vector<glm::vec3>> foam_levels(const MapSlot& slot,
                                                     std::vector<std::vector<glm::vec3>>& texels) const {
-        if (slot.foam_age_s.empty()) return {};
+        const std::vector<float>&breaking = slot.values.numbers(Product::Breaking),
+              &ages_s = slot.values.numbers(Product::FoamAge);
+        if (ages_s.empty()) return {};
         const std::vector<float>& total = slot.values.numbers(Product::Coverage);
         std::vector<glm::vec3> left(total.size());  // the residual's share of the rest, its times total age
         for (std::size_t i = 0; i < total.size(); ++i) {
-            const float active = slot.foam_active[i], rest = 1.0f - active;
+            const float active = breaking[i], rest = 1.0f - active;
             const float residual = rest > 0.0f ? (total[i] - active) / rest : 0.0f;
-            const float age_s =
-                total[i] > active ? slot.foam_age_s[i] * total[i] / (total[i] - active) : 0.0f;
+            const float age_s = total[i] > active ? ages_s[i] * total[i] / (total[i] - active) : 0.0f;
             left[i] = {residual, residual * age_s, 0.0f};
         }
         std::vector<std::vector<glm::vec3>> levels;

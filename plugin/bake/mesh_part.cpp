@@ -51,7 +51,7 @@ void scale_by(std::vector<glm::vec3>& velocities, double time_scale) {
 // What the vertices of a cage have.
 struct CageArrays {
     std::vector<glm::vec3> points, velocities, slope_variance;
-    std::vector<float> coverage, foam_active, foam_age_s;
+    std::vector<float> coverage, breaking, age_s;
 };
 
 struct MeshSlot final : OutputSlot {
@@ -80,13 +80,12 @@ class MeshPart final : public OutputPart {
     }
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<MeshSlot>(); }
 
-    void compute(const Frame<float>& sea, FoamHistory<float>* foam, int frame, OutputSlot& slot,
-                 const BuildWatch& watch) override {
-        compute_as(single_, sea, foam, frame, static_cast<MeshSlot&>(slot), watch);
+    void compute(const SeaAtTime<float>& sea, int frame, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(single_, sea, frame, static_cast<MeshSlot&>(slot), watch);
     }
-    void compute(const Frame<double>& sea, FoamHistory<double>* foam, int frame, OutputSlot& slot,
+    void compute(const SeaAtTime<double>& sea, int frame, OutputSlot& slot,
                  const BuildWatch& watch) override {
-        compute_as(wide_, sea, foam, frame, static_cast<MeshSlot&>(slot), watch);
+        compute_as(wide_, sea, frame, static_cast<MeshSlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
@@ -105,7 +104,6 @@ class MeshPart final : public OutputPart {
         // Footprints of each point, and the grid that they are taken from.
         if (!plan_.surface->is_constant())
             memory.once += points * (2 * scalar + sizeof(glm::vec2) + 2 * sizeof(float) + sizeof(double));
-        if (has_foam_history()) memory.slot += points * 2 * sizeof(float);
         if (cage_) memory.slot += points * numbers() * sizeof(float);  // beside the points' values
         if (is_text()) {
             memory.slot += points * kText * numbers();
@@ -184,7 +182,6 @@ class MeshPart final : public OutputPart {
         std::size_t count = 0;
         for (const ProductRow& row : kProductTable)
             if (asks(row.product)) count += row.components;
-        if (has_foam_history()) count += 2;
         return count;
     }
 
@@ -197,7 +194,7 @@ class MeshPart final : public OutputPart {
     bool is_text() const { return scene().output.mesh == MeshFormat::Usda; }
 
     template <class T>
-    void compute_as(State<T>& state, const Frame<T>& sea, FoamHistory<T>* foam, int frame, MeshSlot& slot,
+    void compute_as(State<T>& state, const SeaAtTime<T>& sea, int frame, MeshSlot& slot,
                     const BuildWatch& watch) {
         const RestSurface& surface = *plan_.surface;
         if (!state.is_laid_out || !surface.is_constant()) surface.points_at(frame, state.points);
@@ -211,9 +208,8 @@ class MeshPart final : public OutputPart {
         if (!at.cell_axis_m.empty()) points.cell_axis_m = {at.cell_axis_m.data()};
         if (!at.pixel_axis_m.empty()) points.pixel_axis_m = {at.pixel_axis_m.data()};
         if (!at.normal.empty()) points.rest_normal = {at.normal.data()};
-        state.runner.run(sea, output_.query, points, slot.values);
+        state.runner.run(sea, output_.query, points, slot.values, watch);
         raise_by(slot.values.vectors(Product::Position), at.height_m);
-        add_foam(foam, points, slot, watch);
         if (attributes_.origin) slot.origin_m = local_origin(place_of_origin(at), finest_of(at.cell_m));
         if (at.curvature_per_m != 0.0)
             lay_on_earth(at, slot.origin_m, slot.values);
@@ -249,8 +245,8 @@ class MeshPart final : public OutputPart {
         };
         keep(slot.values.vectors(Product::SlopeVariance), cage.slope_variance);
         keep(slot.values.numbers(Product::Coverage), cage.coverage);
-        keep(slot.foam_active, cage.foam_active);
-        keep(slot.foam_age_s, cage.foam_age_s);
+        keep(slot.values.numbers(Product::Breaking), cage.breaking);
+        keep(slot.values.numbers(Product::FoamAge), cage.age_s);
     }
 
     static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
@@ -342,15 +338,15 @@ class MeshPart final : public OutputPart {
                                .velocities = slot.values.vectors(Product::Velocity),
                                .slope_variance = slot.values.vectors(Product::SlopeVariance),
                                .whitecap_coverage = slot.values.numbers(Product::Coverage),
-                               .foam_active = slot.foam_active,
-                               .foam_age_s = slot.foam_age_s};
+                               .breaking = slot.values.numbers(Product::Breaking),
+                               .age_s = slot.values.numbers(Product::FoamAge)};
         if (cage_) {
             sample.points = slot.cage.points;
             sample.velocities = slot.cage.velocities;
             sample.slope_variance = slot.cage.slope_variance;
             sample.whitecap_coverage = slot.cage.coverage;
-            sample.foam_active = slot.cage.foam_active;
-            sample.foam_age_s = slot.cage.foam_age_s;
+            sample.breaking = slot.cage.breaking;
+            sample.age_s = slot.cage.age_s;
         }
         if (attributes_.origin) sample.origin_m = slot.origin_m;
         if (attributes_.faces)

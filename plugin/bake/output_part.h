@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/effects/foam_history.h"
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/values.h"
 #include "core/plan/fingerprint.h"
 #include "core/plan/plan.h"
@@ -27,8 +27,6 @@ namespace pelagic {
 struct OutputSlot {
     virtual ~OutputSlot() = default;
     Values values;
-    // Of persistent foam, beside its coverage among the values (core/effects/foam_history.h); otherwise empty.
-    std::vector<float> foam_active, foam_age_s;
     // Of the frame's record; absent where the output says nothing about it.
     std::optional<double> coverage, significant_height_m;
     std::optional<SprayRecord> spray;
@@ -57,18 +55,14 @@ class OutputPart {
     std::string fingerprint(int frame) const { return frame_fingerprint(plan_, output_, base_, frame); }
     const std::string& fingerprint() const { return base_; }
 
-    // Whether its coverage has a past. A cascade's own tile is a part of the sea, and has none of all of it.
-    bool has_foam_history() const {
-        return plan_.foam && !output_.cascade && query().products[index(Product::Coverage)] &&
-               !query().breaking_alone;
-    }
+    // Whether its coverage has a past.
+    bool has_foam_history() const { return plan_.foam && query().asks_for_past(); }
 
     virtual std::unique_ptr<OutputSlot> make_slot() const { return std::make_unique<OutputSlot>(); }
-    // The frame's values. One frame at a time. `foam`: at the frame's time; null where foam doesn't live. Throws
-    // BuildCancelled where `watch` ends it.
-    virtual void compute(const Frame<float>& sea, FoamHistory<float>* foam, int frame, OutputSlot& slot,
+    // The frame's values, of the sea at its time. One frame at a time. Throws BuildCancelled where `watch` ends it.
+    virtual void compute(const SeaAtTime<float>& sea, int frame, OutputSlot& slot,
                          const BuildWatch& watch) = 0;
-    virtual void compute(const Frame<double>& sea, FoamHistory<double>* foam, int frame, OutputSlot& slot,
+    virtual void compute(const SeaAtTime<double>& sea, int frame, OutputSlot& slot,
                          const BuildWatch& watch) = 0;
     // What it will hold, beside the values of its query.
     virtual OutputMemory memory() const = 0;
@@ -82,19 +76,6 @@ class OutputPart {
 
   protected:
     const Scene& scene() const { return plan_.from->scene; }
-    // Adds to the slot's coverage what earlier breaking has left.
-    template <class T>
-    void add_foam(FoamHistory<T>* foam, const Points<T>& points, OutputSlot& slot,
-                  const BuildWatch& watch) const {
-        if (!foam || !has_foam_history()) return;
-        slot.foam_active.resize(points.count);
-        slot.foam_age_s.resize(points.count);
-        foam->add(points, output_.query,
-                  {.coverage = {slot.values.numbers(Product::Coverage).data()},
-                   .active = {slot.foam_active.data()},
-                   .age_s = {slot.foam_age_s.data()}},
-                  watch);
-    }
 
     const Plan& plan_;
     PlannedOutput output_;

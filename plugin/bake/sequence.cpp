@@ -31,11 +31,9 @@ class SequenceOf final : public Sequence {
   public:
     SequenceOf(const Plan& plan, const BuildWatch& watch)
         : sea_(std::make_shared<const Sea<T>>(plan, watch)),
-          frame_(sea_),
+          state_(sea_),
           parts_(make_parts(sea_->plan())),
-          cancel_(watch.cancel) {
-        if (sea_->plan().foam) foam_.emplace(sea_);
-    }
+          cancel_(watch.cancel) {}
 
     std::unique_ptr<RunSlot> make_slot() const override { return std::make_unique<FrameSlot>(); }
 
@@ -45,8 +43,7 @@ class SequenceOf final : public Sequence {
         slot.record = {};
         slot.record.fingerprint = parts_.front()->fingerprint(frame);
         slot.record.time_s = sea_->plan().from->scene.shot.time_s(frame);
-        frame_.set(slot.record.time_s, cancel_);
-        if (foam_) foam_->set(slot.record.time_s);
+        state_.set(slot.record.time_s, cancel_);
         describe_waves(frame, slot.record);
         while (slot.outputs.size() < parts_.size())
             slot.outputs.push_back(parts_[slot.outputs.size()]->make_slot());
@@ -60,7 +57,7 @@ class SequenceOf final : public Sequence {
                 watch.progress = [&, of_foam, done_before = before++](double done) {
                     foam_past((static_cast<double>(done_before) + done) / static_cast<double>(of_foam));
                 };
-            parts_[p]->compute(frame_, foam_ ? &*foam_ : nullptr, frame, *slot.outputs[p], watch);
+            parts_[p]->compute(state_, frame, *slot.outputs[p], watch);
         }
     }
 
@@ -95,7 +92,7 @@ class SequenceOf final : public Sequence {
     void describe(Record& record) const override {
         record.describe(sea_->plan(), sea_->total(), sea_->whitecap_threshold(), sea_->residual_coverage());
     }
-    long executed_transforms() const override { return frame_.executed_transforms(); }
+    long executed_transforms() const override { return state_.frame().executed_transforms(); }
 
   private:
     void describe_waves(int frame, FrameRecord& record) const {
@@ -113,7 +110,7 @@ class SequenceOf final : public Sequence {
                                   : std::max(sea_->total().mss() - sea_->shown(0).mss(), 0.0);
         const bool calm = !(sea_->total().m0 > 0.0);
         if (plan.transforms_per_frame() == 0 && !plan.trains && !calm) return;  // no wave was computed
-        const Realisation sum = frame_.realisation(0, at);
+        const Realisation sum = state_.frame().realisation(0, at);
         WaveRecord waves;
         waves.significant_height_m = rounded(4.0 * std::sqrt(sum.m0));
         if (sum.m0 > 0.0) {
@@ -125,8 +122,7 @@ class SequenceOf final : public Sequence {
     }
 
     std::shared_ptr<const Sea<T>> sea_;
-    Frame<T> frame_;
-    std::optional<FoamHistory<T>> foam_;
+    SeaAtTime<T> state_;
     std::vector<std::unique_ptr<OutputPart>> parts_;
     const std::atomic<bool>* cancel_;
 };

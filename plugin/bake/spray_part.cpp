@@ -42,13 +42,11 @@ class SprayPart final : public VolumePart {
 
     std::unique_ptr<OutputSlot> make_slot() const override { return std::make_unique<SpraySlot>(); }
 
-    void compute(const Frame<float>& sea, FoamHistory<float>*, int, OutputSlot& slot,
-                 const BuildWatch& watch) override {
-        compute_as(sea, static_cast<SpraySlot&>(slot), watch);
+    void compute(const SeaAtTime<float>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(sea.frame(), static_cast<SpraySlot&>(slot), watch);
     }
-    void compute(const Frame<double>& sea, FoamHistory<double>*, int, OutputSlot& slot,
-                 const BuildWatch& watch) override {
-        compute_as(sea, static_cast<SpraySlot&>(slot), watch);
+    void compute(const SeaAtTime<double>& sea, int, OutputSlot& slot, const BuildWatch& watch) override {
+        compute_as(sea.frame(), static_cast<SpraySlot&>(slot), watch);
     }
 
     OutputMemory memory() const override {
@@ -83,10 +81,10 @@ class SprayPart final : public VolumePart {
         slot.shares.resize(slot.heights_m.size());
         const double mean = mean_breaking(sea.sea());
         for_each_row<T>(sea, middles_m_, watch, [&](std::size_t first, const Row<T>& row) {
-            for (std::size_t i = 0; i < row.coverage.size(); ++i) {
+            for (std::size_t i = 0; i < row.breaking.size(); ++i) {
                 slot.heights_m[first + i] = static_cast<float>(row.displacement_m[i].z);
                 slot.shares[first + i] =
-                    mean > 0.0 ? static_cast<float>(static_cast<double>(row.coverage[i]) / mean) : 0.0f;
+                    mean > 0.0 ? static_cast<float>(static_cast<double>(row.breaking[i]) / mean) : 0.0f;
             }
         });
     }

@@ -45,7 +45,7 @@ class VolumePart : public OutputPart {
     struct Row {
         std::vector<glm::vec<2, T>> places_m, rest_m;
         std::vector<glm::vec<3, T>> displacement_m;
-        std::vector<T> coverage;
+        std::vector<T> breaking;
     };
     // places_m: along a side, of x and y alike.
     template <class T, class Take>
@@ -71,9 +71,9 @@ class VolumePart : public OutputPart {
                          {});
             Results<T> results;
             results.set(Product::Displacement, {at.displacement_m.data()});
-            if (query().products[index(Product::Coverage)]) {
-                at.coverage.resize(count);
-                results.set(Product::Coverage, {at.coverage.data()});
+            if (query().products[index(Product::Breaking)]) {
+                at.breaking.resize(count);
+                results.set(Product::Breaking, {at.breaking.data()});
             }
             ask.evaluate({.count = count, .rest_m = {at.rest_m.data()}}, results);
             take(first * a_row, at);

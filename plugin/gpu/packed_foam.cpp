@@ -60,7 +60,7 @@ PackedFoam::PackedFoam(const FoamHistory<float>& history, glm::dvec2 centre_m)
         for (int y = 0; y < kSide; ++y)
             for (int x = 0; x < kSide; ++x)
                 nodes_[static_cast<std::size_t>(first.y + y) * nodes_size_.x + first.x + x] = {
-                    tile.foam[y * kSide + x], tile.foam_age[y * kSide + x]};
+                    tile.foam[y * kSide + x], tile.aged[y * kSide + x]};
     }
 }
 

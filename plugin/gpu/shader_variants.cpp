@@ -158,7 +158,7 @@ ShaderVariant ShaderVariant::of_sea(const SeaLayout& layout, const DrawOptions& 
             is_lit_afterwards(options) ? std::vector<std::string_view>{"plugin/gpu/full_vertex.glsl"}
                                        : joined({query_files(), {vertex_file(options)}}),
             joined({query_files(),
-                    {lives ? "plugin/gpu/foam_history.glsl" : "plugin/gpu/foam_active.glsl"},
+                    {lives ? "plugin/gpu/foam_history.glsl" : "plugin/gpu/foam_breaking.glsl"},
                     {"plugin/gpu/light_uniforms.glsl", sky_file(options), "core/lighting/sky_map.glsl"},
                     lighting_files(),
                     {"plugin/gpu/air_table.glsl", "core/lighting/air.glsl"},

@@ -60,7 +60,7 @@ std::shared_ptr<const LiveBuild> build_live(const Scene& scene, const LiveLimits
     const auto plan_from = [&](double finest_m) {
         Query query = view_query(*prepared, {.finest_cell_m = finest_m, .finest_pixel_m = finest_m});
         if (has_spray) query.products |= products(Product::Displacement);
-        return make_plan(prepared, {query}, {.double_precision = false, .living_foam = true});
+        return make_plan(prepared, {query}, {.double_precision = false});
     };
     for (const std::string& warning : sea_warnings(*prepared))
         made.note += (made.note.empty() ? "" : "\n") + warning;

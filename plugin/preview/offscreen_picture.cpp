@@ -161,7 +161,7 @@ OffscreenPlan plan_offscreen(const Scene& scene, int frame, glm::ivec2 size, std
                                              .finest_pixel_m = finest_pixel_m,
                                              .points = points_of(needs.size)});
         if (has_spray) query.products |= products(Product::Displacement);
-        return make_plan(prepared, {query}, {.double_precision = false, .living_foam = true});
+        return make_plan(prepared, {query}, {.double_precision = false});
     };
     // Positions alone, with waves no shorter than the cells: little beside what pixels resolve. They tell which
     // pixels are in the picture. A low camera has points nearby that a crest might bring into view and that no pixel

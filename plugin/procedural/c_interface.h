@@ -76,6 +76,10 @@ template <>
 inline constexpr std::size_t kFirstSize<pelagic_open_options> = offsetof(pelagic_open_options,
                                                                          ray_cache_bytes);
 template <>
+inline constexpr std::size_t kFirstSize<pelagic_info> = offsetof(pelagic_info, foam_bytes);
+template <>
+inline constexpr std::size_t kFirstSize<pelagic_values> = offsetof(pelagic_values, breaking);
+template <>
 inline constexpr std::size_t kFirstSize<pelagic_expand_options> = offsetof(pelagic_expand_options, error_px);
 
 // No version's structures are larger. A larger number isn't a size.
@@ -135,7 +139,13 @@ inline void check_count(std::size_t count, const char* name) {
                                     "; accepted: at most " + std::to_string(kMost));
 }
 
-inline Results<float> results_in(const pelagic_values& values) {
+// What a host wants, and what it takes coverage for.
+struct Wanted {
+    Results<float> results;
+    CoverageOf coverage = CoverageOf::AllFoam;
+};
+
+inline Wanted wanted_in(const pelagic_values& values) {
     static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
     const auto vectors = [](float* at) { return Strided<glm::vec3>{reinterpret_cast<glm::vec3*>(at)}; };
     Results<float> results;
@@ -144,7 +154,10 @@ inline Results<float> results_in(const pelagic_values& values) {
     results.set(Product::Velocity, vectors(values.velocity_mps));
     results.set(Product::SlopeVariance, vectors(values.slope_variance));
     results.set(Product::Coverage, {values.coverage});
-    return results;
+    results.set(Product::Breaking, {values.breaking});
+    results.set(Product::FoamAge, {values.age_s});
+    const bool is_first = values.size <= kFirstSize<pelagic_values>;
+    return {results, is_first ? CoverageOf::FirstVersion : CoverageOf::AllFoam};
 }
 
 }  // namespace pelagic::procedural

@@ -109,8 +109,9 @@ void fill_corners(const Expansion& expansion, std::uint32_t* corner) {
         }
 }
 
-void expand(const ShotFrame& frame, const Expansion& expansion, const Results<float>& results,
+void expand(const ShotFrame& frame, const Expansion& expansion, const Wanted& wanted,
             pelagic_mesh_buffers& buffers) {
+    const Results<float>& results = wanted.results;
     const ProjectedGrid grid = grid_of(frame, expansion);
     for (int axis = 0; axis < 2; ++axis) buffers.origin_m[axis] = grid.origin_m[axis];
     buffers.origin_m[2] = 0.0;
@@ -118,7 +119,7 @@ void expand(const ShotFrame& frame, const Expansion& expansion, const Results<fl
     if (buffers.rest_m)
         std::memcpy(buffers.rest_m, grid.rest_m.data(), grid.rest_m.size() * sizeof(glm::vec2));
     if (results.given().none()) return;
-    frame.evaluate_by_all(points_of(grid), results);
+    frame.evaluate_by_all(points_of(grid), results, wanted.coverage);
     if (grid.curvature_per_m == 0.0) return;
     for (std::size_t i = 0; i < grid.rest_m.size(); ++i) {
         const glm::dvec3 up = earth_up(glm::dvec2(grid.rest_m[i]), grid.curvature_per_m);
@@ -128,6 +129,23 @@ void expand(const ShotFrame& frame, const Expansion& expansion, const Results<fl
             if (const auto at = results.vectors(product))
                 at[i] = glm::vec3(from_level(glm::dvec3(at[i]), up));
     }
+}
+
+// Throws std::invalid_argument.
+TimedPoints checked(const ShotFrame& frame, const pelagic_points& asked) {
+    for (const double metres : asked.origin_m) check_place(metres, "points.origin_m");
+    if (asked.count == 0) return {};
+    check_count(asked.count, "points.count");
+    frame.check_times(asked.time_s, asked.count, "points.time_s");
+    static_assert(sizeof(glm::vec2) == 2 * sizeof(float));
+    TimedPoints timed{
+        .points = {.origin_m = {asked.origin_m[0], asked.origin_m[1]},
+                   .count = asked.count,
+                   .rest_m = {reinterpret_cast<const glm::vec2*>(&required(asked.rest_m, "points.rest_m"))}},
+        .time_s = asked.time_s};
+    if (asked.cell_m) timed.points.cell_m = {asked.cell_m};
+    if (asked.pixel_m) timed.points.pixel_m = {asked.pixel_m};
+    return timed;
 }
 
 }  // namespace
@@ -214,6 +232,7 @@ pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pela
         about.finest_cell_m = shot.query().cell_m.front();
         about.finest_pixel_m = shot.query().pixel_m.front();
         about.frame_bytes = plan.frame_bytes();
+        about.foam_bytes = plan.foam_history_bytes();
         give(about, info, "info");
         return PELAGIC_OK;
     });
@@ -288,21 +307,20 @@ pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points
                                 const pelagic_values* values, pelagic_error* error) {
     return guarded(error, [&] {
         const auto asked = taken(points, "points");
-        const Results<float> results = results_in(taken(values, "values"));
-        for (const double metres : asked.origin_m) check_place(metres, "points.origin_m");
-        if (asked.count == 0) return PELAGIC_OK;
+        const Wanted wanted = wanted_in(taken(values, "values"));
         const ShotFrame& of = required(frame, "frame").frame;
-        check_count(asked.count, "points.count");
-        of.check_times(asked.time_s, asked.count, "points.time_s");
-        static_assert(sizeof(glm::vec2) == 2 * sizeof(float));
-        TimedPoints timed{.points = {.origin_m = {asked.origin_m[0], asked.origin_m[1]},
-                                     .count = asked.count,
-                                     .rest_m = {reinterpret_cast<const glm::vec2*>(
-                                         &required(asked.rest_m, "points.rest_m"))}},
-                          .time_s = asked.time_s};
-        if (asked.cell_m) timed.points.cell_m = {asked.cell_m};
-        if (asked.pixel_m) timed.points.pixel_m = {asked.pixel_m};
-        of.evaluate(timed, results);
+        const TimedPoints timed = checked(of, asked);
+        if (timed.points.count > 0) of.evaluate(timed, wanted.results, wanted.coverage);
+        return PELAGIC_OK;
+    });
+}
+
+pelagic_status pelagic_prepare(const pelagic_frame* frame, const pelagic_points* points,
+                               pelagic_error* error) {
+    return guarded(error, [&] {
+        const auto asked = taken(points, "points");
+        const ShotFrame& of = required(frame, "frame").frame;
+        of.prepare(checked(of, asked).points);
         return PELAGIC_OK;
     });
 }
@@ -323,13 +341,12 @@ pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* 
                               pelagic_error* error) {
     return guarded(error, [&]() -> pelagic_status {
         auto into = taken(buffers, "buffers");
-        const Results<float> results =
-            into.values ? results_in(taken(into.values, "buffers.values")) : Results<float>();
+        const Wanted wanted = into.values ? wanted_in(taken(into.values, "buffers.values")) : Wanted{};
         const ShotFrame& of = required(frame, "frame").frame;
         const Expansion expansion =
             of.shot().arena->execute([&] { return expansion_of(of, camera, options); });
         const pelagic_mesh_size needed = size_of(expansion);
-        const bool wants_points = into.rest_m || results.given().any();
+        const bool wants_points = into.rest_m || wanted.results.given().any();
         if ((wants_points && into.points < needed.points) || (into.corner && into.corners < needed.corners)) {
             say(error, ("the mesh has " + std::to_string(needed.points) + " points and " +
                         std::to_string(needed.corners) + " corners; the buffers have room for " +
@@ -337,7 +354,7 @@ pelagic_status pelagic_expand(const pelagic_frame* frame, const pelagic_camera* 
                            .c_str());
             return PELAGIC_TOO_SMALL;
         }
-        of.shot().arena->execute([&] { expand(of, expansion, results, into); });
+        of.shot().arena->execute([&] { expand(of, expansion, wanted, into); });
         into.points = needed.points;
         into.corners = needed.corners;
         give(into, buffers, "buffers");

@@ -25,8 +25,9 @@ namespace {
 
 constexpr std::size_t kRayCache_bytes = std::size_t{256} << 20;
 
-constexpr ProductSet kProducts = products(Product::Position, Product::Normal, Product::Velocity,
-                                          Product::SlopeVariance, Product::Coverage);
+constexpr ProductSet kProducts =
+    products(Product::Position, Product::Normal, Product::Velocity, Product::SlopeVariance, Product::Coverage,
+             Product::Breaking, Product::FoamAge);
 
 // finest_cell_m: becomes what was asked for, or what the shot's camera needs.
 Plan plan_of(const Scene& scene, const SeaOptions& options, double& finest_cell_m) {
@@ -115,6 +116,7 @@ ShotSea::ShotSea(Scene from, const SeaOptions& options, const BuildWatch& watch)
         add_sea(need, plan, arena->max_concurrency());
         require_memory(need, machine::memory_limit(), "a frame of this sea");
         sea = std::make_shared<const Sea<float>>(std::move(plan), watch);
+        if (sea->plan().foam) without_past = sea->whitecaps({});
         // As the plan's levels have it; a sea of trains has none.
         finest_ray_m =
             query().cell_m.front() > 0.0 ? query().cell_m.front() : std::max(finest_ray_m, finest_cell_m());
@@ -128,7 +130,7 @@ double ShotSea::finest_cell_m() const {
 }
 
 ShotFrame::ShotFrame(std::shared_ptr<const ShotSea> of, double open_s, double close_s)
-    : of_(std::move(of)), frame_(of_->sea) {
+    : of_(std::move(of)), state_(of_->sea) {
     set(open_s, close_s);
 }
 
@@ -141,11 +143,11 @@ void ShotFrame::set(double open_s, double close_s) {
                                     number_text(Frame<float>::kLatest_s) + " s, in order, and open for " +
                                     number_text(kLongestShutter_s) + " s of the sea at most");
     of_->arena->execute([&] {
-        frame_.set(0.5 * (open_s + close_s));
-        if (query_)
-            query_->refresh();
-        else
-            query_.emplace(frame_, 0, kProducts);
+        state_.set(0.5 * (open_s + close_s));
+        const ProductSet now = kProducts & ~lasting_products();
+        query_.emplace(state_.frame(), 0, now);
+        if (of_->without_past)
+            without_past_.emplace(state_.frame(), 0, now, glm::dvec2(0.0), &*of_->without_past);
         half_open_s_ = 0.5 * (close_s - open_s);
         fastest_mps_ = glm::dvec3(0.0);
         bounds_.clear();
@@ -154,7 +156,8 @@ void ShotFrame::set(double open_s, double close_s) {
         cells_.reset();
         if (half_open_s_ == 0.0) return;
         constexpr std::array kVelocities{Field::VelocityX, Field::VelocityY, Field::VelocityZ};
-        tbb::parallel_for(0, 3, [&](int axis) { fastest_mps_[axis] = most_of(frame_, kVelocities[axis]); });
+        tbb::parallel_for(0, 3,
+                          [&](int axis) { fastest_mps_[axis] = most_of(state_.frame(), kVelocities[axis]); });
     });
 }
 
@@ -163,8 +166,9 @@ void ShotFrame::check_times(const float* time_s, std::size_t count, const char* 
     // A host may scale a share of the shutter by its length in single precision. Rounding then takes times beyond the
     // end: half an epsilon each for the length, the share, their product and a sum. Late ends are themselves rounded.
     const double open_for_s = 2.0 * half_open_s_,
-                 rounding_s = 2.0 * std::numeric_limits<float>::epsilon() * open_for_s +
-                              2.0 * std::numeric_limits<double>::epsilon() * std::abs(frame_.time_s());
+                 rounding_s =
+                     2.0 * std::numeric_limits<float>::epsilon() * open_for_s +
+                     2.0 * std::numeric_limits<double>::epsilon() * std::abs(state_.frame().time_s());
     for (std::size_t i = 0; i < count; ++i)
         if (!(time_s[i] >= -rounding_s && time_s[i] <= open_for_s + rounding_s))
             throw std::invalid_argument(
@@ -179,7 +183,7 @@ const FrameBounds<float>& ShotFrame::bounds_from(double rung_m) const {
     if (!bounds)
         tbb::task_arena(1).execute([&] {
             bounds = std::make_unique<const FrameBounds<float>>(
-                frame_, 0, FootprintRange{.finest_m = rung_m, .coarsest_m = 2.0 * rung_m});
+                state_.frame(), 0, FootprintRange{.finest_m = rung_m, .coarsest_m = 2.0 * rung_m});
         });
     return *bounds;
 }
@@ -224,7 +228,7 @@ std::pair<glm::dvec3, glm::dvec3> ShotFrame::bounds(const RestRegion& region, Fo
 SurfaceBounds ShotFrame::everywhere() const {
     const std::lock_guard<std::mutex> lock(lock_);
     const auto most = [&](Field field, double velocity_mps) {
-        return most_of(frame_, field) + half_open_s_ * velocity_mps;
+        return most_of(state_.frame(), field) + half_open_s_ * velocity_mps;
     };
     if (!everywhere_)
         everywhere_ = {
@@ -253,7 +257,23 @@ void ShotFrame::remember_cell_px(const View& view, double error_px, bool on_eart
     cells_ = {view, error_px, on_earth, cell_px};
 }
 
-void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const {
+void ShotFrame::ask(const Points<float>& points, const Results<float>& results, CoverageOf coverage,
+                    bool alone) const {
+    if (coverage == CoverageOf::FirstVersion && without_past_) {
+        Results<float> now = results;
+        now.set(Product::Breaking, results.numbers(Product::Coverage));
+        now.set(Product::Coverage, Strided<float>{});
+        return alone ? without_past_->evaluate_alone(points, now) : without_past_->evaluate(points, now);
+    }
+    const auto all = [&] { state_.evaluate(*query_, points, results, {}, alone); };
+    // The past is gone through by this thread alone as well.
+    if (alone && (results.given() & lasting_products()).any() && state_.has_past(0))
+        tbb::task_arena(1).execute(all);
+    else
+        all();
+}
+
+void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results, CoverageOf coverage) const {
     const std::size_t count = timed.points.count;
     const bool moves = timed.time_s && half_open_s_ > 0.0 && results.holds(Product::Position);
     std::vector<glm::vec3> velocity;
@@ -261,7 +281,7 @@ void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const
         velocity.resize(count);
         results.set(Product::Velocity, {velocity.data()});
     }
-    query_->evaluate_alone(timed.points, results);
+    ask(timed.points, results, coverage, true);
     if (!moves) return;
     const auto position = results.vectors(Product::Position), fast = results.vectors(Product::Velocity);
     const auto half_s = static_cast<float>(half_open_s_);
@@ -269,8 +289,13 @@ void ShotFrame::evaluate(const TimedPoints& timed, Results<float> results) const
         position[i] += std::clamp(timed.time_s[i] - half_s, -half_s, half_s) * fast[i];
 }
 
-void ShotFrame::evaluate_by_all(const Points<float>& points, const Results<float>& results) const {
-    query_->evaluate(points, results);
+void ShotFrame::evaluate_by_all(const Points<float>& points, const Results<float>& results,
+                                CoverageOf coverage) const {
+    ask(points, results, coverage, false);
+}
+
+void ShotFrame::prepare(const Points<float>& points) const {
+    of_->arena->execute([&] { state_.prepare(0, points); });
 }
 
 ProjectedGridOptions grid_options(const ShotFrame& frame, double cell_px) {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/bounds.h"
 #include "core/evaluate/prepared_query.h"
 #include "core/plan/plan.h"
@@ -44,6 +45,7 @@ struct ShotSea {
     double finest_ray_m = 0.0;               // finer footprints of rays count as that
     std::unique_ptr<tbb::task_arena> arena;  // where everything that uses several threads runs
     std::shared_ptr<const Sea<float>> sea;
+    std::optional<Whitecaps> without_past;  // as if no foam were persistent; none where none is
     const Query& query() const { return sea->plan().queries.front().query; }
     // The cell below which nothing more is resolved [m], > 0.
     double finest_cell_m() const;
@@ -54,6 +56,10 @@ struct TimedPoints {
     Points<float> points;
     const float* time_s = nullptr;  // from the shutter's opening on; null: its middle
 };
+
+// What a host takes coverage for: all foam, or, as structures of the first version had it, what breaks now as if no foam
+// were persistent.
+enum class CoverageOf { AllFoam, FirstVersion };
 
 class ShotFrame {
   public:
@@ -81,9 +87,13 @@ class ShotFrame {
 
     // By the calling thread alone. Times count from the shutter's opening; those that rounding puts outside count as
     // its ends.
-    void evaluate(const TimedPoints& points, Results<float> results) const;
+    void evaluate(const TimedPoints& points, Results<float> results,
+                  CoverageOf coverage = CoverageOf::AllFoam) const;
     // The same in the middle of the shutter, by all threads of the calling arena.
-    void evaluate_by_all(const Points<float>& points, const Results<float>& results) const;
+    void evaluate_by_all(const Points<float>& points, const Results<float>& results,
+                         CoverageOf coverage = CoverageOf::AllFoam) const;
+    // Goes through the past of the foam at these points, by several threads.
+    void prepare(const Points<float>& points) const;
 
   private:
     // Bounds for cells from this level to the next.
@@ -91,9 +101,12 @@ class ShotFrame {
     template <class Bound>
     DisplacementBounds over_rungs(FootprintRange cells, const Bound& bound) const;
 
+    void ask(const Points<float>& points, const Results<float>& results, CoverageOf coverage,
+             bool alone) const;
+
     std::shared_ptr<const ShotSea> of_;
-    Frame<float> frame_;
-    std::optional<PreparedQuery<float>> query_;
+    SeaAtTime<float> state_;
+    std::optional<PreparedQuery<float>> query_, without_past_;
     double half_open_s_ = 0.0;
     glm::dvec3 fastest_mps_{0.0};  // no point moves faster along the axes
     mutable std::mutex lock_;      // of members that are made when asked for

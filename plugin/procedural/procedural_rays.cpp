@@ -85,12 +85,15 @@ struct Waiting {
     }
 };
 
+constexpr std::array<NumberProduct, 3> kNumbers{Product::Coverage, Product::Breaking, Product::FoamAge};
+
 // The values at the hits, each at its place in the middle of the shutter, written where its ray's belong.
-void give_values(const ShotFrame& frame, const RaySea& sea, const Waiting& hits, const Results<float>& to) {
+void give_values(const ShotFrame& frame, const RaySea& sea, const Waiting& hits, const Wanted& wanted) {
     const std::size_t count = hits.ray.size();
     if (count == 0) return;
+    const Results<float>& to = wanted.results;
     std::array<std::vector<glm::vec3>, 3> vectors;
-    std::vector<float> coverage;
+    std::array<std::vector<float>, 3> numbers;
     constexpr std::array<VectorProduct, 3> kVectors{Product::Normal, Product::Velocity,
                                                     Product::SlopeVariance};
     Results<float> results;
@@ -99,9 +102,10 @@ void give_values(const ShotFrame& frame, const RaySea& sea, const Waiting& hits,
         vectors[v].resize(count);
         results.set(kVectors[v], {vectors[v].data()});
     }
-    if (to.holds(Product::Coverage)) {
-        coverage.resize(count);
-        results.set(NumberProduct(Product::Coverage), {coverage.data()});
+    for (std::size_t n = 0; n < kNumbers.size(); ++n) {
+        if (!to.holds(kNumbers[n])) continue;
+        numbers[n].resize(count);
+        results.set(kNumbers[n], {numbers[n].data()});
     }
     if (results.given().any())
         frame.evaluate({.points = {.origin_m = sea.origin_m,
@@ -109,7 +113,7 @@ void give_values(const ShotFrame& frame, const RaySea& sea, const Waiting& hits,
                                    .rest_m = {hits.rest_m.data()},
                                    .cell_m = {hits.footprint_m.data()},
                                    .pixel_m = {hits.footprint_m.data()}}},
-                       results);
+                       results, wanted.coverage);
     for (std::size_t h = 0; h < count; ++h) {
         const std::size_t i = hits.ray[h];
         const glm::dvec3 up = earth_up(glm::dvec2(hits.rest_m[h]), sea.curvature_per_m);
@@ -119,7 +123,8 @@ void give_values(const ShotFrame& frame, const RaySea& sea, const Waiting& hits,
             const bool turns = sea.curvature_per_m != 0.0 && v < 2;
             at[i] = turns ? glm::vec3(from_level(glm::dvec3(vectors[v][h]), up)) : vectors[v][h];
         }
-        if (const auto at = to.numbers(Product::Coverage)) at[i] = coverage[h];
+        for (std::size_t n = 0; n < kNumbers.size(); ++n)
+            if (const auto at = to.numbers(kNumbers[n])) at[i] = numbers[n][h];
         if (const auto at = to.vectors(Product::Position)) at[i] = glm::vec3(hits.position_m[h]);
     }
 }
@@ -129,12 +134,17 @@ void give_zeros(const Results<float>& to, std::size_t i) {
          {VectorProduct(Product::Position), VectorProduct(Product::Normal), VectorProduct(Product::Velocity),
           VectorProduct(Product::SlopeVariance)})
         if (const auto at = to.vectors(product)) at[i] = glm::vec3(0.0f);
-    if (const auto at = to.numbers(Product::Coverage)) at[i] = 0.0f;
+    for (const NumberProduct product : kNumbers)
+        if (const auto at = to.numbers(product)) at[i] = 0.0f;
 }
 
 void intersect(const ShotFrame& frame, const pelagic_rays& rays, const pelagic_hits& hits,
-               const Results<float>& values) {
-    constexpr std::size_t kTogether = 256;
+               const Wanted& wanted) {
+    const Results<float>& values = wanted.results;
+    // New places go through the foam's past together: once for a call.
+    const bool goes_back =
+        wanted.coverage == CoverageOf::AllFoam && (values.given() & lasting_products()).any();
+    const std::size_t together = goes_back ? rays.count : 256;
     constexpr double kMost = std::numeric_limits<float>::max();
     const Batch batch(rays, frame);
     RayTracer tracer(batch.sea());
@@ -162,11 +172,11 @@ void intersect(const ShotFrame& frame, const pelagic_rays& rays, const pelagic_h
         waiting.rest_m.emplace_back(hit.rest_m);
         waiting.footprint_m.push_back(static_cast<float>(hit.footprint_m));
         waiting.position_m.push_back(ray.from_m + hit.distance_m * ray.direction);
-        if (waiting.ray.size() < kTogether) continue;
-        give_values(frame, batch.sea(), waiting, values);
+        if (waiting.ray.size() < together) continue;
+        give_values(frame, batch.sea(), waiting, wanted);
         waiting.clear();
     }
-    give_values(frame, batch.sea(), waiting, values);
+    give_values(frame, batch.sea(), waiting, wanted);
 }
 
 }  // namespace
@@ -180,9 +190,8 @@ pelagic_status pelagic_intersect(const pelagic_frame* frame, const pelagic_rays*
     return guarded(error, [&] {
         const auto asked = taken(rays, "rays");
         const auto into = taken(hits, "hits");
-        const Results<float> values =
-            into.values ? results_in(taken(into.values, "hits.values")) : Results<float>();
-        intersect(required(frame, "frame").frame, asked, into, values);
+        const Wanted wanted = into.values ? wanted_in(taken(into.values, "hits.values")) : Wanted{};
+        intersect(required(frame, "frame").frame, asked, into, wanted);
         return PELAGIC_OK;
     });
 }

@@ -27,7 +27,6 @@
 #include "plugin/bake/output_part.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
-#include "plugin/python/outputs.h"
 #include "plugin/python/picture.h"
 #include "plugin/python/task.h"
 #include "plugin/python/values.h"
@@ -254,35 +253,29 @@ template <class T>
 class MapsOf final : public Maps {
   public:
     MapsOf(Plan plan, const BuildWatch& watch)
-        : sea_(std::make_shared<const Sea<T>>(std::move(plan), watch)),
-          frame_(sea_),
-          parts_(make_parts(sea_->plan())) {
-        if (sea_->plan().foam) foam_.emplace(sea_);
-    }
+        : state_(std::make_shared<const Sea<T>>(std::move(plan), watch)),
+          parts_(make_parts(state_.sea().plan())) {}
 
     Slots at(double t_s, const BuildWatch& watch) override {
         const std::lock_guard alone(mutex_);
         return tbb::this_task_arena::isolate([&] { return made_at(t_s, watch); });
     }
-    const Plan& plan() const override { return frame_.sea().plan(); }
+    const Plan& plan() const override { return state_.sea().plan(); }
 
   private:
     Slots made_at(double t_s, const BuildWatch& watch) {
-        frame_.set(t_s, watch.cancel);
-        if (foam_) foam_->set(t_s);
+        state_.set(t_s, watch.cancel);
         Slots slots;
         for (const auto& part : parts_) {
             slots.push_back(part->make_slot());
             // The number is for surfaces that a camera shapes.
-            part->compute(frame_, foam_ ? &*foam_ : nullptr, 0, *slots.back(), watch);
+            part->compute(state_, 0, *slots.back(), watch);
         }
         return slots;
     }
 
     std::mutex mutex_;
-    std::shared_ptr<const Sea<T>> sea_;
-    Frame<T> frame_;
-    std::optional<FoamHistory<T>> foam_;
+    SeaAtTime<T> state_;
     std::vector<std::unique_ptr<OutputPart>> parts_;
 };
 
@@ -319,8 +312,6 @@ void add_arrays(py::dict& arrays, OutputSlot& slot) {
             add(row.identifier, slot.values.numbers(NumberProduct::checked(row.product)));
         else
             add(row.identifier, slot.values.vectors(VectorProduct::checked(row.product)));
-    add(kOutputs[kFoamActive].identifier, slot.foam_active);
-    add(kOutputs[kFoamAge].identifier, slot.foam_age_s);
 }
 
 // By square: the patch first, then each cascade's tile.
@@ -387,8 +378,8 @@ void add_bake(py::module_& module) {
             py::arg("cancel") = py::none(),
             "(patch, tiles) at a time [s]: the patch's arrays, and a list of each cascade's, the largest first. "
             "Each is a dict of float32 (n, n, 3): displacement [m], normal, slope_variance (of tiles slope_variance_at_rest: what carries it is the whole "
-            "sea), jacobian, and (n, n): coverage; where foam lives the patch's is all foam, with foam_active, what of it breaks "
-            "now, and foam_age [s], and a tile's is what breaks now. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. Any "
+            "sea), jacobian, and (n, n): coverage; where foam lives the patch's is all foam, with what of it breaks now and its "
+            "age [s] under evaluate()'s names, and a tile's is what breaks now. Row j, column i is the point i·L/n − L/2, j·L/n − L/2: rows from the south. Any "
             "thread may call; calls wait for each other. progress, cancel: as Frame.evaluate()'s.");
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/plan/products.h"
 #include "plugin/files/files.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
@@ -39,18 +40,15 @@ usd::MeshLayer read_layer(const std::filesystem::path& path) {
     }
 }
 
-// USD's names and those of evaluate().
-constexpr std::pair<std::string_view, std::string_view> kNames[] = {
-    {"points", "position"},
-    {"normals", "normal"},
-    {"velocities", "velocity"},
-    {"primvars:slopeVariance", "slope_variance"},
-    {"primvars:whitecapCoverage", "coverage"},
-    {"primvars:foamActive", "foam_active"},
-    {"primvars:foamAge", "foam_age"},
-    {"primvars:st", "st"},
-    {"faceVertexCounts", "face_counts"},
-    {"faceVertexIndices", "face_corners"}};
+// Of an attribute: the product's, or the faces' own.
+const char* key_of(std::string_view attribute) {
+    for (const ProductRow& row : kProductTable)
+        if (row.in_meshes && attribute == row.in_meshes) return row.identifier;
+    return attribute == "primvars:st"         ? "st"
+           : attribute == "faceVertexCounts"  ? "face_counts"
+           : attribute == "faceVertexIndices" ? "face_corners"
+                                              : nullptr;
+}
 
 py::array as_array(usd::MeshArray& array) {
     return std::visit(
@@ -71,8 +69,7 @@ py::dict read_mesh(const std::filesystem::path& path) {
         arrays["origin_m"] = array_of<double>(std::vector{at.x, at.y, at.z});
     }
     for (usd::MeshArray& array : layer.arrays)
-        for (const auto& [name, key] : kNames)
-            if (name == array.name) arrays[py::str(std::string(key))] = as_array(array);
+        if (const char* key = key_of(array.name)) arrays[key] = as_array(array);
     return arrays;
 }
 
@@ -86,7 +83,7 @@ void add_baked(py::module_& module) {
         "origin_m: float64 (3,), of each frame: where in the world the positions' origin is [m]. origin_m + position "
         "are the places. (0, 0, 0) but for what follows a camera far from the world's origin.\n"
         "position: (n, 3) [m]. normal: (n, 3). velocity: (n, 3) [m/s of the screen]. slope_variance: (n, 3), xx, yy, "
-        "xy. coverage: (n,); of foam that lives foam_active: (n,), what of it breaks now, and foam_age: (n,) [s]. st: (n, 2), "
+        "xy. coverage: (n,); of foam that lives also what of it breaks now and its age [s], (n,), under evaluate()'s names. st: (n, 2), "
         "0 to 1; where the texture has seams one for each of face_corners.\n"
         "face_counts: int32 (f,), corners of each face. face_corners: int32, their points.\n\n"
         "A frame of a camera's grid has its own faces; of other surfaces they and st are in the "

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/effects/foam_history.h"
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/places.h"
 #include "core/scene/limits.h"
 #include "plugin/python/arrays.h"
@@ -37,7 +37,7 @@ constexpr Range kRest_m = limits::kCameraCoordinate_m;
 
 struct Arguments {
     py::object cell_m, pixel_m, cell_axis_m, pixel_axis_m, rest_normal;
-    std::array<py::object, kOutputs.size()> arrays;  // in the order of kOutputs
+    std::array<py::object, kProductCount> arrays;  // in the order of kProductTable
     std::optional<std::vector<std::string>> outputs;
 };
 
@@ -68,22 +68,14 @@ struct Evaluation {
     Points<float> points;
     Footprints cell, pixel;
     Results<float> results;
-    FoamResults foam;             // its coverage is the results'
-    std::vector<float> coverage;  // where foam is asked for, and coverage isn't
-
-    bool has_foam() const { return foam.active || foam.age_s || results.holds(Product::Coverage); }
 };
 
 void write_to(Evaluation& asked, std::size_t output, const py::object& array, py::ssize_t count) {
-    const OutputRow& row = kOutputs[output];
+    const ProductRow& row = kProductTable[output];
     const Asked of{row.identifier, count};
     if (row.components == 3)
         asked.results.set(VectorProduct::checked(static_cast<Product>(output)),
                           writable_vectors(array, of, asked.copies));
-    else if (output == kFoamActive)
-        asked.foam.active = writable_numbers(array, of, asked.copies);
-    else if (output == kFoamAge)
-        asked.foam.age_s = writable_numbers(array, of, asked.copies);
     else
         asked.results.set(NumberProduct::checked(static_cast<Product>(output)),
                           writable_numbers(array, of, asked.copies));
@@ -126,31 +118,9 @@ Strided<T> from(const Strided<T>& view, std::size_t first) {
     return view ? Strided<T>{&view[first], view.stride_bytes} : view;
 }
 
-Points<float> piece_of(const Points<float>& points, std::size_t first) {
-    return {.origin_m = points.origin_m,
-            .count = std::min(kPiece, points.count - first),
-            .rest_m = from(points.rest_m, first),
-            .cell_m = from(points.cell_m, first),
-            .pixel_m = from(points.pixel_m, first),
-            .cell_axis_m = from(points.cell_axis_m, first),
-            .pixel_axis_m = from(points.pixel_axis_m, first),
-            .rest_normal = from(points.rest_normal, first)};
-}
-
-// work(points, first) of each piece, whose values depend on its points alone. Throws BuildCancelled.
-template <class Work>
-void in_pieces(const Points<float>& points, const BuildWatch& watch, const Work& work) {
-    for (std::size_t first = 0; first < points.count; first += kPiece) {
-        stop_if(watch.cancel);
-        alone([&] { work(piece_of(points, first), first); });
-    }
-}
-
 class PythonFrame {
   public:
-    explicit PythonFrame(const PythonSea& sea) : sea_(sea), frame_(sea.sea) {
-        if (sea.plan().foam) foam_.emplace(sea.sea);
-    }
+    explicit PythonFrame(const PythonSea& sea) : sea_(sea), state_(sea.sea) {}
 
     void set(double t_s) {
         constexpr std::size_t kSeconds_bytes = std::size_t{1} << 28;  // of transforms, the first time
@@ -158,7 +128,7 @@ class PythonFrame {
         try {
             work(sea_.plan().frame_bytes() > kSeconds_bytes, watch, [&] {
                 const std::unique_lock writing(mutex_);
-                alone([&] { frame_.set(t_s, watch.flag()); });
+                alone([&] { state_.set(t_s, watch.flag()); });
             });
         } catch (const BuildCancelled&) {
             throw Cancelled("setting the time was cancelled");
@@ -194,7 +164,7 @@ class PythonFrame {
             [&frame, asked, t_s](Task& task) -> Task::Made {
                 require_on_the_sea(asked->points, "rest");
                 const std::unique_lock writing(frame.mutex_);
-                alone([&] { frame.frame_.set(t_s, task.flag()); });
+                alone([&] { frame.state_.set(t_s, task.flag()); });
                 frame.run(*asked, watch_of(task));
                 return {};
             },
@@ -217,19 +187,19 @@ class PythonFrame {
         read_footprints(footprints, footprint_m, {"footprint_m", count}, asked.copies);
         points.cell_m = points.pixel_m = footprints.view;
 
-        OutputSet wanted;
+        ProductSet wanted;
         if (outputs)
             for (const std::string& name : *outputs) wanted.set(output_of(name));
         else
             for (const Product product : {Product::Normal, Product::Velocity})
                 wanted[index(product)] = sea_.outputs[index(product)];
         py::dict written;
-        for (std::size_t i = 0; i < kOutputs.size(); ++i) {
+        for (std::size_t i = 0; i < kProductCount; ++i) {
             if (!wanted[i]) continue;
             require_output(i);
             const py::array array = fresh(i, count);
             write_to(asked, i, array, count);
-            written[kOutputs[i].identifier] = array;
+            written[kProductTable[i].identifier] = array;
         }
         std::vector<glm::vec2> rest_m(points.count);
         std::vector<float> residual_m(points.count), height_m(points.count);
@@ -239,24 +209,26 @@ class PythonFrame {
                 require_on_the_sea(points, "xy");
                 const std::shared_lock reading(mutex_);
                 require_time();
-                add_coverage(asked, points.count);
-                ProductSet summed = asked.results.given();
+                ProductSet summed = asked.results.given() & ~lasting_products();
                 summed.set(index(Product::Displacement));
-                const PreparedQuery<float> query(frame_, 0, summed, points.origin_m);
-                in_pieces(points, watch_of(watch), [&](const Points<float>& piece, std::size_t first) {
-                    find_rest(query, piece, {}, {&rest_m[first]}, {&residual_m[first]});
-                });
+                if ((asked.results.given() & lasting_products()).any()) summed.set(index(Product::Breaking));
+                const PreparedQuery<float> query(state_.frame(), 0, summed, points.origin_m);
+                for (std::size_t first = 0; first < points.count; first += kPiece) {
+                    if (*watch.flag()) throw BuildCancelled();
+                    const Points<float> piece{.origin_m = points.origin_m,
+                                              .count = std::min(kPiece, points.count - first),
+                                              .rest_m = from(points.rest_m, first),
+                                              .cell_m = from(points.cell_m, first),
+                                              .pixel_m = from(points.pixel_m, first)};
+                    alone([&] { find_rest(query, piece, {}, {&rest_m[first]}, {&residual_m[first]}); });
+                }
                 std::vector<glm::vec3> displacement_m(points.count);
                 if (!asked.results.holds(Product::Displacement))
                     asked.results.set(Product::Displacement, {displacement_m.data()});
                 points.rest_m = {rest_m.data()};
-                in_pieces(points, watch_of(watch), [&](const Points<float>& piece, std::size_t first) {
-                    query.evaluate(piece, asked.results.from_point(first));
-                });
+                alone([&] { state_.evaluate(query, points, asked.results, watch_of(watch)); });
                 const Strided<glm::vec3> displaced_m = asked.results.vectors(Product::Displacement);
                 for (std::size_t i = 0; i < points.count; ++i) height_m[i] = displaced_m[i].z;
-                asked.points = points;
-                add_foam(asked, watch_of(watch));
             });
         } catch (const BuildCancelled&) {
             watch.rethrow();
@@ -270,37 +242,37 @@ class PythonFrame {
     }
 
     PythonSea sea() const { return sea_; }
-    double time_s() const { return frame_.time_s(); }
-    long executed_transforms() const { return frame_.executed_transforms(); }
+    double time_s() const { return state_.frame().time_s(); }
+    long executed_transforms() const { return state_.frame().executed_transforms(); }
 
   private:
     // The caller's arrays, and new ones for the outputs that he names, or, if he does neither, for all
     // that the sea holds.
-    std::array<py::object, kOutputs.size()> with_fresh(const Arguments& given, py::ssize_t count) const {
+    std::array<py::object, kProductCount> with_fresh(const Arguments& given, py::ssize_t count) const {
         auto arrays = given.arrays;
-        OutputSet wanted;
+        ProductSet wanted;
         bool none_given = true;
         for (const py::object& array : arrays) none_given = none_given && array.is_none();
         if (given.outputs)
             for (const std::string& name : *given.outputs) wanted.set(output_of(name));
         else if (none_given)
             wanted = sea_.outputs;
-        for (std::size_t i = 0; i < kOutputs.size(); ++i)
+        for (std::size_t i = 0; i < kProductCount; ++i)
             if (wanted[i] || !arrays[i].is_none()) require_output(i);
-        for (std::size_t i = 0; i < kOutputs.size(); ++i)
+        for (std::size_t i = 0; i < kProductCount; ++i)
             if (wanted[i] && arrays[i].is_none()) arrays[i] = fresh(i, count);
         return arrays;
     }
 
     static py::array_t<float> fresh(std::size_t output, py::ssize_t count) {
-        const auto components = static_cast<py::ssize_t>(kOutputs[output].components);
+        const auto components = static_cast<py::ssize_t>(kProductTable[output].components);
         if (components == 1) return py::array_t<float>(count);
         return py::array_t<float>({count, components});
     }
 
     void require_output(std::size_t output) const {
         if (!sea_.outputs[output])
-            throw py::value_error(std::string(kOutputs[output].identifier) +
+            throw py::value_error(std::string(kProductTable[output].identifier) +
                                   ": the sea was built without it; accepted: what its products name");
     }
 
@@ -321,10 +293,10 @@ class PythonFrame {
 
         const auto arrays = with_fresh(given, count);
         py::dict written;
-        for (std::size_t i = 0; i < kOutputs.size(); ++i) {
+        for (std::size_t i = 0; i < kProductCount; ++i) {
             if (arrays[i].is_none()) continue;
             write_to(asked, i, arrays[i], count);
-            written[kOutputs[i].identifier] = arrays[i];
+            written[kProductTable[i].identifier] = arrays[i];
         }
         return written;
     }
@@ -343,49 +315,19 @@ class PythonFrame {
         work();
     }
     bool takes_long(const Evaluation& asked, std::size_t points) const {
-        return points > kPiece || (asked.has_foam() && foam_);
+        return points > kPiece || ((asked.results.given() & lasting_products()).any() && state_.has_past(0));
     }
 
     // Whoever calls it holds the lock. Throws BuildCancelled.
     void run(Evaluation& asked, const BuildWatch& watch) const {
         require_time();
-        add_coverage(asked, asked.points.count);
-        in_pieces(asked.points, watch, [&](const Points<float>& piece, std::size_t first) {
-            pelagic::evaluate(frame_, 0, piece, asked.results.from_point(first));
-        });
-        add_foam(asked, watch);
+        alone([&] { state_.evaluate(0, asked.points, asked.results, watch); });
         asked.copies.give_back();
     }
 
-    // Foam begins with what breaks now.
-    static void add_coverage(Evaluation& asked, std::size_t count) {
-        if (!asked.has_foam() || asked.results.holds(Product::Coverage)) return;
-        asked.coverage.resize(count);
-        asked.results.set(Product::Coverage, {asked.coverage.data()});
-    }
-
-    // The frame's own history, made where somebody asks for foam; one asks at a time.
-    void add_foam(const Evaluation& asked, const BuildWatch& watch) const {
-        if (!asked.has_foam()) return;
-        FoamResults foam = asked.foam;
-        foam.coverage = asked.results.numbers(Product::Coverage);
-        if (!foam_) {
-            for (std::size_t i = 0; i < asked.points.count; ++i) {
-                if (foam.active) foam.active[i] = foam.coverage[i];
-                if (foam.age_s) foam.age_s[i] = 0.0f;
-            }
-            return;
-        }
-        const std::lock_guard adding(foam_mutex_);
-        alone([&] {
-            if (foam_time_s_ != frame_.time_s()) foam_->set(frame_.time_s());
-            foam_time_s_ = frame_.time_s();
-            foam_->add(asked.points, 0, foam, watch);
-        });
-    }
-
     void require_time() const {
-        if (!frame_.is_set()) throw std::invalid_argument("the frame has no time yet: call set(t) first");
+        if (!state_.frame().is_set())
+            throw std::invalid_argument("the frame has no time yet: call set(t) first");
     }
 
     static void require_on_the_sea(const Points<float>& points, const std::string& name) {
@@ -412,17 +354,14 @@ class PythonFrame {
     }
 
     PythonSea sea_;
-    Frame<float> frame_;
+    SeaAtTime<float> state_;
     mutable std::shared_mutex mutex_;
-    mutable std::optional<FoamHistory<float>> foam_;
-    mutable std::optional<double> foam_time_s_;
-    mutable std::mutex foam_mutex_;
 };
 
 // A line about each output's array.
 std::string output_lines() {
     std::string lines;
-    for (const OutputRow& row : kOutputs)
+    for (const ProductRow& row : kProductTable)
         lines += row.identifier + std::string(row.components == 1 ? ": (n,), " : ": (n, 3), ") +
                  row.description + ".\n";
     return lines;
@@ -474,7 +413,7 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kRows...>)
         },
         py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(), py::arg("cell_m") = none(),
         py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(), py::arg("pixel_axis_m") = none(),
-        py::arg("rest_normal") = none(), (py::arg(kOutputs[kRows].identifier) = none())...,
+        py::arg("rest_normal") = none(), (py::arg(kProductTable[kRows].identifier) = none())...,
         py::arg("outputs") = none(), py::arg("progress") = none(), py::arg("cancel") = none(),
         kEvaluateDoc.c_str());
     frame.def(
@@ -490,7 +429,7 @@ void add_evaluate(py::class_<PythonFrame>& frame, std::index_sequence<kRows...>)
         py::arg("t"), py::arg("rest"), py::arg("origin") = std::array{0.0, 0.0}, py::kw_only(),
         py::arg("cell_m") = none(), py::arg("pixel_m") = none(), py::arg("cell_axis_m") = none(),
         py::arg("pixel_axis_m") = none(), py::arg("rest_normal") = none(),
-        (py::arg(kOutputs[kRows].identifier) = none())..., py::arg("outputs") = none(),
+        (py::arg(kProductTable[kRows].identifier) = none())..., py::arg("outputs") = none(),
         "Begins set(t) and evaluate() with the rest: a Task whose result is evaluate()'s, and whose progress is what that "
         "calls progress with. It keeps the arrays alive; nobody may write to them meanwhile.");
 }
@@ -502,7 +441,7 @@ void add_frame(py::module_& module) {
         module, "Frame",
         "The state of a sea at one time. Its buffers are made once and reused: who needs two "
         "times at once makes two frames.");
-    add_evaluate(frame, std::make_index_sequence<kOutputs.size()>());
+    add_evaluate(frame, std::make_index_sequence<kProductCount>());
     frame.def(py::init<const PythonSea&>(), py::arg("sea"))
         .def(
             "set", &PythonFrame::set, py::arg("t"),

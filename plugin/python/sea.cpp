@@ -25,9 +25,9 @@ namespace py = pybind11;
 std::size_t output_of(const std::string& name) {
     std::vector<std::string> names;
     std::string accepted;
-    for (std::size_t i = 0; i < kOutputs.size(); ++i) {
-        if (name == kOutputs[i].identifier) return i;
-        names.emplace_back(kOutputs[i].identifier);
+    for (std::size_t i = 0; i < kProductCount; ++i) {
+        if (name == kProductTable[i].identifier) return i;
+        names.emplace_back(kProductTable[i].identifier);
         accepted += (accepted.empty() ? "" : " ") + names.back();
     }
     const std::string near = nearest(name, names);
@@ -38,7 +38,8 @@ std::size_t output_of(const std::string& name) {
 
 std::string output_names() {
     std::string names;
-    for (const OutputRow& row : kOutputs) names += (names.empty() ? "" : ", ") + std::string(row.identifier);
+    for (const ProductRow& row : kProductTable)
+        names += (names.empty() ? "" : ", ") + std::string(row.identifier);
     return names;
 }
 
@@ -98,7 +99,7 @@ Query query_of_views(const PreparedScene& prepared, const SeaRequest& request, P
 // What a sea is built from; bad requests throw before any work.
 struct SeaOrder {
     Scene scene;  // a copy: other threads may change the caller's meanwhile
-    OutputSet asked;
+    ProductSet asked;
     ProductSet held;
     std::optional<Query> plain;
     SeaRequest request;
@@ -109,9 +110,8 @@ SeaOrder order_of(const Scene& scene, SeaRequest request) {
     SeaOrder order{
         .scene = settled(scene), .asked = {}, .held = {}, .plain = {}, .request = std::move(request)};
     for (const std::string& name : order.request.products) order.asked.set(output_of(name));
-    order.held = products_of(order.asked);
+    order.held = order.asked;
     if (order.asked[index(Product::Position)]) order.held.set(index(Product::Displacement));
-    if (order.asked[kFoamActive] || order.asked[kFoamAge]) order.held.set(index(Product::Coverage));
     const SeaRequest& kept = order.request;
     if (!kept.views.empty() && (kept.cell_m || kept.pixel_m || kept.lattice))
         throw py::value_error(
@@ -129,7 +129,7 @@ PythonSea built(const SeaOrder& order, Watching& watch) {
     query.name = "python";
     query.products = order.held;
     // Whatever the level, arrays are float32.
-    Plan plan = make_plan(prepared, {query}, {.double_precision = false, .living_foam = true});
+    Plan plan = make_plan(prepared, {query}, {.double_precision = false});
     return {std::make_shared<const Sea<float>>(std::move(plan), building), order.asked};
 }
 
@@ -152,8 +152,8 @@ const std::string kSeaDoc =
     "scene: a valid Scene (ShotError otherwise); later changes to it don't matter here.\n"
     "products: what evaluate() may be asked for, and so what each frame computes: " +
     output_names() +
-    ". Coverage, foam_active and foam_age are of foam that lives where effects.foam_decay_s is above 0; without it all foam "
-    "is active.\n"
+    ". Coverage is all foam: where effects.foam_decay_s is above 0 with what earlier breaking has left; without, all foam breaks "
+    "now.\n"
     "cell_m, pixel_m: footprints [m], of positions and velocities and of everything that comes from "
     "derivatives: waves too short for them are left out, and counted in slope_variance and coverage. A "
     "number for all points, or a rising ladder between whose rungs each point's own footprint is blended; 0 "
@@ -222,8 +222,8 @@ void add_sea(py::module_& module) {
             "products",
             [](const PythonSea& self) {
                 py::list names;
-                for (std::size_t i = 0; i < kOutputs.size(); ++i)
-                    if (self.outputs[i]) names.append(kOutputs[i].identifier);
+                for (std::size_t i = 0; i < kProductCount; ++i)
+                    if (self.outputs[i]) names.append(kProductTable[i].identifier);
                 return py::tuple(names);
             },
             "What evaluate() may be asked for.")

@@ -6,17 +6,17 @@
 #include <memory>
 #include <string>
 
+#include "core/plan/products.h"
 #include "core/surface/projected_grid.h"
 #include "core/waves/sea.h"
-#include "plugin/python/outputs.h"
 
 namespace pelagic::python {
 
 // What Python holds: a Sea is immutable, and frames keep it alive. Its plan has one query, number 0, of these
-// outputs' products, of displacements wherever positions are, which are the same sums, and of coverage wherever foam is.
+// products, and of displacements wherever positions are, which are the same sums.
 struct PythonSea {
     std::shared_ptr<const Sea<float>> sea;
-    OutputSet outputs;
+    ProductSet outputs;  // that may be asked for
     const Plan& plan() const { return sea->plan(); }
     const Query& query() const { return plan().queries.front().query; }
 };

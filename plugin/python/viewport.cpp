@@ -180,9 +180,8 @@ class GpuSea {
           made_from_(what_counts(scene)),
           lighting_(render_options(scene).lighting),
           prepared_(prepare(without_budget(scene))),
-          sea_(std::make_shared<const Sea<float>>(make_plan(prepared_, {query_of(*prepared_, finest_m)},
-                                                            {.double_precision = false, .living_foam = true}),
-                                                  watch)),
+          sea_(std::make_shared<const Sea<float>>(
+              make_plan(prepared_, {query_of(*prepared_, finest_m)}, {.double_precision = false}), watch)),
           frame_(sea_),
           packed_(sea_, 0) {
         if (packed_.layout()->has_trains()) train_table_ = packed_.layout()->train_texels();

@@ -29,7 +29,7 @@ enum class PictureLayer {
     Motion,
     Vector,
     Coverage,
-    FoamActive,
+    Breaking,
     FoamAge,
     SlopeVariance
 };
@@ -72,7 +72,7 @@ inline constexpr auto kPictureLayers = std::to_array<PictureLayerRow>({
      "the same as Blender has it: from here to the frame before, and from the next frame to here [px]"},
     {PictureLayer::Coverage, "coverage", nullptr, true, 1, {"coverage.X"},
      "the share of the sea that whitecaps cover, 0 to 1"},
-    {PictureLayer::FoamActive, "foam_active", nullptr, true, 1, {"foam_active.X"},
+    {PictureLayer::Breaking, "foam_active", nullptr, true, 1, {"foam_active.X"},
      "the share of the sea where waves break now, 0 to 1; the rest of the coverage is what broke before"},
     {PictureLayer::FoamAge, "foam_age", nullptr, true, 1, {"foam_age.X"},
      "the mean age of the foam that is there [s]; 0 without effects.foam_decay_s"},

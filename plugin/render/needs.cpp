@@ -76,8 +76,7 @@ Plan picture_plan(const Scene& scene, std::span<const int> frames, const RenderO
     query.products |= products(Product::SlopeVarianceAtRest);
     if (needs_motion(options.layers)) query.products |= products(Product::Velocity);
     if (options.lighting.spray) query.products |= products(Product::Displacement);
-    return make_plan(std::move(prepared), {query},
-                     {.knobs = options.knobs, .filter = options.filter, .living_foam = true});
+    return make_plan(std::move(prepared), {query}, {.knobs = options.knobs, .filter = options.filter});
 }
 
 void check_render(const Scene& scene, const RenderOptions& options) {

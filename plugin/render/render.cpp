@@ -89,7 +89,7 @@ class RendererOf final : public Impl {
                                               tell(0.0);
                                           },
                                       .cancel = watch.cancel};
-                prepare_foam(moments[pass], past);
+                prepare(past);
             }
             for (int row = 0; row < height; row += step) {
                 const int rows = std::min(step, height - row);
@@ -141,17 +141,16 @@ class RendererOf final : public Impl {
 
     // Makes the foam that earlier times have left where the samples look. So the samples' places are found twice,
     // which takes far less than going through the past once for each batch.
-    void prepare_foam(double moment, const BuildWatch& watch) {
-        sea_.begin_foam(scene_.shot.time_s(moment));
+    void prepare(const BuildWatch& watch) {
         const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
         for (int row = 0; row < height; row += step) {
             stop_if(watch.cancel);
             draw(row, std::min(step, height - row));
             if (batch_.sea.empty()) continue;
             find_places(row);
-            sea_.ask_foam(batch_.seen.points());
+            sea_.say(batch_.seen.points());
         }
-        sea_.prepare_foam(watch);
+        sea_.prepare(watch);
     }
 
     // Of large pictures each step takes tenths of a second.
@@ -426,7 +425,7 @@ class RendererOf final : public Impl {
                  {PictureLayer::Position, PictureLayer::Normal, PictureLayer::SlopeVariance})
                 set(layer, glm::vec3(0.0f));
             for (const PictureLayer layer :
-                 {PictureLayer::Coverage, PictureLayer::FoamActive, PictureLayer::FoamAge})
+                 {PictureLayer::Coverage, PictureLayer::Breaking, PictureLayer::FoamAge})
                 set(layer, glm::vec1(0.0f));
             if (needs_motion(options_.layers))
                 set_motion(motion.of({view_.direction(seen_at(first_row, sample)), 0.0}, glm::dvec3(0.0)));
@@ -450,12 +449,13 @@ class RendererOf final : public Impl {
         set(PictureLayer::Normal, from_level(glm::dvec3(sea_.answers().vectors(Product::Normal)[i]),
                                              glm::dvec3(batch_.seen.up[i])));
         set(PictureLayer::SlopeVariance, sea_.answers().vectors(Product::SlopeVariance)[i]);
-        set(PictureLayer::Coverage, glm::vec1(coverage.empty() ? 0.0f : coverage[i]));
         // Foam that isn't persistent is all of waves that break now.
-        set(PictureLayer::FoamActive, glm::vec1(sea_.foam_lives()  ? sea_.foam_active()[i]
-                                                : coverage.empty() ? 0.0f
-                                                                   : coverage[i]));
-        set(PictureLayer::FoamAge, glm::vec1(sea_.foam_lives() ? sea_.foam_age_s()[i] : 0.0f));
+        const std::vector<float>&breaking = sea_.answers().numbers(Product::Breaking),
+              &age_s = sea_.answers().numbers(Product::FoamAge);
+        const auto value = [&](const std::vector<float>& of) { return glm::vec1(of.empty() ? 0.0f : of[i]); };
+        set(PictureLayer::Coverage, value(coverage));
+        set(PictureLayer::Breaking, value(sea_.foam_lives() ? breaking : coverage));
+        set(PictureLayer::FoamAge, value(age_s));
     }
 
     static constexpr int kQuery = SeaLight<T>::kQuery;

@@ -20,10 +20,9 @@ SeaLight<T>::SeaLight(const Plan& plan, const LightingChoice& choice, Sky sky, c
       water_(make_water(plan.from->scene)),
       foam_(make_foam(plan.from->scene)),
       sea_(std::make_shared<const Sea<T>>(plan, watch)),
-      frame_(sea_) {
-    if (!plan.foam) return;
-    history_.emplace(sea_);
-    foam_ = make_foam(plan.from->scene, active_foam(plan.from->scene, sea_->residual_coverage()));
+      state_(sea_) {
+    if (plan.foam)
+        foam_ = make_foam(plan.from->scene, active_foam(plan.from->scene, sea_->residual_coverage()));
 }
 
 template <class T>
@@ -34,29 +33,9 @@ Air SeaLight<T>::air_before(double height_m) const {
 template <class T>
 Spray SeaLight<T>::spray_before(const View& view, const ProjectedGridOptions& grid) const {
     if (!choice_.spray) return {};
-    Spray spray = make_spray_map(frame_, view, grid, spray_map_size(view.resolution.x));
+    Spray spray = make_spray_map(frame(), view, grid, spray_map_size(view.resolution.x));
     light_spray(spray, choice_, sky_, water_, law_coverage(plan().from->scene));
     return spray;
-}
-
-template <class T>
-void SeaLight<T>::begin_foam(double time_s) {
-    foam_places_.clear();
-    if (history_) history_->set(time_s);
-}
-
-template <class T>
-void SeaLight<T>::ask_foam(const Points<T>& points) {
-    if (!history_) return;
-    const std::vector<FoamPlace> places = history_->places(points, kQuery);
-    foam_places_.insert(foam_places_.end(), places.begin(), places.end());
-    keep_each_once(foam_places_);  // batches ask for much the same
-}
-
-template <class T>
-void SeaLight<T>::prepare_foam(const BuildWatch& watch) {
-    if (history_) history_->prepare(foam_places_, watch);
-    foam_places_.clear();
 }
 
 template <class T>
@@ -74,14 +53,7 @@ void SeaLight<T>::answer(const SeenSea<T>& seen) {
     wanted &= ~products(Product::Position, Product::Displacement,
                         Product::Velocity);  // whoever found the places has them
     const Points<T> points = seen.points();
-    runner_.run(frame_, kQuery, points, wanted, answers_);
-    if (!history_) return;
-    foam_active_.resize(seen.size());
-    foam_age_s_.resize(seen.size());
-    history_->add(points, kQuery,
-                  {.coverage = {answers_.numbers(Product::Coverage).data()},
-                   .active = {foam_active_.data()},
-                   .age_s = {foam_age_s_.data()}});
+    runner_.run(state_, kQuery, points, wanted, answers_);
 }
 
 template <class T>
@@ -105,9 +77,9 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
                                             .mesh_variance = seen.mesh_variance[i],
                                             .rest_m = glm::vec2(seen.rest[i]),
                                             .pixel_m = glm::vec3(seen.pixel_m[i], seen.pixel_axis_m[i])};
-                          if (history_)
+                          if (foam_lives())
                               for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                                  points_[i].active = foam_active_[i];
+                                  points_[i].active = answers_.numbers(Product::Breaking)[i];
                                   points_[i].age_s = residual_age_s(i);
                               }
                           const auto part = [&](auto& of) {
@@ -123,8 +95,8 @@ void SeaLight<T>::light(const SeenSea<T>& seen, const Sky& sky, const Air& air, 
 // Of the foam that earlier breaking has left, without what breaks now.
 template <class T>
 float SeaLight<T>::residual_age_s(std::size_t i) const {
-    const float total = points_[i].coverage, left = total - foam_active_[i];
-    return left > 0.0f ? foam_age_s_[i] * total / left : 0.0f;
+    const float total = points_[i].coverage, left = total - answers_.numbers(Product::Breaking)[i];
+    return left > 0.0f ? answers_.numbers(Product::FoamAge)[i] * total / left : 0.0f;
 }
 
 template class SeaLight<float>;

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "core/effects/foam_history.h"
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/values.h"
 #include "core/lighting/air.h"
 #include "core/lighting/foam_structure.h"
@@ -70,20 +70,18 @@ class SeaLight {
     const Plan& plan() const { return sea_->plan(); }
     const Sky& sky() const { return sky_; }
     const WaterBody& water() const { return water_; }
-    const Frame<T>& frame() const { return frame_; }
+    const Frame<T>& frame() const { return state_.frame(); }
 
     // As Frame's.
-    void set(double time_s, const std::atomic<bool>* cancel = nullptr) { frame_.set(time_s, cancel); }
+    void set(double time_s, const std::atomic<bool>* cancel = nullptr) { state_.set(time_s, cancel); }
     // The air before an eye at this height above the sea at rest [m]; none where the light has none.
     Air air_before(double height_m) const;
     // The spray before a camera at the frame's time, with its light; none where the light or the scene has none.
     Spray spray_before(const View& view, const ProjectedGridOptions& grid) const;
-    // Before the first answer of a picture: its time, all places that it will show, and what earlier times have left
-    // there, so that its parts don't each go through them. Nothing without persistent foam. The last throws
-    // BuildCancelled.
-    void begin_foam(double time_s);
-    void ask_foam(const Points<T>& points);
-    void prepare_foam(const BuildWatch& watch);
+    // Before the first answer of a picture: all places that it will show, and what earlier times have left there, so
+    // that its parts don't each go through them. Nothing without persistent foam. The last throws BuildCancelled.
+    void say(const Points<T>& points) { state_.say(kQuery, points); }
+    void prepare(const BuildWatch& watch) { state_.prepare(watch); }
 
     // What lies behind the sea, in this direction (unit), for a pixel whose side subtends `angle` [rad]. Without spray before it.
     SeaRadiance behind(const Air& air, const glm::vec3& direction, float angle) const;
@@ -95,10 +93,7 @@ class SeaLight {
                std::span<SeaRadiance> lit);
 
     const Values& answers() const { return answers_; }
-    bool foam_lives() const { return history_.has_value(); }
-    // Of the places that were answered last, with persistent foam.
-    const std::vector<float>& foam_active() const { return foam_active_; }
-    const std::vector<float>& foam_age_s() const { return foam_age_s_; }
+    bool foam_lives() const { return state_.has_past(kQuery); }
 
   private:
     float residual_age_s(std::size_t i) const;
@@ -108,12 +103,9 @@ class SeaLight {
     WaterBody water_;
     FoamLook foam_;
     std::shared_ptr<const Sea<T>> sea_;
-    Frame<T> frame_;
-    std::optional<FoamHistory<T>> history_;
-    std::vector<FoamPlace> foam_places_;  // that the picture asks for
+    SeaAtTime<T> state_;
     QueryRunner<T> runner_;
     Values answers_;
-    std::vector<float> foam_active_, foam_age_s_;
     std::vector<SeaPoint> points_;
 };
 

@@ -117,7 +117,7 @@ SprayMapSize spray_map_size(int picture_width) {
 }
 
 std::size_t spray_map_bytes(SprayMapSize size) {
-    // In double: places, points at rest, footprints and their axes, displacement, coverage, a residual; and the texel.
+    // In double: places, points at rest, footprints and their axes, displacement, what breaks, a residual; and the texel.
     return static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows) *
            (12 * sizeof(double) + sizeof(glm::vec2));
 }
@@ -144,7 +144,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     const auto count = static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows);
     using Vec = glm::vec<2, T>;
     std::vector<Vec> places(count), axes(count), rest(count);
-    std::vector<T> widths(count), spreads(count), coverage(count);
+    std::vector<T> widths(count), spreads(count), breaking(count);
     std::vector<glm::vec<3, T>> displacement(count);
     double finest_m = 0.0;
     if (frame.sea().plan().queries[kQuery].query.cell_m.size() > 1) {
@@ -176,7 +176,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
                      .pixel_m = {spreads.data()},
                      .cell_axis_m = {axes.data()},
                      .pixel_axis_m = {axes.data()}};
-    const PreparedQuery<T> query(frame, kQuery, products(Product::Displacement, Product::Coverage),
+    const PreparedQuery<T> query(frame, kQuery, products(Product::Displacement, Product::Breaking),
                                  points.origin_m);
     // Texels are metres wide but beside the camera.
     constexpr PlaceSearch kSearch{.tolerance_m = 0.02, .most_steps = 16};
@@ -184,7 +184,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     points.rest_m = {rest.data()};
     Results<T> results;
     results.set(Product::Displacement, {displacement.data()});
-    results.set(Product::Coverage, {coverage.data()});
+    results.set(Product::Breaking, {breaking.data()});
     query.evaluate(points, results);
 
     spray.texels.resize(count);
@@ -192,7 +192,7 @@ Spray make_spray_map(const Frame<T>& frame, const View& view, const ProjectedGri
     for (std::size_t i = 0; i < count; ++i) {
         const glm::dvec3 at(glm::dvec2(places[i]), static_cast<double>(displacement[i].z));
         spray.texels[i] = {static_cast<float>(on_earth(at, curvature).z),
-                           static_cast<float>(extinction * static_cast<double>(coverage[i]))};
+                           static_cast<float>(extinction * static_cast<double>(breaking[i]))};
         spray.top_m = std::max(spray.top_m, spray.texels[i].x);
     }
     return spray;

@@ -169,8 +169,8 @@ std::vector<VaryingValues> varying_values(const MeshSample& sample, const Extent
         if (attribute.name == kVelocities.name) values = floats(sample.velocities);
         if (attribute.name == kSlopeVariance.name) values = floats(sample.slope_variance);
         if (attribute.name == kWhitecapCoverage.name) values = sample.whitecap_coverage;
-        if (attribute.name == kFoamActive.name) values = sample.foam_active;
-        if (attribute.name == kFoamAge.name) values = sample.foam_age_s;
+        if (attribute.name == kFoamActive.name) values = sample.breaking;
+        if (attribute.name == kFoamAge.name) values = sample.age_s;
         const VaryingValues& varying = result.emplace_back(VaryingValues{attribute, values});
         const bool is_of_corners = attribute.name == kSt.name && faces.is_st_of_corners;
         const std::size_t wanted = is_of_corners ? faces.indices.size() : sample.points.size();

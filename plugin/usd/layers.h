@@ -88,15 +88,15 @@ struct MeshSample {
     std::span<const glm::vec3> velocities{};  // [m/s]
     std::span<const glm::vec3> slope_variance{};  // (σxx, σyy, σxy) of what the mesh does not resolve
     std::span<const float> whitecap_coverage{};   // 0 … 1
-    std::span<const float> foam_active{};         // of it, where waves break now, 0 … 1; with foam_age_s
-    std::span<const float> foam_age_s{};          // the mean age of that foam [s]
+    std::span<const float> breaking{};            // of it, where waves break now, 0 … 1; with age_s
+    std::span<const float> age_s{};               // the mean age of that foam [s]
 
     AttributeSet attributes() const {
         return {.normals = !normals.empty(),
                 .velocities = !velocities.empty(),
                 .slope_variance = !slope_variance.empty(),
                 .whitecap_coverage = !whitecap_coverage.empty(),
-                .foam_history = !foam_active.empty() || !foam_age_s.empty(),
+                .foam_history = !breaking.empty() || !age_s.empty(),
                 .faces = faces.has_value(),
                 .origin = origin_m.has_value(),
                 .st_of_corners = faces && faces->is_st_of_corners};

@@ -48,8 +48,8 @@ void check(const MeshLayer& layer) {
                       .velocities = vectors_of<glm::vec3>(layer, "velocities"),
                       .slope_variance = vectors_of<glm::vec3>(layer, "primvars:slopeVariance"),
                       .whitecap_coverage = values_of<float>(layer, "primvars:whitecapCoverage"),
-                      .foam_active = values_of<float>(layer, "primvars:foamActive"),
-                      .foam_age_s = values_of<float>(layer, "primvars:foamAge")};
+                      .breaking = values_of<float>(layer, "primvars:foamActive"),
+                      .age_s = values_of<float>(layer, "primvars:foamAge")};
     if (!faces.counts.empty() || !faces.indices.empty() || !faces.st.empty()) sample.faces = faces;
     varying_values(sample, {});
 }

@@ -59,7 +59,7 @@ class Patch {
         Results<float> results;
         results.set(Product::Normal, {&points_[0].normal, sizeof(SeaPoint)});
         results.set(Product::SlopeVariance, {&points_[0].slope_variance, sizeof(SeaPoint)});
-        results.set(Product::Coverage, {&points_[0].coverage, sizeof(SeaPoint)});
+        results.set(Product::Breaking, {&points_[0].coverage, sizeof(SeaPoint)});
         results.set(Product::JacobianMoments, {jacobian_.data()});
         evaluate(frame_, 0,
                  Points<float>{.count = rest_.size(), .rest_m = {rest_.data()}, .pixel_m = {pixels.data()}},
@@ -92,7 +92,7 @@ class Patch {
   private:
     static Query query(const Scene& scene) {
         return view_query(*prepare(scene),
-                          {.products = products(Product::Normal, Product::SlopeVariance, Product::Coverage,
+                          {.products = products(Product::Normal, Product::SlopeVariance, Product::Breaking,
                                                 Product::JacobianMoments)});
     }
 

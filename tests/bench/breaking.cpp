@@ -27,6 +27,7 @@ std::vector<glm::vec2> scattered(int count, unsigned seed) {
 
 Scene sea(SpectrumKind spectrum, double wind_mps, int seed) {
     Scene scene;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.shot.seed = static_cast<std::uint64_t>(seed);
     scene.sea.spectrum = spectrum;
     scene.sea.wind_speed_mps = wind_mps;
@@ -45,7 +46,7 @@ void footprints() {
     for (const double footprint_m : kFootprints_m) {
         Query& query = queries.emplace_back();
         query.name = "points";
-        query.products = products(Product::Coverage, Product::JacobianMoments);
+        query.products = products(Product::Breaking, Product::JacobianMoments);
         query.cell_m = query.pixel_m = {footprint_m};
     }
     double worst = 0.0;
@@ -65,7 +66,7 @@ void footprints() {
                         const glm::vec3 j = values.vectors(Product::JacobianMoments)[i];
                         const double own = sea_area(JacobianMoments<double>{j.x, j.y, j.z}, true);
                         area[q] += own;
-                        foam[q] += own * static_cast<double>(values.numbers(Product::Coverage)[i]);
+                        foam[q] += own * static_cast<double>(values.numbers(Product::Breaking)[i]);
                     }
                 }
             }
@@ -96,7 +97,7 @@ void heights() {
                 scene.effects.breaking_from_m = from_m;
                 Query query;
                 query.name = "cells";
-                query.products = products(Product::Position, Product::Coverage);
+                query.products = products(Product::Position, Product::Breaking);
                 query.cell_m = query.pixel_m = {0.5};
                 Frame<float> frame(std::make_shared<const Sea<float>>(make_plan(scene, {query})));
                 frame.set(3.0);
@@ -105,7 +106,7 @@ void heights() {
                                          values);
                 double height2 = 0.0, foam_height = 0.0;
                 for (std::size_t i = 0; i < points.size(); ++i) {
-                    const double w = static_cast<double>(values.numbers(Product::Coverage)[i]),
+                    const double w = static_cast<double>(values.numbers(Product::Breaking)[i]),
                                  z = static_cast<double>(values.vectors(Product::Position)[i].z);
                     height2 += z * z;
                     foam += w;

@@ -27,7 +27,7 @@ Means means_of(const Scene& scene) {
     Results<float> results;
     results.set(Product::Normal, {normal.data()});
     results.set(Product::SlopeVariance, {variance.data()});
-    results.set(Product::Coverage, {whitecaps.data()});
+    results.set(Product::Breaking, {whitecaps.data()});
     evaluate(frame, 0, Points<float>{.count = points.size(), .rest_m = {points.data()}}, results);
     Means means;
     means.spectrum_mss = frame.sea().total().mss();
@@ -51,6 +51,7 @@ void slopes() {
         Means sum;
         for (int seed = 1; seed <= 8; ++seed) {
             Scene scene;
+            scene.effects.foam_decay_s = 0.0;  // all foam breaks now
             scene.shot.seed = static_cast<std::uint64_t>(seed);
             scene.waves.choppiness = 0.0;
             scene.surface.resolution = quads;
@@ -70,6 +71,7 @@ void whitecap_table() {
     std::printf("   largest change\n");
     for (const double wind : {6.0, 8.0, 10.0, 14.0, 20.0}) {
         Scene scene;
+        scene.effects.foam_decay_s = 0.0;  // all foam breaks now
         scene.sea.wind_speed_mps = wind;
         scene.surface.size_m = 1000.0;
         std::printf("  %-10g %12.5f", wind, law_coverage(scene));

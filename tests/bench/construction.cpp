@@ -26,7 +26,7 @@ namespace {
 Query own_tile(double size_m, int n) {
     Query query;
     query.name = "cascade";
-    query.products = products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage);
+    query.products = products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Breaking);
     query.points = static_cast<std::size_t>(n) * n;
     query.lattice = Lattice{-0.5 * size_m, size_m / n};
     query.only_cascade = 0;

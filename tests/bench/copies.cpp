@@ -71,7 +71,7 @@ void run(int repeats) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const ProductSet position = products(Product::Position), normal = products(Product::Normal),
                      mesh = products(Product::Position, Product::Normal, Product::Velocity,
-                                     Product::SlopeVariance, Product::Coverage);
+                                     Product::SlopeVariance, Product::Breaking);
     std::printf("Periodic tiles, copies, ratio; least of %d repeats\n  %-52s %26s   %26s\n", repeats, "",
                 "transforms ms", "a point ns");
     for (const Case& at :

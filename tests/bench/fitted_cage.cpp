@@ -141,14 +141,16 @@ Errors errors_of(int quads, MeshScheme scheme, double choppiness, const std::vec
     plan.surface->points_at(1, rest);
     Values values;
     QueryRunner<float> runner;
-    runner.run(frame, plan.outputs.front().query,
-               {.count = rest.rest_m.size(), .rest_m = {rest.rest_m.data()}}, values);
+    const int query = plan.outputs.front().query;
+    const ProductSet held = plan.queries[query].query.products | products(Product::Breaking);
+    runner.run(frame, query, {.count = rest.rest_m.size(), .rest_m = {rest.rest_m.data()}},
+               held & ~lasting_products(), values);
     const auto& position = values.vectors(Product::Position);
     usd::MeshSample sample{.points = position,
                            .normals = values.vectors(Product::Normal),
                            .velocities = values.vectors(Product::Velocity),
                            .slope_variance = values.vectors(Product::SlopeVariance),
-                           .whitecap_coverage = values.numbers(Product::Coverage)};
+                           .whitecap_coverage = values.numbers(Product::Breaking)};
     Errors errors;
     if (const auto cage = plan.surface->fitted()) {
         std::vector<glm::vec3> vertices, velocities, variance;
@@ -158,7 +160,7 @@ Errors errors_of(int quads, MeshScheme scheme, double choppiness, const std::vec
         errors.fit_ms = fit[0].median();
         velocities = vertices;  // as many bytes
         cage->crop<glm::vec3>(values.vectors(Product::SlopeVariance), FittedCage::kReach, variance);
-        cage->crop<float>(values.numbers(Product::Coverage), FittedCage::kReach, coverage);
+        cage->crop<float>(values.numbers(Product::Breaking), FittedCage::kReach, coverage);
         sample.points = vertices;
         sample.velocities = velocities;
         sample.slope_variance = variance;

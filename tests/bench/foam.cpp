@@ -58,7 +58,7 @@ class Patch {
         Results<float> results;
         results.set(Product::Normal, {&points_[0].normal, sizeof(SeaPoint)});
         results.set(Product::SlopeVariance, {&points_[0].slope_variance, sizeof(SeaPoint)});
-        results.set(Product::Coverage, {&points_[0].coverage, sizeof(SeaPoint)});
+        results.set(Product::Breaking, {&points_[0].coverage, sizeof(SeaPoint)});
         results.set(Product::JacobianMoments, {moments_.data()});
         evaluate(frame_, 0,
                  Points<float>{.count = rest_.size(),
@@ -94,7 +94,7 @@ class Patch {
     static constexpr int kPoints = 400;  // a side
     static constexpr double kPatch_m = 600.0;
     inline static const ProductSet kProducts =
-        products(Product::Normal, Product::SlopeVariance, Product::Coverage, Product::JacobianMoments);
+        products(Product::Normal, Product::SlopeVariance, Product::Breaking, Product::JacobianMoments);
 
     glm::vec3 to_eye_;
     Sky sky_;

@@ -109,8 +109,7 @@ void run(int repeats) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     std::printf("A call of the query, least of %d repeats, one thread\n", repeats);
     const ProductSet floats = products(Product::Position, Product::Normal, Product::Velocity);
-    ProductSet all;
-    all.set();
+    const ProductSet all = ~lasting_products();
     Scene trains;
     trains.waves.model = WaveModel::Trochoid;
     table({"default sea, position", Scene(), products(Product::Position)}, repeats);

@@ -34,7 +34,7 @@ struct Case {
         Query query;
         query.name = "patch";
         query.products =
-            products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Coverage);
+            products(Product::Position, Product::Normal, Product::SlopeVariance, Product::Breaking);
         query.cell_m = query.pixel_m = {patch.spacing_m};
         query.lattice = Lattice{patch.first_m, patch.spacing_m, -patch.first_m};
         return make_plan(at_level, {query});
@@ -66,7 +66,7 @@ struct Level {
         results.set(Product::Position, {position.data()});
         results.set(Product::Normal, {normal.data()});
         results.set(Product::SlopeVariance, {variance.data()});
-        results.set(Product::Coverage, {coverage.data()});
+        results.set(Product::Breaking, {coverage.data()});
         evaluate(frame, 0, Points<T>{.count = points.size(), .rest_m = {points.data()}}, results);
     }
     Answers answers() const {

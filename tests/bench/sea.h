@@ -13,7 +13,7 @@ namespace pelagic::bench {
 
 inline constexpr double kSize_m = 400.0;
 inline const ProductSet kEightFields = products(Product::Position, Product::Normal, Product::SlopeVariance,
-                                                Product::Coverage);  // displacement, slopes, derivatives
+                                                Product::Breaking);  // displacement, slopes, derivatives
 
 inline constexpr double kUsualRatio = 4.23606797749979;  // the golden ratio cubed: that of "auto" cascades
 

@@ -38,7 +38,7 @@ void table(int n) {
     const Points<float> rest{.count = points.size(), .rest_m = {points.data()}};
     Values out;
     out.resize(products(Product::Position, Product::Normal, Product::Velocity, Product::SlopeVariance,
-                        Product::Coverage),
+                        Product::Breaking),
                points.size());
 
     double t = 0.0;
@@ -47,7 +47,7 @@ void table(int n) {
                                .normals = out.vectors(Product::Normal),
                                .velocities = out.vectors(Product::Velocity),
                                .slope_variance = out.vectors(Product::SlopeVariance),
-                               .whitecap_coverage = out.numbers(Product::Coverage)},
+                               .whitecap_coverage = out.numbers(Product::Breaking)},
                               [](std::string_view) {});
     };
     const auto exr_map = [&] {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/base/precision.h"
-#include "core/evaluate/evaluate.h"
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/values.h"
 #include "core/plan/plan.h"
 #include "pelagic/procedural.h"
@@ -64,8 +64,8 @@ TEST_P(HardCases, HaveFiniteValuesAtTheirLimit) {
         }
         const int asked = is_double ? plan.outputs.front().query : 0;
         with_precision(is_double, [&]<class T>(T) {
-            Frame<T> frame(std::make_shared<const Sea<T>>(plan));
-            frame.set(plan.from->scene.shot.time_s(1));
+            SeaAtTime<T> sea(std::make_shared<const Sea<T>>(plan));
+            sea.set(plan.from->scene.shot.time_s(1));
             const Query& query = plan.queries[asked].query;
             std::vector<glm::vec<2, T>> rest;
             std::vector<T> cell;
@@ -77,12 +77,12 @@ TEST_P(HardCases, HaveFiniteValuesAtTheirLimit) {
             }
             ProductArrays<T> arrays;
             arrays.resize(query.products, rest.size());
-            evaluate(frame, asked,
-                     Points<T>{.count = rest.size(),
-                               .rest_m = {rest.data()},
-                               .cell_m = {cell.data()},
-                               .pixel_m = {cell.data()}},
-                     arrays.results());
+            sea.evaluate(asked,
+                         {.count = rest.size(),
+                          .rest_m = {rest.data()},
+                          .cell_m = {cell.data()},
+                          .pixel_m = {cell.data()}},
+                         arrays.results());
             for (const ProductRow& row : kProductTable) {
                 if (!query.products[index(row.product)]) continue;
                 if (row.components == 1) {
@@ -119,7 +119,7 @@ TEST_P(HardCases, HaveFiniteValuesAtTheirLimit) {
                     }
                 }
             }
-            const SpectralMoments shown = frame.sea().shown(asked), total = frame.sea().total();
+            const SpectralMoments shown = sea.sea().shown(asked), total = sea.sea().total();
             EXPECT_LE(shown.m0, total.m0 * (1.0 + 1e-6));
             // A mode has the energy of its cell at the wavenumber in the cell's middle: of slopes, which grow with it, that is not
             // quite the cell's mean.

@@ -306,7 +306,7 @@ void judge_picture(const Picture& picture) {
         const std::string what = "picture " + std::string(row.name);
         if (row.layer == PictureLayer::SlopeVariance)
             judge_variances(values, what);
-        else if (row.layer == PictureLayer::Coverage || row.layer == PictureLayer::FoamActive)
+        else if (row.layer == PictureLayer::Coverage || row.layer == PictureLayer::Breaking)
             judge_numbers(values, Is::Share, what);
         else
             judge_numbers(values, row.layer == PictureLayer::FoamAge ? Is::NotNegative : Is::Any, what);

@@ -1,5 +1,5 @@
 // Foam that lives, against its definition: a sum over earlier times in double, at points of the water.
-#include "core/effects/foam_history.h"
+#include "core/effects/sea_at_time.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -33,9 +33,9 @@ Scene scene_of(double decay_s, double wind_mps = 14.0) {
 template <class T = float>
 std::shared_ptr<const Sea<T>> sea_of(const Scene& scene, double footprint_m) {
     for (const Problem& problem : validate(scene)) throw std::invalid_argument(text_of(problem));
-    const Query query = filtered(products(Product::Coverage, Product::JacobianMoments), footprint_m);
+    const Query query = filtered(foam_products() | products(Product::JacobianMoments), footprint_m);
     return std::make_shared<const Sea<T>>(
-        make_plan(scene, {query}, {.double_precision = sizeof(T) == sizeof(double), .living_foam = true}));
+        make_plan(scene, {query}, {.double_precision = sizeof(T) == sizeof(double)}));
 }
 
 struct Foam {
@@ -54,25 +54,21 @@ struct Foam {
 template <class T = float>
 class Shown {
   public:
-    explicit Shown(std::shared_ptr<const Sea<T>> sea) : frame_(sea), history_(sea) {}
+    explicit Shown(std::shared_ptr<const Sea<T>> sea) : sea_(sea) {}
 
     Foam at(double t_s, const std::vector<glm::vec<2, T>>& rest_m, glm::dvec2 origin_m = glm::dvec2(0.0)) {
-        frame_.set(t_s);
-        history_.set(t_s);
+        sea_.set(t_s);
         const Points<T> points{.origin_m = origin_m, .count = rest_m.size(), .rest_m = {rest_m.data()}};
-        runner_.run(frame_, 0, points, values_);
-        Foam foam{.total = values_.numbers(Coverage),
-                  .active = std::vector<float>(rest_m.size()),
-                  .age_s = std::vector<float>(rest_m.size()),
-                  .jacobian = values_.vectors(Product::JacobianMoments)};
-        history_.add(points, 0, {{foam.total.data()}, {foam.active.data()}, {foam.age_s.data()}});
-        return foam;
+        runner_.run(sea_, 0, points, values_);
+        return {.total = values_.numbers(Coverage),
+                .active = values_.numbers(Product::Breaking),
+                .age_s = values_.numbers(Product::FoamAge),
+                .jacobian = values_.vectors(Product::JacobianMoments)};
     }
-    const FoamHistory<T>& history() const { return history_; }
+    std::size_t past_bytes() const { return sea_.past_bytes(); }
 
   private:
-    Frame<T> frame_;
-    FoamHistory<T> history_;
+    SeaAtTime<T> sea_;
     QueryRunner<T> runner_;
     Values values_;
 };
@@ -242,7 +238,7 @@ TEST(LivingFoam, SaysHowFarALongPastIsAndCanBeCancelled) {
     Shown<> other(sea);
     const Foam whole = other.at(50.01, rest_m);
     std::vector<float> total(whole.active);
-    history.add(points, 0, {.coverage = {total.data()}});
+    history.add(points, 0, {.breaking = {total.data()}, .coverage = {total.data()}});
     EXPECT_EQ(total, whole.total);
 }
 
@@ -269,7 +265,7 @@ TEST(LivingFoam, PlacesAreAllThatIsRead) {
     const std::vector<FoamPlace> places = history.places(points, 0);
     EXPECT_GT(places.size(), 10u);
     history.prepare(places);
-    EXPECT_NO_THROW(history.add(points, 0, {.coverage = {total.data()}}, none));
+    EXPECT_NO_THROW(history.add(points, 0, {.breaking = {total.data()}, .coverage = {total.data()}}, none));
     EXPECT_EQ(history.nodes().size(), places.size());
     history.set(7.01);
     history.prepare(std::vector(places.begin(), places.end() - 1));
@@ -277,7 +273,8 @@ TEST(LivingFoam, PlacesAreAllThatIsRead) {
     FoamHistory<float> other(sea);
     other.set(7.0);
     other.prepare(std::vector(places.begin(), places.end() - 1));
-    EXPECT_THROW(other.add(points, 0, {.coverage = {total.data()}}, none), BuildCancelled);
+    EXPECT_THROW(other.add(points, 0, {.breaking = {total.data()}, .coverage = {total.data()}}, none),
+                 BuildCancelled);
 }
 
 // Who only adds keeps the tiles of the time before, wherever the points were at earlier ones.
@@ -290,7 +287,7 @@ TEST(LivingFoam, WithoutPreparingHoldsTwoTimes) {
     for (int i = 0; i < 20; ++i) {
         history.set(5.0 + 0.02 * i);
         history.add({.origin_m = {300.0 * i, 0.0}, .count = rest_m.size(), .rest_m = {rest_m.data()}}, 0,
-                    {.coverage = {total.data()}});
+                    {.breaking = {total.data()}, .coverage = {total.data()}});
         if (i == 1) held = history.held_bytes();
     }
     EXPECT_LE(history.held_bytes(), held + held / 8);
@@ -302,9 +299,9 @@ TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
     Scene scene = scene_of(2.0);
     scene.shot.loop_s = 12.0;
     const auto rest_m = square(40, 0.9);
-    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.7);
     query.points = 3 * rest_m.size();
-    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}, {.living_foam = true}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
     FoamHistory<float> history(sea);
     const auto at = [&](int place) {
         return Points<float>{
@@ -325,10 +322,10 @@ TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
         }
         EXPECT_LE(history.held_bytes(), sea->plan().foam_history_bytes());
         std::vector<float> total(rest_m.size(), 0.0f), alone(total);
-        history.add(points, 0, {.coverage = {total.data()}});
+        history.add(points, 0, {.breaking = {total.data()}, .coverage = {total.data()}});
         FoamHistory<float> cold(sea);
         cold.set(t_s);
-        cold.add(points, 0, {.coverage = {alone.data()}});
+        cold.add(points, 0, {.breaking = {alone.data()}, .coverage = {alone.data()}});
         EXPECT_EQ(total, alone);
     }
     EXPECT_GT(cancelled, 0);
@@ -337,10 +334,9 @@ TEST(LivingFoam, OfARunThatIsPreparedIsThatOfTheTimeAlone) {
 // Cancelled on the way through the past of new water and of what is round it: only what was asked for goes on.
 TEST(LivingFoam, WhatNobodyAskedForDoesNotGoOnAfterACancel) {
     const auto rest_m = square(40, 0.9);
-    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.7);
     query.points = 9 * rest_m.size();
-    const auto sea =
-        std::make_shared<const Sea<float>>(make_plan(scene_of(2.0), {query}, {.living_foam = true}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene_of(2.0), {query}));
     const Points<float> old{.count = rest_m.size(), .rest_m = {rest_m.data()}};
     Points<float> fresh = old;
     fresh.origin_m = {25.0, 0.0};
@@ -359,7 +355,7 @@ TEST(LivingFoam, WhatNobodyAskedForDoesNotGoOnAfterACancel) {
     history.set(9.04);
     int told = 0;
     std::vector<float> total(rest_m.size());
-    history.add(fresh, 0, {.coverage = {total.data()}},
+    history.add(fresh, 0, {.breaking = {total.data()}, .coverage = {total.data()}},
                 {.progress = [&](double) { ++told; }, .cancel = nullptr});
     EXPECT_EQ(told, 0);
 }
@@ -367,10 +363,9 @@ TEST(LivingFoam, WhatNobodyAskedForDoesNotGoOnAfterACancel) {
 // A wave hides some of the sea from a camera, and shows it again: it needn't begin anew, as long as there is room.
 TEST(LivingFoam, OfPicturesIsKeptWhileItIsHidden) {
     const auto rest_m = square(50, 0.9);
-    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.7);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.7);
     query.points = 2 * rest_m.size();
-    const auto sea =
-        std::make_shared<const Sea<float>>(make_plan(scene_of(2.0), {query}, {.living_foam = true}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene_of(2.0), {query}));
     const Points<float> all{.count = rest_m.size(), .rest_m = {rest_m.data()}},
         few{.count = rest_m.size() / 2, .rest_m = {rest_m.data()}};
     FoamHistory<float> history(sea);
@@ -391,7 +386,7 @@ TEST(LivingFoam, OfPicturesIsKeptWhileItIsHidden) {
     Shown<> cold(sea);
     const Foam whole = cold.at(9.16, rest_m);
     std::vector<float> total(whole.active);
-    history.add(all, 0, {.coverage = {total.data()}});
+    history.add(all, 0, {.breaking = {total.data()}, .coverage = {total.data()}});
     EXPECT_EQ(total, whole.total);
 }
 
@@ -550,16 +545,16 @@ TEST(LivingFoam, HoldsNoMoreThanItsPlanSays) {
     Scene scene = scene_of(4.0);
     scene.effects.foam_drift = 0.1;
     scene.sea.wind_direction_deg = 30.0;
-    Query query = filtered(products(Product::Coverage, Product::JacobianMoments), 0.5);
+    Query query = filtered(foam_products() | products(Product::JacobianMoments), 0.5);
     query.points = 120 * 120;
     query.lattice = Lattice{0.0, 0.5};
-    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}, {.living_foam = true}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
     Shown<> shown(sea);
     // A run, and jumps as far as anything is kept.
     for (const double t_s : {2.0, 2.25, 2.5, 9.0, 13.9, 60.0, 71.0, 59.9}) {
         shown.at(t_s, rest_points<float>({.per_side = 120, .spacing_m = 0.5, .first_m = 0.0}));
-        EXPECT_LE(shown.history().held_bytes(), sea->plan().foam_history_bytes());
-        EXPECT_GT(shown.history().held_bytes(), sea->plan().foam_history_bytes() / 4);
+        EXPECT_LE(shown.past_bytes(), sea->plan().foam_history_bytes());
+        EXPECT_GT(shown.past_bytes(), sea->plan().foam_history_bytes() / 4);
     }
 }
 
@@ -583,8 +578,7 @@ TEST(LivingFoam, OfACameraHoldsNoMoreThanItsPlanSays) {
         const ProjectedGrid grid = projected_grid(view, projected_grid_options(*prepared));
         const Query query =
             view_query(*prepared, {.products = products(Product::Coverage), .points = grid.rest_m.size()});
-        const auto sea =
-            std::make_shared<const Sea<float>>(make_plan(prepared, {query}, {.living_foam = true}));
+        const auto sea = std::make_shared<const Sea<float>>(make_plan(prepared, {query}));
         FoamHistory<float> history(sea);
         for (const double t_s : {3.0, 5.5}) {
             history.set(t_s);
@@ -632,7 +626,7 @@ TEST(LivingFoam, OfAPictureHoldsWhatItsPlanSays) {
             }
         const auto prepared = prepare(scene);
         const auto sea = std::make_shared<const Sea<float>>(
-            make_plan(prepared, {view_query(*prepared, {.points = rest_m.size()})}, {.living_foam = true}));
+            make_plan(prepared, {view_query(*prepared, {.points = rest_m.size()})}));
         FoamHistory<float> history(sea);
         history.set(3.0);
         history.prepare({.origin_m = glm::dvec2(scene.camera.position_m),
@@ -673,8 +667,7 @@ TEST(LivingFoam, IsPlannedForCagesAllRoundAndForNoSeaNotAtAll) {
     const auto of_a_picture = [&](double look_at_z_m) {
         scene.camera.look_at_m = {0.0, 100.0, look_at_z_m};
         const auto prepared = prepare(scene);
-        return make_plan(prepared, {view_query(*prepared, {.points = 1000})}, {.living_foam = true})
-            .foam_history_bytes();
+        return make_plan(prepared, {view_query(*prepared, {.points = 1000})}).foam_history_bytes();
     };
     EXPECT_GT(of_a_picture(10.0), 0u);
     EXPECT_EQ(of_a_picture(300.0), 0u);
@@ -696,11 +689,10 @@ TEST(LivingFoam, IsPlannedForCagesAllRoundAndForNoSeaNotAtAll) {
 TEST(LivingFoam, OfASeaWithoutFoamCostsNothing) {
     Scene scene = scene_of(4.0);
     scene.effects.whitecap_amount = 0.0;
-    const auto sea = std::make_shared<const Sea<float>>(
-        make_plan(scene, {filtered(products(Product::Coverage), 0.5)}, {.living_foam = true}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {filtered(foam_products(), 0.5)}));
     Shown<> shown(sea);
     shown.at(2.0, rest_points<float>({.per_side = 20, .spacing_m = 0.5, .first_m = 0.0}));
-    EXPECT_EQ(shown.history().held_bytes(), 0u);
+    EXPECT_EQ(shown.past_bytes(), 0u);
     EXPECT_EQ(sea->plan().foam_history_bytes(), 0u);
 }
 
@@ -728,8 +720,8 @@ TEST(LivingFoam, OfTrainsHasTheLawsCoverage) {
 }
 
 TEST(LivingFoam, NeedsATime) {
-    const auto sea = std::make_shared<const Sea<float>>(
-        make_plan(scene_of(4.0), {filtered(products(Product::Coverage), 0.5)}, {.living_foam = true}));
+    const auto sea =
+        std::make_shared<const Sea<float>>(make_plan(scene_of(4.0), {filtered(foam_products(), 0.5)}));
     FoamHistory<float> history(sea);
     const glm::vec2 rest(0.0f);
     EXPECT_THROW(history.prepare({.count = 1, .rest_m = {&rest}}, 0), std::invalid_argument);
@@ -737,12 +729,10 @@ TEST(LivingFoam, NeedsATime) {
 
 // Off, there is nothing of it.
 TEST(LivingFoam, IsNotPlannedUnlessAskedFor) {
-    const Query query = filtered(products(Product::Coverage), 0.5);
-    EXPECT_FALSE(make_plan(scene_of(0.0), {query}, {.living_foam = true}).foam);
-    EXPECT_FALSE(make_plan(scene_of(4.0), {query}).foam);
-    EXPECT_FALSE(
-        make_plan(scene_of(4.0), {filtered(products(Product::Normal), 0.5)}, {.living_foam = true}).foam);
-    EXPECT_TRUE(make_plan(scene_of(4.0), {query}, {.living_foam = true}).foam);
+    const Query query = filtered(foam_products(), 0.5);
+    EXPECT_FALSE(make_plan(scene_of(0.0), {query}).foam);
+    EXPECT_FALSE(make_plan(scene_of(4.0), {filtered(products(Product::Normal), 0.5)}).foam);
+    EXPECT_TRUE(make_plan(scene_of(4.0), {query}).foam);
     const auto sea = std::make_shared<const Sea<float>>(make_plan(scene_of(0.0), {query}));
     EXPECT_THROW(FoamHistory<float>{sea}, std::invalid_argument);
 }

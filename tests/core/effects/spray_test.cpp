@@ -16,8 +16,7 @@ using namespace test;
 
 std::shared_ptr<const Sea<float>> spray_sea(const Scene& scene) {
     return std::make_shared<const Sea<float>>(
-        make_plan(scene, {filtered(products(Product::Coverage, Product::JacobianMoments), 1.0)},
-                  {.living_foam = true}));
+        make_plan(scene, {filtered(products(Product::Breaking, Product::JacobianMoments), 1.0)}));
 }
 
 Scene spray_scene(double wind_mps, double decay_s = 0.0) {
@@ -42,7 +41,7 @@ double seen_over_area(const std::shared_ptr<const Sea<float>>& sea) {
         for (std::size_t i = 0; i < rest_m.size(); ++i) {
             const glm::vec3 j = values.vectors(Product::JacobianMoments)[i];
             const double of = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
-            foam += of * static_cast<double>(values.numbers(Product::Coverage)[i]);
+            foam += of * static_cast<double>(values.numbers(Product::Breaking)[i]);
             area += of;
         }
     }

@@ -40,12 +40,13 @@ constexpr SeaKind kSeas[] = {
 
 Scene scene_of(const SeaKind& sea, double wind_mps = 14.0) {
     Scene scene;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.sea.wind_speed_mps = wind_mps;
     sea.set(scene);
     return scene;
 }
 
-const ProductSet kFoam = products(Product::Coverage, Product::JacobianMoments);
+const ProductSet kFoam = products(Product::Breaking, Product::JacobianMoments);
 
 // A pixel finer than what breaks sees what the finest of those sees, however the points are asked for. With ripples that
 // break none of these holds.
@@ -71,8 +72,9 @@ TEST(Breaking, FinerPixelsSeeTheSameFoam) {
                                  b = found.vectors(Product::JacobianMoments)[i];
                 ASSERT_NEAR(a.x, b.x, 2e-5) << i;  // each level's grid has a spline of its own
                 ASSERT_NEAR(a.y, b.y, 1e-7) << i;
-                ASSERT_NEAR(wanted.numbers(Coverage)[i], found.numbers(Coverage)[i], 2e-3) << i;
-                most = std::max(most, wanted.numbers(Coverage)[i]);
+                ASSERT_NEAR(wanted.numbers(Product::Breaking)[i], found.numbers(Product::Breaking)[i], 2e-3)
+                    << i;
+                most = std::max(most, wanted.numbers(Product::Breaking)[i]);
             }
         };
         for (int q = 1; q < ladder; ++q) expect_same(sample(frame, q, points));
@@ -101,7 +103,7 @@ TEST(Breaking, APointDependsOnNothingButThePoint) {
             ASSERT_EQ(alone.vectors(Product::JacobianMoments)[0],
                       together.vectors(Product::JacobianMoments)[i])
                 << i;
-            ASSERT_EQ(alone.numbers(Coverage)[0], together.numbers(Coverage)[i]) << i;
+            ASSERT_EQ(alone.numbers(Product::Breaking)[0], together.numbers(Product::Breaking)[i]) << i;
             ASSERT_EQ(alone.vectors(Normal)[0], together.vectors(Normal)[i]) << i;
         }
     }
@@ -160,7 +162,7 @@ TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
                 const glm::dvec3 j(values.vectors(Product::JacobianMoments)[i]);
                 const double own = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
                 area += own;
-                foam += own * static_cast<double>(values.numbers(Coverage)[i]);
+                foam += own * static_cast<double>(values.numbers(Product::Breaking)[i]);
             }
             EXPECT_NEAR(foam / area / law_coverage(scene), 1.0, 0.15) << q;  // one tile's peak waves
         }
@@ -172,6 +174,7 @@ TEST(Breaking, FoamIsTheLawsAtEveryFootprint) {
 TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
     const auto points = random_points<float>(3000.0, 20000);
     Scene scene;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.sea.wind_speed_mps = 14.0;
     for (const Tiling tiling : {Tiling::Periodic, Tiling::Random}) {
         scene.waves.tiling = tiling;
@@ -187,7 +190,7 @@ TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
             for (std::size_t i = 0; i < points.size(); ++i) {
                 const glm::dvec3 j(values.vectors(Product::JacobianMoments)[i]);
                 const double own = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
-                const double coverage = static_cast<double>(values.numbers(Coverage)[i]);
+                const double coverage = static_cast<double>(values.numbers(Product::Breaking)[i]);
                 area += own;
                 foam += own * coverage;
                 all += coverage;
@@ -203,7 +206,7 @@ TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
                 EXPECT_NEAR(of_law, of_none, 0.01);
                 EXPECT_LT(changed / all, tiling == Tiling::Periodic ? 0.01 : 0.1);
             }
-            before = values.numbers(Coverage);
+            before = values.numbers(Product::Breaking);
         }
     }
 }
@@ -212,19 +215,21 @@ TEST(Breaking, FoamIsTheLawsAtEveryChoppiness) {
 TEST(Breaking, RipplesMakeNoFoam) {
     for (const double fetch_m : {1.0, 30.0}) {
         Scene scene;
+        scene.effects.foam_decay_s = 0.0;  // all foam breaks now
         scene.sea.fetch_m = fetch_m;
         for (const WaveModel model : {WaveModel::Fft, WaveModel::Trochoid}) {
             scene.waves.model = model;
             const auto frame = frame_of<float>(scene, {filtered(kFoam, 0.01), filtered(kFoam, 10.0)});
             for (int q = 0; q < 2; ++q)
-                for (const float w : sample(frame, q, random_points<float>(5.0, 300)).numbers(Coverage))
+                for (const float w :
+                     sample(frame, q, random_points<float>(5.0, 300)).numbers(Product::Breaking))
                     EXPECT_LT(w, 1e-4f) << fetch_m;  // a hundredth of the law's
         }
         scene.waves.model = WaveModel::Fft;
         scene.effects.breaking_from_m = 0.0;  // as they would, if they broke
         const auto frame = frame_of<float>(scene, {filtered(kFoam, 10.0)});
-        EXPECT_NEAR(sample(frame, 0, random_points<float>(5.0, 3)).numbers(Coverage)[0], law_coverage(scene),
-                    0.1 * law_coverage(scene));
+        EXPECT_NEAR(sample(frame, 0, random_points<float>(5.0, 3)).numbers(Product::Breaking)[0],
+                    law_coverage(scene), 0.1 * law_coverage(scene));
     }
 }
 

@@ -30,6 +30,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Two tiles, of waves of 9 m and more and of shorter ones, that both matter to heights and strains.
 Scene choppy_scene(std::optional<double> large, std::optional<double> small, double shots = 1.0) {
     Scene scene;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.sea.wind_speed_mps = 9.0;
     scene.sea.fetch_m = 20e3;
     scene.sea.depth_m = 6.0;
@@ -44,7 +45,7 @@ double choppiness_of(const Scene& scene, std::size_t cascade) {
 }
 
 const ProductSet kAll =
-    products(Position, Normal, Velocity, SlopeVariance, Product::JacobianMoments, Product::Coverage);
+    products(Position, Normal, Velocity, SlopeVariance, Product::JacobianMoments, Product::Breaking);
 
 TEST(ChoppinessOfCascades, OfEqualOnesIsTheShotsToTheBit) {
     const auto points = random_points<float>(500.0, 300);
@@ -80,7 +81,7 @@ TEST(ChoppinessOfCascades, OfEqualOnesIsTheShotsToTheBit) {
                 EXPECT_EQ(answers[0].vectors(SlopeVariance), answers[other].vectors(SlopeVariance));
                 EXPECT_EQ(answers[0].vectors(Product::JacobianMoments),
                           answers[other].vectors(Product::JacobianMoments));
-                EXPECT_EQ(answers[0].numbers(Product::Coverage), answers[other].numbers(Product::Coverage));
+                EXPECT_EQ(answers[0].numbers(Product::Breaking), answers[other].numbers(Product::Breaking));
             }
         }
 }
@@ -226,7 +227,7 @@ TEST(ChoppinessOfCascades, IsNotReadWhereItIsZero) {
             expect_near(none.vectors(SlopeVariance), least.vectors(SlopeVariance), 1e-3f);
             expect_near(none.vectors(Product::JacobianMoments), least.vectors(Product::JacobianMoments),
                         1e-3f);
-            expect_near(none.numbers(Product::Coverage), least.numbers(Product::Coverage), 1e-2f);
+            expect_near(none.numbers(Product::Breaking), least.numbers(Product::Breaking), 1e-2f);
         }
 }
 
@@ -239,7 +240,7 @@ TEST(ChoppinessOfCascades, JacobianAndFoamAreThoseOfPoints) {
         scene.sea.wind_speed_mps = 12.0;
         scene.effects.breaking_from_m = 0.0;
         scene.waves.band_gains = {{1e-3, 1.5, 0.0}};  // what no tile shows
-        const ProductSet foam = products(Product::JacobianMoments, Product::Coverage);
+        const ProductSet foam = products(Product::JacobianMoments, Product::Breaking);
         const auto frame = frame_of<double>(scene, {filtered(foam, 0.0), filtered(foam, 1e3)});
         const Sum sum(frame.sea(), scene, 0.0);
         const auto fine = sample(frame, 0, {points[0]}), coarse = sample(frame, 1, {points[0]});
@@ -257,7 +258,7 @@ TEST(ChoppinessOfCascades, JacobianAndFoamAreThoseOfPoints) {
         EXPECT_LT(fine.vectors(Product::JacobianMoments)[0].y, 0.01 * expected.y);  // points see all of it
         EXPECT_NEAR(mean, expected.x, 0.005);
         EXPECT_NEAR((square - (mean - 1.0) * (mean - 1.0)) / expected.y, 1.0, 0.08);  // one sea of many
-        EXPECT_NEAR(foamy / area / coarse.numbers(Product::Coverage)[0], 1.0, 0.15);
+        EXPECT_NEAR(foamy / area / coarse.numbers(Product::Breaking)[0], 1.0, 0.15);
         // And by the integral over each band.
         const DirectionalSpectrum& spectrum = frame.sea().plan().from->spectrum;
         const double edge = lower_edges(std::vector{200.0, 71.0})[1];
@@ -313,7 +314,7 @@ TEST(ChoppinessOfCascades, AddsUpBandByBand) {
     });
     expect_sum("variance of dJ/dt", [](double large, double small) {
         const auto prepared = prepare(choppy_scene(large, small));
-        const Breaking breaking = breaking_of(prepared->scene, {});
+        const pelagic::Breaking breaking = breaking_of(prepared->scene, {});
         return std::pow(
             breaking_rate(prepared->spectrum, breaking) * mean_choppiness(prepared->spectrum, breaking), 2.0);
     });

@@ -168,7 +168,7 @@ TEST(CopiesOfTiles, AreTheSameInSinglePrecision) {
 
 // A point's answer depends on the point alone, to the bit, whichever points are asked with it: on ladders, for ellipses too.
 TEST(CopiesOfTiles, AnswerEachPointAloneToTheBit) {
-    Query query = unfiltered(products(Position, Normal, Velocity, Coverage));
+    Query query = unfiltered(products(Position, Normal, Velocity, Product::Breaking));
     query.cell_m = {0.5, 1.0, 2.0, 4.0};
     query.pixel_m = {0.25, 0.5, 1.0, 2.0, 4.0};
     const auto frame = frame_of<float>(copied_sea(), {query}, 2.5);
@@ -199,24 +199,25 @@ TEST(CopiesOfTiles, AnswerEachPointAloneToTheBit) {
             ASSERT_EQ(one.vectors(VectorProduct::checked(product))[0],
                       all.vectors(VectorProduct::checked(product))[i])
                 << i;
-        ASSERT_EQ(one.numbers(Coverage)[0], all.numbers(Coverage)[i]) << i;
+        ASSERT_EQ(one.numbers(Product::Breaking)[0], all.numbers(Product::Breaking)[i]) << i;
     }
 }
 
 // What a row of a patch keeps for the row above (RowPlaces, CopyPlaces) changes nothing: not where copies blend along either axis, nor
 // where a row lies elsewhere.
 TEST(CopiesOfTiles, GiveAPatchTheBitsOfItsPointsAlone) {
-    const auto frame = frame_of<float>(copied_sea(), {unfiltered(products(Position, Normal, Coverage))}, 2.5);
+    const auto frame =
+        frame_of<float>(copied_sea(), {unfiltered(products(Position, Normal, Product::Breaking))}, 2.5);
     constexpr std::size_t kRow = 300, kRows = 70;
     std::vector<glm::vec2> rest;
     for (std::size_t j = 0; j < kRows; ++j)
         for (std::size_t i = 0; i < kRow; ++i)
             rest.emplace_back(0.31f * static_cast<float>(i) - 60.0f + (j == 7 ? 0.1f : 0.0f),
                               0.9f * static_cast<float>(j) - 40.0f);
-    const PreparedQuery<float> prepared(frame, 0, products(Position, Normal, Coverage));
+    const PreparedQuery<float> prepared(frame, 0, products(Position, Normal, Product::Breaking));
     const auto values_of = [&](std::size_t first, std::size_t count) {
         ProductArrays<float> values;
-        values.resize(products(Position, Normal, Coverage), count);
+        values.resize(products(Position, Normal, Product::Breaking), count);
         // On one thread, which meets the rows one after another.
         prepared.evaluate_alone(
             {.count = count, .rest_m = {rest.data() + first}, .cell_m = {}, .pixel_m = {}}, values.results());
@@ -229,7 +230,7 @@ TEST(CopiesOfTiles, GiveAPatchTheBitsOfItsPointsAlone) {
             ASSERT_EQ(one.vectors(VectorProduct::checked(product))[0],
                       all.vectors(VectorProduct::checked(product))[i])
                 << i;
-        ASSERT_EQ(one.numbers(Coverage)[0], all.numbers(Coverage)[i]) << i;
+        ASSERT_EQ(one.numbers(Product::Breaking)[0], all.numbers(Product::Breaking)[i]) << i;
     }
 }
 

@@ -16,7 +16,7 @@ double over_area(const Frame<float>& frame, const std::vector<glm::vec2>& points
     for (std::size_t i = 0; i < points.size(); ++i) {
         const glm::vec3 j = values.vectors(Product::JacobianMoments)[i];
         const double area = sea_area(pelagic::JacobianMoments<double>{j.x, j.y, j.z}, true);
-        foam += area * static_cast<double>(values.numbers(Coverage)[i]);
+        foam += area * static_cast<double>(values.numbers(Product::Breaking)[i]);
         sea += area;
     }
     return foam / sea;
@@ -25,12 +25,13 @@ double over_area(const Frame<float>& frame, const std::vector<glm::vec2>& points
 double mean_coverage(double wind_mps, int quads, QualityLevel level = QualityLevel::Final,
                      SpectrumKind spectrum = SpectrumKind::Jonswap) {
     Scene scene;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.quality.level = level;
     scene.sea.wind_speed_mps = wind_mps;
     scene.sea.spectrum = spectrum;
     const auto points =
         rest_points<float>({.per_side = quads, .spacing_m = 1000.0 / quads, .first_m = -500.0});
-    const auto wanted = products(Product::Coverage, Product::JacobianMoments);
+    const auto wanted = products(Product::Breaking, Product::JacobianMoments);
     return over_area(frame_of<float>(scene, {filtered(wanted, 1000.0 / quads)}, 3.0), points);
 }
 
@@ -63,11 +64,13 @@ TEST(WhitecapCoverage, OfOtherSpectraIsTheObservedOneToo) {
     for (SpectrumKind kind :
          {SpectrumKind::PiersonMoskowitz, SpectrumKind::Elfouhaily, SpectrumKind::Omega2}) {
         Scene scene;
+        scene.effects.foam_decay_s = 0.0;  // all foam breaks now
         scene.sea.spectrum = kind;
         scene.sea.wind_speed_mps = 12.0;
-        const auto frame = frame_of<float>(scene, {filtered(products(Product::Coverage), 2.0)});
-        const double baked = mean_of(sample(frame, 0, tile_points<float>(1000.0, 300)).numbers(Coverage),
-                                     [](float w) { return w; });
+        const auto frame = frame_of<float>(scene, {filtered(products(Product::Breaking), 2.0)});
+        const double baked =
+            mean_of(sample(frame, 0, tile_points<float>(1000.0, 300)).numbers(Product::Breaking),
+                    [](float w) { return w; });
         const double observed = 2.95e-6 * std::pow(12.0, 3.52);
         EXPECT_GT(baked, 0.5 * observed);
         EXPECT_LT(baked, 2.0 * observed);
@@ -77,14 +80,16 @@ TEST(WhitecapCoverage, OfOtherSpectraIsTheObservedOneToo) {
 // Foam lies where the surface is pressed together.
 TEST(WhitecapCoverage, FallsWithTheJacobian) {
     Scene scene;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.sea.wind_speed_mps = 15.0;
     const auto frame =
-        frame_of<float>(scene, {filtered(products(Product::Coverage, Product::JacobianMoments), 0.5)});
+        frame_of<float>(scene, {filtered(products(Product::Breaking, Product::JacobianMoments), 0.5)});
     const auto samples = sample(frame, 0, random_points<float>(500.0, 20000));
     double weighted = 0.0, coverage = 0.0;
-    for (std::size_t i = 0; i < samples.numbers(Coverage).size(); ++i) {
-        weighted += double(samples.numbers(Coverage)[i]) * samples.vectors(Product::JacobianMoments)[i].x;
-        coverage += samples.numbers(Coverage)[i];
+    for (std::size_t i = 0; i < samples.numbers(Product::Breaking).size(); ++i) {
+        weighted +=
+            double(samples.numbers(Product::Breaking)[i]) * samples.vectors(Product::JacobianMoments)[i].x;
+        coverage += samples.numbers(Product::Breaking)[i];
     }
     ASSERT_GT(coverage, 0.0);
     EXPECT_LT(weighted / coverage,

@@ -13,10 +13,11 @@ namespace {
 
 using namespace test;
 
-const ProductSet kGusty = products(Product::SlopeVariance, Product::Coverage);
+const ProductSet kGusty = products(Product::SlopeVariance, Product::Breaking);
 
 Scene gusty_scene(double strength, double wind_mps = 14.0) {
     Scene scene;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     scene.sea.wind_speed_mps = wind_mps;
     scene.sea.gust_strength = strength;
     return scene;
@@ -29,7 +30,7 @@ double mean_variance(const ProductArrays<float>& values) {
 }
 double mean_foam(const ProductArrays<float>& values) {
     double sum = 0.0;
-    for (const float w : values.numbers(Coverage)) sum += static_cast<double>(w);
+    for (const float w : values.numbers(Product::Breaking)) sum += static_cast<double>(w);
     return sum;
 }
 
@@ -85,8 +86,8 @@ TEST(Gusts, BreakMoreWavesAndNoLessFoamOnEach) {
         const auto gusty =
             sample(frame_of<float>(gusty_scene(0.8), {filtered(kGusty, footprint_m)}, 3.0), 0, points);
         EXPECT_NEAR(mean_foam(gusty) / mean_foam(even), 1.0, 0.05) << footprint_m;
-        EXPECT_NEAR(std::ranges::max(gusty.numbers(Coverage)), std::ranges::max(even.numbers(Coverage)),
-                    0.1f);
+        EXPECT_NEAR(std::ranges::max(gusty.numbers(Product::Breaking)),
+                    std::ranges::max(even.numbers(Product::Breaking)), 0.1f);
     }
 }
 
@@ -119,8 +120,8 @@ TEST(Gusts, WhitecapsFollowTheShotsLaw) {
                 static_cast<double>(sampled.vectors(SlopeVariance)[i].x / even.vectors(SlopeVariance)[i].x);
             auto& in = classes[static_cast<std::size_t>(std::clamp((f - 0.4) / 0.15, 0.0, 7.0))];
             for (Class* to : {&in, &whole}) {
-                to->foam += static_cast<double>(sampled.numbers(Coverage)[i]);
-                to->even += static_cast<double>(even.numbers(Coverage)[i]);
+                to->foam += static_cast<double>(sampled.numbers(Product::Breaking)[i]);
+                to->even += static_cast<double>(even.numbers(Product::Breaking)[i]);
                 to->law += std::pow(f, exponent);
             }
         }
@@ -165,7 +166,7 @@ TEST(Gusts, LoopWithTheShotToTheBit) {
     frame.set(30.0);
     const auto between = sample(frame, 0, points);
     EXPECT_EQ(first.vectors(SlopeVariance), again.vectors(SlopeVariance));
-    EXPECT_EQ(first.numbers(Coverage), again.numbers(Coverage));
+    EXPECT_EQ(first.numbers(Product::Breaking), again.numbers(Product::Breaking));
     EXPECT_NE(first.vectors(SlopeVariance), between.vectors(SlopeVariance));
 }
 
@@ -183,7 +184,7 @@ TEST(Gusts, AreSmoothAnywhereAndAtAnyTime) {
         for (std::size_t i = 0; i < line.size(); ++i) {
             const float at = along.vectors(SlopeVariance)[i].x;
             ASSERT_TRUE(std::isfinite(at));
-            ASSERT_TRUE(std::isfinite(along.numbers(Coverage)[i]));
+            ASSERT_TRUE(std::isfinite(along.numbers(Product::Breaking)[i]));
             least = std::min(least, at);
             most = std::max(most, at);
             if (i > 0) step = std::max(step, std::abs(at - along.vectors(SlopeVariance)[i - 1].x));
@@ -207,7 +208,7 @@ TEST(Gusts, DependOnNothingButThePoint) {
         const auto alone = sample<float>(frame, 0, {points[i]},
                                          {.origin_m = {}, .cell_m = {}, .pixel_m = {where.pixel_m[i]}});
         ASSERT_EQ(alone.vectors(SlopeVariance)[0], together.vectors(SlopeVariance)[i]) << i;
-        ASSERT_EQ(alone.numbers(Coverage)[0], together.numbers(Coverage)[i]) << i;
+        ASSERT_EQ(alone.numbers(Product::Breaking)[0], together.numbers(Product::Breaking)[i]) << i;
     }
     const auto range_of = [&](glm::vec2 axis_m) {
         const std::vector<float> widths(points.size(), 8.0f);
@@ -238,7 +239,7 @@ TEST(Gusts, AreNotWhereNobodyAsksForThem) {
     const auto gusty = sample(frame_of<float>(gusty_scene(1.0), {tile}, 2.0), 0, points),
                even = sample(frame_of<float>(gusty_scene(0.0), {tile}, 2.0), 0, points);
     EXPECT_EQ(gusty.vectors(SlopeVariance), even.vectors(SlopeVariance));
-    EXPECT_EQ(gusty.numbers(Coverage), even.numbers(Coverage));
+    EXPECT_EQ(gusty.numbers(Product::Breaking), even.numbers(Product::Breaking));
 }
 
 }  // namespace

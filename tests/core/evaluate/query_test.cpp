@@ -20,7 +20,7 @@ Scene small_sea() {
     return scene;
 }
 ProductSet all_products() {
-    return ProductSet().set();
+    return ~lasting_products();
 }
 
 TEST(Query, WritesWhereTheCallerWantsItAndNowhereElse) {
@@ -39,14 +39,14 @@ TEST(Query, WritesWhereTheCallerWantsItAndNowhereElse) {
     Results<float> results;
     results.set(Product::Position, {&vertices[0].position, sizeof(Vertex)});
     results.set(Product::Normal, {&vertices[0].normal, sizeof(Vertex)});
-    results.set(Product::Coverage, {&vertices[0].coverage, sizeof(Vertex)});
+    results.set(Product::Breaking, {&vertices[0].coverage, sizeof(Vertex)});
     evaluate(frame, 0,
              {.origin_m = {}, .count = points.size(), .rest_m = {points.data()}, .cell_m = {}, .pixel_m = {}},
              results);
     for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_EQ(vertices[i].position, packed.vectors(Position)[i]);
         EXPECT_EQ(vertices[i].normal, packed.vectors(Normal)[i]);
-        EXPECT_EQ(vertices[i].coverage, packed.numbers(Coverage)[i]);
+        EXPECT_EQ(vertices[i].coverage, packed.numbers(Product::Breaking)[i]);
         EXPECT_EQ(vertices[i].before, -7.0f);
         EXPECT_EQ(vertices[i].after, -7.0f);
         EXPECT_EQ(packed.vectors(Position)[i], packed.vectors(Displacement)[i] + glm::vec3(points[i], 0.0f));
@@ -109,7 +109,7 @@ TEST(Query, AnswersEachPointByItself) {
         const auto alone = sample(frame, 0, {points[i]});
         EXPECT_EQ(alone.vectors(Position)[0], together.vectors(Position)[i]);
         EXPECT_EQ(alone.vectors(Normal)[0], together.vectors(Normal)[i]);
-        EXPECT_EQ(alone.numbers(Coverage)[0], together.numbers(Coverage)[i]);
+        EXPECT_EQ(alone.numbers(Product::Breaking)[0], together.numbers(Product::Breaking)[i]);
     }
 }
 
@@ -149,7 +149,8 @@ TEST(Ladder, IsTheUniformQueryOnItsRungs) {
                             uniform.vectors(Product::JacobianMoments)[i][axis], 1e-5)
                     << c.footprint;
             }
-            EXPECT_NEAR(blended.numbers(Coverage)[i], uniform.numbers(Coverage)[i], 1e-4) << c.footprint;
+            EXPECT_NEAR(blended.numbers(Product::Breaking)[i], uniform.numbers(Product::Breaking)[i], 1e-4)
+                << c.footprint;
         }
     }
     // Across a rung: no step. The blend's slope is bounded by the rungs' own difference, some 0.5 per

@@ -18,9 +18,7 @@ Scene small_sea() {
     return scene;
 }
 ProductSet all_products() {
-    ProductSet all;
-    all.set();
-    return all;
+    return ~lasting_products();
 }
 
 // The address of a product's view, as one of numbers.
@@ -49,7 +47,7 @@ TEST(Values, HaveOneArrayAProductAndNoneForTheOthers) {
 
 TEST(Values, HaveTheTypeThatTheTableSays) {
     EXPECT_THROW(NumberProduct::checked(Product::Normal), std::logic_error);
-    EXPECT_THROW(VectorProduct::checked(Product::Coverage), std::logic_error);
+    EXPECT_THROW(VectorProduct::checked(Product::Breaking), std::logic_error);
     EXPECT_EQ(Product(VectorProduct(Product::Normal)), Product::Normal);
 }
 
@@ -87,8 +85,10 @@ TEST(Values, HoldWhatEvaluateGivesRoundedOnce) {
     };
     runner.run(single, 0, points, values);
     wide_runner.run(reference, 0, wide_points, wide_values);
-    for (const ProductRow& row : kProductTable) expect_same(row);
+    for (const ProductRow& row : kProductTable)
+        if (all_products()[index(row.product)]) expect_same(row);
     for (const ProductRow& row : kProductTable) {
+        if (!all_products()[index(row.product)]) continue;
         runner.run(single, 0, points, products(row.product), values);
         wide_runner.run(reference, 0, wide_points, products(row.product), wide_values);
         expect_same(row);

@@ -278,7 +278,7 @@ TEST(FarFromTheOrigin, NothingIsLost) {
     scene.waves.tiling = Tiling::Periodic;
     const auto frame = frame_of<float>(
         scene,
-        {unfiltered(products(Product::Displacement, Product::Normal, Product::Velocity, Product::Coverage))},
+        {unfiltered(products(Product::Displacement, Product::Normal, Product::Velocity, Product::Breaking))},
         2.0);
     const auto points = random_points<float>(60.0, 400);
     const auto near = sample(frame, 0, points);

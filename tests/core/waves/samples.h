@@ -84,12 +84,12 @@ struct Where {
     std::vector<T> cell_m, pixel_m;  // empty: the query's first
 };
 
-// Everything that the query holds, at each point.
+// Everything that the query holds and a frame knows, at each point.
 template <class T>
 ProductArrays<T> sample(const Frame<T>& frame, int query, const std::vector<glm::vec<2, T>>& rest,
                         const Where<T>& where = {}) {
     ProductArrays<T> samples;
-    samples.resize(frame.sea().plan().queries.at(query).query.products, rest.size());
+    samples.resize(frame.sea().plan().queries.at(query).query.products & ~lasting_products(), rest.size());
     Points<T> points{.origin_m = where.origin_m,
                      .count = rest.size(),
                      .rest_m = {rest.data()},

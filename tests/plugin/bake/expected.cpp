@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/effects/foam_history.h"
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/evaluate.h"
 #include "core/surface/rest_surface.h"
 #include "plugin/light/light.h"
@@ -73,9 +73,7 @@ Triangles triangles_of(const Faces& faces) {
 class Mesh {
   public:
     explicit Mesh(const Scene& scene)
-        : scene_(scene), sea_(std::make_shared<const Sea<float>>(plan_bake(scene))), frame_(sea_) {
-        if (sea_->plan().foam) history_.emplace(sea_);
-    }
+        : scene_(scene), sea_(std::make_shared<const Sea<float>>(plan_bake(scene))), state_(sea_) {}
 
     // {"points": […], …} of a frame.
     std::string at(int frame) {
@@ -85,7 +83,7 @@ class Mesh {
         const std::size_t count = at.rest_m.size();
         std::vector<glm::vec3> position(count), normal(count), velocity(count), variance(count);
         std::vector<float> whitecaps(count);
-        frame_.set(scene_.shot.time_s(frame));
+        state_.set(scene_.shot.time_s(frame));
         Results<float> results;
         results.set(Product::Position, {position.data()});
         const std::optional<FittedCage> cage = surface.fitted();
@@ -97,11 +95,7 @@ class Mesh {
         if (!at.cell_m.empty()) points.cell_m = {at.cell_m.data()};
         if (!at.pixel_m.empty()) points.pixel_m = {at.pixel_m.data()};
         if (!at.normal.empty()) points.rest_normal = {at.normal.data()};
-        evaluate(frame_, 0, points, results);
-        if (history_) {
-            history_->set(frame_.time_s());
-            history_->add(points, 0, {.coverage = {whitecaps.data()}});
-        }
+        state_.evaluate(0, points, results);
         for (std::size_t i = 0; i < at.height_m.size(); ++i)
             position[i].z =
                 static_cast<float>(static_cast<double>(position[i].z) + static_cast<double>(at.height_m[i]));
@@ -148,8 +142,7 @@ class Mesh {
 
     const Scene& scene_;
     std::shared_ptr<const Sea<float>> sea_;
-    Frame<float> frame_;
-    std::optional<FoamHistory<float>> history_;
+    SeaAtTime<float> state_;
 };
 
 // What the stage says of the scene's volumes.

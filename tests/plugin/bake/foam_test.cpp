@@ -62,14 +62,15 @@ TEST(BakedFoam, OfAFrameAloneIsThatOfARun) {
         const OutputSlot &in_run = *run_slot.outputs.front(), &cold = *alone_slot.outputs.front();
         const std::vector<float>& total = cold.values.numbers(Product::Coverage);
         EXPECT_EQ(in_run.values.numbers(Product::Coverage), total);
-        EXPECT_EQ(in_run.foam_active, cold.foam_active);
-        EXPECT_EQ(in_run.foam_age_s, cold.foam_age_s);
-        ASSERT_EQ(cold.foam_age_s.size(), total.size());
+        EXPECT_EQ(in_run.values.numbers(Product::Breaking), cold.values.numbers(Product::Breaking));
+        EXPECT_EQ(in_run.values.numbers(Product::FoamAge), cold.values.numbers(Product::FoamAge));
+        ASSERT_EQ(cold.values.numbers(Product::FoamAge).size(), total.size());
         ASSERT_GT(total.size(), 100u);
         for (std::size_t i = 0; i < total.size(); ++i) {
-            EXPECT_GE(total[i], cold.foam_active[i]);
+            EXPECT_GE(total[i], cold.values.numbers(Product::Breaking)[i]);
             EXPECT_LE(total[i], 1.0f);
-            EXPECT_TRUE(cold.foam_age_s[i] >= 0.0f && cold.foam_age_s[i] <= 3.0f * 1.5f);
+            EXPECT_TRUE(cold.values.numbers(Product::FoamAge)[i] >= 0.0f &&
+                        cold.values.numbers(Product::FoamAge)[i] <= 3.0f * 1.5f);
         }
     }
 }
@@ -86,7 +87,8 @@ TEST(BakedFoam, IsCancelledInItsPast) {
     sequence->compute(1, slot);
     FrameSlot other;
     make_sequence(plan)->compute(1, other);
-    EXPECT_EQ(slot.outputs.front()->foam_age_s, other.outputs.front()->foam_age_s);
+    EXPECT_EQ(slot.outputs.front()->values.numbers(Product::FoamAge),
+              other.outputs.front()->values.numbers(Product::FoamAge));
 }
 
 // And it says how far it is, over all of its parts; a run's next frame has nothing long to go through.

@@ -31,9 +31,9 @@ inline double breaking_in_square(const Scene& scene) {
     const double spacing_m = scene.surface.size_m / a_side;
     Query query;
     query.name = "breaking";
-    query.products = products(Product::Coverage, Product::JacobianMoments);
+    query.products = products(Product::Breaking, Product::JacobianMoments);
     query.cell_m = query.pixel_m = {spacing_m};
-    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}, {.living_foam = true}));
+    const auto sea = std::make_shared<const Sea<float>>(make_plan(scene, {query}));
     Frame<float> frame(sea);
     frame.set(scene.shot.time_s(scene.shot.first_frame));
     std::vector<glm::vec2> rest_m;
@@ -49,7 +49,7 @@ inline double breaking_in_square(const Scene& scene) {
         const glm::vec3 j = values.vectors(Product::JacobianMoments)[i];
         const auto of = static_cast<double>(
             sea_area(JacobianMoments<float>{j.x, j.y, j.z}, sea->plan().knobs.third_moment));
-        foam += of * static_cast<double>(values.numbers(Product::Coverage)[i]);
+        foam += of * static_cast<double>(values.numbers(Product::Breaking)[i]);
         area += of;
     }
     return foam / area / mean_breaking(*sea);

@@ -99,8 +99,8 @@ class SeaAt {
                           {&off_m});
         Results<double> results;
         results.set(Product::Displacement, {&displacement_m});
-        if (plan_.queries[query_].query.products[index(Product::Coverage)])
-            results.set(Product::Coverage, {&coverage});
+        if (plan_.queries[query_].query.products[index(Product::Breaking)])
+            results.set(Product::Breaking, {&coverage});
         ask_->evaluate({.count = 1, .rest_m = {&rest_m}}, results);
         return {displacement_m.z, coverage, off_m};
     }

@@ -423,7 +423,7 @@ TEST(LiveFoam, IsLeftBehindWithoutWaiting) {
     const auto prepared = prepare(scene);
     const auto sea = std::make_shared<const Sea<float>>(
         make_plan(prepared, {view_query(*prepared, {.finest_cell_m = 0.5, .finest_pixel_m = 0.2})},
-                  {.double_precision = false, .living_foam = true}));
+                  {.double_precision = false}));
     const auto grid = std::make_shared<const ProjectedGrid>(
         projected_grid(view_at(scene.camera, 1), projected_grid_options(*prepared)));
     const auto seconds_of = [](const auto& work) {

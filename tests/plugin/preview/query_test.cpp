@@ -92,7 +92,7 @@ void compare(const Scene& scene, const Query& query, const Compared& at, std::si
     results.set(Product::Position, {cpu.position.data()});
     results.set(Product::Normal, {cpu.normal.data()});
     results.set(Product::SlopeVariance, {cpu.slope_variance.data()});
-    if (asks_coverage) results.set(Product::Coverage, {cpu.coverage.data()});
+    if (asks_coverage) results.set(Product::Breaking, {cpu.coverage.data()});
     evaluate(frame, 0,
              Points<float>{.origin_m = at.origin_m,
                            .count = count,

@@ -17,10 +17,10 @@
 #include <thread>
 #include <vector>
 
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/evaluate.h"
 #include "core/plan/plan.h"
 #include "core/surface/view.h"
-#include "core/waves/frame.h"
 #include "plugin/light/light.h"
 #include "plugin/shot/shot.h"
 #include "tests/plugin/procedural/opened.h"
@@ -30,7 +30,8 @@ namespace {
 
 using namespace test;
 
-const std::string kShot = "[camera]\nresolution = [160, 90]\n";
+// Foam with a short past.
+const std::string kShot = "[camera]\nresolution = [160, 90]\n[effects]\nfoam_decay_s = 0.5\n";
 
 struct Answers {
     std::vector<glm::vec3> position, normal, velocity, slope_variance;
@@ -88,7 +89,7 @@ TEST(Procedural, PointsAreTheQuerys) {
     const Query query = view_query(
         *prepared,
         {.products = all, .finest_cell_m = info.finest_cell_m, .finest_pixel_m = info.finest_pixel_m});
-    Frame<float> own(std::make_shared<const Sea<float>>(make_plan(std::move(prepared), {query})));
+    SeaAtTime<float> own(std::make_shared<const Sea<float>>(make_plan(std::move(prepared), {query})));
     own.set(2.25);
 
     const std::vector<glm::vec2> rests = random_rests(1000, 300.0f);
@@ -104,13 +105,13 @@ TEST(Procedural, PointsAreTheQuerys) {
         results.set(Product::Velocity, {expected.velocity.data()});
         results.set(Product::SlopeVariance, {expected.slope_variance.data()});
         results.set(Product::Coverage, {expected.coverage.data()});
-        evaluate(own, 0,
-                 Points<float>{.origin_m = origin_m,
-                               .count = rests.size(),
-                               .rest_m = {rests.data()},
-                               .cell_m = {footprints_m.data()},
-                               .pixel_m = {footprints_m.data()}},
-                 results);
+        own.evaluate(0,
+                     {.origin_m = origin_m,
+                      .count = rests.size(),
+                      .rest_m = {rests.data()},
+                      .cell_m = {footprints_m.data()},
+                      .pixel_m = {footprints_m.data()}},
+                     results);
         EXPECT_TRUE(answers == expected);
     }
 }

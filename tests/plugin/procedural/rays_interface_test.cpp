@@ -22,7 +22,8 @@ namespace {
 using namespace test;
 
 constexpr float kForever = std::numeric_limits<float>::infinity();
-const std::string kRaysShot = "[camera]\nresolution = [160, 90]\n";
+// Foam with a short past.
+const std::string kRaysShot = "[camera]\nresolution = [160, 90]\n[effects]\nfoam_decay_s = 0.5\n";
 
 struct Hits {
     std::vector<float> distance, footprint_m, coverage;

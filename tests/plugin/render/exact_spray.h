@@ -58,13 +58,13 @@ inline std::vector<SprayRay> exact_rays(const Frame<float>& frame, const glm::dv
                          .rest_m = {places.data()},
                          .cell_m = {cells.data()},
                          .pixel_m = {spreads.data()}};
-    const PreparedQuery<float> query(frame, 0, products(Product::Displacement, Product::Coverage),
+    const PreparedQuery<float> query(frame, 0, products(Product::Displacement, Product::Breaking),
                                      points.origin_m);
     find_rest(query, points, {}, Strided<glm::vec2>{rest.data()}, Strided<float>{});
     points.rest_m = {rest.data()};
     Results<float> results;
     results.set(Product::Displacement, {displacement.data()});
-    results.set(Product::Coverage, {coverage.data()});
+    results.set(Product::Breaking, {coverage.data()});
     query.evaluate(points, results);
     std::vector<SprayRay> met;
     for (std::size_t i = 0; i < steps.size();) {

@@ -25,7 +25,7 @@ Scene scene_of(double decay_s) {
 
 RenderOptions options_of(const Scene& scene) {
     RenderOptions options = render_options(scene);
-    for (const PictureLayer layer : {PictureLayer::Coverage, PictureLayer::FoamActive, PictureLayer::FoamAge})
+    for (const PictureLayer layer : {PictureLayer::Coverage, PictureLayer::Breaking, PictureLayer::FoamAge})
         options.layers.set(index(layer));
     return options;
 }
@@ -43,7 +43,7 @@ TEST(FoamInPictures, OfAFrameAloneIsThatOfARunOnAnyNumberOfThreads) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     Renderer single(scene, options_of(scene), uniform_sky(), frames);
     single.render(9, alone);
-    for (const PictureLayer of : {PictureLayer::Coverage, PictureLayer::FoamActive, PictureLayer::FoamAge})
+    for (const PictureLayer of : {PictureLayer::Coverage, PictureLayer::Breaking, PictureLayer::FoamAge})
         EXPECT_EQ(layer(picture, of), layer(alone, of));
     for (std::size_t i = 0; i < picture.layers.size(); ++i)
         EXPECT_EQ(radiance_of(picture.layers[i]), radiance_of(alone.layers[i]));
@@ -56,7 +56,7 @@ TEST(FoamInPictures, IsAllOfTheLawsThatBreaksOrIsLeft) {
         Renderer renderer(scene, options_of(scene), uniform_sky(), std::array{4});
         Picture picture;
         renderer.render(4, picture);
-        const std::vector<float>&now = layer(picture, PictureLayer::FoamActive),
+        const std::vector<float>&now = layer(picture, PictureLayer::Breaking),
               &all = layer(picture, PictureLayer::Coverage), &age = layer(picture, PictureLayer::FoamAge);
         for (std::size_t i = 0; i < all.size(); ++i) {
             if (decay_s == 0.0) {

@@ -56,7 +56,7 @@ class Numbers {
 
 struct Mesh {
     std::vector<glm::vec3> points, normals, velocities, slope_variance;
-    std::vector<float> whitecap_coverage, foam_active, foam_age_s;
+    std::vector<float> whitecap_coverage, breaking, age_s;
 };
 
 std::vector<glm::vec3> random_vectors(Numbers& numbers, float scale) {
@@ -74,7 +74,7 @@ Mesh random_mesh(int frame) {
     mesh.normals = random_vectors(numbers, 1.0f);
     mesh.velocities = random_vectors(numbers, 10.0f);
     mesh.slope_variance = random_vectors(numbers, 1e-3f);
-    for (std::vector<float>* values : {&mesh.whitecap_coverage, &mesh.foam_active, &mesh.foam_age_s})
+    for (std::vector<float>* values : {&mesh.whitecap_coverage, &mesh.breaking, &mesh.age_s})
         for (std::size_t i = 0; i < kVertices; ++i) values->push_back(numbers.next());
     // The extremes of a float, and numbers whose shortest form is an integer or has an exponent.
     const float hard[] = {std::numeric_limits<float>::denorm_min(),
@@ -125,8 +125,8 @@ std::string expected_frame(const Mesh& mesh, const std::vector<glm::vec2>& st) {
            ", \"normals\": " + json_array(mesh.normals) + ", \"velocities\": " + json_array(mesh.velocities) +
            ", \"slopeVariance\": " + json_array(mesh.slope_variance) +
            ", \"whitecapCoverage\": " + json_array(std::span<const float>(mesh.whitecap_coverage)) +
-           ", \"foamActive\": " + json_array(std::span<const float>(mesh.foam_active)) +
-           ", \"foamAge\": " + json_array(std::span<const float>(mesh.foam_age_s)) +
+           ", \"foamActive\": " + json_array(std::span<const float>(mesh.breaking)) +
+           ", \"foamAge\": " + json_array(std::span<const float>(mesh.age_s)) +
            ", \"st\": " + json_array(std::span<const float>(&st[0].x, 2 * st.size())) + "}}";
 }
 
@@ -482,8 +482,8 @@ void write_stage(const std::filesystem::path& dir, const std::string& extension)
                                      .velocities = mesh.velocities,
                                      .slope_variance = mesh.slope_variance,
                                      .whitecap_coverage = mesh.whitecap_coverage,
-                                     .foam_active = mesh.foam_active,
-                                     .foam_age_s = mesh.foam_age_s};
+                                     .breaking = mesh.breaking,
+                                     .age_s = mesh.age_s};
         attributes = sample.attributes();
         layers.frame(without_extension(usd::frame_file(name, frame, extension)), sample);
         frames += (frames.empty() ? "\"" : ",\n\"") + std::to_string(frame) +

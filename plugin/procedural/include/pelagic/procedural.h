@@ -8,6 +8,7 @@
  *   pelagic_bounds(frame, &region, &box, &error);
  *   pelagic_expand_size(frame, &camera, &options, &size, &error);
  *   pelagic_expand(frame, &camera, &options, &buffers, &error);
+ *   pelagic_prepare(frame, &points, &error);
  *   pelagic_evaluate(frame, &points, &values, &error);
  *   pelagic_intersect(frame, &rays, &hits, &error);
  *   pelagic_frame_release(frame);
@@ -30,9 +31,10 @@
  *
  * Threads. Any number of seas and frames at once. A sea is immutable: any number of threads may use it. So is a frame, except while
  * pelagic_frame_set() or pelagic_frame_release() runs on it. pelagic_open(), pelagic_frame_create(), pelagic_frame_set(),
- * pelagic_expand_size() and pelagic_expand() use several threads (pelagic_open_options.threads); all others work on the calling thread
- * alone, because renderers bring their own. Values don't depend on the number of threads, nor on what was asked before. Frames are made
- * and released with FFTW's planner, of which a process has one that isn't safe between libraries: a host that plans with FFTW itself, or has
+ * pelagic_prepare(), pelagic_expand_size() and pelagic_expand() use several threads (pelagic_open_options.threads); all others work on the calling thread
+ * alone, because renderers bring their own. Values don't depend on the number of threads, nor on what was asked before. Where foam is
+ * persistent, calls that want coverage or age_s look into its past one after another. Frames are made and released, and foam is
+ * asked for, with FFTW's planner, of which a process has one that isn't safe between libraries: a host that plans with FFTW itself, or has
  * another copy of Pelagic, must not do so at the same moment.
  *
  * Errors. Each function returns a status. Where it isn't PELAGIC_OK, `error`, which may be null, has a sentence for people. What is refused
@@ -141,6 +143,8 @@ typedef struct pelagic_info {
     double finest_cell_m, finest_pixel_m; /* what is asked for finer counts as this */
     size_t
         frame_bytes; /* what a frame holds; beside it bounds keep up to three times as much, rays up to ray_cache_bytes */
+    size_t
+        foam_bytes; /* what a frame keeps of its foam's past, where coverage or age_s is asked for everywhere */
 } pelagic_info;
 PELAGIC_API pelagic_status pelagic_get_info(const pelagic_sea* sea, pelagic_info* info, pelagic_error* error);
 
@@ -211,8 +215,18 @@ typedef struct pelagic_values {
     float* normal;         /* x, y, z: unit; z is negative where the surface has folded over */
     float* velocity_mps;   /* x, y, z */
     float* slope_variance; /* xx, yy, xy of the slopes that a pixel doesn't resolve */
-    float* coverage;       /* of whitecaps that break now, 0 … 1 */
+    /* All foam, 0 … 1: what breaks now, and where the shot has persistent foam (effects.foam_decay_s) what earlier breaking has left.
+     * To a program whose structure ends here, as version 0.1.0 had it: what breaks now, as if no foam were persistent. */
+    float* coverage;
+    float* breaking; /* what of the coverage breaks now, 0 … 1 */
+    float* age_s;    /* the mean age of the foam that is there, what breaks now counting as 0 */
 } pelagic_values;
+
+/* Before coverage or age_s is asked for at many places, in one call or in many: goes through the past of their foam once, with
+ * several threads, 0.1 … 5 s for the first time and milliseconds for one soon after it. Without, the call that meets a new place does
+ * it alone. Nothing but time depends on it; of points, only the places and pixels count. */
+PELAGIC_API pelagic_status pelagic_prepare(const pelagic_frame* frame, const pelagic_points* points,
+                                           pelagic_error* error);
 
 /* Each value depends on its point alone, and is finite where the point's place is. */
 PELAGIC_API pelagic_status pelagic_evaluate(const pelagic_frame* frame, const pelagic_points* points,

@@ -123,9 +123,7 @@ void Frame<T>::set(double t_s, const std::atomic<bool>* cancel) {
     if (!(std::abs(t_s) <= kLatest_s))
         throw std::invalid_argument("a frame's time must be a number of at most 1e12 s to either side of 0");
     if (!is_whole_) throw std::logic_error("a frame whose samples were given back takes no time");
-    const auto go_on = [cancel] {
-        if (cancel && cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
-    };
+    const auto go_on = [cancel] { stop_if(cancel); };
     is_set_ = false;  // stays so if a task throws
     ++times_set_;
     time_s_ = t_s;

@@ -61,7 +61,7 @@ class Sea<T>::Progress {
         for (const CascadePlan& cascade : plan.cascades) all_ += lattice_modes(cascade.mode_radius);
     }
     void done(std::size_t modes) {
-        if (watch_.cancel && watch_.cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
+        stop_if(watch_.cancel);
         if (!watch_.progress) return;
         const std::lock_guard lock(mutex_);
         done_ += modes;

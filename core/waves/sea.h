@@ -2,14 +2,12 @@
 // frames.
 #pragma once
 
-#include <atomic>
-#include <exception>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/base/buffer.h"
+#include "core/base/build_watch.h"
 #include "core/plan/extent.h"
 #include "core/plan/plan.h"
 #include "core/spectrum/spectral_moments.h"
@@ -51,19 +49,6 @@ struct QueryStatistics {
     // Resolved by pixel level i alone, weights squared, and by levels i and i + 1 together (for blends between them).
     // Displacement gradients: by the breaking level i.
     std::vector<SpectralMoments> resolved, resolved_next;
-};
-
-// The largest seas take seconds to build: both are looked at after each part of it.
-struct BuildWatch {
-    // 0 … 1, rising, one call at a time, from whichever thread; may be empty.
-    std::function<void(double done)> progress{};
-    const std::atomic<bool>* cancel = nullptr;  // set from elsewhere
-};
-
-// A sea whose building was cancelled.
-class BuildCancelled : public std::exception {
-  public:
-    const char* what() const noexcept override { return "building the sea was cancelled"; }
 };
 
 template <class T>

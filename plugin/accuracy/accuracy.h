@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/build_watch.h"
 #include "core/scene/scene.h"
 
 namespace pelagic {
@@ -94,16 +95,10 @@ struct MeasuredRow {
     std::string why_none{};
 };
 
-// A sweep that was cancelled.
-class SweepCancelled : public std::exception {
-  public:
-    const char* what() const noexcept override { return "the sweep was cancelled"; }
-};
-
 // Sweeps one row: each trial once to warm up and for its errors, then all in turn, `repeats` times, so that a machine
 // whose speed drifts slows all alike; times are medians. A part's time is the whole's less the median of their
 // differences. Since differences are small, they are measured kPartRepeats times as often, and more where trials are
-// quick. The shot must be valid. Throws SweepCancelled, std::bad_alloc, and std::logic_error for errors that aren't
+// quick. The shot must be valid. Throws BuildCancelled, std::bad_alloc, and std::logic_error for errors that aren't
 // finite.
 MeasuredRow sweep(const ApproximationRow& row, const Scene& shot, int repeats, const SweepWatch& watch);
 

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "core/base/build_watch.h"
 #include "core/base/instruction_set.h"
 #include "core/plan/fingerprint.h"
 #include "core/scene/canonical.h"
@@ -15,10 +16,6 @@ namespace pelagic {
 namespace {
 
 constexpr std::chrono::seconds kPartTime{3};
-
-void check(const SweepWatch& watch) {
-    if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) throw SweepCancelled();
-}
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -49,13 +46,13 @@ MeasuredRow sweep(const ApproximationRow& row, const Scene& shot, int repeats, c
                          .machine = instruction_set() + ", " +
                                     std::to_string(tbb::this_task_arena::max_concurrency()) + " threads",
                          .settings = {}};
-    check(watch);
+    stop_if(watch.cancel);
     if (watch.progress) watch.progress(row.name, "building");
     Trials laid = row.lay_out(shot);
     measured.why_none = laid.why_none;
     std::vector<std::vector<double>> ms(laid.trials.size());
     for (Trial& trial : laid.trials) {
-        check(watch);
+        stop_if(watch.cancel);
         if (watch.progress) watch.progress(row.name, trial.setting);
         trial.run();
         std::vector<double> errors = trial.errors();
@@ -77,7 +74,7 @@ MeasuredRow sweep(const ApproximationRow& row, const Scene& shot, int repeats, c
     };
     for (int i = 0; !is_enough(i); ++i)
         for (std::size_t t = 0; t < laid.trials.size(); ++t) {
-            check(watch);
+            stop_if(watch.cancel);
             if (watch.progress) watch.progress(row.name, laid.trials[t].setting);
             const auto start = Clock::now();
             laid.trials[t].run();

@@ -47,9 +47,7 @@ class LevelSetPart final : public VolumePart {
 
     void write(int frame, const OutputSlot& any_slot, const FileSink& sink) const override {
         const LevelSetSlot& slot = static_cast<const LevelSetSlot&>(any_slot);
-        sink({.path = file(frame), .fingerprint = fingerprint(frame), .content = [&](const auto& take) {
-                  take(slot.file);
-              }});
+        sink({.path = file(frame), .content = [&](const auto& take) { take(slot.file); }});
     }
 
   private:

@@ -107,9 +107,7 @@ class MapPart final : public OutputPart {
 
     void write(int frame, const OutputSlot& any_slot, const FileSink& sink) const override {
         const MapSlot& slot = static_cast<const MapSlot&>(any_slot);
-        sink({.path = file(frame), .fingerprint = fingerprint(frame), .content = [&](const auto& take) {
-                  take(slot.file);
-              }});
+        sink({.path = file(frame), .content = [&](const auto& take) { take(slot.file); }});
     }
 
   private:

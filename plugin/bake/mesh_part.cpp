@@ -137,7 +137,7 @@ class MeshPart final : public OutputPart {
     void write(int frame, const OutputSlot& any_slot, const FileSink& sink) const override {
         const MeshSlot& slot = static_cast<const MeshSlot&>(any_slot);
         const std::string made_of = fingerprint(frame);
-        sink({.path = file(frame), .fingerprint = made_of, .content = [&](const usd::Sink& take) {
+        sink({.path = file(frame), .content = [&](const usd::Sink& take) {
                   if (is_text())
                       take(slot.text);
                   else
@@ -159,17 +159,15 @@ class MeshPart final : public OutputPart {
             topology.st = faces.st;
         }
         sink({.path = usd::topology_file(shot.name, word_of(scene().output.mesh)),
-              .fingerprint = {},
               .content = [&](const usd::Sink& take) {
                   if (is_text())
                       usd::write_topology_text(topology, take);
                   else
                       usd::write_topology_crate(topology, take);
               }});
-        sink(
-            {.path = usd::manifest_file(shot.name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
-                 take(usd::manifest_text({.fps = shot.fps, .attributes = attributes_}));
-             }});
+        sink({.path = usd::manifest_file(shot.name), .content = [&](const usd::Sink& take) {
+                  take(usd::manifest_text({.fps = shot.fps, .attributes = attributes_}));
+              }});
     }
 
   private:

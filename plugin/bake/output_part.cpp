@@ -3,17 +3,10 @@
 #include <array>
 #include <stdexcept>
 
-#include "plugin/usd/layers.h"
-
 namespace pelagic {
 
 OutputPart::OutputPart(const Plan& plan, const PlannedOutput& output)
     : plan_(plan), output_(output), base_(output_fingerprint(plan, output)) {}
-
-std::string OutputPart::file(int frame) const {
-    const FilePattern files = pattern();
-    return files.prefix + usd::frame_number(frame) + files.suffix;
-}
 
 std::vector<std::unique_ptr<OutputPart>> make_parts(const Plan& plan) {
     struct PartRow {

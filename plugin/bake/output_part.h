@@ -4,13 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -20,26 +18,10 @@
 #include "core/plan/plan.h"
 #include "core/surface/patch.h"
 #include "core/waves/frame.h"
-#include "plugin/bake/spray_record.h"
+#include "plugin/run/part.h"
+#include "plugin/run/spray_record.h"
 
 namespace pelagic {
-
-// Hands the bytes of a file over, piece after piece.
-using FileContent = std::function<void(const std::function<void(std::string_view)>&)>;
-
-// A file that is to be written: its path below DIR, with /, its bytes, and what they were made of.
-struct FileJob {
-    std::string path;
-    std::string fingerprint;  // that the file carries; empty: none
-    FileContent content;
-};
-// Takes a finished file. Files come in the order in which they are to be written.
-using FileSink = std::function<void(const FileJob&)>;
-
-// The files of an output at all frames: `prefix`, the frame's number (usd::frame_number), `suffix`.
-struct FilePattern {
-    std::string prefix, suffix;  // "mesh/sea.", ".usdc"
-};
 
 // What an output keeps of one frame between its steps. Slots are used again for other frames.
 struct OutputSlot {
@@ -70,7 +52,7 @@ class OutputPart {
 
     const Query& query() const { return plan_.queries[output_.query].query; }
     virtual FilePattern pattern() const = 0;
-    std::string file(int frame) const;
+    std::string file(int frame) const { return pattern().file(frame); }
     // What the file of a frame is made of (core/plan/fingerprint.h), and the output for all frames alike.
     std::string fingerprint(int frame) const { return frame_fingerprint(plan_, output_, base_, frame); }
     const std::string& fingerprint() const { return base_; }

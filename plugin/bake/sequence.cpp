@@ -37,10 +37,13 @@ class SequenceOf final : public Sequence {
         if (sea_->plan().foam) foam_.emplace(sea_);
     }
 
-    void compute(int frame, FrameSlot& slot, const std::function<void(double)>& foam_past) override {
+    std::unique_ptr<RunSlot> make_slot() const override { return std::make_unique<FrameSlot>(); }
+
+    void compute(int frame, RunSlot& any, const std::function<void(double)>& foam_past) override {
+        FrameSlot& slot = static_cast<FrameSlot&>(any);
         slot.frame = frame;
         slot.record = {};
-        slot.record.fingerprint = statistics_fingerprint(parts_, frame);
+        slot.record.fingerprint = parts_.front()->fingerprint(frame);
         slot.record.time_s = sea_->plan().from->scene.shot.time_s(frame);
         frame_.set(slot.record.time_s, cancel_);
         if (foam_) foam_->set(slot.record.time_s);
@@ -50,9 +53,9 @@ class SequenceOf final : public Sequence {
         BuildWatch watch{.progress = {}, .cancel = cancel_};
         std::size_t of_foam = 0, before = 0;
         for (std::size_t p = 0; p < parts_.size(); ++p)
-            of_foam += wants(slot, p) && parts_[p]->has_foam_history();
+            of_foam += slot.wants(p) && parts_[p]->has_foam_history();
         for (std::size_t p = 0; p < parts_.size(); ++p) {
-            if (!wants(slot, p)) continue;
+            if (!slot.wants(p)) continue;
             if (foam_past && parts_[p]->has_foam_history())
                 watch.progress = [&, of_foam, done_before = before++](double done) {
                     foam_past((static_cast<double>(done_before) + done) / static_cast<double>(of_foam));
@@ -61,12 +64,13 @@ class SequenceOf final : public Sequence {
         }
     }
 
-    void encode(FrameSlot& slot) const override {
+    void encode(RunSlot& any) const override {
+        FrameSlot& slot = static_cast<FrameSlot&>(any);
         tbb::parallel_for(std::size_t(0), parts_.size(), [&](std::size_t p) {
-            if (wants(slot, p)) parts_[p]->encode(slot.frame, *slot.outputs[p]);
+            if (slot.wants(p)) parts_[p]->encode(slot.frame, *slot.outputs[p]);
         });
         for (std::size_t p = 0; p < parts_.size(); ++p)
-            if (wants(slot, p))
+            if (slot.wants(p))
                 slot.record.files[parts_[p]->file(slot.frame)] = {
                     .fingerprint = parts_[p]->fingerprint(slot.frame),
                     .coverage = slot.outputs[p]->coverage,
@@ -74,9 +78,10 @@ class SequenceOf final : public Sequence {
                     .spray = slot.outputs[p]->spray};
     }
 
-    void write(FrameSlot& slot, const FileSink& sink) const override {
+    void write(RunSlot& any, const FileSink& sink) const override {
+        const FrameSlot& slot = static_cast<const FrameSlot&>(any);
         for (std::size_t p = 0; p < parts_.size(); ++p)
-            if (wants(slot, p)) parts_[p]->write(slot.frame, *slot.outputs[p], sink);
+            if (slot.wants(p)) parts_[p]->write(slot.frame, *slot.outputs[p], sink);
     }
 
     void write_static(std::span<const int> volume_frames, const FileSink& sink) const override {
@@ -87,16 +92,12 @@ class SequenceOf final : public Sequence {
         }
     }
 
-    const SpectralMoments& total() const override { return sea_->total(); }
-    double whitecap_threshold() const override { return sea_->whitecap_threshold(); }
-    double residual_coverage() const override { return sea_->residual_coverage(); }
+    void describe(Record& record) const override {
+        record.describe(sea_->plan(), sea_->total(), sea_->whitecap_threshold(), sea_->residual_coverage());
+    }
     long executed_transforms() const override { return frame_.executed_transforms(); }
 
   private:
-    static bool wants(const FrameSlot& slot, std::size_t part) {
-        return slot.wanted.empty() || slot.wanted[part];
-    }
-
     void describe_waves(int frame, FrameRecord& record) const {
         const Plan& plan = sea_->plan();
         const Query& first = plan.queries[plan.outputs.front().query].query;
@@ -136,10 +137,6 @@ std::unique_ptr<Sequence> make_sequence(const Plan& plan, const BuildWatch& watc
     return with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Sequence> {
         return std::make_unique<SequenceOf<T>>(plan, watch);
     });
-}
-
-std::string statistics_fingerprint(const std::vector<std::unique_ptr<OutputPart>>& parts, int frame) {
-    return parts.front()->fingerprint(frame);
 }
 
 }  // namespace pelagic

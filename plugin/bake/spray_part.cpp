@@ -71,9 +71,7 @@ class SprayPart final : public VolumePart {
 
     void write(int frame, const OutputSlot& any_slot, const FileSink& sink) const override {
         const SpraySlot& slot = static_cast<const SpraySlot&>(any_slot);
-        sink({.path = file(frame), .fingerprint = fingerprint(frame), .content = [&](const auto& take) {
-                  take(slot.file);
-              }});
+        sink({.path = file(frame), .content = [&](const auto& take) { take(slot.file); }});
     }
 
   private:

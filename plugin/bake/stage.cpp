@@ -230,25 +230,20 @@ void write_stage(const Plan& plan, const OutputPart& mesh, std::span<const int> 
     const Scene& scene = plan.from->scene;
     const std::string& name = scene.shot.name;
     const std::shared_ptr<const StageLight> light = light_of(scene);
-    sink({.path = usd::sky_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
-              take(light->dome);
-          }});
-    sink({.path = usd::camera_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
-              usd::write_camera_crate(camera_of(scene), take);
-          }});
+    sink({.path = usd::sky_file(name), .content = [&](const usd::Sink& take) { take(light->dome); }});
+    sink({.path = usd::camera_file(name),
+          .content = [&](const usd::Sink& take) { usd::write_camera_crate(camera_of(scene), take); }});
     if (std::vector<usd::Volume> volumes = volumes_of(plan); !volumes.empty()) {
         const usd::VolumeLayer layer{.fps = scene.shot.fps,
                                      .first_frame = scene.shot.first_frame,
                                      .last_frame = scene.shot.last_frame,
                                      .frames = {volume_frames.begin(), volume_frames.end()},
                                      .volumes = std::move(volumes)};
-        sink({.path = usd::volumes_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
-                  usd::write_volumes_text(layer, take);
-              }});
+        sink({.path = usd::volumes_file(name),
+              .content = [&](const usd::Sink& take) { usd::write_volumes_text(layer, take); }});
     }
-    sink({.path = usd::root_file(name), .fingerprint = {}, .content = [&](const usd::Sink& take) {
-              take(usd::root_text(stage_of(plan, mesh, light->sun)));
-          }});
+    sink({.path = usd::root_file(name),
+          .content = [&](const usd::Sink& take) { take(usd::root_text(stage_of(plan, mesh, light->sun))); }});
 }
 
 }  // namespace pelagic

@@ -58,7 +58,7 @@ class VolumePart : public OutputPart {
         const std::size_t rows_at_once = std::max<std::size_t>(kPointsAtOnce / a_row, 1);
         Row<T> at;
         for (std::size_t first = 0; first < a_row; first += rows_at_once) {
-            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
+            stop_if(watch.cancel);
             const std::size_t rows = std::min(rows_at_once, a_row - first);
             at.places_m.clear();
             for (std::size_t row = first; row < first + rows; ++row)

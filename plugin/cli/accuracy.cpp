@@ -13,9 +13,8 @@
 #include "core/scene/names.h"
 #include "plugin/accuracy/report.h"
 #include "plugin/cli/exit_status.h"
+#include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
-#include "plugin/cli/progress.h"
-#include "plugin/cli/stop.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/files/files.h"
@@ -46,18 +45,17 @@ void list_rows() {
     }
 }
 
-// What is wrong with a name; otherwise empty.
-std::string refuse_rows(const std::vector<std::string>& names) {
+// Throws WrongUsage for a name that is none.
+void refuse_rows(const std::vector<std::string>& names) {
     std::vector<std::string> known;
     for (const ApproximationRow& row : approximation_table()) known.emplace_back(row.name);
     for (const std::string& name : names) {
         if (std::find(known.begin(), known.end(), name) != known.end()) continue;
         const std::string near = nearest(name, known);
-        return "--rows: '" + name + "' is no approximation" +
-               (near.empty() ? "" : "; did you mean " + near + '?') +
-               " (pelagic accuracy --list has them all)";
+        throw WrongUsage("--rows: '" + name + "' is no approximation" +
+                         (near.empty() ? "" : "; did you mean " + near + '?') +
+                         " (pelagic accuracy --list has them all)");
     }
-    return {};
 }
 
 // In the order of the table; all where no name is given.
@@ -109,10 +107,7 @@ int run(const AccuracyArguments& arguments) {
         list_rows();
         return kDone;
     }
-    if (const std::string problem = refuse_rows(arguments.rows); !problem.empty()) {
-        std::cerr << "pelagic: " << problem << "\nSee: pelagic accuracy --help\n";
-        return kWrongUsage;
-    }
+    refuse_rows(arguments.rows);
     const std::vector<const ApproximationRow*> rows = asked_rows(arguments.rows);
     // Sweeps turn the knobs that a budget would choose.
     const Scene shot = settled(arguments.shot.empty() ? Scene{} : load_shot(arguments.shot, check_scene));
@@ -120,41 +115,39 @@ int run(const AccuracyArguments& arguments) {
         arguments.out.empty() ? fs::path(shot.shot.name + "-accuracy") : fs::path(arguments.out);
     files::ensure_folder(folder);
     std::vector<MeasuredRow> measured = recorded(folder / "accuracy.csv");
-    StopSignals stop;
-    stop.files_begin();
-    Progress progress;
-    Threads threads(arguments.threads);
     std::size_t done = 0;
-    SweepWatch watch{.progress =
-                         [&](const std::string& row, const std::string& setting) {
-                             progress.show(std::to_string(done + 1) + " of " + std::to_string(rows.size()) +
-                                           ": " + row + ", " + setting);
-                         },
-                     .cancel = &stop.cancelled()};
-    if (arguments.pictures) {
-        files::ensure_folder(folder / "pictures");
-        watch.picture = [&](const std::string& row, std::size_t setting, const PictureBytes& picture) {
-            const fs::path stem = folder / "pictures" / (row + '.' + std::to_string(setting));
-            files::write_atomically(stem.string() + ".exr", picture.exr);
-            files::write_atomically(stem.string() + ".png", picture.png);
-        };
-    }
-    try {
+    const auto stopped = [&] {
+        return line_text(folder.string()) + " has the " + std::to_string(done) +
+               " rows that were measured, and earlier ones";
+    };
+    return guarded_run({.shot = {}, .threads = arguments.threads, .stopped = stopped}, [&](Session& session) {
+        session.stop->files_begin();
+        SweepWatch watch{.progress =
+                             [&](const std::string& row, const std::string& setting) {
+                                 session.progress.show(std::to_string(done + 1) + " of " +
+                                                       std::to_string(rows.size()) + ": " + row + ", " +
+                                                       setting);
+                             },
+                         .cancel = &session.stop->cancelled()};
+        if (arguments.pictures) {
+            files::ensure_folder(folder / "pictures");
+            watch.picture = [&](const std::string& row, std::size_t setting, const PictureBytes& picture) {
+                const fs::path stem = folder / "pictures" / (row + '.' + std::to_string(setting));
+                files::write_atomically(stem.string() + ".exr", picture.exr);
+                files::write_atomically(stem.string() + ".png", picture.png);
+            };
+        }
         for (const ApproximationRow* row : rows) {
-            put(measured, threads.execute([&] { return sweep(*row, shot, arguments.repeats, watch); }));
+            put(measured,
+                session.threads.execute([&] { return sweep(*row, shot, arguments.repeats, watch); }));
             write_reports(folder, measured, shot);  // what is known so far
             ++done;
         }
-    } catch (const SweepCancelled&) {
-        progress.clear();
-        std::cerr << "pelagic: stopped; " << line_text(folder.string()) << " has the " << done
-                  << " rows that were measured, and earlier ones\n";
-        return kSignal + stop.number();
-    }
-    progress.clear();
-    std::cout << text_report(measured, utc_now(), shot_hash(shot)) << '\n'
-              << line_text((folder / "accuracy.html").string()) << " has the plots\n";
-    return kDone;
+        session.progress.clear();
+        std::cout << text_report(measured, utc_now(), shot_hash(shot)) << '\n'
+                  << line_text((folder / "accuracy.html").string()) << " has the plots\n";
+        return int{kDone};
+    });
 }
 
 }  // namespace

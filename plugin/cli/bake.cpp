@@ -3,21 +3,16 @@
 
 #include <algorithm>
 #include <iostream>
-#include <new>
-#include <optional>
-#include <stdexcept>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/base/text.h"
 #include "core/plan/plan.h"
-#include "plugin/cli/exit_status.h"
+#include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/memory.h"
-#include "plugin/cli/progress.h"
-#include "plugin/cli/stop.h"
 #include "plugin/cli/text.h"
-#include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/cli/warnings.h"
 #include "plugin/light/light.h"
@@ -25,14 +20,6 @@
 
 namespace pelagic::cli {
 namespace {
-
-struct BakeArguments {
-    std::string shot;
-    std::optional<std::string> out;
-    std::optional<std::string> frames;
-    std::string threads, max_memory;
-    bool trust_times = false;
-};
 
 void print_damaged(const std::vector<std::string>& damaged, const std::string& out) {
     constexpr std::size_t kMost = 10;
@@ -42,7 +29,7 @@ void print_damaged(const std::vector<std::string>& damaged, const std::string& o
         std::cerr << "pelagic: and so " << damaged.size() - kMost << " more; made again\n";
 }
 
-void print_done(const BakeReport& report, const std::string& out) {
+void print_done(const RunReport& report, const std::string& out) {
     if (!report.root.empty()) std::cout << "stage:  " << line_text(report.root.string()) << '\n';
     if (!report.maps.empty()) std::cout << "maps:   " << line_text(report.maps.string()) << '\n';
     if (!report.volumes.empty()) std::cout << "volumes: " << line_text(report.volumes.string()) << '\n';
@@ -71,68 +58,20 @@ void print_done(const BakeReport& report, const std::string& out) {
 // The system gave less than the bake was allowed: what it holds, so that people see what is large.
 std::string out_of_memory(const Scene& scene, int threads) {
     const MemoryNeed need = bake_memory(plan_bake(scene), kFramesInFlight, threads);
-    return "pelagic: out of memory; this bake holds " + memory_text(need) + "; to need less, " +
-           need.parts().front().remedy + "; files already written are whole\n";
+    return "out of memory; this bake holds " + memory_text(need) + "; to need less, " +
+           need.parts().front().remedy + "; files already written are whole";
 }
 
-int stopped(const BakeReport& report, const std::string& out, int signal) {
-    std::cerr << "pelagic: stopped; " << report.done + report.kept << " of the "
-              << count_text(report.total, "frame", "frames") << " asked for are whole in " << out
-              << "; run the same command again to continue\n";
-    return kSignal + signal;
-}
-
-int run(const BakeArguments& arguments) {
+int run(const RunArguments& arguments) {
     const Scene scene = load_shot(arguments.shot, check_scene);
-    BakeOptions options;
-    if (arguments.frames) {
-        try {
-            options.frames = parse_frames(*arguments.frames, scene.shot);
-        } catch (const std::invalid_argument& error) {
-            std::cerr << "pelagic: " << error.what() << "\nSee: pelagic bake --help\n";
-            return kWrongUsage;
-        }
-    }
-    if (arguments.out && arguments.out->empty()) {
-        std::cerr << "pelagic: --out \"\": that is no folder; accepted: a path, or no --out for ./"
-                  << scene.shot.name << '\n';
-        return kWrongUsage;
-    }
-    options.out = arguments.out.value_or(scene.shot.name);
-    options.max_memory_bytes = memory_of(arguments.max_memory);
-    options.trust_times = arguments.trust_times;
-
-    StopSignals stop;  // from here on nobody's closing of a log ends the bake
-    print_warnings(arguments.shot, scene);
-    Progress progress;
-    options.cancel = &stop.cancelled();
-    options.progress = [&](const BakeProgress& now) {
-        if (now.stage == BakeStage::Frames) stop.files_begin();
-        progress.show(now);
-    };
-
-    Threads threads(arguments.threads);
-    BakeReport report;
-    try {
-        report = threads.execute([&] { return bake(scene, options); });
-    } catch (const std::bad_alloc&) {
-        progress.clear();
-        std::cerr << out_of_memory(scene, threads.count());
-        return kRefused;
-    } catch (const NotEnoughMemory& error) {
-        progress.clear();
-        return refuse_memory(arguments.shot, error);
-    } catch (const std::invalid_argument& error) {
-        // load_shot() has looked at every value with its line: what is refused here is what it can't see.
-        progress.clear();
-        std::cerr << placed(arguments.shot, error.what()) << '\n';
-        return kRefused;
-    }
-    progress.clear();
-    const std::string out = line_text(options.out.string());
-    if (report.cancelled) return stopped(report, out, stop.number());
-    print_done(report, out);
-    return kDone;
+    return run_frames(arguments, run_options(arguments, scene.shot),
+                      {.out_of_memory = [&](int threads) { return out_of_memory(scene, threads); },
+                       .work =
+                           [&](const RunOptions& options, Session&) {
+                               print_warnings(arguments.shot, scene);
+                               return bake(scene, options);
+                           },
+                       .report = print_done});
 }
 
 }  // namespace
@@ -141,7 +80,7 @@ Verb add_bake(CLI::App& program) {
     CLI::App* command = program.add_subcommand("bake", help::kBake);
     command->group(help::kVerbs);
     command->footer(help::kBakeFooter);
-    auto arguments = std::make_shared<BakeArguments>();
+    auto arguments = std::make_shared<RunArguments>();
     command->add_option("SHOT.toml", arguments->shot, help::kShot)->required()->type_name("");
     command->add_option("--out", arguments->out, help::kOut)->type_name("DIR");
     command->add_option("--frames", arguments->frames, help::kFrames)->type_name("FRAMES");

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
-#include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,8 +19,8 @@
 #include "plugin/bake/measure.h"
 #include "plugin/bake/stage.h"
 #include "plugin/cli/exit_status.h"
+#include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
-#include "plugin/cli/progress.h"
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
@@ -69,47 +69,45 @@ void print_measured(const Measured& measured) {
                milliseconds_text(measured.compute), milliseconds_text(measured.encode)});
 }
 
-int refuse_memory(std::size_t needed, const std::string& there) {
-    std::cerr
-        << "pelagic: measuring holds the sea twice, with and without an item: about " << bytes_text(needed)
-        << there
-        << "; lower surface.resolution, output.map_resolution or the cascades' resolutions, or run explain "
-           "without --measure\n";
-    return kRefused;
+std::string too_large(std::size_t needed, const std::string& there) {
+    return "measuring holds the sea twice, with and without an item: about " + bytes_text(needed) + there +
+           "; lower surface.resolution, output.map_resolution or the cascades' resolutions, or run explain "
+           "without --measure";
 }
 
 int print_prices(const Scene& scene, const ExplainArguments& arguments) {
-    Threads threads(arguments.threads);
-    const std::size_t needed = measure_bytes(scene, threads.count());
-    if (const MemoryLimit limit = machine::memory_limit(); needed > limit.bytes)
-        return refuse_memory(needed, ", and " + limit.whose + " " + bytes_text(limit.bytes));
-    std::cout << "\nPrices: a frame with the item minus a frame without it, on "
-              << count_text(threads.count(), "thread", "threads") << ", " << instruction_set()
-              << ".\nBytes: held by the sea, by a frame, and by points and results. Milliseconds: median\n"
-                 "(half the interquartile range) of computing as in a bake, and of encoding its files.\n\n";
-    print_row({"", "transforms", "lines", "sea", "frame", "output", "compute, ms", "encode, ms"});
-    Progress progress;
-    MeasureOptions options;
-    options.progress = [&](const MeasureProgress& now) {
-        std::string line = "measuring " + now.name;
-        if (now.seconds_left > 0.0)
-            line += ", " + std::to_string(now.item + 1) + " of " + std::to_string(now.items) + ", about " +
-                    duration_text(now.seconds_left) + " left";
-        progress.show(line);
+    std::size_t needed = 0;
+    const auto out_of_memory = [&](int) { return too_large(needed, ", which this process doesn't get"); };
+    const auto print = [&](Session& session) {
+        const int threads = session.threads.count();
+        needed = measure_bytes(scene, threads);
+        if (const MemoryLimit limit = machine::memory_limit(); needed > limit.bytes)
+            throw std::runtime_error(
+                too_large(needed, ", and " + limit.whose + " " + bytes_text(limit.bytes)));
+        std::cout
+            << "\nPrices: a frame with the item minus a frame without it, on "
+            << count_text(threads, "thread", "threads") << ", " << instruction_set()
+            << ".\nBytes: held by the sea, by a frame, and by points and results. Milliseconds: median\n"
+               "(half the interquartile range) of computing as in a bake, and of encoding its files.\n\n";
+        print_row({"", "transforms", "lines", "sea", "frame", "output", "compute, ms", "encode, ms"});
+        MeasureOptions options;
+        options.progress = [&](const MeasureProgress& now) {
+            std::string line = "measuring " + now.name;
+            if (now.seconds_left > 0.0)
+                line += ", " + std::to_string(now.item + 1) + " of " + std::to_string(now.items) +
+                        ", about " + duration_text(now.seconds_left) + " left";
+            session.progress.show(line);
+        };
+        options.measured = [&](const Measured& measured) {
+            session.progress.clear();
+            print_measured(measured);
+        };
+        const Measured whole = session.threads.execute([&] { return measure(scene, options); });
+        options.measured(whole);
+        return int{kDone};
     };
-    options.measured = [&](const Measured& measured) {
-        progress.clear();
-        print_measured(measured);
-    };
-    try {
-        const Measured whole = threads.execute([&] { return measure(scene, options); });
-        progress.clear();
-        print_measured(whole);
-    } catch (const std::bad_alloc&) {
-        progress.clear();
-        return refuse_memory(needed, ", which this process doesn't get");
-    }
-    return kDone;
+    return guarded_run(
+        {.shot = {}, .threads = arguments.threads, .stops = false, .out_of_memory = out_of_memory}, print);
 }
 
 // Of a shot with a budget: what pictures of it take. What a mesh of it takes is in the plan's page.

@@ -5,7 +5,6 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,12 +13,12 @@
 #include "core/plan/plan.h"
 #include "core/scene/names.h"
 #include "core/scene/shot_text.h"
-#include "plugin/bake/bake.h"
 #include "plugin/cli/exit_status.h"
+#include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
 #include "plugin/cli/memory.h"
-#include "plugin/cli/progress.h"
 #include "plugin/cli/size.h"
+#include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
 #include "plugin/files/files.h"
@@ -45,27 +44,18 @@ struct PreviewArguments {
     int scale = 0, after = 8;  // 0: what suits the driver
 };
 
-int wrong_usage(const std::string& problem) {
-    std::cerr << "pelagic: " << problem << "\nSee: pelagic preview --help\n";
-    return kWrongUsage;
+// Throws WrongUsage for what is no picture's name.
+void refuse_file(const std::string& option, const fs::path& file,
+                 const std::vector<std::string>& extensions) {
+    if (std::find(extensions.begin(), extensions.end(), file.extension()) == extensions.end() ||
+        !file.has_stem())
+        throw WrongUsage(option + " \"" + file.string() +
+                         "\" is not the name of a picture; accepted: a file that ends in " +
+                         listed(extensions));
 }
 
-std::string joined(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-    return text;
-}
-
-// What is wrong with a picture's name; empty if nothing is.
-std::string refuse_file(const fs::path& file, const std::vector<std::string>& extensions) {
-    if (std::find(extensions.begin(), extensions.end(), file.extension()) != extensions.end() &&
-        file.has_stem())
-        return {};
-    return "\"" + file.string() + "\" is not the name of a picture; accepted: a file that ends in " +
-           joined(extensions);
-}
-
-int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArguments& arguments) {
+int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArguments& arguments,
+                   Progress& progress) {
     Scene scene = without_budget(shot);  // of bakes and renders
     const int frame = arguments.frame.value_or(scene.shot.first_frame);
     if (const glm::ivec2 size = size_of(arguments.size); size.x > 0) scene.camera.resolution = size;
@@ -73,7 +63,6 @@ int draw_offscreen(const Scene& shot, const fs::path& file, const PreviewArgumen
     files::check_folder(file.parent_path());
     const OffscreenPlan planned = plan_offscreen(scene, frame, {}, memory_of(arguments.max_memory));
     const Sky sky = make_sky(scene);
-    Progress progress;  // signals end it at once: no file is begun
     const auto tell = [&](const std::string& what) {
         return BuildWatch{
             .progress =
@@ -122,30 +111,21 @@ int run(const PreviewArguments& arguments) {
     if (arguments.quality) {
         const auto level = choice_of<QualityLevel>(*arguments.quality);
         if (!level)
-            return wrong_usage("quality \"" + *arguments.quality +
-                               "\"; accepted: " + joined(all_words<QualityLevel>()));
+            throw WrongUsage("quality \"" + *arguments.quality +
+                             "\"; accepted: " + listed(all_words<QualityLevel>()));
         scene.quality.level = *level;
     }
-    if (arguments.frame) {
-        try {
-            parse_frames(std::to_string(*arguments.frame), scene.shot);
-        } catch (const std::invalid_argument& error) {
-            return wrong_usage(error.what());
-        }
-    }
-    Threads threads(arguments.threads);
+    if (arguments.frame) asked([&] { return parse_frames(std::to_string(*arguments.frame), scene.shot); });
     if (arguments.offscreen) {
-        if (const std::string problem = refuse_file(*arguments.offscreen, {".png", ".exr"}); !problem.empty())
-            return wrong_usage("--offscreen " + problem);
-        try {
-            return threads.execute([&] { return draw_offscreen(scene, *arguments.offscreen, arguments); });
-        } catch (const NotEnoughMemory& error) {
-            return refuse_memory(arguments.shot, error);
-        } catch (const std::invalid_argument& error) {
-            std::cerr << placed(arguments.shot, error.what()) << '\n';
-            return kRefused;
-        }
+        refuse_file("--offscreen", *arguments.offscreen, {".png", ".exr"});
+        // Signals end it at once: no file is begun.
+        return guarded_run(
+            {.shot = arguments.shot, .threads = arguments.threads, .stops = false}, [&](Session& session) {
+                return session.threads.execute(
+                    [&] { return draw_offscreen(scene, *arguments.offscreen, arguments, session.progress); });
+            });
     }
+    const Threads threads(arguments.threads);
     const auto save = [&](const Scene& now, const Scene& shot) { save_shot(arguments.shot, now, shot); };
     WindowOptions options{.folder = fs::path(arguments.shot).parent_path(),
                           .save = save,
@@ -155,8 +135,7 @@ int run(const PreviewArguments& arguments) {
                           .max_memory_bytes = memory_of(arguments.max_memory),
                           .screenshot_after = arguments.after};
     if (arguments.screenshot) {
-        if (const std::string problem = refuse_file(*arguments.screenshot, {".png"}); !problem.empty())
-            return wrong_usage("--screenshot " + problem);
+        refuse_file("--screenshot", *arguments.screenshot, {".png"});
         options.screenshot = *arguments.screenshot;
     }
     run_window(scene, options);

@@ -23,19 +23,15 @@
 #include "core/scene/names.h"
 #include "core/scene/text.h"
 #include "plugin/cli/exit_status.h"
+#include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
+#include "plugin/cli/text.h"
 #include "plugin/cli/verb.h"
 #include "plugin/files/files.h"
 #include "plugin/shot/shot.h"
 
 namespace pelagic::cli {
 namespace {
-
-std::string listed(const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-    return text;
-}
 
 // "; did you mean --frames?", or "".
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
@@ -132,7 +128,11 @@ int run(int argc, const char* const* argv) {
     }
     for (const Verb& verb : verbs) {
         if (!verb.command->parsed()) continue;
-        return verb.run();
+        try {
+            return verb.run();
+        } catch (const WrongUsage& error) {
+            return usage_error(error.what(), "pelagic " + verb.command->get_name());
+        }
     }
     return kWrongUsage;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -32,12 +33,16 @@ int terminal_columns() {
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kColumns;
 }
 
-int finished(const BakeProgress& progress) {
+std::string percent(double share) {
+    return std::to_string(std::lround(100.0 * share)) + " %";
+}
+
+int finished(const RunProgress& progress) {
     return progress.done + progress.kept;
 }
 
 // "3.4 frames/s", or "12 s a frame" if it is slow; empty before the first frame is done.
-std::string rate_text(const BakeProgress& progress) {
+std::string rate_text(const RunProgress& progress) {
     if (progress.done == 0 || progress.seconds <= 0.0) return {};
     const double rate = progress.done / progress.seconds;
     if (rate < 0.5) return duration_text(1.0 / rate) + " a frame";
@@ -46,15 +51,15 @@ std::string rate_text(const BakeProgress& progress) {
     return text.data();
 }
 
-std::string left_text(const BakeProgress& progress) {
+std::string left_text(const RunProgress& progress) {
     const int left = progress.total - finished(progress);
     if (progress.done == 0 || left <= 0) return {};
     return duration_text(progress.seconds / progress.done * left) + " left";
 }
 
-std::string past_text(const BakeProgress& progress) {
-    if (!(progress.foam_past > 0.0)) return {};
-    return "the foam's past: " + std::to_string(std::lround(100.0 * progress.foam_past)) + " %";
+std::string past_text(const RunProgress& progress) {
+    if (!(progress.share > 0.0)) return {};
+    return "the foam's past: " + percent(progress.share);
 }
 
 std::string joined(std::initializer_list<std::string> parts, std::string_view between) {
@@ -74,7 +79,7 @@ void print(const std::string& text) {
 
 }  // namespace
 
-std::string progress_line(const BakeProgress& progress) {
+std::string progress_line(const RunProgress& progress) {
     const std::string count = std::to_string(finished(progress)) + " of " + std::to_string(progress.total);
     if (progress.done == 0)
         return joined({progress.kept > 0 ? count + " frames are whole already" : "", past_text(progress)},
@@ -83,7 +88,7 @@ std::string progress_line(const BakeProgress& progress) {
            joined({count, rate_text(progress), left_text(progress), past_text(progress)}, ", ");
 }
 
-std::string progress_bar(const BakeProgress& progress, int columns) {
+std::string progress_bar(const RunProgress& progress, int columns) {
     const std::string count = std::to_string(finished(progress)) + '/' + std::to_string(progress.total);
     const std::string frame = progress.done > 0 ? "frame " + std::to_string(progress.frame) : std::string();
     const std::string text =
@@ -99,19 +104,20 @@ std::string progress_bar(const BakeProgress& progress, int columns) {
 
 Progress::Progress() : terminal_(is_terminal()) {}
 
-void Progress::show(const BakeProgress& progress) {
+void Progress::show(const RunProgress& progress) {
     switch (progress.stage) {
-        case BakeStage::Planning:
+        case RunStage::Planning:
             return;  // milliseconds
-        case BakeStage::Checking:
-            return show("checking the files that are there: " +
-                        std::to_string(std::lround(100.0 * progress.checked)) + " %");
-        case BakeStage::Waiting:
+        case RunStage::Checking:
+            return show("checking the files that are there: " + percent(progress.share));
+        case RunStage::Waiting:
             if (!std::exchange(waiting_said_, true)) last_ = {};  // at once, whatever was said just now
             return show("waiting for another bake that writes into the same folder");
-        case BakeStage::Building:
-            return show_building(progress.built);
-        case BakeStage::Frames:
+        case RunStage::Building:
+            return show_building(progress.share);
+        case RunStage::Looking:
+            return show("looking where the camera is above water: " + percent(progress.share));
+        case RunStage::Frames:
             break;
     }
     waiting_said_ = false;
@@ -120,7 +126,7 @@ void Progress::show(const BakeProgress& progress) {
     if (frame_said_ && !last && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery))
         return;
     if (!terminal_ && progress.done == 0 && progress.kept == 0 &&
-        (!(progress.foam_past > 0.0) || now - last_ < kLineEvery))
+        (!(progress.share > 0.0) || now - last_ < kLineEvery))
         return;  // nothing to report yet
     frame_said_ = true;
     last_ = now;
@@ -131,7 +137,7 @@ void Progress::show(const BakeProgress& progress) {
 void Progress::show_building(double built) {
     const Clock::time_point now = Clock::now();
     if (building_said_ && now - last_ < (terminal_ ? Clock::duration(kRewriteEvery) : kLineEvery)) return;
-    const std::string share = built > 0.0 ? ": " + std::to_string(std::lround(100.0 * built)) + " %" : "";
+    const std::string share = built > 0.0 ? ": " + percent(built) : "";
     building_said_ = true;
     last_ = now;
     if (terminal_) return write_over("building the sea" + (share.empty() ? " …" : share));
@@ -139,7 +145,7 @@ void Progress::show_building(double built) {
 }
 
 void Progress::show_measuring(double done) {
-    show("measuring a small picture of the shot: " + std::to_string(std::lround(100.0 * done)) + " %");
+    show("measuring a small picture of the shot: " + percent(done));
 }
 
 void Progress::show(const std::string& line) {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "plugin/bake/bake.h"
+#include "plugin/run/run.h"
 
 namespace pelagic::cli {
 
@@ -15,8 +15,8 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    void show(const BakeProgress& progress);
-    void show(const std::string& line);  // progress of other work than a bake, as a text
+    void show(const RunProgress& progress);
+    void show(const std::string& line);  // progress of other work than a run, as a text
     void show_measuring(double done);    // of a small picture of the shot, for its budget
     void clear();                        // erases the line, so that a message can follow
 
@@ -35,9 +35,9 @@ class Progress {
 };
 
 // One line for a terminal of this width: "[######----] frame 12  13/48  3.4 frames/s  10 s left".
-std::string progress_bar(const BakeProgress& progress, int columns);
+std::string progress_bar(const RunProgress& progress, int columns);
 
 // "frame 12: 13 of 48, 3.4 frames/s, 10 s left"
-std::string progress_line(const BakeProgress& progress);
+std::string progress_line(const RunProgress& progress);
 
 }  // namespace pelagic::cli

@@ -39,4 +39,10 @@ std::string count_text(long count, const char* singular, const char* plural) {
     return std::to_string(count) + ' ' + (count == 1 ? singular : plural);
 }
 
+std::string listed(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text;
+}
+
 }  // namespace pelagic::cli

@@ -1,5 +1,5 @@
 // pelagic verify DIR …
-#include "plugin/bake/verify.h"
+#include "plugin/run/verify.h"
 
 #include <cmath>
 #include <iostream>
@@ -9,9 +9,8 @@
 
 #include "core/base/text.h"
 #include "plugin/cli/exit_status.h"
+#include "plugin/cli/guarded_run.h"
 #include "plugin/cli/help.h"
-#include "plugin/cli/progress.h"
-#include "plugin/cli/stop.h"
 #include "plugin/cli/text.h"
 #include "plugin/cli/threads.h"
 #include "plugin/cli/verb.h"
@@ -40,37 +39,39 @@ std::string summary(const Verification& found) {
 }
 
 int run(const VerifyArguments& arguments) {
-    StopSignals stop;
-    stop.files_begin();  // a check ends soon, and with a word
-    Progress progress;
-    Threads threads(arguments.threads);
-    int status = kDone;
-    for (const std::string& folder : arguments.folders) {
-        const CheckWatch watch{.progress =
-                                   [&](double done) {
-                                       progress.show("reading " + line_text(folder) + ": " +
-                                                     std::to_string(std::lround(100.0 * done)) + " %");
-                                   },
-                               .cancel = &stop.cancelled()};
-        try {
-            const Verification found = threads.execute([&] { return verify(folder, watch); });
-            progress.clear();
-            for (const Finding& finding : found.findings)
-                std::cout << word_of(finding.flaw) << ": " << line_text(folder + '/' + finding.path) << ' '
-                          << finding.what << '\n';
-            std::cout << line_text(folder) << ": " << summary(found) << std::endl;
-            if (!found.is_whole()) status = kRefused;
-        } catch (const CheckCancelled&) {
-            progress.clear();
-            std::cerr << "pelagic: stopped; " << line_text(folder) << " was not read to its end\n";
-            return kSignal + stop.number();
-        } catch (const files::FileError& error) {
-            progress.clear();
-            std::cerr << "pelagic: " << error.what() << std::endl;
-            status = kRefused;
+    std::string at;  // the folder that is read
+    const auto check_all = [&](Session& session) {
+        session.stop->files_begin();  // a check ends soon, and with a word
+        int status = kDone;
+        for (const std::string& folder : arguments.folders) {
+            at = line_text(folder);
+            const BuildWatch watch{.progress =
+                                       [&](double done) {
+                                           session.progress.show("reading " + at + ": " +
+                                                                 std::to_string(std::lround(100.0 * done)) +
+                                                                 " %");
+                                       },
+                                   .cancel = &session.stop->cancelled()};
+            try {
+                const Verification found = session.threads.execute([&] { return verify(folder, watch); });
+                session.progress.clear();
+                for (const Finding& finding : found.findings)
+                    std::cout << word_of(finding.flaw) << ": " << line_text(folder + '/' + finding.path)
+                              << ' ' << finding.what << '\n';
+                std::cout << at << ": " << summary(found) << std::endl;
+                if (!found.is_whole()) status = kRefused;
+            } catch (const files::FileError& error) {
+                session.progress.clear();
+                std::cerr << "pelagic: " << error.what() << std::endl;
+                status = kRefused;
+            }
         }
-    }
-    return status;
+        return status;
+    };
+    return guarded_run({.shot = {},
+                        .threads = arguments.threads,
+                        .stopped = [&] { return at + " was not read to its end"; }},
+                       check_all);
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ std::vector<FoamPlace> foam_places(const FoamPlan& foam, double time_s, const Pr
         return foam_rung(foam, foam_footprint_m(grid.pixel_m[i], glm::length(grid.pixel_axis_m[i]))).level;
     };
     for (std::size_t row = 0; row < static_cast<std::size_t>(grid.rows); ++row) {
-        if (cancel && cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
+        stop_if(cancel);
         for (std::size_t column = 0; column + 1 < stride; ++column) {
             const std::size_t i = row * stride + column;
             const std::array corners{i, i + 1, i + stride, i + stride + 1};

@@ -1,4 +1,5 @@
-// pelagic.bake and pelagic.Maps: what `pelagic bake` runs, into files and into arrays.
+// pelagic.bake, pelagic.render_files and pelagic.Maps: what `pelagic bake` and `pelagic render` run, into files, and a bake's maps
+// as arrays.
 #include "plugin/bake/bake.h"
 
 #include <pybind11/numpy.h>
@@ -10,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -23,13 +25,14 @@
 #include "core/plan/plan.h"
 #include "core/waves/frame.h"
 #include "plugin/bake/output_part.h"
-#include "plugin/bake/verify.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/outputs.h"
+#include "plugin/python/picture.h"
 #include "plugin/python/task.h"
 #include "plugin/python/values.h"
 #include "plugin/python/watch.h"
+#include "plugin/run/verify.h"
 
 namespace pelagic::python {
 namespace {
@@ -38,21 +41,8 @@ namespace py = pybind11;
 
 // ---- Files
 
-const char* word_of(BakeStage stage) {
-    switch (stage) {
-        case BakeStage::Planning:
-            return "planning";
-        case BakeStage::Checking:
-            return "checking";
-        case BakeStage::Building:
-            return "building";
-        case BakeStage::Frames:
-            return "frames";
-        case BakeStage::Waiting:
-            return "waiting";
-    }
-    throw std::logic_error("a bake in no stage");
-}
+// In the order of RunStage.
+constexpr std::array kStages{"planning", "checking", "building", "looking", "frames", "waiting"};
 
 using FramesAsked = std::variant<int, std::string, std::vector<int>>;
 
@@ -68,93 +58,132 @@ std::vector<int> frames_of(const std::optional<FramesAsked>& asked, const Shot& 
     return frames;
 }
 
-// A bake that was asked for; what is wrong with it is said before any work.
-struct BakeOrder {
-    Scene scene;  // a copy: other threads may change the caller's meanwhile
-    BakeOptions options;
+using Out = std::optional<std::filesystem::path>;
+using Frames = std::optional<FramesAsked>;
+using Bytes = std::optional<std::size_t>;
+
+// A run that was asked for; what is wrong with it is said before any work.
+struct RunOrder {
+    RunOrder(std::function<RunReport(const RunOptions&)> of, const Shot& shot, const Out& out,
+             const Frames& frames, bool trust_times, Bytes max_memory)
+        : work(std::move(of)) {
+        options.out = out.value_or(shot.name);
+        options.frames = frames_of(frames, shot);
+        options.max_memory_bytes = max_memory.value_or(0);
+        options.trust_times = trust_times;
+    }
+    // Without the interpreter. watch: a Watch or a Task.
+    template <class Watching>
+    RunReport run(Watching& watch) const {
+        RunOptions watched = options;
+        watched.progress = [&](const RunProgress& now) {
+            watch.tell(kStages[static_cast<std::size_t>(now.stage)], now.frame, now.done, now.kept, now.total,
+                       now.share);
+        };
+        watched.cancel = watch.flag();
+        return work(watched);
+    }
+
+    std::function<RunReport(const RunOptions&)>
+        work;  // of a copy: others may change the caller's scene meanwhile
+    RunOptions options;
 };
 
-BakeOrder order_of(const Scene& scene, const std::optional<std::filesystem::path>& out,
-                   const std::optional<FramesAsked>& frames, bool trust_times,
-                   std::optional<std::size_t> max_memory_bytes) {
+RunOrder bake_order(const Scene& scene, const Out& out, const Frames& frames, bool trust_times,
+                    Bytes max_memory) {
     require_valid(scene);
-    BakeOrder order{.scene = scene, .options = {}};
-    order.options.out = out.value_or(scene.shot.name);
-    order.options.frames = frames_of(frames, scene.shot);
-    order.options.max_memory_bytes = max_memory_bytes.value_or(0);
-    order.options.trust_times = trust_times;
-    return order;
+    return {[scene](const RunOptions& options) { return bake(scene, options); },
+            scene.shot,
+            out,
+            frames,
+            trust_times,
+            max_memory};
 }
 
-// How much of what the stage goes through is done, where that is known.
-double share_of(const BakeProgress& now) {
-    if (now.stage == BakeStage::Checking) return now.checked;
-    return now.stage == BakeStage::Frames ? now.foam_past : now.built;
-}
-
-// Without the interpreter. watch: a Watch or a Task.
-template <class Watching>
-BakeReport baked(BakeOrder order, Watching& watch) {
-    order.options.progress = [&](const BakeProgress& now) {
-        watch.tell(word_of(now.stage), now.frame, now.done, now.kept, now.total, share_of(now));
+RunOrder pictures_order(const Scene& scene, const Out& out, const Frames& frames, bool trust_times,
+                        Bytes max_memory, const PictureSize& size, std::optional<int> samples,
+                        const std::optional<std::string>& sky_quality, const std::vector<std::string>& layers,
+                        double shutter, bool alpha, double exposure) {
+    const auto work = [asked = picture_order(scene, size, samples, sky_quality, layers, shutter, alpha,
+                                             exposure)](const RunOptions& options) {
+        PictureOrder order = asked;
+        try {
+            spend_budget(order, options.max_memory_bytes, kByName,
+                         {.progress = {}, .cancel = options.cancel});
+        } catch (const BuildCancelled&) {
+            RunReport none;
+            none.cancelled = true;
+            return none;
+        }
+        return render_files(order, options);
     };
-    order.options.cancel = watch.flag();
-    return bake(order.scene, order.options);
+    return {work, scene.shot, out, frames, trust_times, max_memory};
 }
 
-BakeReport run_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
-                    const std::optional<FramesAsked>& frames, const py::object& progress,
-                    const py::object& cancel, bool trust_times, std::optional<std::size_t> max_memory_bytes) {
-    const BakeOrder order = order_of(scene, out, frames, trust_times, max_memory_bytes);
-    const auto watch = shared_watch(progress, cancel);
-    const auto report = std::make_shared<BakeReport>();
-    beside_others(watch, [=] { *report = baked(order, *watch); });
-    watch->rethrow();
-    return *report;
-}
-
-std::unique_ptr<Task> begin_bake(const Scene& scene, const std::optional<std::filesystem::path>& out,
-                                 const std::optional<FramesAsked>& frames, bool trust_times,
-                                 std::optional<std::size_t> max_memory_bytes) {
-    return std::make_unique<Task>(
-        [order = order_of(scene, out, frames, trust_times, max_memory_bytes)](Task& task) -> Task::Made {
-            return [report = baked(order, task)] { return py::cast(report); };
-        });
-}
-
-std::optional<std::filesystem::path> path_or_none(const std::filesystem::path& path) {
-    return path.empty() ? std::nullopt : std::optional(path);
+// NAME, which waits for the run, and begin_NAME, which doesn't. arguments: those of them that the order takes after max_memory.
+template <class... Asked, class... Arguments>
+void define_run(py::module_& module, const std::string& name,
+                RunOrder (*order)(const Scene&, const Out&, const Frames&, bool, Bytes, Asked...),
+                const char* doc, const char* begin_doc, const Arguments&... arguments) {
+    const auto define = [&](const std::string& named, const auto& function, const char* says,
+                            const auto&... watching) {
+        module.def(named.c_str(), function, py::arg("scene"), py::arg("out") = py::none(),
+                   py::arg("frames") = py::none(), watching..., py::kw_only(), py::arg("trust_times") = false,
+                   py::arg("max_memory_bytes") = py::none(), arguments..., says);
+    };
+    define(
+        name,
+        [order](const Scene& scene, const Out& out, const Frames& frames, const py::object& progress,
+                const py::object& cancel, bool trust_times, Bytes max_memory, Asked... asked) {
+            const auto watch = shared_watch(progress, cancel);
+            const auto report = std::make_shared<RunReport>();
+            beside_others(watch, [=, run = order(scene, out, frames, trust_times, max_memory, asked...)] {
+                *report = run.run(*watch);
+            });
+            watch->rethrow();
+            return *report;
+        },
+        doc, py::arg("progress") = py::none(), py::arg("cancel") = py::none());
+    define(
+        "begin_" + name,
+        [order](const Scene& scene, const Out& out, const Frames& frames, bool trust_times, Bytes max_memory,
+                Asked... asked) {
+            return std::make_unique<Task>([run = order(scene, out, frames, trust_times, max_memory,
+                                                       asked...)](Task& task) -> Task::Made {
+                return [report = run.run(task)] { return py::cast(report); };
+            });
+        },
+        begin_doc);
 }
 
 void add_bake_report(py::module_& module) {
-    py::class_<BakeReport>(module, "BakeReport", "What a bake did.")
-        .def_property_readonly(
-            "root", [](const BakeReport& self) { return path_or_none(self.root); },
-            "The stage, DIR/NAME.usda; None without a mesh.")
-        .def_property_readonly(
-            "maps", [](const BakeReport& self) { return path_or_none(self.maps); },
-            "The folder of the maps; None without maps.")
-        .def_property_readonly(
-            "volumes", [](const BakeReport& self) { return path_or_none(self.volumes); },
-            "The folder of the volumes; None without volumes.")
-        .def_readonly("record", &BakeReport::record, "DIR/NAME.json.")
-        .def_readonly("done", &BakeReport::done, "Frames that were baked.")
-        .def_readonly("kept", &BakeReport::kept, "Frames that were whole already.")
-        .def_readonly("total", &BakeReport::total, "Frames that were asked for.")
-        .def_readonly("cancelled", &BakeReport::cancelled,
-                      "Whether it was cancelled; what is in the files is whole, and the next bake goes on.")
-        .def_readonly("seconds", &BakeReport::seconds, "From the call to its end.")
+    py::class_<RunReport> report(module, "BakeReport", "What a bake did, or render_files().");
+    const auto add_path = [&](const char* name, std::filesystem::path RunReport::*path, const char* doc) {
+        report.def_property_readonly(
+            name, [path](const RunReport& self) { return (self.*path).empty() ? Out() : Out(self.*path); },
+            doc);
+    };
+    add_path("root", &RunReport::root, "The stage, DIR/NAME.usda; None without a mesh.");
+    add_path("maps", &RunReport::maps, "The folder of the maps; None without maps.");
+    add_path("volumes", &RunReport::volumes, "The folder of the volumes; None without volumes.");
+    add_path("record", &RunReport::record, "DIR/NAME.json; None of pictures, which have none.");
+    report.def_readonly("done", &RunReport::done, "Frames that were baked or rendered.")
+        .def_readonly("kept", &RunReport::kept, "Frames that were whole already.")
+        .def_readonly("total", &RunReport::total, "Frames that were asked for.")
+        .def_readonly("cancelled", &RunReport::cancelled,
+                      "Whether it was cancelled; what is in the files is whole, and the next run goes on.")
+        .def_readonly("seconds", &RunReport::seconds, "From the call to its end.")
         .def_readonly(
-            "stale", &BakeReport::stale,
+            "stale", &RunReport::stale,
             "Frames of the shot that lie there and belong to another version of it, or whose entry in the record was "
             "altered, not asked for.")
-        .def_readonly("foreign", &BakeReport::foreign,
+        .def_readonly("foreign", &RunReport::foreign,
                       "Files that lie there and aren't the shot's, a line each.")
         .def_readonly(
-            "unlocked", &BakeReport::unlocked,
+            "unlocked", &RunReport::unlocked,
             "Why the folder can't be locked against other bakes into it; empty where it can, as far as the "
             "system says.")
-        .def_readonly("damaged", &BakeReport::damaged,
+        .def_readonly("damaged", &RunReport::damaged,
                       "What wasn't as it was recorded, and was made again, a line each.")
         .def_property_readonly("times", &time_text,
                                "Where the time went, a line; empty where nothing was baked.");
@@ -163,18 +192,11 @@ void add_bake_report(py::module_& module) {
 std::vector<Finding> run_verify(const std::filesystem::path& folder, const py::object& progress,
                                 const py::object& cancel) {
     Watch watch(progress, cancel);
-    try {
-        Verification found;
-        beside_others(watch, [&] {
-            found =
-                verify(folder, {.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()});
-        });
-        watch.rethrow();
-        return found.findings;
-    } catch (const CheckCancelled& cancelled) {
-        watch.rethrow();
-        throw Cancelled(cancelled.what());
-    }
+    const BuildWatch checking{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
+    Verification found;
+    beside_others(
+        watch, [&] { found = verify(folder, checking); }, "the check was cancelled");
+    return found.findings;
 }
 
 void add_verify(py::module_& module) {
@@ -195,6 +217,24 @@ void add_verify(py::module_& module) {
         "findings, empty where all is as it was written.\n\n"
         "progress: called with the share that was read, 0 to 1, from the first second on. cancel: as bake()'s. "
         "Cancelled; FileError where there is no such folder.");
+}
+
+void add_render_files(py::module_& module) {
+    define_run(
+        module, "render_files", &pictures_order,
+        "Renders pictures of a scene into files, DIR/NAME.####.exr and .png, as `pelagic render` does, and the same "
+        "bits. Those that are whole already, and made of the same, are kept. Other threads run meanwhile.\n\n"
+        "out, frames, max_memory_bytes, progress, cancel, what it raises, and Ctrl-C: as bake()'s; progress is told "
+        "\"looking\" as well (share: of the cameras, those that are known to be above water), and in \"frames\" the "
+        "share of the picture at hand. size, samples, sky_quality, layers, shutter, alpha: as render()'s. exposure: "
+        "how much brighter the PNGs are [stops], -30 to 30.\n"
+        "trust_times: pictures count as whole by what they say at their beginning and end; otherwise each is read "
+        "in full.",
+        "Begins what render_files() does: a Task whose result is the BakeReport, and whose progress is what "
+        "render_files() calls progress with.",
+        py::arg("size") = py::none(), py::arg("samples") = py::none(), py::arg("sky_quality") = py::none(),
+        py::arg("layers") = std::vector<std::string>(), py::arg("shutter") = 0.0, py::arg("alpha") = false,
+        py::arg("exposure") = 0.0);
 }
 
 // ---- Arrays
@@ -257,18 +297,13 @@ std::unique_ptr<Maps> make_maps(const Scene& scene, const std::vector<std::strin
     Watch watch(progress, cancel);
     const BuildWatch building{.progress = [&](double done) { watch.tell(done); }, .cancel = watch.flag()};
     std::unique_ptr<Maps> made;
-    try {
-        beside_others(watch, [&] {
-            Plan plan = plan_bake(asked);
-            made = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
-                return std::make_unique<MapsOf<T>>(std::move(plan), building);
-            });
+    const auto make = [&] {
+        Plan plan = plan_bake(asked);
+        made = with_precision(plan.knobs.double_precision, [&]<class T>(T) -> std::unique_ptr<Maps> {
+            return std::make_unique<MapsOf<T>>(std::move(plan), building);
         });
-    } catch (const BuildCancelled& cancelled) {
-        watch.rethrow();
-        throw Cancelled(cancelled.what());
-    }
-    watch.rethrow();  // a small sea is there before it looks at the flag
+    };
+    beside_others(watch, make, "building the sea was cancelled");
     return made;
 }
 
@@ -293,16 +328,10 @@ py::tuple maps_at(const std::shared_ptr<Maps>& self, double t_s, const py::objec
                   const py::object& cancel) {
     const auto watch = shared_watch(progress, cancel);
     const auto made = std::make_shared<Slots>();
-    try {
-        beside_others(watch, [=] {
-            *made =
-                self->at(t_s, {.progress = [&](double done) { watch->tell(done); }, .cancel = watch->flag()});
-        });
-    } catch (const BuildCancelled&) {
-        watch->rethrow();
-        throw Cancelled("computing the maps was cancelled");
-    }
-    watch->rethrow();
+    const auto make = [=] {
+        *made = self->at(t_s, {.progress = [&](double done) { watch->tell(done); }, .cancel = watch->flag()});
+    };
+    beside_others(watch, make, "computing the maps was cancelled");
     const Slots& slots = *made;
     py::dict patch;
     py::list tiles;
@@ -320,10 +349,8 @@ py::tuple maps_at(const std::shared_ptr<Maps>& self, double t_s, const py::objec
 void add_bake(py::module_& module) {
     add_bake_report(module);
     add_verify(module);
-    module.def(
-        "bake", &run_bake, py::arg("scene"), py::arg("out") = py::none(), py::arg("frames") = py::none(),
-        py::arg("progress") = py::none(), py::arg("cancel") = py::none(), py::kw_only(),
-        py::arg("trust_times") = false, py::arg("max_memory_bytes") = py::none(),
+    define_run(
+        module, "bake", &bake_order,
         "Bakes a scene into files, as `pelagic bake` does, and the same bits. Files that are whole "
         "already are kept. Other threads run meanwhile.\n\n"
         "out: the folder, made where it is missing; by default ./NAME. frames: a frame, a list, a text like "
@@ -341,13 +368,10 @@ void add_bake(py::module_& module) {
         "FileError where a file can't be written, ShotError for a scene that is refused, ValueError for "
         "frames outside the shot.\n"
         "Ctrl-C: KeyboardInterrupt, within a second. Frames that are whole are kept, and the next bake goes on; a step that "
-        "takes longer ends by itself meanwhile.");
-    module.def(
-        "begin_bake", &begin_bake, py::arg("scene"), py::arg("out") = py::none(),
-        py::arg("frames") = py::none(), py::kw_only(), py::arg("trust_times") = false,
-        py::arg("max_memory_bytes") = py::none(),
+        "takes longer ends by itself meanwhile.",
         "Begins what bake() does: a Task whose result is the BakeReport, and whose progress is what bake() "
         "calls progress with.");
+    add_render_files(module);
     py::class_<Maps, std::shared_ptr<Maps>>(
         module, "Maps",
         "The maps of a scene as arrays, the values that a bake writes, in the quality's precision.\n\n"

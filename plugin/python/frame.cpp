@@ -141,7 +141,7 @@ Points<float> piece_of(const Points<float>& points, std::size_t first) {
 template <class Work>
 void in_pieces(const Points<float>& points, const BuildWatch& watch, const Work& work) {
     for (std::size_t first = 0; first < points.count; first += kPiece) {
-        if (watch.cancel && *watch.cancel) throw BuildCancelled();
+        stop_if(watch.cancel);
         alone([&] { work(piece_of(points, first), first); });
     }
 }

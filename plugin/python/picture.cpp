@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,13 +12,14 @@
 #include <vector>
 
 #include "core/plan/budget.h"
+#include "core/scene/text.h"
 #include "plugin/light/light.h"
 #include "plugin/machine/memory.h"
 #include "plugin/python/arrays.h"
 #include "plugin/python/bindings.h"
 #include "plugin/python/light.h"
+#include "plugin/python/picture.h"
 #include "plugin/python/watch.h"
-#include "plugin/render/picture_budget.h"
 #include "plugin/render/render.h"
 
 namespace pelagic::python {
@@ -34,72 +36,32 @@ py::array layer_of(const py::capsule& owner, const Picture& picture, glm::vec3 S
                               &(picture.layers.front().*layer).x, owner);
 }
 
-// Those beside the light's, which are there in any case.
-PictureLayerSet data_layers_of(const std::vector<std::string>& names) {
-    PictureLayerSet layers;
-    for (const std::string& name : names) layers |= parse_picture_layers(name);
-    return layers;
-}
-
-py::dict render_frame(const Scene& scene, int frame, const std::optional<std::array<int, 2>>& size,
-                      std::optional<int> samples, const std::optional<std::string>& sky_quality,
-                      const std::vector<std::string>& layers, double shutter, bool alpha,
-                      const py::object& progress, const py::object& cancel,
+py::dict render_frame(const Scene& scene, int frame, const PictureSize& size, std::optional<int> samples,
+                      const std::optional<std::string>& sky_quality, const std::vector<std::string>& layers,
+                      double shutter, bool alpha, const py::object& progress, const py::object& cancel,
                       std::optional<std::size_t> max_memory_bytes) {
-    Scene kept = scene;
-    if (size) kept.camera.resolution = {(*size)[0], (*size)[1]};
-    require_valid(kept);
+    PictureOrder asked = picture_order(scene, size, samples, sky_quality, layers, shutter, alpha);
+    asked.options.layers &= ~light_layers();  // which are there in any case
     const auto watch = shared_watch(progress, cancel);
-    RenderOptions options = render_options(kept);
-    if (has_budget(kept.quality)) {
-        FixedSettings fixed{.samples = samples, .shutter_frames = shutter, .layers = data_layers_of(layers)};
-        if (sky_quality) fixed.sky_quality = sky_quality_of(*sky_quality);
-        const auto found = std::make_shared<PictureBudget>();
-        try {
-            beside_others(watch, [=] {
-                *found = picture_budget(kept, fixed, max_memory_bytes.value_or(0),
-                                        {.progress = {}, .cancel = watch->flag()});
-            });
-        } catch (const BuildCancelled&) {
-            watch->rethrow();
-            throw Cancelled("rendering was cancelled");
-        }
-        const PictureBudget& budget = *found;
-        if (!budget.holds) throw py::value_error(budget.text + "; raise the budget");
-        kept = budget.scene;
-        options = budget.options;
-    }
-    if (samples) options.samples = *samples;
-    if (sky_quality) options.lighting.sky_quality = sky_quality_of(*sky_quality);
-    options.layers = data_layers_of(layers);
-    options.shutter_frames = shutter;
-    options.alpha = alpha;
-    check_render(kept, options);
-    struct Drawn {
-        Picture picture;
-        bool is_whole = false;
+    const auto drawn = std::make_shared<Picture>();
+    const auto draw = [=] {
+        PictureOrder order = asked;
+        const std::size_t most_bytes = max_memory_bytes.value_or(0);
+        spend_budget(order, most_bytes, kByName, {.progress = {}, .cancel = watch->flag()});
+        const std::array frames{frame};
+        require_memory(render_memory(order.scene, order.options, frames, std::nullopt,
+                                     tbb::this_task_arena::max_concurrency()),
+                       machine::memory_limit_or(most_bytes), "this picture");
+        // Half of the way is the sea's: the first frame is about as long in the making.
+        Renderer renderer(
+            order.scene, order.options, make_sky(order.scene), frames,
+            {.progress = [&](double done) { watch->tell(0.5 * done); }, .cancel = watch->flag()});
+        renderer.render(
+            frame, *drawn,
+            {.progress = [&](double done) { watch->tell(0.5 + 0.5 * done); }, .cancel = watch->flag()});
     };
-    const auto drawn = std::make_shared<Drawn>();
-    try {
-        beside_others(watch, [=] {
-            const std::array frames{frame};
-            require_memory(
-                render_memory(kept, options, frames, std::nullopt, tbb::this_task_arena::max_concurrency()),
-                machine::memory_limit_or(max_memory_bytes.value_or(0)), "this picture");
-            // Half of the way is the sea's: the first frame is about as long in the making.
-            Renderer renderer(
-                kept, options, make_sky(kept), frames,
-                {.progress = [&](double done) { watch->tell(0.5 * done); }, .cancel = watch->flag()});
-            drawn->is_whole = renderer.render(
-                frame, drawn->picture,
-                {.progress = [&](double done) { watch->tell(0.5 + 0.5 * done); }, .cancel = watch->flag()});
-        });
-    } catch (const BuildCancelled&) {
-        drawn->is_whole = false;
-    }
-    watch->rethrow();
-    if (!drawn->is_whole) throw Cancelled("rendering was cancelled");
-    auto picture = std::make_unique<Picture>(std::move(drawn->picture));
+    beside_others(watch, draw, "rendering was cancelled");
+    auto picture = std::make_unique<Picture>(std::move(*drawn));
     py::dict answer;
     const Picture& made = *picture;
     const py::capsule owner(picture.release(), [](void* held) { delete static_cast<Picture*>(held); });
@@ -119,6 +81,27 @@ py::dict render_frame(const Scene& scene, int frame, const std::optional<std::ar
 }
 
 }  // namespace
+
+PictureOrder picture_order(const Scene& scene, const PictureSize& size, std::optional<int> samples,
+                           const std::optional<std::string>& sky_quality,
+                           const std::vector<std::string>& layers, double shutter, bool alpha,
+                           double exposure) {
+    PictureOrder order{.scene = scene, .options = {}, .exposure_stops = exposure, .samples = samples};
+    if (sky_quality) order.sky_quality = sky_quality_of(*sky_quality);
+    if (size) order.scene.camera.resolution = {(*size)[0], (*size)[1]};
+    require_valid(order.scene);
+    if (!(std::abs(exposure) <= kMostStops))
+        throw py::value_error("exposure " + number_text(exposure) + "; accepted: stops, " +
+                              number_text(-kMostStops) + " to " + number_text(kMostStops));
+    RenderOptions& options = order.options = render_options(order.scene);
+    options.samples = samples.value_or(options.samples);
+    options.lighting.sky_quality = order.sky_quality.value_or(options.lighting.sky_quality);
+    for (const std::string& name : layers) options.layers |= parse_picture_layers(name);
+    options.shutter_frames = shutter;
+    options.alpha = alpha;
+    if (!has_budget(order.scene.quality)) check_render(order.scene, options);
+    return order;
+}
 
 void add_picture(py::module_& module) {
     module.def(

@@ -135,13 +135,8 @@ PythonSea built(const SeaOrder& order, Watching& watch) {
 
 PythonSea build_sea(const SeaOrder& order, Watch& watch) {
     std::optional<PythonSea> sea;
-    try {
-        beside_others(watch, [&] { sea = built(order, watch); });
-    } catch (const BuildCancelled& cancelled) {
-        watch.rethrow();
-        throw Cancelled(cancelled.what());
-    }
-    watch.rethrow();  // a small sea is there before it looks at the flag
+    beside_others(
+        watch, [&] { sea = built(order, watch); }, "building the sea was cancelled");
     return *sea;
 }
 

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/build_watch.h"
+
 namespace pelagic::python {
 
 // pelagic.Cancel: whoever holds it sets it, from any thread, and what was begun with it ends. Copies are the same.
@@ -166,6 +168,26 @@ void beside_others(Watch& watch, const std::function<void()>& work);
 void beside_others(const std::shared_ptr<Watch>& watch, const std::function<void()>& work);
 // Made with the interpreter held, as a Watch; may be released without.
 std::shared_ptr<Watch> shared_watch(const pybind11::object& progress, const pybind11::object& cancel);
+
+inline Watch& watch_behind(Watch& watch) {
+    return watch;
+}
+inline Watch& watch_behind(const std::shared_ptr<Watch>& watch) {
+    return *watch;
+}
+
+// The same, by the watch or what shares it. Then what a callable threw is thrown; of work that ended by BuildCancelled otherwise
+// Cancelled, in these words.
+template <class Watched>
+void beside_others(Watched& watch, const std::function<void()>& work, const char* cancelled) {
+    try {
+        beside_others(watch, work);
+    } catch (const BuildCancelled&) {
+        watch_behind(watch).rethrow();
+        throw Cancelled(cancelled);
+    }
+    watch_behind(watch).rethrow();  // small work is done before it looks at the flag
+}
 
 // The same for work that nothing can end: Ctrl-C leaves it to itself, and what it makes is dropped. So it refers to nothing that it
 // doesn't own, and to nothing of Python's.

@@ -111,7 +111,7 @@ MeasuredErrors measured(const Scene& scene, std::size_t max_memory_bytes, const 
         Picture made;
         Renderer renderer(small, options, sky, std::span(&frame, 1),
                           {.progress = {}, .cancel = watch.cancel});
-        if (!renderer.render(frame, made, {.progress = {}, .cancel = watch.cancel})) throw BuildCancelled();
+        renderer.render(frame, made, {.progress = {}, .cancel = watch.cancel});
         done += weight;
         if (watch.progress) watch.progress(std::min(done / all, 1.0));
         return made;

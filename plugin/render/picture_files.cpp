@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <glm/common.hpp>
 #include <utility>
 
@@ -17,13 +16,12 @@
 #include "core/scene/keys.h"
 #include "core/scene/text.h"
 #include "core/surface/view.h"
-#include "plugin/bake/pictures.h"
 #include "plugin/exr/exr.h"
-#include "plugin/exr/read.h"
-#include "plugin/files/files.h"
 #include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/png/png.h"
+#include "plugin/run/part.h"
+#include "plugin/run/seals.h"
 
 namespace pelagic {
 namespace {
@@ -128,9 +126,7 @@ std::vector<exr::Attribute> attributes_of(const PictureContext& context, int fra
 }  // namespace
 
 std::string picture_file(const Shot& shot, int frame, const char* extension) {
-    std::array<char, 16> number{};
-    std::snprintf(number.data(), number.size(), "%04d", frame);
-    return shot.name + "." + number.data() + "." + extension;
+    return FilePattern{shot.name + '.', std::string(".") + extension}.file(frame);
 }
 
 PictureFingerprint::PictureFingerprint(const PictureSource& source)
@@ -168,47 +164,6 @@ std::string PictureFingerprint::of(int frame) const {
     if (shot_.loop_s > 0.0)
         for (std::size_t i = 0; i < shown; ++i) hash.add("time " + number_text(shot_.time_s(moments[i])));
     return hash.text();
-}
-
-namespace {
-
-bool is_whole_of(const std::filesystem::path& file, const std::string& made_of, bool trust,
-                 CheckProgress& progress) {
-    progress.add(0);
-    if (!files::carries(file, made_of)) return false;
-    if (!trust) return picture_problem(file, progress).empty();
-    // A PNG ends with an empty chunk called IEND and its checksum.
-    return file.extension() == ".exr" ? exr::ends_whole(file) : files::carries(file, "IEND\xae\x42\x60\x82");
-}
-
-}  // namespace
-
-bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of,
-                      const PictureCheck& check) {
-    CheckProgress progress(check.watch, files::file_size(file).value_or(0));
-    return is_whole_of(file, made_of, check.trust, progress);
-}
-
-std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const Shot& shot,
-                                     const PictureFingerprint& fingerprint, std::span<const int> frames,
-                                     const PictureCheck& check) {
-    constexpr std::array kExtensions{"png", "exr"};
-    std::uintmax_t total = 0;
-    for (const int frame : frames)
-        for (const char* extension : kExtensions)
-            total += files::file_size(folder / picture_file(shot, frame, extension)).value_or(0);
-    CheckProgress progress(check.watch, total);
-    std::vector<char> whole(frames.size());
-    tbb::parallel_for(std::size_t(0), frames.size(), [&](std::size_t i) {
-        whole[i] = std::all_of(kExtensions.begin(), kExtensions.end(), [&](const char* extension) {
-            return is_whole_of(folder / picture_file(shot, frames[i], extension), fingerprint.of(frames[i]),
-                               check.trust, progress);
-        });
-    });
-    std::vector<int> unfinished;
-    for (std::size_t i = 0; i < frames.size(); ++i)
-        if (!whole[i]) unfinished.push_back(frames[i]);
-    return unfinished;
 }
 
 std::string encode_exr(const PictureContext& context, const Picture& picture, int frame) {

@@ -1,13 +1,9 @@
 // Pictures as the bytes of files: HDR with its layers, and as a screen shows it.
 #pragma once
 
-#include <filesystem>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "core/scene/scene.h"
-#include "plugin/bake/check.h"
 #include "plugin/render/render.h"
 
 namespace pelagic {
@@ -48,22 +44,6 @@ class PictureFingerprint {
     RenderOptions options_;
     std::string source_;
 };
-
-// How pictures that are there are looked at.
-struct PictureCheck {
-    bool trust = false;  // what they say at their beginning and end; otherwise every byte is read
-    CheckWatch watch{};
-};
-
-// Whether the file is there, whole, under its own name, and was made of this. Throws CheckCancelled.
-bool is_whole_picture(const std::filesystem::path& file, const std::string& made_of,
-                      const PictureCheck& check = {});
-
-// Those of the frames of which the folder hasn't both files as they would be made now, in their order. Reads files
-// side by side. Throws CheckCancelled.
-std::vector<int> unfinished_pictures(const std::filesystem::path& folder, const Shot& shot,
-                                     const PictureFingerprint& fingerprint, std::span<const int> frames,
-                                     const PictureCheck& check = {});
 
 // EXR: scan lines; R, G, B, with alpha A, and the layers that the options name (kPictureLayers), those of the light in
 // the sky's units; halves where no value that the light can give is beyond their range, floats for the others. The

@@ -30,8 +30,8 @@ namespace pelagic {
 class Renderer::Impl {
   public:
     virtual ~Impl() = default;
-    virtual bool render(int frame, Picture& picture, const RenderWatch& watch) = 0;
-    virtual bool check_cameras(std::span<const int> frames, const RenderWatch& watch) = 0;
+    virtual void render(int frame, Picture& picture, const BuildWatch& watch) = 0;
+    virtual void check_cameras(std::span<const int> frames, const BuildWatch& watch) = 0;
     virtual const Plan& plan() const = 0;
     virtual const Sky& sky() const = 0;
 };
@@ -57,7 +57,7 @@ class RendererOf final : public Impl {
     const Plan& plan() const override { return sea_.plan(); }
     const Sky& sky() const override { return sea_.sky(); }
 
-    bool render(int frame, Picture& picture, const RenderWatch& watch) override {
+    void render(int frame, Picture& picture, const BuildWatch& watch) override {
         const int n = options_.samples;
         clear(picture);
         const std::vector<double> moments = moments_of(frame, options_);
@@ -68,9 +68,8 @@ class RendererOf final : public Impl {
         std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return moments[a] < moments[b]; });
         double begun = 0.0;  // the share of the pass that its foam's past took
         int ended = 0;       // passes
-        const auto go_on = [&](double done) {
+        const auto tell = [&](double done) {
             if (watch.progress) watch.progress((ended + begun + (1.0 - begun) * done) / passes);
-            return !is_cancelled(watch);
         };
         for (const int pass : order) {
             // With a shutter the first pass is for what isn't blurred, and each of the others takes one sample.
@@ -81,16 +80,16 @@ class RendererOf final : public Impl {
                                     : SamplesOfPass{n, {sample % n, sample / n}};
             const bool is_answered = is_lit || has_data();
             begun = 0.0;
-            if (!begin(moments[pass], watch)) return false;
+            begin(moments[pass], watch);
             const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
             if (is_answered && sea_.foam_lives()) {
                 const BuildWatch past{.progress =
                                           [&](double done) {
                                               begun = 0.5 * done;
-                                              go_on(0.0);
+                                              tell(0.0);
                                           },
                                       .cancel = watch.cancel};
-                if (!prepare_foam(moments[pass], past)) return false;
+                prepare_foam(moments[pass], past);
             }
             for (int row = 0; row < height; row += step) {
                 const int rows = std::min(step, height - row);
@@ -103,30 +102,26 @@ class RendererOf final : public Impl {
                 if (is_lit) light_sea();
                 if (is_lit) average(row, rows, picture);
                 if (is_own) describe(row, rows, frame, picture);
-                if (!go_on(static_cast<double>(row + rows) / height)) return false;
+                tell(static_cast<double>(row + rows) / height);
+                stop_if(watch.cancel);
             }
             ++ended;
         }
-        return true;
     }
 
-    bool check_cameras(std::span<const int> frames, const RenderWatch& watch) override {
+    void check_cameras(std::span<const int> frames, const BuildWatch& watch) override {
         for (std::size_t i = 0; i < frames.size(); ++i)
             for (const double moment : moments_of(frames[i], options_)) {
                 if (!is_among_waves(view_at(scene_.camera, moment), grid_options_)) continue;
-                if (!set(moment, watch)) return false;
+                sea_.set(scene_.shot.time_s(moment), watch.cancel);
                 refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
                 if (watch.progress)
                     watch.progress(static_cast<double>(i + 1) / static_cast<double>(frames.size()));
-                if (is_cancelled(watch)) return false;
+                stop_if(watch.cancel);
             }
-        return true;
     }
 
   private:
-    static bool is_cancelled(const RenderWatch& watch) {
-        return watch.cancel && watch.cancel->load(std::memory_order_relaxed);
-    }
     bool has_data() const { return data_components(options_.layers) > 0; }
     glm::ivec2 raster_size() const { return view_.resolution / sampling_.stride; }
 
@@ -145,49 +140,36 @@ class RendererOf final : public Impl {
     int rows_of_pass() const { return rows_of_batch(raster_size().x, options_.samples / sampling_.stride); }
 
     // Makes the foam that earlier times have left where the samples look. So the samples' places are found twice,
-    // which takes far less than going through the past once for each batch. False when it was cancelled.
-    bool prepare_foam(double moment, const BuildWatch& watch) {
+    // which takes far less than going through the past once for each batch.
+    void prepare_foam(double moment, const BuildWatch& watch) {
         sea_.begin_foam(scene_.shot.time_s(moment));
         const auto [height, step] = std::pair(raster_size().y, rows_of_pass());
         for (int row = 0; row < height; row += step) {
-            if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) return false;
+            stop_if(watch.cancel);
             draw(row, std::min(step, height - row));
             if (batch_.sea.empty()) continue;
             find_places(row);
             sea_.ask_foam(batch_.seen.points());
         }
-        try {
-            sea_.prepare_foam(watch);
-        } catch (const BuildCancelled&) {
-            return false;
-        }
-        return true;
+        sea_.prepare_foam(watch);
     }
 
-    bool set(double moment, const RenderWatch& watch) {
-        try {
-            sea_.set(scene_.shot.time_s(moment), watch.cancel);
-            return true;
-        } catch (const BuildCancelled&) {
-            return false;
-        }
-    }
-
-    // False when it was cancelled, here and below: of large pictures each step takes tenths of a second.
-    bool begin(double moment, const RenderWatch& watch) {
-        if (!set(moment, watch)) return false;
+    // Of large pictures each step takes tenths of a second.
+    void begin(double moment, const BuildWatch& watch) {
+        sea_.set(scene_.shot.time_s(moment), watch.cancel);
         refuse_under_water(sea_.frame(), scene_, moment, grid_options_);
         const double height_m = view_.position_m.z;
         view_ = view_at(scene_.camera, moment);
         if (air_.empty() || view_.position_m.z != height_m) air_ = sea_.air_before(view_.position_m.z);
-        if (is_cancelled(watch) || !lay_out_grid(watch)) return false;
+        stop_if(watch.cancel);
+        lay_out_grid(watch);
         spray_ = sea_.spray_before(view_, grid_options_);
-        return !is_cancelled(watch);
+        stop_if(watch.cancel);
     }
 
-    bool lay_out_grid(const RenderWatch& watch) {
+    void lay_out_grid(const BuildWatch& watch) {
         grid_ = projected_grid(view_, grid_options_);
-        if (is_cancelled(watch)) return false;
+        stop_if(watch.cancel);
         first_pixel_m_ = T(0);
         if (plan().queries[kQuery].query.pixel_m.size() > 1) {
             const ProjectedGridNeeds own = projected_grid_needs(view_, grid_options_);
@@ -212,9 +194,9 @@ class RendererOf final : public Impl {
                            .cell_m = {cell_m_.data()},
                            .cell_axis_m = {cell_axis_m_.data()}},
                  results);
-        if (is_cancelled(watch)) return false;
+        stop_if(watch.cancel);
         find_mesh_variance();
-        if (is_cancelled(watch)) return false;
+        stop_if(watch.cancel);
         constexpr double kFirst_m = 1e-6;  // in double precision as good as the eye itself
         for (glm::vec<3, T>& position : position_)
             position = glm::vec<3, T>(on_earth(glm::dvec3(position), grid_.curvature_per_m));
@@ -232,11 +214,11 @@ class RendererOf final : public Impl {
             clip_[i].y -= shift.y * clip_[i].w;
         }
         const ProjectedGridSize size{grid_.columns, grid_.rows};
-        if (is_cancelled(watch)) return false;
+        stop_if(watch.cancel);
         if (size != triangles_size_) triangles_ = projected_grid_triangles(size);
         triangles_size_ = size;
         raster_.set(clip_, triangles_, raster_size());
-        return !is_cancelled(watch);
+        stop_if(watch.cancel);
     }
 
     // The slopes that the cells leave unresolved, at rest.
@@ -514,11 +496,11 @@ Renderer::Renderer(const Scene& scene, const RenderOptions& options, Sky sky, st
 
 Renderer::~Renderer() = default;
 
-bool Renderer::render(int frame, Picture& picture, const RenderWatch& watch) {
-    return impl_->render(frame, picture, watch);
+void Renderer::render(int frame, Picture& picture, const BuildWatch& watch) {
+    impl_->render(frame, picture, watch);
 }
-bool Renderer::check_cameras(std::span<const int> frames, const RenderWatch& watch) {
-    return impl_->check_cameras(frames, watch);
+void Renderer::check_cameras(std::span<const int> frames, const BuildWatch& watch) {
+    impl_->check_cameras(frames, watch);
 }
 const Plan& Renderer::plan() const {
     return impl_->plan();

@@ -11,9 +11,7 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -22,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/build_watch.h"
 #include "core/lighting/lighting.h"
 #include "core/lighting/sky.h"
 #include "core/plan/memory.h"
@@ -95,12 +94,6 @@ inline constexpr int kPicturesInFlight = 2;
 MemoryNeed render_memory(const Scene& scene, const RenderOptions& options, std::span<const int> frames,
                          std::optional<int> in_flight, int threads);
 
-// A large picture takes long: both are looked at after each part of it.
-struct RenderWatch {
-    std::function<void(double done)> progress{};  // 0 … 1, from the calling thread; may be empty
-    const std::atomic<bool>* cancel = nullptr;    // set from elsewhere
-};
-
 class Renderer {
   public:
     // The scene must be valid; its own sky (make_sky()), or another one; the frames that will be rendered, at
@@ -114,14 +107,14 @@ class Renderer {
 
     // One frame of the shot at the camera's resolution, into a picture whose memory is used again. On all
     // threads of the calling arena; the same bits whatever their number and whichever frame came before.
-    // Every value is finite. False when it was cancelled: the picture is then only partly there. Throws
-    // std::invalid_argument for a camera under water (plugin/render/under_water.h).
-    bool render(int frame, Picture& picture, const RenderWatch& watch = {});
+    // Every value is finite. `watch` is told from the calling thread. Throws BuildCancelled, the picture being only
+    // partly there, and std::invalid_argument for a camera under water (plugin/render/under_water.h).
+    void render(int frame, Picture& picture, const BuildWatch& watch = {});
 
     // Throws what render() would throw for the first of these frames whose camera is under water, before hours
     // are spent on the others. Frames whose camera is above the highest crest to be expected cost nothing, each
-    // other one its transforms. False when it was cancelled.
-    bool check_cameras(std::span<const int> frames, const RenderWatch& watch = {});
+    // other one its transforms. Throws BuildCancelled.
+    void check_cameras(std::span<const int> frames, const BuildWatch& watch = {});
 
     const Plan& plan() const;
     const Sky& sky() const;

@@ -185,7 +185,7 @@ void overlap_table(const Scene& scene, Sequence& sequence, int rounds, const fs:
     const auto wall_of = [&](const PipelineStages& stages) {
         return run_pipeline(frames, kFramesInFlight, stages).wall_s;
     };
-    BakeReport report;
+    RunReport report;
     std::vector<Way> ways{
         {"computing alone",
          [&] { return wall_of({.compute = compute, .encode = nothing, .write = nothing}); }},
@@ -235,7 +235,7 @@ void overlap_table(const Scene& scene, Sequence& sequence, int rounds, const fs:
 // What checksums cost: the bytes of a bake are hashed as they are written, and read and hashed by the next one.
 void resume_table(const Scene& scene, int rounds, const fs::path& folder) {
     const auto again = [&](bool trust_times) {
-        BakeOptions options;
+        RunOptions options;
         options.out = folder;
         options.trust_times = trust_times;
         return bake(scene, options).seconds;

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "plugin/bake/record.h"
 #include "plugin/files/checksum.h"
+#include "plugin/run/record.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace pelagic;

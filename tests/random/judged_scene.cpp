@@ -234,7 +234,7 @@ void judge_bake(const Scene& scene, const fs::path& folder) {
     for (const int threads : kThreads) {
         const Threads limit(threads);
         const fs::path out = folder / ("baked-" + std::to_string(threads));
-        const BakeReport report = bake(scene, {.out = out, .frames = {}, .progress = {}, .cancel = nullptr});
+        const RunReport report = bake(scene, {.out = out, .frames = {}, .progress = {}, .cancel = nullptr});
         if (report.done != report.total)
             throw Failed("an unfinished bake",
                          std::to_string(report.done) + " of " + std::to_string(report.total) + " frames");

@@ -288,7 +288,7 @@ TEST(Accuracy, ACancelledSweepEnds) {
     const std::atomic<bool> cancel = true;
     EXPECT_THROW(
         sweep(row_called("files"), small_shot(), 1, {.progress = {}, .picture = {}, .cancel = &cancel}),
-        SweepCancelled);
+        BuildCancelled);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ class Bakes : public ::testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
     nlohmann::json bake_and_read(const Scene& scene, std::vector<int> frames = {}) {
-        const BakeReport report =
+        const RunReport report =
             bake(scene, {.out = folder_, .frames = std::move(frames), .progress = {}, .cancel = nullptr});
         std::ifstream stream(report.record);
         return nlohmann::json::parse(stream);
@@ -80,7 +80,7 @@ TEST_F(Bakes, FramesOfAnotherVersionAreReportedAsStale) {
     Scene scene = small_scene();
     bake_and_read(scene);
     scene.sea.wind_speed_mps = 5.0;
-    const BakeReport report = bake(scene, {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr});
+    const RunReport report = bake(scene, {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr});
     EXPECT_EQ(report.kept, 0);
     EXPECT_EQ(report.stale, (std::vector<int>{2, 3}));
 }
@@ -92,7 +92,7 @@ TEST_F(Bakes, FramesWithOneStaleOutputAreReported) {
     scene.output.map_resolution = 8;
     bake_and_read(scene);
     scene.output.map_resolution = 16;
-    const BakeReport report = bake(scene, {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr});
+    const RunReport report = bake(scene, {.out = folder_, .frames = {1}, .progress = {}, .cancel = nullptr});
     EXPECT_EQ(report.stale, (std::vector<int>{2, 3}));
 }
 
@@ -206,7 +206,7 @@ TEST_F(Bakes, AProjectedGridIsTheCamerasOwn) {
          {"mesh/sea.topology.usda", "mesh/sea.0001.usda", "mesh/sea.0002.usda", "sea.usda"})
         EXPECT_TRUE(fs::exists(folder_ / file)) << file;
     // Another pose is another mesh, at the frame that has it; to a patch it is nothing.
-    const BakeOptions again{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
+    const RunOptions again{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
     EXPECT_EQ(bake(scene, again).kept, 2);
     scene.camera.keys.back().position_m.z += 1.0;
     EXPECT_EQ(bake(scene, again).kept, 1);
@@ -296,7 +296,7 @@ TEST_F(Bakes, TwoShotsShareAFolder) {
     EXPECT_EQ(baked(one).kept, 0);
     EXPECT_EQ(baked(one).kept, 3);
     EXPECT_EQ(baked(two).kept, 0);
-    const BakeReport again = baked(one);
+    const RunReport again = baked(one);
     EXPECT_EQ(again.kept, 3);
     EXPECT_EQ(again.foreign, std::vector<std::string>()) << "the other one has its own record";
 }
@@ -359,11 +359,11 @@ TEST_F(Bakes, CancelledInTheMiddleTheRecordHoldsWhatIsWholeAndTheNextRunTheRest)
     scene.output.map_resolution = 8;
     std::atomic<bool> cancel{false};
     int told = 0;
-    const auto stop_at_seven = [&](const BakeProgress& progress) {
+    const auto stop_at_seven = [&](const RunProgress& progress) {
         told = progress.done;
         if (progress.done == 7) cancel = true;
     };
-    const BakeReport report =
+    const RunReport report =
         bake(scene, {.out = folder_, .frames = {}, .progress = stop_at_seven, .cancel = &cancel});
     EXPECT_TRUE(report.cancelled);
     EXPECT_EQ(report.done, told);
@@ -374,7 +374,7 @@ TEST_F(Bakes, CancelledInTheMiddleTheRecordHoldsWhatIsWholeAndTheNextRunTheRest)
     for (int frame = 1; frame <= report.done; ++frame)
         EXPECT_EQ(std::count(recorded.begin(), recorded.end(), std::to_string(frame)), 1) << frame;
     EXPECT_EQ(time_text(report), "") << "of frames that nobody waited for there is nothing to say";
-    const BakeReport rest = bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
+    const RunReport rest = bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
     EXPECT_EQ(rest.kept, report.done);
     EXPECT_EQ(frames_in(rest.record).size(), 40u);
 }
@@ -387,7 +387,7 @@ TEST_F(Bakes, AFileThatCantBeWrittenEndsTheBakeWithAllBeforeItRecordedAndNothing
     scene.output.map_resolution = 8;
     const fs::path in_the_way = folder_ / "maps/sea.normal.0006.exr";
     fs::create_directories(in_the_way);
-    const BakeOptions options{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
+    const RunOptions options{.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr};
     try {
         bake(scene, options);
         ADD_FAILURE() << "no error";
@@ -402,7 +402,7 @@ TEST_F(Bakes, AFileThatCantBeWrittenEndsTheBakeWithAllBeforeItRecordedAndNothing
 }
 
 TEST(TimeText, SaysWhichStageWasBusyAndWhoWasWaitedFor) {
-    BakeReport report;
+    RunReport report;
     EXPECT_EQ(time_text(report), "");
     report.done = 3;
     report.times = {.wall_s = 10.0,
@@ -426,7 +426,7 @@ TEST(TimeText, SaysWhichStageWasBusyAndWhoWasWaitedFor) {
 // One run bakes frames 2 and 3 while another is between its frame and its end: neither forgets the other's.
 TEST_F(Bakes, RunsSideBySideRecordTheFramesOfBoth) {
     bool begun = false;
-    const auto meanwhile = [&](const BakeProgress& progress) {
+    const auto meanwhile = [&](const RunProgress& progress) {
         if (begun || progress.done == 0) return;
         begun = true;
         bake(small_scene(), {.out = folder_, .frames = {2, 3}, .progress = {}, .cancel = nullptr});

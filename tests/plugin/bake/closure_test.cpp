@@ -24,9 +24,9 @@
 #include "plugin/bake/bake.h"
 #include "plugin/exr/exr.h"
 #include "plugin/files/files.h"
-#include "plugin/light/exposure.h"
 #include "plugin/light/light.h"
 #include "plugin/render/picture_files.h"
+#include "plugin/render/render_files.h"
 #include "plugin/vdb/vdb.h"
 #include "tests/plugin/bake/closure_shots.h"
 
@@ -58,37 +58,19 @@ struct Made {
 };
 
 Made render_into(const Scene& scene, const fs::path& folder) {
-    const RenderOptions options = render_options(scene);
+    const PictureOrder order{.scene = scene, .options = render_options(scene)};
     const PictureFingerprint fingerprint(
-        {.scene = scene, .options = options, .sky_content = sky_content(scene)});
-    std::vector<int> all;
-    for (int frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame) all.push_back(frame);
+        {.scene = scene, .options = order.options, .sky_content = sky_content(scene)});
     Made made;
-    for (const int frame : all)
+    for (int frame = scene.shot.first_frame; frame <= scene.shot.last_frame; ++frame)
         for (const char* extension : {"png", "exr"})
             made.fingerprints[picture_file(scene.shot, frame, extension)] = fingerprint.of(frame);
-    const std::vector<int> frames = unfinished_pictures(folder, scene.shot, fingerprint, all);
-    if (frames.empty()) return made;
-    files::ensure_folder(folder);
-    Renderer renderer(scene, options, make_sky(scene), frames);
-    Picture picture;
-    for (const int frame : frames) {
-        renderer.render(frame, picture);
-        const PictureContext context{.scene = scene,
-                                     .options = options,
-                                     .sky = renderer.sky(),
-                                     .made_of = fingerprint.of(frame),
-                                     .exposure = shot_exposure(scene, renderer.sky())};
-        files::write_atomically(folder / picture_file(scene.shot, frame, "png"),
-                                encode_png(context, picture, frame));
-        files::write_atomically(folder / picture_file(scene.shot, frame, "exr"),
-                                encode_exr(context, picture, frame));
-    }
+    render_files(order, {.out = folder, .frames = {}, .progress = {}, .cancel = nullptr});
     return made;
 }
 
 Made bake_into(const Scene& scene, const fs::path& folder) {
-    const BakeReport report = bake(scene, {.out = folder, .frames = {}, .progress = {}, .cancel = nullptr});
+    const RunReport report = bake(scene, {.out = folder, .frames = {}, .progress = {}, .cancel = nullptr});
     Made made{.fingerprints = {}, .foreign = report.foreign};
     const nlohmann::json record = nlohmann::json::parse(bytes_of(report.record));
     for (const auto& [frame, entry] : record.at("frames").items())

@@ -194,7 +194,7 @@ TEST_F(FarOut, AStepOfTheOriginMovesNothing) {
         key.position_m.x += kStep_m;
         key.look_at_m.x += kStep_m;
     }
-    const BakeReport report = bake(scene, {.out = folder_, .frames = {3}, .progress = {}, .cancel = nullptr});
+    const RunReport report = bake(scene, {.out = folder_, .frames = {3}, .progress = {}, .cancel = nullptr});
     EXPECT_EQ(report.done, 1);
     EXPECT_EQ(read(scene, 3).origin_m, origins_m[3] + glm::dvec3(kStep_m, 0.0, 0.0));
 }

@@ -111,9 +111,9 @@ TEST(BakedFoam, SaysHowFarItsPastIs) {
     scene.shot.last_frame = 1;
     int during = 0;
     double last = 1.0;
-    bake(scene, {.out = folder, .frames = {}, .progress = [&](const BakeProgress& now) {
-                     during += now.stage == BakeStage::Frames && now.done == 0 && now.foam_past > 0.0;
-                     last = now.foam_past;
+    bake(scene, {.out = folder, .frames = {}, .progress = [&](const RunProgress& now) {
+                     during += now.stage == RunStage::Frames && now.done == 0 && now.share > 0.0;
+                     last = now.share;
                  }});
     fs::remove_all(folder);
     EXPECT_GT(during, 5);

@@ -127,7 +127,7 @@ Scene golden_shot() {
 }
 
 void add_bake(const Scene& scene, const fs::path& folder, Hashes& hashes) {
-    const BakeReport report = bake(scene, {.out = folder, .frames = {}, .progress = {}, .cancel = nullptr});
+    const RunReport report = bake(scene, {.out = folder, .frames = {}, .progress = {}, .cancel = nullptr});
     const Plan plan = plan_bake(scene);
     const std::string name = scene.shot.name + '.';
     for (const PlannedOutput& output : plan.outputs) {

@@ -182,7 +182,7 @@ class StageLightTest : public ::testing::Test {
     void TearDown() override { fs::remove_all(folder_); }
 
     std::string baked(const Scene& scene) const {
-        const BakeReport report =
+        const RunReport report =
             bake(scene, {.out = folder_, .frames = {}, .progress = {}, .cancel = nullptr});
         EXPECT_EQ(report.foreign, std::vector<std::string>{});
         return text_of(report.root);
@@ -332,7 +332,7 @@ TEST_F(StageLightTest, WhatIsNoSkyIsRefusedBeforeAnythingIsDone) {
     EXPECT_THROW(
         bake(scene, {.out = folder_ / "out",
                      .frames = {},
-                     .progress = [&](const BakeProgress& p) { building += p.stage != BakeStage::Planning; },
+                     .progress = [&](const RunProgress& p) { building += p.stage != RunStage::Planning; },
                      .cancel = nullptr}),
         std::invalid_argument);
     EXPECT_EQ(building, 0);

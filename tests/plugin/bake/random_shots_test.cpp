@@ -260,7 +260,7 @@ TEST_P(RandomShots, AreBakedToFiniteNumbersOrRefused) {
             const fs::path out = folder / std::to_string(threads);
             try {
                 const Scene scene = load_shot(folder / "shot.toml", check_scene);
-                const BakeReport report =
+                const RunReport report =
                     bake(scene, {.out = out, .frames = {}, .progress = {}, .cancel = nullptr});
                 ASSERT_EQ(report.done, report.total);
                 ASSERT_EQ(report.executed_transforms, report.done * plan_bake(scene).transforms_per_frame());

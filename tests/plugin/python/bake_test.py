@@ -333,5 +333,64 @@ class Pictures(unittest.TestCase):
                 pelagic.render(shot(), 1, **wrong)
 
 
+class PictureFiles(InFolder):
+    LOOK = {"size": (32, 20), "samples": 1, "layers": ["depth"], "exposure": 1.0}
+
+    def render(self, **more):
+        return pelagic.render_files(shot(), self.path / "ours", **self.LOOK | more)
+
+    def command_line(self):
+        shot().save(self.path / "shot.toml")
+        subprocess.run([PROGRAM, "render", str(self.path / "shot.toml"), "--out", str(self.path / "theirs"), "--size", "32x20",
+                        "--samples", "1", "--layers", "sun,sky,sea,foam,air,depth", "--exposure", "1"],
+                       check=True, stdout=subprocess.DEVNULL)
+        return files(self.path / "theirs")
+
+    def test_they_are_the_command_lines_and_rendering_goes_on(self):
+        cancel = pelagic.Cancel()
+
+        def first(stage, frame, done, kept, total, share):
+            if stage == "frames" and done == 1:
+                cancel.set()
+
+        begun = self.render(progress=first, cancel=cancel)
+        self.assertTrue(begun.cancelled)
+        self.assertIn(begun.done, (1, 2))
+        report = self.render()
+        self.assertEqual((report.done, report.kept, report.total, report.cancelled), (3 - begun.done, begun.done, 3, False))
+        self.assertEqual((report.root, report.record), (None, None))
+        theirs = self.command_line()
+        self.assertEqual(len(theirs), 6)
+        self.assertEqual(files(self.path / "ours"), theirs)
+        picture = self.path / "ours" / "bay.0002.exr"
+        picture.write_bytes(picture.read_bytes()[:-100] + bytes(100))
+        self.assertEqual([found.path for found in pelagic.verify(self.path / "ours")], ["bay.0002.exr"])
+        report = self.render()
+        self.assertEqual((report.done, report.kept), (1, 2))
+        self.assertEqual(files(self.path / "ours"), theirs)
+
+    def test_others_are_named_and_wrong_ones_refused(self):
+        self.render()
+        (self.path / "ours" / "bay.0009.png").write_bytes(b"somebody's")
+        report = self.render(frames=[2], samples=2)
+        self.assertEqual((report.done, report.stale), (1, [1, 3]))
+        self.assertEqual(len(report.foreign), 1)
+        for wrong in (dict(samples=0), dict(exposure=31.0), dict(exposure=float("nan")), dict(layers=["z"]), dict(frames=9),
+                      dict(frames="1-9"), dict(sky_quality="ten")):
+            with self.assertRaises(ValueError, msg=wrong):
+                self.render(**wrong)
+            with self.assertRaises(ValueError, msg=wrong):
+                pelagic.begin_render_files(shot(), self.path / "none", **self.LOOK | wrong).result()
+        with self.assertRaises(MemoryError):
+            self.render(max_memory_bytes=1 << 20, frames=1, alpha=True)
+        self.assertFalse((self.path / "none").exists())
+
+    def test_a_task_makes_the_same(self):
+        task = pelagic.begin_render_files(shot(), self.path / "ours", **self.LOOK)
+        self.assertEqual(task.result().done, 3)
+        self.assertEqual(task.progress[:5], ("frames", 3, 3, 0, 3))
+        self.assertEqual(files(self.path / "ours"), self.command_line())
+
+
 if __name__ == "__main__":
     unittest.main()

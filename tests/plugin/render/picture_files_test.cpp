@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "core/scene/keys.h"
-#include "plugin/bake/pictures.h"
+#include "plugin/run/seals.h"
 
 namespace pelagic {
 namespace {
@@ -199,13 +199,20 @@ TEST(PictureFiles, AreWholeWithTheirFingerprintAndTheirEnd) {
         const auto write = [&](const std::string& content) {
             std::ofstream(file, std::ios::binary).write(content.data(), std::ssize(content));
         };
-        EXPECT_FALSE(is_whole_picture(file, "0123456789abcdef")) << name << " isn't there";
+        const auto is_whole = [&](const std::string& made_of) {
+            const BuildWatch watch;
+            CheckProgress progress(watch, 0);
+            const bool seems = seems_whole(file, made_of);
+            EXPECT_LE(seems, picture_problem(file, progress).empty()) << name;
+            return seems;
+        };
+        EXPECT_FALSE(is_whole("0123456789abcdef")) << name << " isn't there";
         write(bytes);
-        EXPECT_TRUE(is_whole_picture(file, "0123456789abcdef")) << name;
-        EXPECT_FALSE(is_whole_picture(file, "fedcba9876543210")) << name;
+        EXPECT_TRUE(is_whole("0123456789abcdef")) << name;
+        EXPECT_FALSE(is_whole("fedcba9876543210")) << name;
         for (const std::size_t cut : {std::size_t{1}, std::size_t{30}, bytes.size() / 2, bytes.size() - 9}) {
             write(bytes.substr(0, bytes.size() - cut));
-            EXPECT_FALSE(is_whole_picture(file, "0123456789abcdef")) << name << " less " << cut;
+            EXPECT_FALSE(is_whole("0123456789abcdef")) << name << " less " << cut;
         }
     }
     std::filesystem::remove_all(folder);
@@ -222,7 +229,7 @@ TEST(PictureFiles, ShowEveryDamage) {
     const std::filesystem::path folder =
         std::filesystem::temp_directory_path() / ("pelagic-damaged-" + std::to_string(getpid()));
     std::filesystem::create_directory(folder);
-    const CheckWatch watch;
+    const BuildWatch watch;
     for (const auto& [extension, bytes, other] :
          {std::tuple{"exr", encode_exr(context, picture, 1), encode_exr(context, picture, 2)},
           {"png", encode_png(context, picture, 1), encode_png(context, picture, 2)}}) {

@@ -49,7 +49,7 @@ std::vector<int> all_frames(const Scene& scene) {
 Picture picture_of(const Scene& scene, const RenderOptions& options, int frame = 1) {
     Renderer renderer(scene, options, uniform_sky(), all_frames(scene));
     Picture picture;
-    EXPECT_TRUE(renderer.render(frame, picture));
+    renderer.render(frame, picture);
     return picture;
 }
 Picture picture_of(const Scene& scene, int frame = 1) {
@@ -226,9 +226,9 @@ TEST(Render, SameBitsForAnyNumberOfThreadsAndOrderOfFrames) {
     EXPECT_TRUE(same_bits(one, on_threads(4)));
     Renderer renderer(scene, options, uniform_sky(), all_frames(scene));
     Picture again;
-    ASSERT_TRUE(renderer.render(9, again));
+    renderer.render(9, again);
     EXPECT_FALSE(same_bits(one, again));  // the sea moves
-    ASSERT_TRUE(renderer.render(5, again));
+    renderer.render(5, again);
     EXPECT_TRUE(same_bits(one, again));
 }
 
@@ -330,7 +330,7 @@ TEST(Render, TermsThatAreOffAreBlack) {
         lighting.sky_quality = SkyQuality::One;
         Renderer renderer(scene, {.lighting = lighting}, sky, all_frames(scene));
         Picture picture;
-        EXPECT_TRUE(renderer.render(1, picture));
+        renderer.render(1, picture);
         return picture;
     };
     const Picture all = with({});
@@ -377,13 +377,13 @@ TEST(Render, TellsHowFarItIsAndStopsWhenAsked) {
     Renderer renderer(scene, render_options(scene), uniform_sky(), all_frames(scene));
     Picture picture;
     double done = 0.0;
-    EXPECT_TRUE(renderer.render(1, picture, {.progress = [&](double part) {
-                                    EXPECT_GT(part, done);
-                                    done = part;
-                                }}));
+    renderer.render(1, picture, {.progress = [&](double part) {
+                        EXPECT_GT(part, done);
+                        done = part;
+                    }});
     EXPECT_EQ(done, 1.0);
     const std::atomic<bool> stop = true;
-    EXPECT_FALSE(renderer.render(1, picture, {.cancel = &stop}));
+    EXPECT_THROW(renderer.render(1, picture, {.cancel = &stop}), BuildCancelled);
 }
 
 TEST(Render, RefusesWhatItCannotDo) {

@@ -3,6 +3,7 @@
 // entry and the shot's part: a number that was altered since is noticed.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -18,8 +19,8 @@
 #include "core/plan/plan.h"
 #include "core/scene/scene.h"
 #include "core/spectrum/spectral_moments.h"
-#include "plugin/bake/spray_record.h"
 #include "plugin/files/files.h"
+#include "plugin/run/spray_record.h"
 
 namespace pelagic {
 
@@ -71,13 +72,11 @@ struct RecordReading {
     std::vector<int> altered{};  // frames whose entries aren't as they were written
 };
 
-// Called as the file is read; what it throws ends the reading and passes through.
-using RecordWatch = std::function<void()>;
-
 // Hands over each frame whose entry is as it was written, in the order of the file: never more than one of them is in
-// memory.
+// memory. Throws BuildCancelled.
 RecordReading read_record(const std::filesystem::path& file,
-                          const std::function<void(int, FrameRecord)>& take, const RecordWatch& watch = {});
+                          const std::function<void(int, FrameRecord)>& take,
+                          const std::atomic<bool>* cancel = nullptr);
 
 // What a run adds to the record of its shot.
 class Record {

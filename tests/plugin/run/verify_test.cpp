@@ -1,6 +1,6 @@
 // Damage to a bake's files, over every kind of file and every kind of damage: verify() names it, and the next bake
 // makes the very files again. And what is missing, stale and foreign, in folders of one shot and of two.
-#include "plugin/bake/verify.h"
+#include "plugin/run/verify.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -101,9 +101,9 @@ class Verify : public ::testing::Test {
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    BakeReport bake_into(const fs::path& out, const Scene& scene, std::vector<int> frames = {},
-                         bool trust_times = false) const {
-        BakeOptions options;
+    RunReport bake_into(const fs::path& out, const Scene& scene, std::vector<int> frames = {},
+                        bool trust_times = false) const {
+        RunOptions options;
         options.out = out;
         options.frames = std::move(frames);
         options.trust_times = trust_times;
@@ -157,7 +157,7 @@ TEST_F(Verify, EveryDamageToEveryKindOfFileIsNamedAndMadeAgain) {
             for (const std::string& path : paths)
                 if (!path.ends_with(".json")) write(folder_ / path, damage.apply(whole.at(path)));
             EXPECT_EQ(flaws().size(), paths.size() - 1);
-            const BakeReport report = bake_into(folder_, scene);
+            const RunReport report = bake_into(folder_, scene);
             EXPECT_EQ(report.kept, 2);
             EXPECT_EQ(report.damaged.size(), 1u + 4 + 8)
                 << "the frame's files; the others are compared anyway";
@@ -224,7 +224,7 @@ TEST_F(Verify, AnAlteredNumberInARecordIsNoticedAndTheFrameBakedAgain) {
         number += 1e-12 + 1e-9 * number;
         write(folder_ / "sea.json", altered.dump(2));
         EXPECT_EQ(flaws(), std::vector<std::string>{"damaged sea.json"}) << key;
-        const BakeReport report = bake_into(folder_, scene);
+        const RunReport report = bake_into(folder_, scene);
         EXPECT_EQ(report.done, 1) << key;
         EXPECT_EQ(report.damaged,
                   std::vector<std::string>{"sea.json was altered in what it says about frame 2"});
@@ -233,7 +233,7 @@ TEST_F(Verify, AnAlteredNumberInARecordIsNoticedAndTheFrameBakedAgain) {
     nlohmann::ordered_json altered = record;
     altered["frames"]["2"]["hs_m"] = 17.0;
     write(folder_ / "sea.json", altered.dump(2));
-    const BakeReport beside = bake_into(folder_, scene, {1, 3});
+    const RunReport beside = bake_into(folder_, scene, {1, 3});
     EXPECT_TRUE(beside.damaged.empty()) << "it wasn't asked for, and so not made again";
     EXPECT_EQ(beside.stale, std::vector<int>{2});
     bake_into(folder_, scene);
@@ -322,7 +322,7 @@ TEST_F(Verify, TwoShotsInAFolderShareNoFile) {
             bake_into(folder_ / "two", second);
             bake_into(both, first);
             EXPECT_EQ(bake_into(both, second).foreign, std::vector<std::string>());
-            const BakeReport again = bake_into(both, first);
+            const RunReport again = bake_into(both, first);
             EXPECT_EQ(again.kept, 3);
             EXPECT_EQ(again.foreign, std::vector<std::string>()) << "the second one has its own record";
             Files alone = files_in(folder_ / "one");
@@ -348,7 +348,7 @@ TEST_F(Verify, OfAFolderWithoutABakeFindsNothingWhole) {
     EXPECT_THROW(verify(folder_ / "file"), files::FileError);
     std::atomic<bool> cancel{true};
     bake_into(folder_, every_output(MeshFormat::Usdc));
-    EXPECT_THROW(verify(folder_, {.progress = {}, .cancel = &cancel}), CheckCancelled);
+    EXPECT_THROW(verify(folder_, {.progress = {}, .cancel = &cancel}), BuildCancelled);
 }
 
 // A bake that was stopped when it had written what the whole shot has, and not yet its record.
@@ -456,7 +456,7 @@ TEST_F(Verify, WhateverIsInTheRecordsPlaceIsSaidAndBakedOver) {
         const std::vector<std::string> named = flaws();
         EXPECT_EQ(std::count(named.begin(), named.end(), "damaged sea.json"), 1)
             << ::testing::PrintToString(named);
-        const BakeReport report = bake_into(folder_, scene);
+        const RunReport report = bake_into(folder_, scene);
         EXPECT_FALSE(report.damaged.empty());
         EXPECT_EQ(bytes_of(folder_ / "sea.json"), record);
     }
@@ -482,7 +482,7 @@ TEST_F(Verify, TimesAreTrustedWhenToldTo) {
     fs::last_write_time(file, before);
     EXPECT_EQ(bake_into(folder_, scene, {}, true).kept, 3) << "as recorded, by size and time";
     fs::last_write_time(file, fs::last_write_time(folder_ / "sea.json") + std::chrono::seconds(1));
-    const BakeReport report = bake_into(folder_, scene, {}, true);
+    const RunReport report = bake_into(folder_, scene, {}, true);
     EXPECT_EQ(report.kept, 2);
     EXPECT_EQ(report.damaged,
               std::vector<std::string>{"mesh/sea.0002.usdc was written later than the record"});

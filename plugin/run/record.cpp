@@ -1,4 +1,4 @@
-#include "plugin/bake/record.h"
+#include "plugin/run/record.h"
 
 #include <algorithm>
 #include <charconv>
@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/base/build_watch.h"
 #include "core/base/constants.h"
 #include "core/plan/copies.h"
 #include "core/plan/fingerprint.h"
@@ -177,7 +178,7 @@ ShotRecord shot_from_json(const Json& json) {
 // anything in the record's place fills no memory and takes no time.
 class Bytes final : public std::streambuf {
   public:
-    Bytes(files::FileReader& file, const RecordWatch& watch) : file_(file), watch_(watch) {}
+    Bytes(files::FileReader& file, const std::atomic<bool>* cancel) : file_(file), cancel_(cancel) {}
 
     void begin_part() { left_ = kLargestPart; }
     // A zero ends a text for the parser; in ours there is none.
@@ -191,7 +192,7 @@ class Bytes final : public std::streambuf {
     static constexpr std::size_t kLargestPart = std::size_t{64} << 20;  // [bytes] camera keys for 1e5 frames
 
     int_type underflow() override {
-        if (watch_) watch_();
+        stop_if(cancel_);
         const std::size_t got = file_.read(std::span(piece_).first(std::min(piece_.size(), left_)));
         if (got == 0) return traits_type::eof();
         left_ -= got;
@@ -201,7 +202,7 @@ class Bytes final : public std::streambuf {
     }
 
     files::FileReader& file_;
-    const RecordWatch& watch_;
+    const std::atomic<bool>* cancel_;
     std::vector<char> piece_ = std::vector<char>(std::size_t{1} << 16);
     std::size_t left_ = kLargestPart;
     bool had_zero_ = false;
@@ -219,7 +220,8 @@ std::string lines_inside(const Json& object, const std::string& indent) {
 }  // namespace
 
 RecordReading read_record(const std::filesystem::path& file,
-                          const std::function<void(int, FrameRecord)>& take, const RecordWatch& watch) {
+                          const std::function<void(int, FrameRecord)>& take,
+                          const std::atomic<bool>* cancel) {
     constexpr int kSection = 1, kFrame = 2, kDeepest = 16;  // depths
     RecordReading reading;
     files::FileReader reader(file);
@@ -229,7 +231,7 @@ RecordReading read_record(const std::filesystem::path& file,
         reading.is_blocked = !reading.is_missing;
         return reading;
     }
-    Bytes bytes(reader, watch);
+    Bytes bytes(reader, cancel);
     std::string section, number;
     const auto take_frame = [&](const Json& parsed) {
         bytes.begin_part();

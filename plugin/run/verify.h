@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "plugin/bake/check.h"
+#include "plugin/run/check.h"
 
 namespace pelagic {
 
@@ -37,7 +37,7 @@ struct Verification {
 // about themselves: those that a folder lacks altogether, nobody knows. Of a shot whose record is damaged, files that
 // are in no entry that is left aren't called foreign. Nor are files of a frame that the record lacks, and those of a
 // stale frame aren't looked at: a bake is at them, or was stopped there. Throws files::FileError where there is no such folder, and
-// CheckCancelled.
-Verification verify(const std::filesystem::path& folder, const CheckWatch& watch = {});
+// BuildCancelled.
+Verification verify(const std::filesystem::path& folder, const BuildWatch& watch = {});
 
 }  // namespace pelagic

@@ -1,5 +1,5 @@
 // Which files of a folder a bake names as not its own, and which are none of its business.
-#include "plugin/bake/foreign.h"
+#include "plugin/run/foreign.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -109,7 +109,8 @@ TEST_F(ForeignFiles, OfPicturesAreThoseOutsideTheRange) {
     for (const char* path : {"sea.0001.exr", "sea.0001.png", "sea.0004.png", "sea.0004.exr", "sea.0005.exr",
                              "other.0009.exr", "sea.normal.0009.exr"})
         write(path);
-    EXPECT_EQ(foreign_pictures(folder_, scene_.shot),
+    const std::vector<RunPart> parts{{{"sea.", ".png"}, {}}, {{"sea.", ".exr"}, {}}};
+    EXPECT_EQ(foreign_pictures(folder_, scene_.shot, parts),
               (Lines{"sea.####.exr: 2 files outside the shot's frames",
                      "sea.0004.png: outside the shot's frames"}));
 }

@@ -1,5 +1,5 @@
 // What a bake's record says about the shot: every key, as a value.
-#include "plugin/bake/record.h"
+#include "plugin/run/record.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -6,12 +6,13 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "plugin/bake/output_part.h"
+#include "plugin/run/part.h"
 
 namespace pelagic {
 
@@ -19,7 +20,7 @@ namespace pelagic {
 // 48 files of an output that the shot doesn't have", "mesh/old.####.usdc: 48 files of another shot". Only
 // names that bakes give to files are looked at, in DIR and its folders mesh, maps, tiles and volumes.
 std::vector<std::string> foreign_files(const std::filesystem::path& folder, const Shot& shot,
-                                       const std::vector<std::unique_ptr<OutputPart>>& parts,
+                                       std::span<const RunPart> parts,
                                        const std::vector<std::string>& static_files);
 
 // The files that have names such as bakes give, by path below the folder, in DIR and its folders mesh, maps, tiles and
@@ -37,6 +38,7 @@ std::optional<int> frame_of(std::string_view path, const FilePattern& pattern);
 std::vector<int> frames_in(const std::filesystem::path& folder, const FilePattern& pattern);
 
 // As foreign_files(), of pictures that `pelagic render` leaves: those of this shot, of frames outside its range.
-std::vector<std::string> foreign_pictures(const std::filesystem::path& folder, const Shot& shot);
+std::vector<std::string> foreign_pictures(const std::filesystem::path& folder, const Shot& shot,
+                                          std::span<const RunPart> parts);
 
 }  // namespace pelagic

@@ -1,6 +1,6 @@
 // Stages side by side: every item passes them in order, in a place that is its own meanwhile, whatever the
 // stages' speeds, and an error in any of them ends all without hanging and without losing what came before.
-#include "plugin/bake/pipeline.h"
+#include "plugin/run/pipeline.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

@@ -1,4 +1,4 @@
-#include "plugin/bake/foreign.h"
+#include "plugin/run/foreign.h"
 
 #include <algorithm>
 #include <array>
@@ -88,11 +88,8 @@ std::optional<int> frame_of(std::string_view path, const FilePattern& pattern) {
 }
 
 std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
-                                       const std::vector<std::unique_ptr<OutputPart>>& parts,
+                                       std::span<const RunPart> parts,
                                        const std::vector<std::string>& static_files) {
-    std::vector<FilePattern> patterns;
-    for (const auto& part : parts) patterns.push_back(part->pattern());
-
     // Whether the shot of that name has a record of its own here.
     std::map<std::string, bool> others;
     const auto has_record = [&](const std::string& name) {
@@ -110,14 +107,18 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Shot& shot,
         std::string reason = "of another shot";
         if (name == shot.name) reason = "of an output that the shot doesn't have";
         bool is_ours = false;
-        for (const FilePattern& pattern : patterns)
-            if (const auto frame = frame_of(path, pattern)) {
+        for (const RunPart& part : parts)
+            if (const auto frame = frame_of(path, part)) {
                 is_ours = *frame >= shot.first_frame && *frame <= shot.last_frame;
                 reason = "outside the shot's frames";
             }
         if (!is_ours) add(groups, path, reason);
     });
     return lines_of(groups);
+}
+
+std::string FilePattern::file(int frame) const {
+    return prefix + usd::frame_number(frame) + suffix;
 }
 
 std::vector<int> frames_in(const fs::path& folder, const FilePattern& pattern) {
@@ -129,17 +130,13 @@ std::vector<int> frames_in(const fs::path& folder, const FilePattern& pattern) {
     return frames;
 }
 
-std::vector<std::string> foreign_pictures(const fs::path& folder, const Shot& shot) {
+std::vector<std::string> foreign_pictures(const fs::path& folder, const Shot& shot,
+                                          std::span<const RunPart> parts) {
     Groups groups;
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-        const std::string name = entry.path().filename().string();
-        for (const char* extension : {".exr", ".png"}) {
-            const auto frame = frame_of(name, {shot.name + '.', extension});
-            if (frame && (*frame < shot.first_frame || *frame > shot.last_frame))
-                add(groups, name, "outside the shot's frames");
-        }
-    }
+    for (const RunPart& part : parts)
+        for (const int frame : frames_in(folder, part))
+            if (frame < shot.first_frame || frame > shot.last_frame)
+                add(groups, part.file(frame), "outside the shot's frames");
     return lines_of(groups);
 }
 

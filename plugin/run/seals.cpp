@@ -1,10 +1,12 @@
-#include "plugin/bake/pictures.h"
+#include "plugin/run/seals.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <string_view>
 
+#include "plugin/exr/read.h"
 #include "plugin/files/checksum.h"
+#include "plugin/files/files.h"
 #include "plugin/files/read.h"
 #include "plugin/png/png.h"
 
@@ -94,6 +96,12 @@ std::string png_comment(const std::string& name, const std::string& made_of) {
 
 std::string picture_problem(const std::filesystem::path& file, CheckProgress& progress) {
     return file.extension() == ".png" ? png_problem(file, progress) : exr_problem(file, progress);
+}
+
+bool seems_whole(const std::filesystem::path& file, const std::string& made_of) {
+    if (!files::carries(file, made_of)) return false;
+    // A PNG ends with an empty chunk called IEND and its checksum.
+    return file.extension() == ".exr" ? exr::ends_whole(file) : files::carries(file, "IEND\xae\x42\x60\x82");
 }
 
 }  // namespace pelagic

@@ -1,8 +1,7 @@
-#include "plugin/bake/verify.h"
-
-#include <oneapi/tbb/parallel_for.h>
+#include "plugin/run/verify.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -10,10 +9,9 @@
 #include <utility>
 
 #include "core/scene/text.h"
-#include "plugin/bake/bake.h"
-#include "plugin/bake/foreign.h"
-#include "plugin/bake/pictures.h"
-#include "plugin/bake/record.h"
+#include "plugin/run/foreign.h"
+#include "plugin/run/record.h"
+#include "plugin/run/run.h"
 
 namespace pelagic {
 namespace {
@@ -52,8 +50,8 @@ std::string gaps_text(const Known::Baked& baked) {
     return text;
 }
 
-void read_shot(const fs::path& folder, const std::string& record, const RecordWatch& watch, Known& known,
-               Verification& found) {
+void read_shot(const fs::path& folder, const std::string& record, const std::atomic<bool>* cancel,
+               Known& known, Verification& found) {
     const std::string name = record.substr(0, record.size() - std::string_view(".json").size());
     const auto tell = [&](Flaw flaw, std::string what) {
         found.findings.push_back({record, flaw, std::move(what)});
@@ -77,7 +75,7 @@ void read_shot(const fs::path& folder, const std::string& record, const RecordWa
                     add(path, std::move(file));
             }
         },
-        watch);
+        cancel);
     known.paths.insert(record);
     ++found.shots;
     if (!reading.problem.empty()) tell(Flaw::Damaged, reading.problem);
@@ -128,22 +126,11 @@ bool is_picture(const std::string& name) {
 }  // namespace
 
 const char* word_of(Flaw flaw) {
-    switch (flaw) {
-        case Flaw::Missing:
-            return "missing";
-        case Flaw::Damaged:
-            return "damaged";
-        case Flaw::Stale:
-            return "stale";
-        case Flaw::Foreign:
-            return "foreign";
-        case Flaw::Interrupted:
-            return "interrupted";
-    }
-    return "";
+    constexpr std::array kWords{"missing", "damaged", "stale", "foreign", "interrupted"};
+    return kWords[static_cast<std::size_t>(flaw)];
 }
 
-Verification verify(const fs::path& folder, const CheckWatch& watch) {
+Verification verify(const fs::path& folder, const BuildWatch& watch) {
     std::set<std::string> names;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
@@ -155,42 +142,25 @@ Verification verify(const fs::path& folder, const CheckWatch& watch) {
 
     Verification found;
     Known known;
-    const auto go_on = [&] {
-        if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) throw CheckCancelled();
-    };
-    struct PictureCheck {
-        std::string name, problem;
-    };
-    std::vector<PictureCheck> pictures;
     for (const std::string& name : names) {
         if (name.starts_with('.')) continue;
-        if (name.ends_with(".json")) read_shot(folder, name, go_on, known, found);
-        if (is_picture(name)) pictures.push_back({name, {}});
+        if (name.ends_with(".json")) read_shot(folder, name, watch.cancel, known, found);
+        if (is_picture(name))
+            known.files.push_back(
+                {.path = name, .recorded = {.bytes = files::file_size(folder / name).value_or(0)}});
     }
-
-    std::uintmax_t& total = found.bytes;
-    for (const FileCheck& file : known.files) total += file.recorded.bytes;
-    for (const PictureCheck& picture : pictures) total += files::file_size(folder / picture.name).value_or(0);
-    CheckProgress progress(watch, total);
-    const std::size_t of_bakes = known.files.size();
-    tbb::parallel_for(std::size_t(0), of_bakes + pictures.size(), [&](std::size_t i) {
-        if (i < of_bakes) return check_file(folder, known.files[i], progress);
-        PictureCheck& picture = pictures[i - of_bakes];
-        picture.problem = picture_problem(folder / picture.name, progress);
-    });
-    found.files = static_cast<int>(of_bakes + pictures.size());
-    for (const FileCheck& file : known.files)
+    for (const FileCheck& file : known.files) found.bytes += file.recorded.bytes;
+    check_files(folder, known.files, watch);
+    found.files = static_cast<int>(known.files.size());
+    for (const FileCheck& file : known.files) {
         if (!file.problem.empty())
             found.findings.push_back(
                 {file.path, file.is_missing ? Flaw::Missing : Flaw::Damaged, file.problem});
-    for (const PictureCheck& picture : pictures) {
-        if (!picture.problem.empty())
-            found.findings.push_back({picture.name, Flaw::Damaged, picture.problem});
-        const std::string other = fs::path(picture.name)
-                                      .replace_extension(picture.name.ends_with(".png") ? ".exr" : ".png")
-                                      .string();
+        if (!file.is_sealed()) continue;
+        const std::string other =
+            fs::path(file.path).replace_extension(file.path.ends_with(".png") ? ".exr" : ".png").string();
         if (!names.contains(other))
-            found.findings.push_back({other, Flaw::Missing, "is missing beside " + picture.name});
+            found.findings.push_back({other, Flaw::Missing, "is missing beside " + file.path});
     }
     std::map<std::string, std::vector<std::string>> unrecorded;  // paths, by shot
     for_each_bake_file(folder, [&](const std::string& path) {

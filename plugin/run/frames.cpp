@@ -2,8 +2,9 @@
 
 #include <charconv>
 #include <optional>
+#include <stdexcept>
 
-#include "plugin/bake/bake.h"
+#include "plugin/run/run.h"
 
 namespace pelagic {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "plugin/bake/check.h"
 #include "plugin/exr/exr.h"
+#include "plugin/run/check.h"
 
 namespace pelagic {
 
@@ -18,8 +18,11 @@ void seal(std::string& exr);
 // The comment of a PNG called `name`.
 std::string png_comment(const std::string& name, const std::string& made_of);
 
+// Whether the picture is there, and says at its beginning and end that it is whole and was made of this.
+bool seems_whole(const std::filesystem::path& file, const std::string& made_of);
+
 // Reads all of a picture, .exr or .png. What is wrong with it, as the end of a sentence that begins with its name;
-// empty: it is as it was written, under this very name. Throws CheckCancelled.
+// empty: it is as it was written, under this very name. Throws BuildCancelled.
 std::string picture_problem(const std::filesystem::path& file, CheckProgress& progress);
 
 }  // namespace pelagic

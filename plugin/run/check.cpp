@@ -1,4 +1,4 @@
-#include "plugin/bake/check.h"
+#include "plugin/run/check.h"
 
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -9,6 +9,7 @@
 
 #include "plugin/files/checksum.h"
 #include "plugin/files/read.h"
+#include "plugin/run/seals.h"
 
 namespace pelagic {
 namespace {
@@ -20,7 +21,7 @@ std::string size_problem(std::uintmax_t bytes, std::uintmax_t recorded) {
 }  // namespace
 
 void CheckProgress::add(std::size_t bytes) {
-    if (watch_.cancel && watch_.cancel->load(std::memory_order_relaxed)) throw CheckCancelled();
+    stop_if(watch_.cancel);
     if (!watch_.progress) return;
     constexpr std::chrono::milliseconds kTellEvery{50};
     const std::lock_guard lock(mutex_);
@@ -36,6 +37,10 @@ void CheckProgress::add(std::size_t bytes) {
 
 void check_file(const std::filesystem::path& folder, FileCheck& check, CheckProgress& progress) {
     const std::filesystem::path file = folder / check.path;
+    if (check.is_sealed()) {
+        check.problem = picture_problem(file, progress);
+        return;
+    }
     const std::optional<std::uintmax_t> size = files::file_size(file);
     progress.add(0);
     if (size && *size != check.recorded.bytes) {  // no need to read it
@@ -60,7 +65,7 @@ void check_file(const std::filesystem::path& folder, FileCheck& check, CheckProg
         check.problem = "holds other bytes than were written (its checksum differs)";
 }
 
-void check_files(const std::filesystem::path& folder, std::span<FileCheck> checks, const CheckWatch& watch) {
+void check_files(const std::filesystem::path& folder, std::span<FileCheck> checks, const BuildWatch& watch) {
     std::uintmax_t total = 0;
     for (const FileCheck& file : checks) total += file.recorded.bytes;
     CheckProgress progress(watch, total);
@@ -74,6 +79,7 @@ void check_times(const std::filesystem::path& folder, std::span<FileCheck> check
     const auto saved = std::filesystem::last_write_time(record, error);
     for (FileCheck& file : checks) {
         const std::filesystem::path path = folder / file.path;
+        if (file.is_sealed()) continue;
         const std::optional<std::uintmax_t> size = files::file_size(path);
         file.is_missing = !size;
         if (!size) {

@@ -1,4 +1,4 @@
-#include "plugin/bake/pipeline.h"
+#include "plugin/run/pipeline.h"
 
 #include <oneapi/tbb/task_arena.h>
 #include <oneapi/tbb/task_group.h>

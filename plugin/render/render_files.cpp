@@ -1,0 +1,127 @@
+#include "plugin/render/render_files.h"
+
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "core/plan/budget.h"
+#include "plugin/files/files.h"
+#include "plugin/light/exposure.h"
+#include "plugin/light/light.h"
+#include "plugin/machine/memory.h"
+#include "plugin/render/picture_budget.h"
+#include "plugin/render/picture_files.h"
+#include "plugin/run/work.h"
+
+namespace pelagic {
+namespace {
+
+struct PictureSlot : RunSlot {
+    Picture picture;
+    std::array<std::string, 2> files;  // by part
+};
+constexpr std::array kExtensions{"png", "exr"};
+
+class Pictures final : public Sequence {
+  public:
+    Pictures(const PictureOrder& order, const PictureFingerprint& made_of, std::span<const int> frames,
+             const std::function<BuildWatch(RunStage)>& watch)
+        : order_(order),
+          made_of_(made_of),
+          cancel_(watch(RunStage::Building).cancel),
+          renderer_(order.scene, order.options, make_sky(order.scene), frames, watch(RunStage::Building)),
+          exposure_(shot_exposure(order.scene, renderer_.sky(), order.exposure_stops)) {
+        renderer_.check_cameras(frames, watch(RunStage::Looking));
+    }
+
+    std::unique_ptr<RunSlot> make_slot() const override { return std::make_unique<PictureSlot>(); }
+
+    void compute(int frame, RunSlot& any, const std::function<void(double)>& progress) override {
+        PictureSlot& slot = static_cast<PictureSlot&>(any);
+        slot.frame = frame;
+        renderer_.render(frame, slot.picture, {.progress = progress, .cancel = cancel_});
+    }
+
+    void encode(RunSlot& any) const override {
+        PictureSlot& slot = static_cast<PictureSlot&>(any);
+        const PictureContext context{.scene = order_.scene,
+                                     .options = order_.options,
+                                     .sky = renderer_.sky(),
+                                     .made_of = made_of_.of(slot.frame),
+                                     .exposure = exposure_};
+        if (slot.wants(0)) slot.files[0] = encode_png(context, slot.picture, slot.frame);
+        if (slot.wants(1)) slot.files[1] = encode_exr(context, slot.picture, slot.frame);
+    }
+
+    void write(RunSlot& any, const FileSink& sink) const override {
+        const PictureSlot& slot = static_cast<const PictureSlot&>(any);
+        for (std::size_t p = 0; p < kExtensions.size(); ++p)
+            if (slot.wants(p))
+                sink({picture_file(order_.scene.shot, slot.frame, kExtensions[p]),
+                      [&](const auto& take) { take(slot.files[p]); }});
+    }
+
+  private:
+    const PictureOrder& order_;
+    const PictureFingerprint& made_of_;
+    const std::atomic<bool>* cancel_;
+    Renderer renderer_;
+    float exposure_;
+};
+
+}  // namespace
+
+std::string spend_budget(PictureOrder& order, std::size_t max_memory_bytes, const std::string& by_name,
+                         const BuildWatch& watch) {
+    if (!has_budget(order.scene.quality)) return {};
+    RenderOptions& options = order.options;
+    const FixedSettings fixed{order.samples, order.sky_quality, options.shutter_frames, options.layers};
+    const PictureBudget budget = picture_budget(order.scene, fixed, max_memory_bytes, watch);
+    if (!budget.holds)
+        throw std::invalid_argument(budget.text + "; raise the budget, or give " + by_name +
+                                    " instead of it");
+    order.scene = budget.scene;
+    options.samples = budget.options.samples;
+    options.lighting.sky_quality = budget.options.lighting.sky_quality;
+    options.lighting.fresnel = budget.options.lighting.fresnel;
+    return budget.text;
+}
+
+RunReport render_files(const PictureOrder& order, const RunOptions& options) {
+    const Shot& shot = order.scene.shot;
+    std::optional<PictureFingerprint> made_of;
+    std::vector<RunPart> parts;
+    return run({.shot = shot,
+                .in_flight = kPicturesInFlight,
+                .plan =
+                    [&](std::span<const int>) {
+                        check_render(order.scene, order.options);
+                        made_of.emplace(PictureSource{.scene = order.scene,
+                                                      .options = order.options,
+                                                      .sky_content = sky_content(order.scene),
+                                                      .exposure_stops = order.exposure_stops});
+                        for (const char* suffix : {".png", ".exr"})
+                            parts.push_back(
+                                {{shot.name + '.', suffix}, [&](int frame) { return made_of->of(frame); }});
+                        return parts;
+                    },
+                .build = [&](std::span<const int> frames, const auto& watch) -> std::unique_ptr<Sequence> {
+                    require_memory(render_memory(order.scene, order.options, frames,
+                                                 std::min(static_cast<int>(frames.size()), kPicturesInFlight),
+                                                 tbb::this_task_arena::max_concurrency()),
+                                   machine::memory_limit_or(options.max_memory_bytes), "this picture");
+                    files::check_folder(options.out);
+                    auto pictures = std::make_unique<Pictures>(order, *made_of, frames, watch);
+                    prepare_folders(options.out, parts);  // whatever is refused has left none behind
+                    return pictures;
+                }},
+               options);
+}
+
+}  // namespace pelagic

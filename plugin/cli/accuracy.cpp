@@ -92,7 +92,7 @@ void put(std::vector<MeasuredRow>& rows, MeasuredRow row) {
                      [&](const MeasuredRow& a, const MeasuredRow& b) { return place(a) < place(b); });
 }
 
-void write(const fs::path& folder, const std::vector<MeasuredRow>& rows, const Scene& shot) {
+void write_reports(const fs::path& folder, const std::vector<MeasuredRow>& rows, const Scene& shot) {
     const std::string now = utc_now(), hash = shot_hash(shot);
     files::write_atomically(folder / "accuracy.txt", text_report(rows, now, hash));
     files::write_atomically(folder / "accuracy.csv", csv_report(rows));
@@ -140,7 +140,7 @@ int run(const AccuracyArguments& arguments) {
         for (const ApproximationRow* row : rows) {
             put(measured,
                 session.threads.execute([&] { return sweep(*row, shot, arguments.repeats, watch); }));
-            write(folder, measured, shot);  // what is known so far
+            write_reports(folder, measured, shot);  // what is known so far
             ++done;
         }
         session.progress.clear();

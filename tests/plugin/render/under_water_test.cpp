@@ -61,14 +61,14 @@ glm::dvec3 surface_at(const Scene& scene, int frame, glm::dvec2 rest_m) {
     return place_m;
 }
 
-const Sky& some_sky() {
+const Sky& sky_under_water() {
     static const Sky sky = make_sky(Scene());
     return sky;
 }
 
 // Why a picture of the frame is refused; empty if it isn't, and then all of it is finite.
 std::string why_refused(const Scene& scene, int frame) {
-    Renderer renderer(scene, render_options(scene), some_sky(), std::array{frame});
+    Renderer renderer(scene, render_options(scene), sky_under_water(), std::array{frame});
     Picture picture;
     try {
         renderer.render(frame, picture);
@@ -110,7 +110,7 @@ TEST_P(UnderWater, TheFirstOfTheFramesAskedForIsNamed) {
          {std::pair(1, 30.0), std::pair(4, 30.0), std::pair(5, crest.z - 0.3), std::pair(6, 30.0)})
         scene.camera.keys.push_back({.frame = frame, .position_m = {crest.x, crest.y, z_m}});
     const std::vector<int> all{1, 2, 3, 4, 5, 6}, others{1, 2, 3, 4, 6};
-    Renderer renderer(scene, render_options(scene), some_sky(), all);
+    Renderer renderer(scene, render_options(scene), sky_under_water(), all);
     renderer.check_cameras(others);
     try {
         renderer.check_cameras(all);
@@ -126,14 +126,14 @@ TEST_P(UnderWater, FramesWhoseCameraIsAboveEveryCrestArentLookedAt) {
     scene.camera.keys = {{.frame = 1, .position_m = {0.0, 0.0, 30.0}},
                          {.frame = 10, .position_m = {0.0, 0.0, 30.0}}};
     std::vector<int> frames{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
-    Renderer renderer(scene, render_options(scene), some_sky(), frames);
+    Renderer renderer(scene, render_options(scene), sky_under_water(), frames);
     int looks = 0;
     const BuildWatch watch{.progress = [&](double) { ++looks; }};
     renderer.check_cameras(frames, watch);
     EXPECT_EQ(looks, 0);
     const Scene low =
         seen_from(sea_of(GetParam()), surface_at(scene, 1, {3.0, 4.0}) + glm::dvec3(0.0, 0.0, 0.5));
-    Renderer among(low, render_options(low), some_sky(), std::array{1});
+    Renderer among(low, render_options(low), sky_under_water(), std::array{1});
     among.check_cameras(std::array{1}, watch);
     EXPECT_EQ(looks, 1);
 }

@@ -75,6 +75,7 @@ Scene scene() {
     Scene scene;
     scene.waves.cascades = {{200.0, 64}};
     scene.waves.tiling = Tiling::Periodic;  // grids are counted by hand, without what copies need
+    scene.effects.foam_decay_s = 0.0;       // and bytes without those of breaking and age
     scene.surface.resolution = 64;
     scene.output.attributes = {};
     scene.output.map_resolution = 64;

@@ -18,12 +18,12 @@
 #include <string>
 #include <vector>
 
+#include "core/effects/sea_at_time.h"
 #include "core/evaluate/values.h"
 #include "core/plan/plan.h"
 #include "core/plan/taps.h"
 #include "core/scene/validate.h"
 #include "core/surface/patch.h"
-#include "core/waves/frame.h"
 
 namespace pelagic {
 namespace {
@@ -300,8 +300,8 @@ std::size_t trains_bytes(int trains) {
 }
 
 template <class T>
-double median_ms(Frame<T>& frame) {
-    const Plan& plan = frame.sea().plan();
+double median_ms(SeaAtTime<T>& state) {
+    const Plan& plan = state.sea().plan();
     std::vector<std::vector<glm::vec<2, T>>> rest;
     std::vector<ProductArrays<T>> answers;
     for (const PlannedQuery& planned : plan.queries) {
@@ -314,10 +314,10 @@ double median_ms(Frame<T>& frame) {
     std::vector<double> ms;
     for (int i = 0; i < 9; ++i) {
         const auto start = std::chrono::steady_clock::now();
-        frame.set(0.25 * i);
+        state.set(0.25 * i);
         for (std::size_t q = 0; q < rest.size(); ++q)
-            evaluate(frame, static_cast<int>(q), {.count = rest[q].size(), .rest_m = {rest[q].data()}},
-                     answers[q].results());
+            state.evaluate(static_cast<int>(q), {.count = rest[q].size(), .rest_m = {rest[q].data()}},
+                           answers[q].results());
         ms.push_back(
             std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
@@ -353,7 +353,8 @@ void check(const Case& c, const Plan& plan) {
     EXPECT_EQ(in_modes, modes_bytes(c));
     EXPECT_EQ(held_by(sea->trains()), trains_bytes(c.trains));
 
-    Frame<T> frame(sea);
+    SeaAtTime<T> state(sea);
+    const Frame<T>& frame = state.frame();
     EXPECT_EQ(frame.held_bytes(), frame_bytes);
     ASSERT_EQ(plan.cascades.size(), c.cascades.size());
     for (int k = 0; k < static_cast<int>(c.cascades.size()); ++k) {
@@ -369,12 +370,12 @@ void check(const Case& c, const Plan& plan) {
     }
     EXPECT_EQ(frame.executed_transforms(), 0);
     for (int i = 1; i <= 3; ++i) {
-        frame.set(0.5 * i);
+        state.set(0.5 * i);
         EXPECT_EQ(frame.executed_transforms(), i * transforms);
         EXPECT_EQ(frame.executed_lines(), i * all_lines);
     }
     std::printf("%-26s %3d transforms %6ld lines %8zu + %7zu + %7zu bytes %7.3f ms\n", c.name.c_str(),
-                transforms, all_lines, plan.sea_bytes(), frame_bytes, c.output_bytes, median_ms(frame));
+                transforms, all_lines, plan.sea_bytes(), frame_bytes, c.output_bytes, median_ms(state));
 }
 
 class Exact : public testing::TestWithParam<Case> {};

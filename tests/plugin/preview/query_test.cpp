@@ -31,6 +31,7 @@ Scene scene_of_model(WaveModel model) {
     scene.waves.model = model;
     if (model == WaveModel::Fft) scene.waves.cascades = {{200.0, 128}, {37.3, 96}};
     scene.waves.trains = 40;
+    scene.effects.foam_decay_s = 0.0;  // all foam breaks now
     return scene;
 }
 

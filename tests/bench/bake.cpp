@@ -105,7 +105,7 @@ std::vector<PackedMap> maps_to_pack() {
         full.push_back({j.x, j.y, j.z});
     auto moments = moment_mips({.n = kN, .texels = full, .periodic = true});
     moments.insert(moments.begin(), {kN, full});
-    const auto threshold = static_cast<float>(sequence->whitecap_threshold());
+    const auto threshold = static_cast<float>(Sea<float>(plan).whitecap_threshold());
     for (const auto& level : moments) {
         auto& texels = maps[2].levels.emplace_back(MipLevel<glm::vec3>{level.n, {}}).texels;
         for (const JacobianMoments<float>& j : level.texels)

@@ -16,9 +16,10 @@
 #include "core/waves/ellipse_moments.h"
 #include "core/waves/gusts.h"
 #include "core/waves/trains.h"
-#include "core/waves/whitecaps.h"
 
 namespace pelagic {
+
+struct FoamLife;  // core/waves/whitecaps.h
 
 // The FFT component: the modes of one cascade (core/plan/mode_lattice.h gives their order), of its own band
 // only; each quantity side by side.

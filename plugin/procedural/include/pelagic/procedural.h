@@ -223,7 +223,7 @@ typedef struct pelagic_values {
 } pelagic_values;
 
 /* Before coverage or age_s is asked for at many places, in one call or in many: goes through the past of their foam once, with
- * several threads, 0.1 … 5 s for the first time and milliseconds for one soon after it. Without, the call that meets a new place does
+ * several threads; a time soon after another takes much less. Without, the call that meets a new place does
  * it alone. Nothing but time depends on it; of points, only the places and pixels count. */
 PELAGIC_API pelagic_status pelagic_prepare(const pelagic_frame* frame, const pelagic_points* points,
                                            pelagic_error* error);

@@ -18,6 +18,7 @@
 #include "core/scene/text.h"
 #include "core/surface/rungs.h"
 #include "core/surface/view.h"
+#include "core/waves/whitecaps.h"
 #include "plugin/machine/memory.h"
 
 namespace pelagic::procedural {

@@ -110,7 +110,7 @@ void SeaAtTime<T>::evaluate_by(const Ask& ask, int index, const Points<T>& point
     // A lattice's rows stay together: they are cheap that way.
     const std::size_t piece = watch.cancel && !query.lattice ? kPiece : points.count;
     for (std::size_t first = 0; first < points.count; first += piece) {
-        if (watch.cancel && watch.cancel->load(std::memory_order_relaxed)) throw BuildCancelled();
+        stop_if(watch.cancel);
         ask(piece_of(points, first, piece), now.from_point(first));
     }
     if (lasting.none()) return;

@@ -93,6 +93,8 @@ def _make_nodes(world):
     tree.node("ShaderNodeOutputWorld", {"Surface": tree.add("ShaderNodeAddShader", {
         0: tree.add("ShaderNodeBackground", {"Color": tree.value(picture, "Color")}),
         1: tree.add("ShaderNodeBackground", {"Color": seen["Radiance"]})})})
+    if hasattr(world, "cycles"):  # its own choice is finer than the picture, and costs each render seconds
+        world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", SKY_WIDTH
 
 
 def _disc(tree, asked):

@@ -33,19 +33,35 @@ def fresh_file():
 
 
 def add_ocean(horizon=False, **settings):
-    """A small ocean without a horizon; settings are keys with their dots as __, such as sea__wind_speed_mps."""
-    bpy.ops.pelagic.add_ocean()
-    obj = bpy.context.object
-    obj.pelagic.horizon = horizon
-    obj.pelagic.surface.resolution = 32
-    change(obj, **settings)
-    return obj
+    """A small ocean without a horizon; settings are keys with their dots as __, such as sea__wind_speed_mps. Set before the
+    sea is first built, which is then built once."""
+    from pelagic_ocean import ocean
+
+    make = ocean.make
+
+    def make_small(name, collection):
+        obj = make(name, collection)
+        obj.pelagic.horizon = horizon
+        obj.pelagic.surface.resolution = 32
+        assign(obj, settings)
+        return obj
+
+    ocean.make = make_small
+    try:
+        bpy.ops.pelagic.add_ocean()
+    finally:
+        ocean.make = make
+    return bpy.context.object
 
 
-def change(obj, **settings):
+def assign(obj, settings):
     for path, value in settings.items():
         table, name = path.split("__")
         setattr(getattr(obj.pelagic, table), name, value)
+
+
+def change(obj, **settings):
+    assign(obj, settings)
     bpy.context.view_layer.update()
 
 

@@ -1,4 +1,4 @@
-"""Every test that CTest knows has exactly one of the four labels of tests/CMakeLists.txt.
+"""Every test that CTest knows has exactly one of the four labels, or nightly, of tests/CMakeLists.txt.
 
     labels.py CTEST BUILD-FOLDER
 """
@@ -7,7 +7,7 @@ import json
 import subprocess
 import sys
 
-LABELS = {"unit", "slow", "gl", "external"}
+LABELS = {"unit", "slow", "gl", "external", "nightly"}
 
 ctest, build = sys.argv[1:]
 listed = subprocess.run([ctest, "--test-dir", build, "--show-only=json-v1"], check=True, capture_output=True, text=True)

@@ -66,7 +66,7 @@ class BakeStopped : public ::testing::TestWithParam<Stop> {};
 // had happened. Maps without a mesh are the hardest: their files are just as long whatever is in them, so
 // that their sizes tell nothing.
 TEST_P(BakeStopped, AtRandomMomentsNothingIsTornAndTheNextRunFinishes) {
-    constexpr int kStops = 16;
+    constexpr int kStops = 8;
     constexpr int kMostRounds = 80;
     const TempFolder folder;
     SmallShot shot = GetParam().shot;
